@@ -17,8 +17,21 @@ globalThis.corePanicked = (message) => {
   panicMessage = message;
 };
 
+/** Lets the page see that this worker lives: its browser gives the lock back when it does not, however that came. */
+function hold(life) {
+  const forever = () => {
+    self.postMessage({ kind: "held" });
+    return new Promise(() => {});
+  };
+  // Where there are no locks, a worker that says nothing for long is taken for dead.
+  navigator.locks?.request(life, forever).catch(() => {});
+}
+
 function fail(error) {
-  self.postMessage({ kind: "failed", payload: panicMessage ?? String(error?.message ?? error) });
+  // The module stops without a panic where it asked for memory that there is not.
+  const isFull = error instanceof WebAssembly.RuntimeError && /unreachable/i.test(error.message);
+  const fault = isFull ? "its memory is full" : String(error?.message ?? error);
+  self.postMessage({ kind: "failed", payload: panicMessage ?? fault });
   // What a panic leaves behind is not to be trusted: the front end starts a new worker.
   self.close();
 }
@@ -33,6 +46,7 @@ started.catch(fail);
 self.onmessage = async ({ data }) => {
   if ("superseded" in data) {
     superseded = data.superseded;
+    hold(data.life);
     return;
   }
   const core = await started;

@@ -3,6 +3,9 @@
 // How long the core may go on with a job that is not wanted: where it can look whether it is, and where it cannot.
 const PATIENCE_MILLIS = { looking: 2000, blind: 300 };
 
+// What a core said just before it ended may arrive after that it ended.
+const LAST_WORD_MILLIS = 100;
+
 /**
  * Starts a core. `tell(kind, payload)` hears "ready", "alive", "answer" with bytes, "finished", and "failed" with what
  * is known about it; after "failed" nothing more comes.
@@ -12,12 +15,20 @@ export function startCore(tell) {
   // Shared memory needs a page that is isolated from others; without it a core is stopped instead of asked to stop.
   const superseded = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
 
-  worker.onmessage = ({ data: { kind, payload } }) => tell(kind, payload);
+  // The worker holds this lock for as long as it lives, however it ends; whoever waits for it is told then.
+  const life = `enroute/core/${performance.now()}/${Math.random()}`;
+  const watch = new AbortController();
+  const isGone = () => setTimeout(() => watch.signal.aborted || tell("failed", "it ended without a word"), LAST_WORD_MILLIS);
+
+  worker.onmessage = ({ data: { kind, payload } }) => {
+    if (kind === "held") navigator.locks.request(life, { signal: watch.signal }, isGone).catch(() => {});
+    else tell(kind, payload);
+  };
   worker.onerror = (event) => {
     event.preventDefault();
     tell("failed", event.message || "the planning core could not be loaded");
   };
-  worker.postMessage({ superseded });
+  worker.postMessage({ superseded, life });
 
   return {
     /** How long the core may go on after `supersede()`. */
@@ -33,6 +44,7 @@ export function startCore(tell) {
     },
     /** Ends it at once, whatever it does. */
     stop() {
+      watch.abort();
       worker.onmessage = null;
       worker.onerror = null;
       worker.terminate();

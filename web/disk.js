@@ -1,11 +1,13 @@
 // Files on the disk that missions were opened from and are saved to, where the browser lets a page write files. A handle
 // for each mission is kept in a database of its own; where there is none, until the page is closed.
 
+import { bytesOf } from "./files.js";
+
 const NAME = "enroute-files";
 const STORE = "files";
 
 /** A mission as a whole, as opposed to its text alone. */
-const isWhole = (name) => /\.(enroute|json)$/i.test(name);
+const isWhole = (name) => /\.(enroute|json)$/i.test(name) && !/\.tpn\.json$/i.test(name);
 
 /** What goes wrong on the disk, in words for the person who saves. */
 const REASONS = {
@@ -29,14 +31,14 @@ export function openDisk() {
     savesInPlace: () => typeof globalThis.showSaveFilePicker === "function",
 
     /** Lets the user choose a mission: its name, bytes, and a token by which `keepFile` knows it; null if none. */
-    async openMission(extensions) {
+    async openMission(extensions, most) {
       const accept = { "text/plain": extensions.map((extension) => `.${extension}`) };
       const [handle] = await unlessCancelled(showOpenFilePicker({ types: [{ accept }] }), []);
       if (!handle) return null;
       try {
         const file = await handle.getFile();
         opened.set((last += 1), { handle, modified: file.lastModified });
-        return { name: handle.name, bytes: new Uint8Array(await file.arrayBuffer()), token: last };
+        return { name: handle.name, bytes: await bytesOf(file, most), token: last };
       } catch (error) {
         throw plain(error, handle.name);
       }

@@ -1,7 +1,13 @@
 // Files that the user chooses or saves.
 
-/** Lets the user choose a file with one of these extensions; answers null if they choose none. */
-export function chooseFile(extensions) {
+/** The bytes of a file, unless it has more than `most`: then it may not fit into the memory. */
+export async function bytesOf(file, most) {
+  if (file.size > most) throw new Error(`it has ${Math.round(file.size / 2 ** 20)} MB, and at most ${most / 2 ** 20} are read`);
+  return new Uint8Array(await file.arrayBuffer());
+}
+
+/** Lets the user choose a file with one of these extensions and at most so many bytes; answers null if they choose none. */
+export function chooseFile(extensions, most) {
   const input = document.createElement("input");
   input.type = "file";
   input.accept = extensions.map((extension) => `.${extension}`).join(",");
@@ -11,7 +17,7 @@ export function chooseFile(extensions) {
       const file = input.files[0];
       if (!file) return resolve(null);
       try {
-        resolve({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) });
+        resolve({ name: file.name, bytes: await bytesOf(file, most) });
       } catch (error) {
         reject(Object.assign(error, { fileName: file.name }));
       }

@@ -1,7 +1,7 @@
 // The interface as a document: hidden elements with the role, name, value and place of every widget on the canvas.
 // The front end says what changed; see crates/app/src/accessibility/document.rs for the fields.
 
-/** Keeps the elements under `root` in step with the front end that draws on `canvas`, and says in `announcements` what is new. */
+/** Keeps the elements under `root` in step with the front end that draws on `canvas()`, and says in `announcements` what is new. */
 export function createMirror(root, canvas, announcements) {
   const shown = new Map();
   const bounds = new Map();
@@ -16,7 +16,7 @@ export function createMirror(root, canvas, announcements) {
         const element = event.target.closest("[data-id]");
         if (element) act(element.dataset.id, kind);
         // Keys go to the canvas, which passes them on to the widget that has egui's focus.
-        if (kind === "focus") canvas.focus({ preventScroll: true });
+        if (kind === "focus") canvas().focus({ preventScroll: true });
       },
       true,
     );
@@ -25,13 +25,13 @@ export function createMirror(root, canvas, announcements) {
   function setFocus(id) {
     pointing?.removeAttribute("aria-activedescendant");
     pointing = null;
-    const holder = document.activeElement ?? canvas;
+    const holder = document.activeElement ?? canvas();
     const focused = id && shown.get(id);
     if (!focused) return;
     holder.setAttribute("aria-activedescendant", focused.id);
     pointing = holder;
     // Typing goes to a small input that the canvas keeps; it is named for the widget that it types into.
-    if (holder !== canvas && holder instanceof HTMLInputElement) {
+    if (holder !== canvas() && holder instanceof HTMLInputElement) {
       holder.setAttribute("aria-label", focused.getAttribute("aria-label") ?? "");
     }
   }

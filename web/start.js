@@ -6,14 +6,13 @@ import { createApi } from "./api.js";
 import { startCore } from "./core.js";
 import { openDisk } from "./disk.js";
 import { chooseFile, saveFile, savePicture } from "./files.js";
+import { canvas, watchGraphics } from "./graphics.js";
 import { fetchWithProgress, hideLoading, showFailure, showStep } from "./loading.js";
 import { createMirror } from "./mirror.js";
 import { latestText, remember } from "./rescue.js";
 import { joinTabs, openShelf } from "./shelf.js";
 import { keepShortcutsFromBrowser } from "./shortcuts.js";
 import { noteTyping } from "./typed.js";
-
-const canvas = document.getElementById("canvas");
 
 // Opening the page does not wait longer than this for the missions; they come later then.
 const SHELF_PATIENCE_MILLIS = 1500;
@@ -69,9 +68,15 @@ async function load() {
     if (api.frameDrawn(frontEnd.stateVersion())) remember(() => frontEnd.source());
   }
 
-  frontEnd = await start(canvas, glue);
-  // The small input that typing goes to; it is named anew for each widget that has the keyboard.
-  document.querySelector("body > input")?.setAttribute("aria-label", "Keyboard");
+  frontEnd = await start(canvas(), glue);
+  nameKeyboard();
+  watchGraphics(
+    async (fresh) => {
+      await frontEnd.drawOn(fresh);
+      nameKeyboard();
+    },
+    (reason) => showLoss("The graphics were lost", "The browser has taken the graphics card away.", reason),
+  );
   mirror.onAct((element, act) => frontEnd.act(element, JSON.stringify(act)));
   api.connect(frontEnd, mirror);
   keepShortcutsFromBrowser(window, usesKey);
@@ -79,18 +84,16 @@ async function load() {
   performance.mark("enroute ready");
 }
 
+/** Names the small input that typing goes to; it is named anew for each widget that has the keyboard. */
+function nameKeyboard() {
+  document.querySelector("body > input")?.setAttribute("aria-label", "Keyboard");
+}
+
 // A panic of the front end surfaces here, from whichever event led to it.
 window.addEventListener("error", ({ error }) => {
   if (error instanceof WebAssembly.RuntimeError) {
     showLoss("Enroute has stopped", "This is a fault in Enroute.", error);
   }
-});
-
-// The browser may take the graphics away, as when the driver fails or the computer has slept. What was drawn is gone.
-canvas.addEventListener("webglcontextlost", (event) => {
-  event.preventDefault();
-  const reason = new Error("the canvas lost its context");
-  showLoss("The graphics were lost", "The browser has taken the graphics card away.", reason);
 });
 
 /** The front end cannot go on; the text does. */

@@ -1,5 +1,7 @@
 //! Where the panels of each workspace stand at first, and how panels are brought back and closed.
 
+use std::collections::BTreeSet;
+
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use workbench::PanelKind;
 use workbench::workspace::{Arrangement, Workspace};
@@ -191,7 +193,33 @@ pub fn to_text(tree: &Tree<PanelKind>) -> Option<String> {
 /// A remembered layout; `None` if it cannot be used any more.
 pub fn from_text(text: &str) -> Option<Tree<PanelKind>> {
     let tree: Tree<PanelKind> = serde_json::from_str(text).ok()?;
-    (!tree.is_empty()).then_some(tree)
+    is_sound(&tree).then_some(tree)
+}
+
+/// The shares of the room that tiles may have.
+const SHARES: std::ops::RangeInclusive<f32> = 1e-6..=1e6;
+
+/// Whether a layout that was kept is a tree whose tiles have room: it may have been damaged.
+fn is_sound(tree: &Tree<PanelKind>) -> bool {
+    let Some(root) = tree.root() else { return false };
+    let mut waiting = vec![root];
+    let mut seen = BTreeSet::new();
+    while let Some(id) = waiting.pop() {
+        let Some(tile) = tree.tiles.get(id).filter(|_| seen.insert(id.0)) else { return false };
+        if let Tile::Container(container) = tile {
+            let is_roomy = match container {
+                Container::Linear(linear) => linear.shares.iter().all(|(_, share)| SHARES.contains(share)),
+                Container::Tabs(_) => true,
+                // No layout of ours has one.
+                Container::Grid(_) => false,
+            };
+            if !is_roomy {
+                return false;
+            }
+            waiting.extend(container.children());
+        }
+    }
+    true
 }
 
 /// The tab container on screen with the most room.
@@ -222,4 +250,31 @@ fn split(tiles: &mut Tiles<PanelKind>, direction: LinearDir, parts: &[(TileId, f
         linear.shares.set_share(tile, share);
     }
     tiles.insert_container(linear)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_kept_layout_that_is_no_tree_or_leaves_no_room_is_not_used() {
+        let tree = default_layout(Arrangement::ALL[0], SizeClass::Wide);
+        let text = to_text(&tree).expect("a layout has a text");
+        assert!(from_text(&text).is_some());
+        let kept: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
+        let damaged = |share: &str| {
+            let at = text.find("\"shares\":{").expect("there are shares");
+            let colon = at + text[at + 11..].find(':').expect("a share") + 12;
+            let end = colon + text[colon..].find([',', '}']).expect("it ends");
+            format!("{}{share}{}", &text[..colon], &text[end..])
+        };
+        assert!(from_text(&damaged("1.0")).is_some());
+        for share in ["1e30", "-1", "0"] {
+            assert!(from_text(&damaged(share)).is_none(), "{share}");
+        }
+        let root = kept["root"].as_u64().expect("a root");
+        let cyclic = text.replacen("\"children\":[", &format!("\"children\":[{root},"), 1);
+        assert!(from_text(&cyclic).is_none());
+        assert!(from_text("{}").is_none());
+    }
 }

@@ -152,6 +152,7 @@ impl Host for NativeHost {
                 Some(LinkEvent::Failed { revision, message, .. }) => {
                     return Some(HostEvent::CoreFailed { revision, message });
                 }
+                Some(LinkEvent::Restarted { message }) => return Some(HostEvent::CoreRestarted { message }),
                 None => {}
             }
             match self.from_outside.try_recv() {

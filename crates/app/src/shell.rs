@@ -62,6 +62,15 @@ impl Enroute {
         self
     }
 
+    /// Goes on in another window, drawn by `renderer`. What panels drew in the one before is forgotten with it.
+    pub fn move_to(&mut self, egui: &egui::Context, renderer: &str) {
+        theme::install_fonts(egui);
+        self.egui = egui.clone();
+        self.panels = Panels::new();
+        renderer.clone_into(&mut self.session.state_mut().frame.renderer);
+        self.restyle();
+    }
+
     /// The state, to look at.
     pub fn app_state(&self) -> &AppState {
         self.session.state()
@@ -84,7 +93,10 @@ impl Enroute {
 
     /// Shows one frame, filling `ui`. `render_state` is for panels that draw with wgpu.
     pub fn show(&mut self, ui: &mut Ui, render_state: Option<&RenderState>) {
-        for file in self.egui.input(|input| input.raw.dropped_files.clone()) {
+        let mut dropped = self.egui.input(|input| input.raw.dropped_files.clone());
+        // The label of an image comes before the image.
+        dropped.sort_by_key(|file| !file.path().extension().is_some_and(|it| it.eq_ignore_ascii_case("lbl")));
+        for file in dropped {
             (self.read_dropped)(file);
         }
         self.follow_system();

@@ -70,6 +70,9 @@ impl Geometry<'_> {
     }
 }
 
+/// Lines of more bytes are broken into rows, whatever is wanted: a row is laid out and drawn as a whole.
+pub(crate) const LONGEST_ROW_BYTES: usize = 5000;
+
 /// A row on screen, laid out.
 pub(crate) struct ShownRow {
     /// Counted from the first row of the text.
@@ -95,21 +98,30 @@ impl ShownRows {
         rows: Range<usize>,
     ) -> Self {
         let document = view.document;
-        let [first, last] =
-            [rows.start, rows.end.max(1) - 1].map(|row| document.line_range(geometry.place_of(row).0));
-        let highlights = language.highlights(if rows.is_empty() { 0..0 } else { first.start..last.end });
         // Of the rows of one line that are on screen only the first asks where it breaks.
         let mut of_line: (usize, Vec<Range<usize>>) = (usize::MAX, Vec::new());
-        let laid_out = rows.filter_map(|row| {
+        let placed = rows.filter_map(|row| {
             let (line, nth) = geometry.place_of(row);
             if of_line.0 != line {
                 of_line = (line, document.rows_of_line(line));
             }
             let bytes = of_line.1.get(nth)?.clone();
             let is_last = nth + 1 == of_line.1.len();
+            // A row that is to be broken from the next frame on is not laid out as a whole.
+            let is_cut = bytes.len() > LONGEST_ROW_BYTES;
+            let end =
+                if is_cut { document.boundary_before(bytes.start + LONGEST_ROW_BYTES) } else { bytes.end };
+            Some((row, line, nth, bytes.start..end, is_last && !is_cut))
+        });
+        let placed: Vec<_> = placed.collect();
+        let highlights = match (placed.first(), placed.last()) {
+            (Some(first), Some(last)) => language.highlights(first.3.start..last.3.end),
+            _ => Vec::new(),
+        };
+        let laid_out = placed.into_iter().map(|(row, line, nth, bytes, is_last)| {
             let left = document.hanging_columns(line, nth) as f32 * geometry.character_width;
             let layout = LineLayout::new(ui, view, &geometry.font, bytes, is_last, left, &highlights);
-            Some(ShownRow { row, line, nth, layout })
+            ShownRow { row, line, nth, layout }
         });
         Self { rows: laid_out.collect() }
     }

@@ -4,7 +4,7 @@ use egui::{CursorIcon, Pos2, Rect, Response, Role, ScrollArea, Sense, TextStyle,
 
 use text_editing::{MIN_WRAP_COLUMNS, Rows, WrappedRows};
 
-use crate::geometry::{Geometry, ShownRows};
+use crate::geometry::{Geometry, LONGEST_ROW_BYTES, ShownRows};
 use crate::painting::Painting;
 use crate::pointer::Drag;
 use crate::{
@@ -62,13 +62,14 @@ impl TextArea {
         let columns = ((available.x - gutter_width - ui.spacing().scroll.allocated_width()) / character_width
             - FREE_COLUMNS)
             .max(MIN_WRAP_COLUMNS as f32) as usize;
-        let wanted = view.wraps.then_some(columns);
+        let widest_line = self.widest_line(view);
+        let wanted = (view.wraps || widest_line > LONGEST_ROW_BYTES).then_some(columns);
         if view.document.wrap_columns() != wanted {
             actions.push(EditorAction::WrapAt(wanted));
         }
         self.wrap(view);
         let is_wrapped = self.wrapped.is_some();
-        let widest = if is_wrapped { 0.0 } else { self.widest_line(view) as f32 * character_width + 60.0 };
+        let widest = if is_wrapped { 0.0 } else { widest_line as f32 * character_width + 60.0 };
         let wrapped = self.wrapped.as_ref().map(|wrapped| &wrapped.rows);
         let geometry_of = |origin: Pos2| Geometry {
             font: font.clone(),

@@ -76,9 +76,15 @@ impl CoreLink {
             shared.events.push_back(match event {
                 LinkEvent::Answer { response, .. } => HostEvent::Answer(response),
                 LinkEvent::Failed { revision, message, .. } => HostEvent::CoreFailed { revision, message },
+                LinkEvent::Restarted { message } => HostEvent::CoreRestarted { message },
             });
         }
         shared.events.pop_front()
+    }
+
+    /// From now on another window is asked for a frame whenever there is news.
+    pub(crate) fn wake(&self, wake: egui::Context) {
+        self.0.borrow_mut().wake = wake;
     }
 
     /// Adds news from elsewhere.

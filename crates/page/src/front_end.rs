@@ -1,5 +1,7 @@
 //! The running front end, as `web/start.js` and `web/api.js` use it.
 
+use std::{cell::RefCell, rc::Rc};
+
 use app::{
     Enroute,
     accessibility::{AccessibilityMirror, Act},
@@ -13,6 +15,7 @@ use workbench::command::all_commands;
 use workbench::host::{RefusalCode, Remote};
 
 use crate::{
+    core_link::CoreLink,
     glue::Glue,
     host::PageHost,
     painter,
@@ -22,50 +25,50 @@ use crate::{
 /// Starts the front end on a canvas. Rejects with the code `no-graphics` when the browser cannot draw.
 #[wasm_bindgen]
 pub async fn start(canvas: HtmlCanvasElement, glue: Glue) -> Result<FrontEnd, JsValue> {
-    let runner = WebRunner::new();
-    let started = runner.start(
-        canvas,
-        painter::options(),
-        Box::new(move |creation| {
-            let egui = &creation.egui_ctx;
-            egui.add_plugin(AccessibilityMirror::default());
-            let renderer = painter::name(creation.wgpu_render_state.as_ref());
-            let host = PageHost::start(glue.clone(), egui.clone()).ok_or("this is no page")?;
-            let read_dropped = host.drop_reader();
-            Ok(Box::new(PageApp {
-                app: Enroute::new(egui, Box::new(host), renderer).reading_dropped_files(read_dropped),
-                egui: egui.clone(),
-                glue,
-            }))
-        }),
-    );
-    started.await.map_err(|reason| refusal(RefusalCode::NoGraphics, &words(&reason)))?;
-    Ok(FrontEnd { runner })
+    let front_end = FrontEnd { runner: WebRunner::new(), glue, page: Rc::default() };
+    front_end.draw_on(canvas).await?;
+    Ok(front_end)
 }
 
-/// The app, telling the page of every frame.
-struct PageApp {
+/// What goes on when the canvas is another one.
+struct Page {
     app: Enroute,
+    core: CoreLink,
     egui: egui::Context,
+}
+
+impl Page {
+    fn start(glue: &Glue, egui: &egui::Context, renderer: &str) -> Option<Self> {
+        let host = PageHost::start(glue.clone(), egui.clone())?;
+        let (core, read_dropped) = (host.core(), host.drop_reader());
+        let app = Enroute::new(egui, Box::new(host), renderer).reading_dropped_files(read_dropped);
+        Some(Self { app, core, egui: egui.clone() })
+    }
+
+    fn move_to(&mut self, egui: &egui::Context, renderer: &str) {
+        self.app.move_to(egui, renderer);
+        self.core.wake(egui.clone());
+        self.egui = egui.clone();
+    }
+}
+
+/// The app on one canvas, telling the page of every frame.
+struct PageApp {
+    page: Rc<RefCell<Option<Page>>>,
     glue: Glue,
 }
 
 impl eframe::App for PageApp {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        self.app.ui(ui, frame);
+        if let Some(page) = self.page.borrow_mut().as_mut() {
+            page.app.ui(ui, frame);
+        }
         self.glue.frame_drawn();
     }
 
-    fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
-        self.app.logic(context, frame);
-    }
-
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
-        self.app.clear_color(visuals)
-    }
-
-    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
-        Some(self)
+        let page = self.page.borrow();
+        page.as_ref().map_or([0.0; 4], |page| page.app.clear_color(visuals))
     }
 }
 
@@ -110,10 +113,38 @@ impl Typed {
 #[wasm_bindgen]
 pub struct FrontEnd {
     runner: WebRunner,
+    glue: Glue,
+    page: Rc<RefCell<Option<Page>>>,
 }
 
 #[wasm_bindgen]
 impl FrontEnd {
+    /// Goes on on another canvas, when the browser has taken the graphics of the one before away. Rejects with the code
+    /// `no-graphics` when it cannot draw there; the state stays, and another try may do.
+    #[wasm_bindgen(js_name = drawOn)]
+    pub async fn draw_on(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+        let (page, glue) = (Rc::clone(&self.page), self.glue.clone());
+        let started = self.runner.start(
+            canvas,
+            painter::options(),
+            Box::new(move |creation| {
+                let egui = &creation.egui_ctx;
+                egui.add_plugin(AccessibilityMirror::default());
+                painter::survive_errors(creation.wgpu_render_state.as_ref());
+                let renderer = painter::name(creation.wgpu_render_state.as_ref());
+                let mut kept = page.borrow_mut();
+                if let Some(page) = kept.as_mut() {
+                    page.move_to(egui, renderer);
+                } else {
+                    *kept = Some(Page::start(&glue, egui, renderer).ok_or("this is no page")?);
+                }
+                drop(kept);
+                Ok(Box::new(PageApp { page, glue }))
+            }),
+        );
+        started.await.map_err(|reason| refusal(RefusalCode::NoGraphics, &words(&reason)))
+    }
+
     /// Opens an example mission.
     pub fn open(&self, name: &str) -> Result<(), JsValue> {
         self.with(|page| page.app.open(name))?.map_err(from_remote)
@@ -189,10 +220,11 @@ impl FrontEnd {
     }
 
     /// Uses the app between frames, and asks for a frame that shows what came of it.
-    fn with<T>(&self, act: impl FnOnce(&mut PageApp) -> T) -> Result<T, JsValue> {
-        let Some(mut page) = self.runner.app_mut::<PageApp>() else {
-            return Err(refusal(RefusalCode::Stopped, "Enroute has stopped, or is just drawing a frame"));
-        };
-        Ok(act(&mut page))
+    fn with<T>(&self, act: impl FnOnce(&mut Page) -> T) -> Result<T, JsValue> {
+        let mut page = self.page.try_borrow_mut().ok().filter(|_| !self.runner.has_panicked());
+        match page.as_mut().and_then(|page| page.as_mut()) {
+            Some(page) => Ok(act(page)),
+            None => Err(refusal(RefusalCode::Stopped, "Enroute has stopped, or is just drawing a frame")),
+        }
     }
 }

@@ -13,9 +13,9 @@ extern "C" {
     #[wasm_bindgen(method, js_name = startCore)]
     pub(crate) fn start_core(this: &Glue, tell: &Closure<dyn FnMut(String, JsValue)>) -> CoreWorker;
 
-    /// Lets the user choose a file: a promise of a [`ChosenFile`] or null. See `web/files.js`.
+    /// Lets the user choose a file of at most so many bytes: a promise of a [`ChosenFile`] or null. See `web/files.js`.
     #[wasm_bindgen(method, js_name = chooseFile)]
-    pub(crate) fn choose_file(this: &Glue, extensions: Vec<String>) -> Promise;
+    pub(crate) fn choose_file(this: &Glue, extensions: Vec<String>, most: f64) -> Promise;
 
     /// Whether missions can be saved to files that the user chose once. See `web/disk.js`.
     #[wasm_bindgen(method, js_name = savesInPlace)]
@@ -23,7 +23,7 @@ extern "C" {
 
     /// Lets the user choose a mission that can be saved to its file: a promise of a [`ChosenFile`] or null.
     #[wasm_bindgen(method, js_name = openMission)]
-    pub(crate) fn open_mission(this: &Glue, extensions: Vec<String>) -> Promise;
+    pub(crate) fn open_mission(this: &Glue, extensions: Vec<String>, most: f64) -> Promise;
 
     /// Keeps a file that was opened as the one that a mission is saved to.
     #[wasm_bindgen(method, js_name = keepFile)]

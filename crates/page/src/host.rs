@@ -5,6 +5,7 @@ use mission::Request;
 use wasm_bindgen::prelude::*;
 use web_sys::{Location, MediaQueryList, Storage, Window};
 use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
+use workbench::limits::{MAX_FILE_BYTES, too_large};
 
 use crate::{
     core_link::CoreLink,
@@ -27,6 +28,11 @@ pub(crate) struct PageHost {
 }
 
 impl PageHost {
+    /// The way to the planning core.
+    pub(crate) fn core(&self) -> CoreLink {
+        self.link.clone()
+    }
+
     /// Starts the planning core and listens to the address line.
     pub(crate) fn start(glue: Glue, wake: egui::Context) -> Option<Self> {
         let window = web_sys::window()?;
@@ -60,10 +66,15 @@ impl PageHost {
             let link = link.clone();
             wasm_bindgen_futures::spawn_local(async move {
                 let name = file.path().to_string_lossy().into_owned();
+                let kind = FileKind::of_name(&name);
+                // What is too large is not even read: it may not fit into the memory.
+                let size = file.web_file().map_or(0.0, |file| file.size());
+                if let Some(reason) = too_large(size as usize, kind.max_bytes(&name)) {
+                    link.happened(HostEvent::FileFailed { name, reason });
+                    return;
+                }
                 link.happened(match file.bytes_async().await {
-                    Ok(bytes) => {
-                        HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes, token: None }
-                    }
+                    Ok(bytes) => HostEvent::FileOpened { kind, name, bytes, token: None },
                     Err(reason) => HostEvent::FileFailed { name, reason },
                 });
             });
@@ -195,9 +206,9 @@ impl Host for PageHost {
     fn open_file(&mut self, kind: FileKind) {
         let extensions = kind.extensions().iter().map(|&extension| extension.to_owned()).collect();
         let chosen = if kind == FileKind::Mission && self.glue.saves_in_place() {
-            self.glue.open_mission(extensions)
+            self.glue.open_mission(extensions, MAX_FILE_BYTES as f64)
         } else {
-            self.glue.choose_file(extensions)
+            self.glue.choose_file(extensions, MAX_FILE_BYTES as f64)
         };
         self.tell_later(chosen, move |file| {
             let file: ChosenFile = file.unchecked_into();

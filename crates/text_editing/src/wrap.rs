@@ -55,9 +55,12 @@ fn break_line(text: &str, columns: usize) -> Vec<Range<usize>> {
 
 /// The columns by which the rows of a line behind its first one stand further right: as its own text, and a level more.
 fn hanging_columns(text: &str, columns: usize) -> usize {
-    let blanks = &text[..text.len() - text.trim_start().len()];
-    let indent: usize = blanks.graphemes(true).map(columns_of).sum();
-    (indent + INDENT.len()).min(columns.max(MIN_WRAP_COLUMNS) / 2)
+    let columns = columns.max(MIN_WRAP_COLUMNS);
+    let is_blank = |grapheme: &&str| grapheme.chars().all(char::is_whitespace);
+    // More than half of the columns are none of the indent.
+    let blanks = text.graphemes(true).take_while(is_blank).take(columns);
+    let indent: usize = blanks.map(columns_of).sum();
+    (indent + INDENT.len()).min(columns / 2)
 }
 
 fn columns_of(grapheme: &str) -> usize {

@@ -9,6 +9,7 @@ use serde_json::Value;
 #[cfg(test)]
 use ts_rs::TS;
 
+use crate::limits::{MAX_FILE_BYTES, MAX_TEXT_BYTES};
 use crate::outside::PageState;
 
 /// What the app needs from where it runs.
@@ -115,6 +116,11 @@ pub enum HostEvent {
         /// The revision that was being worked on, if the request had one.
         revision: Option<u64>,
         /// What the core said when it stopped.
+        message: String,
+    },
+    /// The planning core ended and was started anew; what it was at is done again.
+    CoreRestarted {
+        /// What is known of the reason.
         message: String,
     },
     /// The user chose a file.
@@ -237,10 +243,16 @@ impl FileKind {
         [Self::Map, Self::Json, Self::Lesson].into_iter().find(is_one).unwrap_or(Self::Mission)
     }
 
+    /// The most bytes of such a file that are read.
+    pub fn max_bytes(self, name: &str) -> usize {
+        let is_whole = name.to_ascii_lowercase().ends_with(".enroute");
+        if self == Self::Map || is_whole { MAX_FILE_BYTES } else { MAX_TEXT_BYTES }
+    }
+
     /// What the file dialog calls it.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Mission => "RMPL missions",
+            Self::Mission => "Missions and networks",
             Self::Map => "Maps",
             Self::Json => "JSON documents",
             Self::Lesson => "Lessons",
@@ -251,7 +263,7 @@ impl FileKind {
     /// The extensions that the file dialog offers, without dots.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Mission => &["rmpl", "enroute", "txt", "lisp"],
+            Self::Mission => &["rmpl", "enroute", "txt", "lisp", "json", "edn"],
             Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl"],
             Self::Json => &["json", "edn"],
             Self::Lesson => &["md", "markdown"],

@@ -9,6 +9,7 @@ mod dialog;
 pub mod host;
 pub mod lesson;
 pub mod library;
+pub mod limits;
 pub mod manual;
 pub mod mission_file;
 pub mod outside;

@@ -10,6 +10,7 @@ use crate::command::{self, Command};
 use crate::host::{Host, HostEvent, Remote, RemoteError};
 use crate::mission_file::{self, EXAMPLES};
 use crate::outside::{self, Keeper, PageState};
+use crate::state::missions::LibraryCommand;
 use crate::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
 
 /// The state with its host.
@@ -254,6 +255,12 @@ impl Session {
     fn copy_link(&mut self) {
         let fragment = outside::fragment(&self.state);
         match self.host.link(&fragment) {
+            Some(link) if !outside::is_link_short(&link) => {
+                let words = "The mission is too long for a link that every browser opens. It is saved as a file instead";
+                self.state.toasts.add(ToastKind::Info, words);
+                self.state.apply(Command::Library(LibraryCommand::SaveWhole));
+                self.do_effects();
+            }
             Some(link) => {
                 self.window_effects.push(WindowEffect::Copy(link));
                 self.state.toasts.add(ToastKind::Done, "The link is on the clipboard");

@@ -68,6 +68,11 @@ pub enum LinkEvent {
         /// What is known of the reason.
         message: String,
     },
+    /// The core stopped, and what it was at is tried again by another one.
+    Restarted {
+        /// What is known of the reason.
+        message: String,
+    },
 }
 
 /// A core at work that says nothing for so long has died without a word.
@@ -258,8 +263,11 @@ impl<T: Transport> Link<T> {
         let was_ready = self.state == CoreState::Ready;
         self.end_core();
         let most = if was_ready { MAX_FAILURES } else { 1 };
+        let was_at_work = self.queue.under_way().is_some() && !self.queue.is_in_vain();
         let given_up = self.queue.core_failed(most);
-        if given_up.is_some() || !was_ready {
+        if was_ready && was_at_work && given_up.is_none() {
+            self.events.push_back(LinkEvent::Restarted { message });
+        } else if given_up.is_some() || !was_ready {
             let job = given_up.as_ref();
             self.events.push_back(LinkEvent::Failed {
                 job: job.map(|job| job.id),

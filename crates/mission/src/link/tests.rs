@@ -92,6 +92,7 @@ fn events(link: &mut Link<Fake>) -> Vec<String> {
                 let kind = kind.map_or_else(|| "nothing".to_owned(), |kind| kind.to_string());
                 format!("{kind} {} failed: {message}", revision.unwrap_or_default())
             }
+            LinkEvent::Restarted { message } => format!("restarted: {message}"),
         })
         .collect()
 }
@@ -245,7 +246,7 @@ fn a_job_is_tried_once_more_after_a_crash_and_then_given_up() {
     told(&mut link);
     link.hear(1, News::Failed("out of memory".to_owned()));
     assert_eq!(told(&mut link), ["terminate", "start 2", "send ImportMap m 1"]);
-    assert_eq!(events(&mut link), [""; 0]);
+    assert_eq!(events(&mut link), ["restarted: out of memory"]);
     link.hear(2, News::Ready);
     link.hear(2, News::Finished);
     assert_eq!(told(&mut link), ["send Update 7"]);
@@ -306,7 +307,7 @@ fn what_cannot_be_sent_is_given_up() {
     let mut link = ready();
     link.transport.cannot_send = true;
     link.post(update(1));
-    assert_eq!(events(&mut link), ["Update 1 failed: too large"]);
+    assert_eq!(events(&mut link), ["restarted: too large", "Update 1 failed: too large"]);
     assert!(!link.is_busy());
 }
 

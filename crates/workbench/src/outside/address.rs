@@ -1,11 +1,15 @@
 //! What stands after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `open=`, `lesson=`, `stop=`,
 //! `workspace=`, `step=`, `t=`.
 //!
-//! A shared text is compressed (deflate) and written in the alphabet of base64 for addresses.
+//! A shared text is compressed with a checksum (zlib) and written in the alphabet of base64 for addresses, behind the
+//! version of this notation and a point: `source=2.eJx…`. What has no version is of the first, which had no checksum.
+
+use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_with_limit, decompress_to_vec_zlib_with_limit};
 
 use crate::command::Command;
 use crate::host::Host;
 use crate::library::{MissionId, MissionKind, Open};
+use crate::limits::MAX_TEXT_BYTES;
 use crate::mission_file;
 use crate::state::lesson::LessonCommand;
 use crate::state::missions::LibraryCommand;
@@ -85,10 +89,8 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
                 None => state.toasts.add(ToastKind::Failed, format!("There is no mission \"{value}\"")),
             },
             "source" => match unpack(value) {
-                Some(source) => {
-                    state.apply(Command::OpenSource { name: "shared".into(), source });
-                }
-                None => state.toasts.add(ToastKind::Failed, "The mission in this link is damaged"),
+                Ok(source) => state.apply(Command::OpenSource { name: "shared".into(), source }),
+                Err(reason) => state.toasts.add(ToastKind::Failed, reason.to_string()),
             },
             "workspace" => {
                 if let Some(workspace) = Workspace::by_name(value) {
@@ -130,24 +132,69 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
-/// A larger text than this is not unpacked: no mission is that long, and a short link must not fill the memory.
-const LONGEST_TEXT_BYTES: usize = 8 << 20;
+/// The version of what stands behind `source=`.
+const VERSION: u32 = 2;
+
+/// Links of more characters are not offered: Chromium does not show longer addresses, and Windows hands none over from one
+/// program to another.
+const MAX_LINK_CHARACTERS: usize = 32_000;
+
+/// Whether a link works in all browsers.
+pub fn is_link_short(link: &str) -> bool {
+    link.len() <= MAX_LINK_CHARACTERS
+}
+
+/// Why the text of a link is not opened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+enum LinkError {
+    #[error(
+        "The mission in this link is damaged: a part of the link is missing or was changed. What is open stays as it is"
+    )]
+    Damaged,
+    #[error(
+        "This link is of a later version of Enroute. Load the page again to get it; what is open stays as it is"
+    )]
+    Newer,
+    #[error("The mission in this link has more than {} MB and is not opened. What is open stays as it is", MAX_TEXT_BYTES >> 20)]
+    TooLong,
+}
 
 fn pack(text: &str) -> String {
-    let bytes = miniz_oxide::deflate::compress_to_vec(text.as_bytes(), 9);
-    let mut packed = String::with_capacity(bytes.len() * 4 / 3 + 4);
+    let bytes = miniz_oxide::deflate::compress_to_vec_zlib(text.as_bytes(), 9);
+    format!("{VERSION}.{}", digits_of(&bytes))
+}
+
+fn digits_of(bytes: &[u8]) -> String {
+    let mut digits = String::with_capacity(bytes.len() * 4 / 3 + 4);
     for chunk in bytes.chunks(3) {
         let group =
             chunk.iter().fold(0_u32, |group, &byte| group << 8 | u32::from(byte)) << (8 * (3 - chunk.len()));
         for at in 0..=chunk.len() {
             let index = (group >> (18 - 6 * at)) & 63;
-            packed.push(char::from(ALPHABET[index as usize]));
+            digits.push(char::from(ALPHABET[index as usize]));
         }
     }
-    packed
+    digits
 }
 
-fn unpack(packed: &str) -> Option<String> {
+fn unpack(packed: &str) -> Result<String, LinkError> {
+    let (version, packed) = match packed.split_once('.') {
+        Some((version, packed)) => (version.parse().map_err(|_| LinkError::Damaged)?, packed),
+        None => (1, packed),
+    };
+    if version > VERSION {
+        return Err(LinkError::Newer);
+    }
+    let bytes = bytes_of(packed).ok_or(LinkError::Damaged)?;
+    let inflate = if version == 1 { decompress_to_vec_with_limit } else { decompress_to_vec_zlib_with_limit };
+    let text = inflate(&bytes, MAX_TEXT_BYTES).map_err(|error| match error.status {
+        TINFLStatus::HasMoreOutput => LinkError::TooLong,
+        _ => LinkError::Damaged,
+    })?;
+    String::from_utf8(text).map_err(|_| LinkError::Damaged)
+}
+
+fn bytes_of(packed: &str) -> Option<Vec<u8>> {
     let digits: Option<Vec<u32>> = packed
         .bytes()
         .map(|byte| ALPHABET.iter().position(|&letter| letter == byte).map(|at| at as u32))
@@ -157,8 +204,7 @@ fn unpack(packed: &str) -> Option<String> {
         let group = chunk.iter().fold(0_u32, |group, &digit| group << 6 | digit) << (6 * (4 - chunk.len()));
         bytes.extend((0..chunk.len().saturating_sub(1)).map(|at| (group >> (16 - 8 * at)) as u8));
     }
-    let text = miniz_oxide::inflate::decompress_to_vec_with_limit(&bytes, LONGEST_TEXT_BYTES).ok()?;
-    String::from_utf8(text).ok()
+    Some(bytes)
 }
 
 #[cfg(test)]
@@ -169,9 +215,48 @@ mod tests {
     fn any_text_survives_the_way_through_an_address() {
         for text in ["", "a", "ab", "abc", "delay[0,∞];\n", &"Group-Wait() ".repeat(500)] {
             let packed = pack(text);
-            assert!(packed.bytes().all(|byte| ALPHABET.contains(&byte)));
-            assert_eq!(unpack(&packed).as_deref(), Some(text));
+            let (version, digits) = packed.split_once('.').expect("a version");
+            assert_eq!(version, "2");
+            assert!(digits.bytes().all(|byte| ALPHABET.contains(&byte)));
+            assert_eq!(unpack(&packed).as_deref(), Ok(text));
         }
+    }
+
+    #[test]
+    fn links_without_a_version_are_still_read() {
+        let text = "scenario Later { Drive() }";
+        let bytes = miniz_oxide::deflate::compress_to_vec(text.as_bytes(), 9);
+        let packed = digits_of(&bytes);
+        assert_eq!(unpack(&packed).as_deref(), Ok(text));
+    }
+
+    #[test]
+    fn whatever_character_of_a_link_is_changed_or_lost_it_is_noticed() {
+        let text = "scenario Storm[0,60] = { Drive(Rover1,Base); Wait()[5,10] }";
+        let packed = pack(text);
+        let start = packed.find('.').expect("a version") + 1;
+        for at in start..packed.len() {
+            let mut changed = packed.clone().into_bytes();
+            changed[at] = if changed[at] == b'A' { b'B' } else { b'A' };
+            let changed = String::from_utf8(changed).expect("letters");
+            // The last digit has bits that stand for nothing.
+            assert!(unpack(&changed).is_err() || at + 1 == packed.len(), "{at}");
+            assert_eq!(unpack(&packed[..at]), Err(LinkError::Damaged), "{at}");
+        }
+    }
+
+    #[test]
+    fn a_later_link_and_one_that_is_too_long_are_told_apart_from_a_damaged_one() {
+        assert_eq!(unpack("3.AAAA"), Err(LinkError::Newer));
+        assert_eq!(unpack("two.AAAA"), Err(LinkError::Damaged));
+        let long = pack(&"x".repeat(MAX_TEXT_BYTES + 1));
+        assert!(is_link_short(&long));
+        assert_eq!(unpack(&long), Err(LinkError::TooLong));
+        let mut state = AppState::new();
+        let before = state.document.text().to_owned();
+        open_fragment(&mut state, "source=3.AAAA");
+        assert_eq!(state.document.text(), before);
+        assert!(state.toasts.shown()[0].text.contains("later version"));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::host::Host;
 use crate::state::review::{Aside, ReviewState};
 use crate::state::{AppState, Settings};
 
-pub use address::{fragment, open_fragment, show_address};
+pub use address::{fragment, is_link_short, open_fragment, show_address};
 pub use keeper::Keeper;
 pub use page_state::PageState;
 

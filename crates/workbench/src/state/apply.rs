@@ -7,10 +7,13 @@ use mission::review::rules::RULES_FORMAT;
 use mission::{Request, Response, Snapshot};
 use rmpl::Span;
 use smol_str::SmolStr;
+use text_editing::TextCommand;
+use tpn::interchange::is_network_file;
 
 use crate::command::Command;
 use crate::host::{FileKind, HostEvent, Save};
 use crate::library::{Mission, MissionId, MissionKind};
+use crate::limits::{MAX_TEXT_BYTES, too_large};
 use crate::mission_file;
 use crate::state::chance::ChanceCommand;
 use crate::state::program_chance::ProgramChanceCommand;
@@ -91,6 +94,9 @@ impl AppState {
         match command {
             Command::OpenExample(name) => self.open_example(&name),
             Command::OpenSource { name, source } => {
+                if self.refuses_text(source.len()) {
+                    return;
+                }
                 self.open_original(name, MissionKind::Shared, &source);
             }
             Command::Library(command) => self.apply_to_library(command),
@@ -99,8 +105,17 @@ impl AppState {
             Command::SaveMission => self.save(false),
             Command::CopyLink => self.effects.push(Effect::CopyLink),
 
-            Command::SetSource(text) => self.document.replace_all(&text),
-            Command::Text(command) => self.type_text(&command),
+            Command::SetSource(text) => {
+                if !self.refuses_text(text.len()) {
+                    self.document.replace_all(&text);
+                }
+            }
+            Command::Text(command) => {
+                let pasted = if let TextCommand::Paste(text) = &command { text.len() } else { 0 };
+                if pasted == 0 || !self.refuses_text(pasted + self.document.text().len()) {
+                    self.type_text(&command);
+                }
+            }
             Command::Edit { edits, kind } => self.document.edit(&edits, kind, None),
             Command::Reveal(span) => {
                 self.reveal(span);
@@ -290,12 +305,18 @@ impl AppState {
                     ),
                 );
             }
+            HostEvent::CoreRestarted { message } => {
+                let words = format!("Planning was interrupted ({message}) and has begun again");
+                self.toasts.add(ToastKind::Info, words);
+            }
             HostEvent::FileOpened { kind, name, bytes, token } => {
                 // What the text imports decides on what a file is for, also where the text came just now.
                 self.language.follow(&self.document);
                 let open_before = self.library.open_id().cloned();
                 self.open_file(kind, &name, bytes);
-                // A file that became part of another mission is not that mission's own.
+                // A file that became part of another mission is not that mission's own; nor is that of a network, which
+                // other tools have written.
+                let token = token.filter(|_| !self.language.is_network());
                 let opened = self.library.open_id().filter(|id| open_before.as_ref() != Some(id)).cloned();
                 self.effects.extend(opened.zip(token).map(|(id, token)| Effect::KeepFile(id, token)));
             }
@@ -468,6 +489,7 @@ impl AppState {
         self.search.forget();
         self.execution.forget();
         self.turn_to_notation(source);
+        self.language.follow(&self.document);
         self.selection = Selection::None;
         self.hovered = Selection::None;
         self.terrain = TerrainState::default();
@@ -495,7 +517,22 @@ impl AppState {
         }
     }
 
+    /// Says so if a text of so many bytes is too long for a mission.
+    pub(super) fn refuses_text(&mut self, bytes: usize) -> bool {
+        let reason = too_large(bytes, MAX_TEXT_BYTES);
+        if let Some(reason) = &reason {
+            let words = format!("The text is too long for a mission: {reason}. What is open stays as it is");
+            self.toasts.add(ToastKind::Failed, words);
+        }
+        reason.is_some()
+    }
+
     fn open_file(&mut self, kind: FileKind, name: &str, bytes: Vec<u8>) {
+        if let Some(reason) = too_large(bytes.len(), kind.max_bytes(name)) {
+            let words = format!("{name} is not opened: {reason}. What is open stays as it is");
+            self.toasts.add(ToastKind::Failed, words);
+            return;
+        }
         match kind {
             FileKind::Mission => self.open_mission_file(name, bytes),
             FileKind::Map => self.open_map_file(name, bytes),
@@ -505,6 +542,8 @@ impl AppState {
                     let document: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
                     if let Ok(mission) = Mission::from_json(&text) {
                         self.open_whole(mission);
+                    } else if is_network_file(&text) {
+                        self.open_mission_file(name, text.into_bytes());
                     } else if document["format"] == RULES_FORMAT {
                         self.import_rules(name, &text);
                     } else if !self.open_run(&document) {

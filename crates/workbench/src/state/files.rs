@@ -106,8 +106,13 @@ impl AppState {
 
     /// The text with all its files, each as a file of its own.
     pub(super) fn files_to_save(&self) -> Vec<(String, Vec<u8>)> {
+        let extension = match self.language.is_network() {
+            true if self.document.text().contains(":network-id") => ".tpn.edn",
+            true => ".tpn.json",
+            false => EXTENSION,
+        };
         let named = |(index, (name, text)): (usize, (&str, &str))| {
-            let name = if index == 0 { format!("{}{EXTENSION}", self.mission) } else { name.to_owned() };
+            let name = if index == 0 { format!("{}{extension}", self.mission) } else { name.to_owned() };
             (name, text.as_bytes().to_vec())
         };
         files::split(self.document.text()).into_iter().enumerate().map(named).collect()

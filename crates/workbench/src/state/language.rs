@@ -4,7 +4,10 @@ use rmpl::control::{ParsedControl, is_control_text};
 use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
 use rmpl::{Parse, Span};
 use text_editing::{Document, difference};
+use tpn::interchange::is_network_text;
 use tpn::{OccurrenceKind, Plan};
+
+mod data_notation;
 
 /// The text as the language sees it.
 #[derive(Debug)]
@@ -13,13 +16,15 @@ pub struct Language {
     notation: Notation,
 }
 
-/// The two notations.
+/// The notations of a text.
 #[derive(Debug)]
 enum Notation {
     /// Missions (SPEC 1).
     Mission(Box<Parse>),
     /// Control programs (SPEC 2), with their text.
     Control(Box<ParsedControl>, String),
+    /// Networks of other tools, in JSON or EDN.
+    Network(String),
 }
 
 /// What a piece of source text is, in either notation: each has a colour of its own.
@@ -70,13 +75,13 @@ impl Language {
                 let is_large = edit.text.len() > LARGE_EDIT_BYTES
                     || edit.span.range().len() > LARGE_EDIT_BYTES
                     || document.text().len() < 4 * LARGE_EDIT_BYTES;
-                if is_large && is_control_text(document.text()) {
+                if is_large && (is_control_text(document.text()) || is_network_text(document.text())) {
                     self.notation = read(document.text());
                 } else {
                     parse.edit(&edit);
                 }
             }
-            Notation::Control(..) => self.notation = read(document.text()),
+            Notation::Control(..) | Notation::Network(_) => self.notation = read(document.text()),
         }
     }
 
@@ -84,8 +89,13 @@ impl Language {
     pub fn parse(&self) -> Option<&Parse> {
         match &self.notation {
             Notation::Mission(parse) => Some(parse),
-            Notation::Control(..) => None,
+            Notation::Control(..) | Notation::Network(_) => None,
         }
+    }
+
+    /// Whether the text is a network of another tool.
+    pub const fn is_network(&self) -> bool {
+        matches!(self.notation, Notation::Network(_))
     }
 
     /// Whether the text is a control program.
@@ -104,6 +114,7 @@ impl Language {
                 .into_iter()
                 .map(|found| (found.span, control_role(found.kind)))
                 .collect(),
+            Notation::Network(text) => data_notation::roles(text, range),
         }
     }
 
@@ -118,6 +129,8 @@ impl Language {
                 (parse.text(), rmpl::files::joined(files))
             }
             Notation::Control(_, text) => (text.as_str(), rmpl::control::format(text)),
+            // Its layout is its tool's.
+            Notation::Network(_) => return None,
         };
         (formatted != text).then_some(formatted)
     }
@@ -164,6 +177,8 @@ fn windows(network: &tpn::Network, plan: &Plan) -> Vec<EventWindow> {
 fn read(text: &str) -> Notation {
     if is_control_text(text) {
         Notation::Control(Box::new(rmpl::control::parse(text)), text.to_owned())
+    } else if is_network_text(text) {
+        Notation::Network(text.to_owned())
     } else {
         Notation::Mission(Box::new(rmpl::parse(text)))
     }

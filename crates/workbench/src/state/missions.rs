@@ -4,10 +4,13 @@ use std::sync::Arc;
 
 use mission::{Request, Snapshot};
 use smol_str::SmolStr;
+use terrain::format::{FileFormat, attach_label, image_of_label};
+use tpn::interchange::is_network_file;
 
 use crate::Dialog;
 use crate::host::{FileKind, Save};
 use crate::library::{MapFile, Mission, MissionError, MissionId, MissionKind, Open, Template, joined};
+use crate::limits::{MAX_TEXT_BYTES, too_large};
 use crate::mission_file;
 use crate::state::review::Aside;
 use crate::state::{AppState, Effect, ToastKind};
@@ -292,23 +295,30 @@ impl AppState {
         };
         match Mission::from_json(&text) {
             Ok(mission) => self.open_whole(mission),
+            Err(MissionError::NoMission) if let Some(reason) = too_large(text.len(), MAX_TEXT_BYTES) => {
+                refuse(self, &reason);
+            }
             Err(MissionError::NoMission) if let Some(missing) = self.missing_file(name) => {
                 if let Err(reason) = self.add_file(&missing, &text) {
                     refuse(self, &reason);
                 }
             }
-            Err(MissionError::NoMission) if reads_as_mission(name, &text) => {
+            Err(MissionError::NoMission) if is_network_file(&text) || reads_as_mission(name, &text) => {
                 let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+                let stem = stem.strip_suffix(".tpn").unwrap_or(stem);
                 let id = self.library.add(stem, MissionKind::File, &text, self.frame.unix_millis);
                 self.open_mission(&id);
             }
-            Err(MissionError::NoMission) => refuse(self, "it does not read as a mission"),
+            Err(MissionError::NoMission) => refuse(self, NO_MISSION),
             Err(error) => refuse(self, &error.to_string()),
         }
     }
 
     /// Opens what one file held as a mission of its own.
     pub(super) fn open_whole(&mut self, mission: Mission) {
+        if self.refuses_text(mission.texts.iter().map(|file| file.text.len()).sum()) {
+            return;
+        }
         let record = mission.review_record();
         let text = mission.review.as_ref().map(ToString::to_string);
         let id = self.library.add_whole(mission, self.frame.unix_millis);
@@ -327,9 +337,42 @@ impl AppState {
 
     /// A map that the user chose: the open mission has it as soon as the core can read it.
     pub(super) fn open_map_file(&mut self, name: &str, bytes: Vec<u8>) {
+        let Some((name, bytes)) = self.with_label(name, bytes) else { return };
         let name = SmolStr::new(name);
         self.maps_in_hand.insert(name.clone(), Arc::from(bytes.as_slice()));
         self.import_map(name, bytes);
+    }
+
+    /// A map with the label that describes it, where that is a file of its own: whichever of the two comes first waits
+    /// for the other.
+    fn with_label(&mut self, name: &str, bytes: Vec<u8>) -> Option<(String, Vec<u8>)> {
+        let is_image = |image: &str, name: &str| image.eq_ignore_ascii_case(name);
+        let (image_name, label, image) = if let Some(image_name) = image_of_label(&bytes) {
+            let known = self.last_map.take().filter(|(known, _)| is_image(&image_name, known));
+            let Some((known, image)) = known else {
+                let words = format!("{name} describes {image_name}: open or drop that file, too");
+                self.toasts.add(ToastKind::Info, words);
+                self.waiting_label = Some((image_name, bytes));
+                return None;
+            };
+            (known, bytes, image)
+        } else {
+            let waiting = self.waiting_label.take().filter(|(image_name, _)| is_image(image_name, name));
+            let Some((_, label)) = waiting else {
+                // Its label may come after it.
+                let needs_one = FileFormat::detect(&bytes).is_none();
+                self.last_map = needs_one.then(|| (name.to_owned(), bytes.clone()));
+                return Some((name.to_owned(), bytes));
+            };
+            (name.to_owned(), label, bytes)
+        };
+        match attach_label(&label, &image) {
+            Ok(whole) => Some((image_name, whole)),
+            Err(reason) => {
+                self.toasts.add(ToastKind::Failed, format!("The map {image_name} cannot be used: {reason}"));
+                None
+            }
+        }
     }
 
     pub(crate) fn import_map(&mut self, name: SmolStr, bytes: Vec<u8>) {
@@ -389,10 +432,15 @@ fn picture(shown: &Snapshot) -> Option<Vec<[u16; 3]>> {
     Some(placed.collect())
 }
 
+/// Why a file is not opened as a mission, and what is read.
+const NO_MISSION: &str = "it does not read as a mission in RMPL, as a network (plan-schema or Enroute, JSON or EDN), as a control \
+                          program or as a whole mission (.enroute)";
+
 /// Whether a file is a mission: its name says so, or it reads as one.
 fn reads_as_mission(name: &str, text: &str) -> bool {
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
-    let says_so = FileKind::Mission.extensions().contains(&extension.as_str()) && extension != "txt";
+    let says_so = FileKind::Mission.extensions().contains(&extension.as_str())
+        && !["txt", WHOLE_EXTENSION, "json", "edn"].contains(&extension.as_str());
     let reads = || {
         let has_error = |all: &[rmpl::Diagnostic]| all.iter().any(|it| it.severity == rmpl::Severity::Error);
         if rmpl::control::is_control_text(text) {

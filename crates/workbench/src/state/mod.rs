@@ -70,6 +70,10 @@ pub struct AppState {
     set_aside: BTreeMap<MissionId, Document>,
     /// Maps that the user chose and that the core has not read yet.
     maps_in_hand: BTreeMap<SmolStr, Arc<[u8]>>,
+    /// A label that came without its image: the image's name, and the label.
+    waiting_label: Option<(String, Vec<u8>)>,
+    /// The map that was opened last, whose label may come after it.
+    last_map: Option<(String, Vec<u8>)>,
     /// What the planning core answered.
     pub snapshots: Snapshots,
     /// The ground of the missions opened so far.
@@ -187,6 +191,8 @@ impl AppState {
             library: Library::new(MissionKind::Example, example.source),
             set_aside: BTreeMap::new(),
             maps_in_hand: BTreeMap::new(),
+            waiting_label: None,
+            last_map: None,
             snapshots: Snapshots::default(),
             maps: BTreeMap::new(),
             selection: Selection::None,

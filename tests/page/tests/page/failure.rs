@@ -45,6 +45,45 @@ fn a_core_that_fails_is_reported_and_started_anew_with_nothing_lost() -> Result<
     page.wait_for("state.status === 'plan' && state.answeredRevision === state.revision")
 }
 
+/// A core that ends without a word, at every job about the text above or only at the first one.
+fn dying(text: &str, once: bool) -> String {
+    let is_asked = "new TextDecoder().decode(data.request).includes('Stumble')";
+    let is_first = if once { "&& self.name && !(await caches.has('died'))" } else { "" };
+    let dies = format!("if ({is_asked} {is_first}) {{ await caches.open('died'); self.close(); return; }}");
+    text.replace(CALL_OF_CORE, &format!("{dies} {CALL_OF_CORE}"))
+}
+
+#[test]
+fn a_core_that_dies_without_a_word_is_noticed_at_once_and_its_work_done_again() -> Result<()> {
+    let page = Opened::altered("web/core-worker.js", |text| dying(&text, true))?;
+    page.wait_for("state.status === 'plan'")?;
+    let seconds = page.tab.evaluate(&format!(
+        "(async () => {{
+            const begun = performance.now();
+            enroute.setSource('{STUMBLING_BLOCK}');
+            while (!enroute.state().toasts.some((toast) => toast.includes('has begun again'))) {{
+                await new Promise((done) => setTimeout(done, 10));
+            }}
+            return (performance.now() - begun) / 1000;
+        }})()"
+    ))?;
+    // Without the browser's word for it, a core may be silent for a minute before it is taken for dead.
+    assert!(seconds.as_f64().is_some_and(|seconds| seconds < 30.0), "{seconds}");
+    page.settle()?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, STUMBLING_BLOCK);
+    Ok(())
+}
+
+#[test]
+fn a_core_that_dies_each_time_leaves_the_text_undecided() -> Result<()> {
+    let page = Opened::altered("web/core-worker.js", |text| dying(&text, false))?;
+    page.wait_for("state.status === 'plan'")?;
+    page.tab.evaluate(&format!("enroute.setSource('{STUMBLING_BLOCK}')"))?;
+    page.wait_for("state.status === 'undecided'")?;
+    page.tab.evaluate("enroute.dispatch('edit.undo')")?;
+    page.wait_for("state.status === 'plan' && state.answeredRevision === state.revision")
+}
+
 #[test]
 fn a_core_that_never_ends_is_given_up_for_a_newer_text() -> Result<()> {
     let page = Opened::altered("web/core-worker.js", |text| {
@@ -90,6 +129,58 @@ fn a_front_end_that_stops_gives_the_text_back_when_the_page_is_loaded_again() ->
     page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
     page.tab.wait_until_ready()?;
     page.tab.wait_until("enroute.source() === 'A()[l,u] = { Work()[1,2] }'")?;
+    Ok(())
+}
+
+#[test]
+fn a_full_storage_hides_neither_the_failure_nor_the_text() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.evaluate("enroute.setSource('// ' + 'long text '.repeat(3e5))")?;
+    page.settle()?;
+    let fill = "(() => {
+        for (let size = 1 << 22; size > 0; size >>= 1) {
+            try { for (let at = 0; ; at += 1) localStorage.setItem(`fill/${size}/${at}`, 'x'.repeat(size)); } catch {}
+        }
+        const saved = [];
+        window.saved = saved;
+        URL.createObjectURL = (blob) => { saved.push(blob.size); return 'blob:none'; };
+        const error = new WebAssembly.RuntimeError('unreachable');
+        window.dispatchEvent(new ErrorEvent('error', { error }));
+    })()";
+    page.tab.evaluate(fill)?;
+    page.tab
+        .wait_until("document.querySelector('#loading[role=alert]')?.innerText.includes('save your text')")?;
+    page.tab.evaluate(
+        "[...document.querySelectorAll('#loading button')].find((it) => it.innerText === 'Save the text').click()",
+    )?;
+    assert_eq!(page.tab.evaluate("saved.join()")?, "3000003");
+    Ok(())
+}
+
+#[test]
+fn lost_graphics_come_back_in_place_with_everything_as_it_was() -> Result<()> {
+    let page = Opened::planned()?;
+    page.place_caret_after("scenario")?;
+    page.type_text("s")?;
+    page.settle()?;
+    let lose = "window.lostCanvas = document.getElementById('canvas');
+                lostCanvas.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()";
+    for turn in 1..=2 {
+        page.tab.evaluate(lose)?;
+        page.tab.wait_until("document.getElementById('canvas') !== lostCanvas")?;
+        page.tab.wait_until("enroute.source().includes('scenarios')")?;
+        page.settle()?;
+        let failure =
+            page.tab.evaluate("document.querySelector('#loading[role=alert]')?.innerText ?? null")?;
+        assert!(failure.is_null(), "{failure}");
+        assert!(page.look()?.colours() > 20, "nothing is drawn after loss {turn}");
+    }
+    // The history is still there, and keys and clicks arrive.
+    page.tab.evaluate("enroute.dispatch('edit.undo')")?;
+    page.wait_for("state.status === 'plan' && state.answeredRevision === state.revision")?;
+    page.place_caret_after("scenario")?;
+    page.type_text("z")?;
+    page.tab.wait_until("enroute.source().includes('scenarioz')")?;
     Ok(())
 }
 

@@ -65,14 +65,53 @@ fn a_closed_tab_and_a_tab_beside_it_have_what_was_typed() -> Result<()> {
 #[test]
 fn without_any_storage_the_page_says_so_and_works() -> Result<()> {
     let page = Opened::altered("web/shelf.js", |text| {
-        let forbidden =
-            "Object.defineProperty(window, 'localStorage', { get() { throw new Error('forbidden'); } });";
+        let forbidden = "for (const place of ['localStorage', 'sessionStorage']) {
+            Object.defineProperty(window, place, { get() { throw new Error('forbidden'); } });
+        }";
         format!("{forbidden}\n{}", text.replace("indexedDB.open(NAME, 1)", "forbidden()"))
     })?;
     page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
     page.wait_for("state.library.keeping === 'nothing'")?;
     page.tab.wait_until("enroute.widgets('button', 'Not kept').length > 0")?;
     assert_eq!(page.tab.evaluate("enroute.source()")?, "A()[l,u] = { Work()[1,2] }");
+    Ok(())
+}
+
+/// Whatever the browser kept is damaged in several ways: the page starts with each, and is of a size that one can use.
+#[test]
+fn damaged_settings_and_layouts_do_not_keep_the_page_from_starting() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.evaluate("enroute.dispatch('view.textLarger')")?;
+    page.tab.evaluate("enroute.dispatch('view.panel', { name: 'distances' })")?;
+    page.tab.wait_until("Object.keys(localStorage).some((key) => key.includes('settings'))")?;
+    page.tab.wait_until("Object.keys(localStorage).some((key) => key.includes('layout'))")?;
+    page.tab.evaluate("sessionStorage.setItem('before', JSON.stringify({ ...localStorage }))")?;
+    for damage in [
+        "text.slice(0, text.length / 2)",
+        "text.replace(/-?[0-9]+([.][0-9]+)?/g, '1e30')",
+        "text.replace(/-?[0-9]+([.][0-9]+)?/g, '-1e30')",
+        "text.replace(/-?[0-9]+([.][0-9]+)?/g, '0')",
+        "'[]'",
+        "''",
+    ] {
+        page.tab.evaluate(&format!(
+            "window.addEventListener('pagehide', () => {{
+                for (const [key, text] of Object.entries(JSON.parse(sessionStorage.getItem('before')))) {{
+                    if (!key.includes('mission')) localStorage.setItem(key, {damage});
+                }}
+            }});
+            window.isOldPage = true;
+            location.reload()"
+        ))?;
+        page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
+        page.tab.wait_until_ready()?;
+        page.tab.next_frame()?;
+        let failure =
+            page.tab.evaluate("document.querySelector('#loading[role=alert]')?.innerText ?? null")?;
+        assert!(failure.is_null(), "{damage}: {failure}");
+        let text = page.tab.widget("textbox", "Mission text")?;
+        assert!(text.width > 100.0 && text.height > 100.0, "{damage}: {text:?}");
+    }
     Ok(())
 }
 

@@ -7,6 +7,7 @@ mod opened;
 
 mod accessibility;
 mod api;
+mod attack;
 mod automaton;
 mod board;
 mod disk;
@@ -18,6 +19,7 @@ mod firefox;
 mod keeping;
 mod language;
 mod lesson;
+mod network_file;
 mod offline;
 mod report;
 mod same;

@@ -1,0 +1,135 @@
+//! Opening what others wrote: networks, labels with their images, and what is too large or of no use.
+
+mod support;
+
+use std::rc::Rc;
+
+use serde_json::json;
+use workbench::command::Command;
+use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::limits::MAX_TEXT_BYTES;
+
+use support::{App, World, start_in};
+
+fn open(app: &mut App, name: &str, bytes: &[u8]) {
+    app.world.news.borrow_mut().push_back(HostEvent::FileOpened {
+        kind: FileKind::of_name(name),
+        name: name.to_owned(),
+        bytes: bytes.to_vec(),
+        token: None,
+    });
+    app.settle();
+}
+
+fn started() -> App {
+    let mut app = start_in(Rc::new(World::default()));
+    app.settle();
+    app
+}
+
+fn text_of(app: &App) -> String {
+    app.session.state().document.text().to_owned()
+}
+
+const NETWORK: &str = r#"{:network-id :net
+ :net {:uid :net :tpn-type :network :begin-node :n1 :end-node :n2}
+ :n1 {:uid :n1 :tpn-type :state :activities #{:a1} :constraints #{}}
+ :n2 {:uid :n2 :tpn-type :state :activities #{} :constraints #{}}
+ :a1 {:uid :a1 :tpn-type :activity :name "Drive" :end-node :n2 :constraints #{:c1} :reward 3}
+ :c1 {:uid :c1 :tpn-type :temporal-constraint :value [1 :infinity] :end-node :n2}}"#;
+
+#[test]
+fn networks_open_as_missions_in_whichever_way_and_are_saved_as_they_were_written() {
+    for (name, kind) in [("day.tpn.edn", FileKind::Json), ("day.edn", FileKind::Mission)] {
+        let mut app = started();
+        app.world.news.borrow_mut().push_back(HostEvent::FileOpened {
+            kind,
+            name: name.to_owned(),
+            bytes: NETWORK.as_bytes().to_vec(),
+            token: Some(7),
+        });
+        app.settle();
+        let state = app.json();
+        assert_eq!((&state["mission"], &state["status"]), (&json!("day"), &json!("plan")), "{state}");
+        assert_eq!(state["diagnostics"][0]["code"], "W-NETWORK");
+        app.session.dispatch("file.save", &json!(null)).expect("it can be saved");
+        app.settle();
+        let saved = app.world.saved.borrow().last().cloned().expect("it was saved");
+        assert_eq!(saved, ("day.tpn.edn".to_owned(), NETWORK.as_bytes().to_vec()));
+    }
+}
+
+#[test]
+fn documents_that_are_no_mission_open_nothing_and_say_what_is_read() {
+    let mut app = started();
+    let before = text_of(&app);
+    for (name, text) in [("list.json", "[1, 2]"), ("notes.enroute", "scribbles"), ("other.edn", "{:a 1}")] {
+        open(&mut app, name, text.as_bytes());
+        assert_eq!(text_of(&app), before, "{name}");
+        assert!(app.json()["toasts"].to_string().contains(name), "{name}");
+    }
+}
+
+#[test]
+fn what_is_too_large_is_refused_with_its_size() {
+    let mut app = started();
+    let before = text_of(&app);
+    let large = "x".repeat(MAX_TEXT_BYTES + 1);
+    for name in ["large.rmpl", "large.json", "large.md"] {
+        open(&mut app, name, large.as_bytes());
+        assert!(app.json()["toasts"].to_string().contains(&format!("{name} is not opened: it has 4.0 MB")));
+    }
+    app.session.apply(vec![Command::SetSource(large)]);
+    app.settle();
+    assert_eq!(text_of(&app), before);
+    assert!(app.json()["toasts"].to_string().contains("too long for a mission"));
+}
+
+fn label() -> Vec<u8> {
+    let lines = [
+        "PDS_VERSION_ID = PDS3",
+        "^IMAGE = \"HILL.IMG\"",
+        "LINES = 2",
+        "LINE_SAMPLES = 2",
+        "SAMPLE_TYPE = MSB_INTEGER",
+        "SAMPLE_BITS = 16",
+        "END",
+    ];
+    lines.join("\r\n").into_bytes()
+}
+
+#[test]
+fn a_label_and_its_image_are_one_map_whichever_comes_first() {
+    let image = [0, 1, 0, 2, 0, 3, 0, 4];
+    let files = [("hill.lbl", label()), ("hill.img", image.to_vec())];
+    for order in [[0, 1], [1, 0]] {
+        let mut app = started();
+        for at in order {
+            let (name, bytes) = &files[at];
+            open(&mut app, name, bytes);
+        }
+        let state = app.json();
+        let maps = &state["library"]["missions"][0]["maps"];
+        assert_eq!(maps, &json!(["hill.img"]), "{state}");
+    }
+    // Without its image it waits, and another image is not its own.
+    let mut app = started();
+    open(&mut app, "hill.lbl", &label());
+    assert!(app.json()["toasts"].to_string().contains("hill.lbl describes HILL.IMG"));
+    open(&mut app, "dale.img", &image);
+    assert_eq!(app.json()["library"]["missions"], json!([]));
+}
+
+#[test]
+fn a_mission_that_is_too_long_for_a_link_is_saved_as_a_file_instead() {
+    let mut app = started();
+    let lines: String =
+        (0_u32..6000).map(|at| format!("// {:x}\n", at.wrapping_mul(2_654_435_761))).collect();
+    app.session.apply(vec![Command::SetSource(lines)]);
+    app.settle();
+    app.session.dispatch("file.share", &json!(null)).expect("a link is asked for");
+    app.settle();
+    assert!(app.json()["toasts"].to_string().contains("too long for a link"));
+    let saved = app.world.saved.borrow();
+    assert!(saved.last().is_some_and(|(name, _)| name.ends_with(".enroute")), "{}", saved.len());
+}
