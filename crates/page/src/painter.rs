@@ -23,7 +23,7 @@ extern "C" {
 pub(crate) fn survive_errors(render_state: Option<&RenderState>) {
     let Some(state) = render_state else { return };
     state.device.on_uncaptured_error(Arc::new(|error| {
-        log_error(&format!("a part of the frame is not drawn: {error}"))
+        log_error(&format!("a part of the frame is not drawn: {error}"));
     }));
     state.device.set_device_lost_callback(|reason, _| {
         // What is destroyed on purpose is none.
