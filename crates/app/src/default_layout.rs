@@ -263,7 +263,7 @@ mod tests {
         assert!(from_text(&text).is_some());
         let kept: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
         let damaged = |share: &str| {
-            let at = text.find("\"shares\":{").expect("there are shares");
+            let at = text.rfind("\"shares\":{").expect("there are shares");
             let colon = at + text[at + 11..].find(':').expect("a share") + 12;
             let end = colon + text[colon..].find([',', '}']).expect("it ends");
             format!("{}{share}{}", &text[..colon], &text[end..])
