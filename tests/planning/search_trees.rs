@@ -24,6 +24,10 @@ fn ways_to_plans(trace: &Trace) -> BTreeSet<TreeNodeId> {
     ways
 }
 
+fn is_best_first(trace: &Trace) -> bool {
+    matches!(trace.events.first().map(|it| &it.event), Some(Event::Begin(round)) if round.is_best_first)
+}
+
 /// What of the tree of a finished search is open still.
 fn open_states(trace: &Trace) -> Vec<String> {
     let ways = ways_to_plans(trace);
@@ -32,7 +36,10 @@ fn open_states(trace: &Trace) -> Vec<String> {
     for (id, node) in (0..).zip(&trace.tree) {
         let is_after_plan = (0..id).rev().take_while(|&other| trace.are_alternatives(other, id));
         let is_right = match node.status {
+            TreeStatus::Unexplored if is_best_first(trace) => false,
             TreeStatus::Unexplored => is_after_plan.into_iter().any(|other| ways.contains(&other)),
+            // Opened, and closed once nothing below can be better.
+            TreeStatus::Excluded if is_best_first(trace) => !ways.contains(&id),
             TreeStatus::Excluded => {
                 !entered.contains(&id) && node.parent.is_some_and(|parent| !ways.contains(&parent))
             }
@@ -54,7 +61,7 @@ fn a_finished_search_leaves_no_state_open() {
     let (mut finished, mut excluded, mut jumps) = (0, 0, 0);
     for (name, text) in missions(MISSIONS) {
         let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
-        for search in [Search::Chronological, Search::ConflictDirected] {
+        for search in Search::ALL {
             let options = Options {
                 search,
                 trace_events: Some(20_000),

@@ -78,6 +78,9 @@ fn show_state(
     let Some(node) = trace.tree.get(at) else { return };
     let step = context.state.search.shown().filter(|it| it.recording.is(recording)).map(|it| it.step.step);
     let (what, color) = match index.status(trace, state, step) {
+        TreeStatus::Unexplored if index.bounded(trace, state, step).is_some() => {
+            ("waiting", tokens.text_muted)
+        }
         TreeStatus::Unexplored => ("not tried", tokens.text_muted),
         TreeStatus::Excluded => ("excluded", tokens.failure),
         TreeStatus::Decision if index.is_left(state, step) => ("left", tokens.text_muted),

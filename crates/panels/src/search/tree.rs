@@ -175,8 +175,12 @@ impl TreeIndex {
         trace.events.get(last as usize).map(|entry| &entry.event)
     }
 
-    /// The step in which it became known that an excluded state fails, too: the last one in the alternatives beside it.
+    /// The step in which it became known that an excluded state leads to nothing, too: its own last one, or of one that was
+    /// never entered the last one in the alternatives beside it.
     pub fn excluded_by(&self, trace: &Trace, id: TreeNodeId) -> Option<usize> {
+        if let Some(own) = self.last_step.get(id as usize).copied().flatten() {
+            return Some(own);
+        }
         let parent = trace.tree.get(id as usize)?.parent?;
         let beside = self.children(parent).iter().filter(|&&other| trace.are_alternatives(other, id));
         beside.filter_map(|&other| self.last_step.get(other as usize).copied().flatten()).max()
