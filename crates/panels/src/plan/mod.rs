@@ -41,12 +41,11 @@ impl Panel for PlanPanel {
             egui::Frame::new().inner_margin(egui::Margin::symmetric(10, 6)).show(ui, |ui| {
                 match context.plan() {
                     Some((network, plan)) => {
-                        match context.step() {
-                            Some(view) => show_step(ui, context, view),
-                            None => {
-                                show_verdict(ui, context, planning);
-                                demands::worth(ui, context, network, plan, planning);
-                            }
+                        if let Some(view) = context.step() {
+                            show_step(ui, context, view);
+                        } else {
+                            show_verdict(ui, context, planning);
+                            demands::worth(ui, context, network, plan, planning);
                         }
                         show_choices(ui, context, network, plan, commands);
                         show_links(ui, context, network, plan, commands);
