@@ -314,42 +314,6 @@ mod tests {
     }
 
     #[test]
-    fn every_code_that_a_problem_of_the_page_can_have_has_its_section() {
-        let crates = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-        let mut codes = std::collections::BTreeSet::from([NO_PLAN.to_owned()]);
-        // The page reads no files of networks, whose problems the command line alone tells.
-        for name in
-            ["rmpl", "tpn", "kirk", "hca", "plant", "executive", "motion", "terrain", "mission", "workbench"]
-        {
-            collect_codes(&crates.join(name).join("src"), &mut codes);
-        }
-        assert!(codes.len() > 25, "{codes:?}");
-        for code in codes {
-            let (name, section) = about_code(&code).unwrap_or_else(|| panic!("nothing tells about {code}"));
-            let page = page_named(name).expect("a page");
-            assert!(page.document.heading(&section).is_some(), "{code}: {name}#{section}");
-        }
-    }
-
-    /// The codes in the sources below a folder, as they are made there.
-    fn collect_codes(folder: &std::path::Path, codes: &mut std::collections::BTreeSet<String>) {
-        for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path())
-        {
-            if entry.is_dir() {
-                collect_codes(&entry, codes);
-            } else if entry.extension().is_some_and(|extension| extension == "rs") {
-                let text = std::fs::read_to_string(&entry).expect("a source");
-                let found = text.split("Code(\"").skip(1).filter_map(|rest| rest.split('"').next());
-                let is_of_problem = |code: &&str| {
-                    let name = code.strip_prefix("E-").or_else(|| code.strip_prefix("W-"));
-                    name.is_some_and(|name| name.chars().all(|it| it.is_ascii_uppercase()))
-                };
-                codes.extend(found.filter(is_of_problem).map(str::to_owned));
-            }
-        }
-    }
-
-    #[test]
     fn links_of_the_glossary_lead_somewhere() {
         for term in &Glossary::get().terms {
             let mut links = 0;

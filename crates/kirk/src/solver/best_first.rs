@@ -6,7 +6,7 @@
 //! goes as deep as it can, need neither the memory nor the way from state to state.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use typed_index_collections::TiVec;
 
@@ -152,8 +152,11 @@ impl Solver {
 
     /// Tells of all states that are open still that they are no better than the plan that was found.
     pub(crate) fn close(&mut self, frontier: &Frontier) {
+        // One that is open again goes by the states below it.
+        let parents: BTreeSet<StateId> = frontier.states.iter().filter_map(|state| state.parent).collect();
         for open in frontier.open.clone().into_sorted_vec().into_iter().rev() {
-            if let Some(tree_node) = frontier.states[open.state.0].tree_node {
+            let state = open.state.0;
+            if let Some(tree_node) = frontier.states[state].tree_node.filter(|_| !parents.contains(&state)) {
                 self.record_refused(tree_node, Event::NotBetter { choices: Vec::new() });
             }
         }

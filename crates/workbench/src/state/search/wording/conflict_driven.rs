@@ -226,9 +226,9 @@ fn begin(network: &Network, round: &SearchRound) -> String {
     if let Some(goal) = values.len().checked_sub(1).and_then(|last| network.objective.get(last)) {
         let more = if goal.is_maximized { "more" } else { "less" };
         let measure = measure(goal);
-        let proven = bound.map_or_else(String::new, |bound| format!(" None has {more} than {bound}."));
+        let proven = bound.map_or_else(String::new, |bound| format!("; no plan has {more} than {bound}"));
         return format!(
-            "Look for a plan that is better than {}: with {more} {measure}.{proven}",
+            "Look for a plan that is better than {}: with {more} {measure}{proven}.",
             goals(network, values)
         );
     }
