@@ -156,8 +156,12 @@ impl Solver {
         let parents: BTreeSet<StateId> = frontier.states.iter().filter_map(|state| state.parent).collect();
         for open in frontier.open.clone().into_sorted_vec().into_iter().rev() {
             let state = open.state.0;
-            if let Some(tree_node) = frontier.states[state].tree_node.filter(|_| !parents.contains(&state)) {
-                self.record_refused(tree_node, Event::NotBetter { choices: Vec::new() });
+            match frontier.states[state].tree_node {
+                Some(tree_node) if parents.contains(&state) => self.record_tried(tree_node),
+                Some(tree_node) => {
+                    self.record_refused(tree_node, Event::NotBetter { choices: Vec::new() });
+                }
+                None => {}
             }
         }
     }

@@ -386,6 +386,13 @@ impl Solver {
         }
     }
 
+    /// Takes note that a state is left for those below it.
+    pub(super) fn record_tried(&mut self, state: TreeNodeId) {
+        if let Some(record) = self.recording() {
+            record.recorder.set_status(state, TreeStatus::Decision);
+        }
+    }
+
     /// Tells why nothing is looked for in a state.
     pub(super) fn record_refused(&mut self, state: TreeNodeId, event: Event) {
         if let Some(record) = self.recording() {
