@@ -207,3 +207,15 @@ fn nothing_runs_that_the_page_did_not_bring() -> Result<()> {
     assert_eq!(page.tab.evaluate(script)?, true);
     Ok(())
 }
+
+#[test]
+fn graphics_that_never_come_back_are_told_with_a_way_to_keep_the_text() -> Result<()> {
+    let page = Opened::planned()?;
+    page.tab.evaluate("HTMLCanvasElement.prototype.getContext = () => null")?;
+    page.tab.evaluate("navigator.gpu && (navigator.gpu.requestAdapter = async () => null)")?;
+    page.tab.evaluate("document.getElementById('canvas').dispatchEvent(new Event('webglcontextlost', { cancelable: true }))")?;
+    page.tab.wait_until(
+        "document.querySelector('#loading[role=alert]')?.innerText.includes('graphics were lost')",
+    )?;
+    Ok(())
+}

@@ -121,13 +121,3 @@ fn a_map_file_dropped_on_the_page_is_read_and_a_broken_one_is_explained() -> Res
     page.tab.evaluate(&format!("enroute.setSource('{text}')"))?;
     page.wait_for("state.status === 'plan' && state.diagnostics.length === 0")
 }
-
-#[test]
-fn a_page_whose_graphics_are_lost_says_so_and_keeps_the_text() -> Result<()> {
-    let page = Opened::planned()?;
-    page.tab.evaluate("document.getElementById('canvas').dispatchEvent(new Event('webglcontextlost', { cancelable: true }))")?;
-    page.tab.wait_until(
-        "document.querySelector('#loading[role=alert]')?.innerText.includes('graphics were lost')",
-    )?;
-    Ok(())
-}
