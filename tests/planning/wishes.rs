@@ -156,3 +156,17 @@ fn a_search_that_is_stopped_tells_a_bound_that_holds() {
         }
     }
 }
+
+/// So many uses of one body that not all of their orders are choice points: each starts as early as it can.
+#[test]
+fn a_crowd_that_has_room_is_planned_without_going_over_its_orders() {
+    for count in [60, 120, 200] {
+        let uses = vec!["{ delay; Use()[1,2]; delay }"; count].join(", ");
+        let text =
+            format!("resource Body; primitive Use() uses Body; scenario S[0,{}] = {{ {uses} }}", 10 * count);
+        let network = network(&text);
+        let outcome = kirk::plan(&network, &Options::default(), &mut kirk::Unlimited);
+        assert!(verify::check_plan(&network, &outcome.plans[0]).valid, "{count}");
+        assert!(outcome.stats.expanded < 4_000, "{count}: {:?}", outcome.stats);
+    }
+}
