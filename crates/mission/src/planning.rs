@@ -61,6 +61,22 @@ pub struct Problem<'input> {
 }
 
 impl<'input> Problem<'input> {
+    /// The network of a program without ground, planned as it is usual and from its start.
+    pub fn new(network: &'input Arc<Network>, program: &'input Program) -> Self {
+        Self {
+            network,
+            program,
+            ground: None,
+            options: Options::default(),
+            seed: 0,
+            facts: None,
+            programs: None,
+            keep_outs: None,
+            excluded: &[],
+            enough: None,
+        }
+    }
+
     /// The control programs that its activities run.
     pub(crate) fn programs(&self) -> Cow<'input, Programs> {
         self.programs

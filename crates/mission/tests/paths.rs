@@ -39,16 +39,9 @@ impl Planner {
         let (ground, found) = self.grounds.resolve(&program.world);
         assert!(found.is_empty(), "{found:?}");
         let problem = Problem {
-            network: &network,
-            program: &program,
             ground: ground.as_ref().map(|(key, map)| (key, map)),
-            options: kirk::Options::default(),
             seed,
-            facts: None,
-            programs: None,
-            keep_outs: None,
-            excluded: &[],
-            enough: None,
+            ..Problem::new(&network, &program)
         };
         let planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut || false);
         Answer { map: ground.map(|(_, map)| map), planned, program }

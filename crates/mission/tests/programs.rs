@@ -23,18 +23,7 @@ fn execute(source: &str, disturbances: &[Disturbance]) -> (Arc<Network>, Ran) {
     let program = parse.program();
     let mut found = parse.diagnostics();
     let network = Arc::new(mission::compile(&program, &Goal::Default, &mut found).expect("it compiles"));
-    let problem = Problem {
-        network: &network,
-        program: &program,
-        ground: None,
-        options: kirk::Options::default(),
-        seed: 0,
-        facts: None,
-        programs: None,
-        keep_outs: None,
-        excluded: &[],
-        enough: None,
-    };
+    let problem = Problem::new(&network, &program);
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
     let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
@@ -192,19 +181,8 @@ fn two_programs(arrive: &str) -> String {
 
 fn plan_warnings(source: &str) -> Vec<String> {
     let program = rmpl::parse(source).program();
-    let network = mission::compile(&program, &Goal::Default, &mut Vec::new()).expect("it compiles");
-    let problem = Problem {
-        network: &Arc::new(network),
-        program: &program,
-        ground: None,
-        options: kirk::Options::default(),
-        seed: 0,
-        facts: None,
-        programs: None,
-        keep_outs: None,
-        excluded: &[],
-        enough: None,
-    };
+    let network = Arc::new(mission::compile(&program, &Goal::Default, &mut Vec::new()).expect("it compiles"));
+    let problem = Problem::new(&network, &program);
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
     planned.warnings.iter().map(|it| format!("{} {}", it.code.0, it.message)).collect()

@@ -25,18 +25,7 @@ impl Mission {
     }
 
     fn problem(&self) -> Problem<'_> {
-        Problem {
-            network: &self.network,
-            program: &self.program,
-            ground: None,
-            options: kirk::Options::default(),
-            seed: 0,
-            facts: None,
-            programs: None,
-            keep_outs: None,
-            excluded: &[],
-            enough: None,
-        }
+        Problem::new(&self.network, &self.program)
     }
 
     fn planned(&self) -> Planned {

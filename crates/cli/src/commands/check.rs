@@ -82,16 +82,9 @@ fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Pr
         let mut paths = Paths::default();
         for network in networks.into_iter().flatten().map(Arc::new) {
             let problem = planning::Problem {
-                network: &network,
-                program: &program,
                 ground: Some((&key, &map)),
                 options: kirk::Options { explain: false, relax: false, ..kirk::Options::default() },
-                seed: 0,
-                facts: None,
-                programs: None,
-                keep_outs: None,
-                excluded: &[],
-                enough: None,
+                ..planning::Problem::new(&network, &program)
             };
             let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
             deadline.check(&planned.planning.outcome)?;

@@ -180,16 +180,11 @@ impl Args {
         let enough = Cell::new(false);
         let (mut grounds, ground) = ground(&self.target.file, &program.world)?;
         let problem = planning::Problem {
-            network,
-            program,
             ground: ground.as_ref().map(|(key, map)| (key, map)),
             options,
             seed: self.seed,
-            facts: None,
-            programs: None,
-            keep_outs: None,
-            excluded: &[],
             enough: Some(&enough),
+            ..planning::Problem::new(network, program)
         };
         let mut stop = || {
             enough.set(deadline.is_over());

@@ -160,16 +160,9 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     let (mut grounds, ground) = ground(&target.file, &program.world)?;
     let mut paths = Paths::default();
     let problem = Problem {
-        network: &network,
-        program,
         ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
         seed: args.path_seed,
-        facts: None,
-        programs: None,
-        keep_outs: None,
-        excluded: &[],
-        enough: None,
+        ..Problem::new(&network, program)
     };
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());

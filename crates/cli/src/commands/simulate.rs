@@ -62,16 +62,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
     let mut paths = Paths::default();
     let problem = Problem {
-        network: &network,
-        program,
         ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
         seed: args.seed,
-        facts: None,
         programs: Some(&programs),
-        keep_outs: None,
-        excluded: &[],
-        enough: None,
+        ..Problem::new(&network, program)
     };
     let deadline = args.time_limit.start();
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());

@@ -165,16 +165,9 @@ fn with_paths(
     }
     let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
     let problem = planning::Problem {
-        network: &network,
-        program,
         ground: ground.as_ref().map(|(key, map)| (key, map)),
-        options: kirk::Options::default(),
         seed: args.seed,
-        facts: None,
-        programs: None,
-        keep_outs: None,
-        excluded: &[],
-        enough: None,
+        ..planning::Problem::new(&network, program)
     };
     let mut paths = Paths::default();
     let deadline = args.time_limit.start();

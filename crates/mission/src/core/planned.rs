@@ -135,16 +135,12 @@ impl Core {
         let programs = self.reading.programs();
         let enough = Cell::new(false);
         let problem = planning::Problem {
-            network: &network.value,
-            program: &program,
             ground: ground.map(|(key, map)| (key, map)),
             options,
             seed: update.seed,
-            facts: None,
             programs: Some(&programs),
-            keep_outs: None,
-            excluded: &[],
             enough: Some(&enough),
+            ..planning::Problem::new(&network.value, &program)
         };
         let due_millis = most_millis.map(|most| host.now_millis() + most);
         let mut stop = || {

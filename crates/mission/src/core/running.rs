@@ -39,16 +39,11 @@ const SAMPLING_MILLIS: f64 = 120.0;
 impl Evaluated {
     fn problem(&self, update: &Update) -> planning::Problem<'_> {
         planning::Problem {
-            network: &self.network,
-            program: &self.program,
             ground: self.ground.as_ref().map(|(key, map)| (key, map)),
             options: kirk::Options { search: update.search, ..kirk::Options::default() },
             seed: update.seed,
-            facts: None,
             programs: Some(&self.programs),
-            keep_outs: None,
-            excluded: &[],
-            enough: None,
+            ..planning::Problem::new(&self.network, &self.program)
         }
     }
 }

@@ -45,16 +45,11 @@ impl Mission {
         assert!(found.is_empty(), "{found:?}");
         let enough = Cell::new(false);
         let problem = Problem {
-            network: &self.network,
-            program: &self.program,
             ground: ground.as_ref().map(|(key, map)| (key, map)),
             options,
             seed,
-            facts: None,
-            programs: None,
-            keep_outs: None,
-            excluded: &[],
             enough: Some(&enough),
+            ..Problem::new(&self.network, &self.program)
         };
         let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || {
             enough.set(is_enough());
