@@ -8,9 +8,9 @@ use crate::failure::{Failure, FailureKind, Reason};
 use crate::model::Model;
 use crate::nature_run::nature_run;
 use crate::options::{Options, Outcome, Search, Stats, Status, Termination, Unlimited};
-use crate::overflow::TimeOverflow;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup};
-use crate::solver::{Answer, Part, Problem, TooLarge};
+use crate::solver::{Answer, Part, Problem, Unencoded};
+use crate::too_large::TooLarge;
 use crate::trace::Event;
 use crate::{demanding, explain, relax, solution};
 
@@ -21,7 +21,7 @@ pub(crate) fn answer(
     options: &Options,
     excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TimeOverflow> {
+) -> Result<(Outcome, bool), TooLarge> {
     let is_list = options.best > 1 || !excluded.is_empty();
     let is_demanding = demanding::has_demands(model) || (is_list && model.has_contexts);
     let (mut outcome, mut has_doubts) = if is_demanding {
@@ -73,7 +73,7 @@ fn searched(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TimeOverflow> {
+) -> Result<(Outcome, bool), TooLarge> {
     if options.search.learns() && !options.all {
         first_plan(model, options, termination)
     } else {
@@ -88,7 +88,7 @@ pub(crate) fn with_choices(
     choices: &Choices,
     proposed: &mut Vec<i64>,
     termination: &mut dyn Termination,
-) -> Result<Option<Outcome>, TimeOverflow> {
+) -> Result<Option<Outcome>, TooLarge> {
     if !model.has_contexts {
         return Ok(None);
     }
@@ -113,7 +113,7 @@ pub(crate) fn with_choices(
         failure: None,
         stats,
         trace: None,
-        overflow: None,
+        too_large: None,
     }))
 }
 
@@ -132,7 +132,7 @@ fn first_plan(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TimeOverflow> {
+) -> Result<(Outcome, bool), TooLarge> {
     if options.trace_events.is_some() || !model.has_contexts {
         return first_in_order(model, options, Stats::default(), termination);
     }
@@ -148,7 +148,7 @@ pub(crate) fn first_soon(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<Option<Outcome>, TimeOverflow> {
+) -> Result<Option<Outcome>, TooLarge> {
     let options = Options { search: Search::ConflictDirected, ..*options };
     let (outcome, ..) = run_briefly(model, &options, termination)?;
     Ok((outcome.status == Status::Plan).then_some(outcome))
@@ -159,7 +159,7 @@ fn run_briefly(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool, bool), TimeOverflow> {
+) -> Result<(Outcome, bool, bool), TooLarge> {
     let most = if model.decisions.is_empty() { MAX_BACKTRACKS_UNDECIDED } else { MAX_BACKTRACKS };
     let mut is_stopped = false;
     let mut soon = |stats: &Stats| {
@@ -179,7 +179,7 @@ fn first_by_solver(
     options: &Options,
     mut stats: Stats,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TimeOverflow> {
+) -> Result<(Outcome, bool), TooLarge> {
     let mut touching = None;
     let all_gaps = [Gaps::Trusted, Gaps::Ignored];
     for &gaps in if model.gap == 0 { &all_gaps[1..] } else { &all_gaps[..] } {
@@ -219,7 +219,7 @@ fn first_by_solver(
 }
 
 fn ended(status: Status, plans: Vec<Plan>, stats: Stats) -> Outcome {
-    Outcome { status, plans, bound: None, failure: None, stats, trace: None, overflow: None }
+    Outcome { status, plans, bound: None, failure: None, stats, trace: None, too_large: None }
 }
 
 /// One search by the solver, whose work is added to `stats`.
@@ -229,8 +229,8 @@ pub(crate) fn solve(
     part: Part<'_>,
     stats: &mut Stats,
     termination: &mut dyn Termination,
-) -> Result<(Answer, Option<Choices>), TooLarge> {
-    let (mut problem, mut solver) = Problem::new(model, gaps, part)?;
+) -> Result<(Answer, Option<Choices>), Unencoded> {
+    let (mut problem, mut solver) = Problem::new(model, gaps, part, &mut || termination.should_stop(stats))?;
     solver.stats = *stats;
     let answer = solver.solve(&mut problem, &mut |stats| termination.should_stop(stats));
     *stats = solver.stats;
@@ -240,11 +240,7 @@ pub(crate) fn solve(
 
 /// The plan with these choices, where conflicting pairs are ordered by the times given. `None` if a pair that only
 /// touches is not forced to.
-fn plan_with(
-    model: &Model,
-    choices: Choices,
-    orders_touching_last: bool,
-) -> Result<Option<Plan>, TimeOverflow> {
+fn plan_with(model: &Model, choices: Choices, orders_touching_last: bool) -> Result<Option<Plan>, TooLarge> {
     let proposed = choices.times.clone();
     let setup = Setup {
         jumps: true,
@@ -267,7 +263,7 @@ fn first_in_order(
     options: &Options,
     stats: Stats,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TimeOverflow> {
+) -> Result<(Outcome, bool), TooLarge> {
     let (mut outcome, has_doubts) = run(model, options, (Gaps::Trusted, stats), termination)?;
     if outcome.status != Status::NoPlan || !has_doubts {
         return Ok((outcome, has_doubts));
@@ -289,7 +285,7 @@ fn run(
     options: &Options,
     (gaps, stats): (Gaps, Stats),
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TimeOverflow> {
+) -> Result<(Outcome, bool), TooLarge> {
     let jumps = options.search.learns();
     let setup = Setup {
         jumps,
@@ -341,7 +337,7 @@ fn run(
         failure: None,
         stats: engine.stats,
         trace: engine.recorder.take().map(|recorder| recorder.trace),
-        overflow: None,
+        too_large: None,
     };
     Ok((outcome, engine.has_doubts))
 }

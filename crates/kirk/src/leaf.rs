@@ -5,9 +5,9 @@ use tpn::LabelId;
 
 use crate::failure::FailureKind;
 use crate::model::{INFINITE, point};
-use crate::overflow::TimeOverflow;
 use crate::search::{Engine, Origin};
 use crate::structure::Relation;
+use crate::too_large::TooLarge;
 
 /// What the present complete choice has to satisfy.
 #[derive(Clone, Debug, Default)]
@@ -33,7 +33,7 @@ pub(crate) struct Leaf {
 
 impl Engine<'_> {
     /// Prepares phase 2. `false` if the selection is inconsistent, or contradicts itself on one arc.
-    pub(crate) fn make_leaf(&mut self) -> Result<bool, TimeOverflow> {
+    pub(crate) fn make_leaf(&mut self) -> Result<bool, TooLarge> {
         self.stats.leaves += 1;
         self.look_harder();
         self.conflict.clear();
@@ -68,7 +68,7 @@ impl Engine<'_> {
     }
 
     /// The first pair at `from` or later that is in neither order yet, with its position.
-    pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, LabelId, LabelId)>, TimeOverflow> {
+    pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, LabelId, LabelId)>, TooLarge> {
         if !self.leaf.has_pairs {
             self.find_pairs();
         }
@@ -85,7 +85,7 @@ impl Engine<'_> {
 
     /// Whether the plan that the search stands at leaves room for the gap between all pairs that nesting does not order:
     /// then none of them rests on being forced to touch.
-    pub(crate) fn has_room_for_gaps(&mut self) -> Result<bool, TimeOverflow> {
+    pub(crate) fn has_room_for_gaps(&mut self) -> Result<bool, TooLarge> {
         let (checkpoint, tag) = (self.stn.checkpoint(), self.next_tag());
         let mut inserted = Ok(());
         for position in 0..self.leaf.pairs.len() {
@@ -111,7 +111,7 @@ impl Engine<'_> {
     /// Every conflicting pair, with the one that comes first in front. A pair that is in both orders at once, as
     /// intervals of no length at one instant are where no gap is asked for, is in the textual one: what the search met
     /// last on its way may have forced them together.
-    pub(crate) fn conflict_order(&mut self) -> Result<Vec<(LabelId, LabelId)>, TimeOverflow> {
+    pub(crate) fn conflict_order(&mut self) -> Result<Vec<(LabelId, LabelId)>, TooLarge> {
         let mut ordered = self.leaf.pairs.clone();
         for (position, pair) in ordered.iter_mut().enumerate() {
             let (left, right) = *pair;
@@ -186,7 +186,7 @@ impl Engine<'_> {
     }
 
     /// Which of two intervals is over before the other begins, in every schedule (SPEC 5.3).
-    fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, TimeOverflow> {
+    fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, TooLarge> {
         let (left_start, left_end) = self.model.interval(left);
         let (right_start, right_end) = self.model.interval(right);
         let (gap_after_left, gap_after_right) = (self.model.gap_after[left], self.model.gap_after[right]);
@@ -240,7 +240,7 @@ impl Engine<'_> {
         Origin::Level(self.levels.next_key()).tag()
     }
 
-    fn find_windows(&mut self) -> Result<(), TimeOverflow> {
+    fn find_windows(&mut self) -> Result<(), TooLarge> {
         if self.leaf.has_windows {
             return Ok(());
         }
@@ -252,7 +252,7 @@ impl Engine<'_> {
     }
 
     /// The present distances of all nodes from and to the start.
-    pub(crate) fn windows_now(&mut self) -> Result<(Vec<i64>, Vec<i64>), TimeOverflow> {
+    pub(crate) fn windows_now(&mut self) -> Result<(Vec<i64>, Vec<i64>), TooLarge> {
         self.find_windows()?;
         let Self { stn, leaf, model, .. } = self;
         let (mut from_start, mut to_start) = (leaf.from_start.clone(), leaf.to_start.clone());
@@ -270,7 +270,7 @@ impl Engine<'_> {
     }
 
     /// Whether every schedule has `start − end ≥ gap`.
-    fn is_entailed(&mut self, end: PointId, start: PointId, gap: i64) -> Result<bool, TimeOverflow> {
+    fn is_entailed(&mut self, end: PointId, start: PointId, gap: i64) -> Result<bool, TooLarge> {
         let tag = self.next_tag();
         let schedule = self.stn.schedule();
         if schedule[start.index()].checked_sub(schedule[end.index()]).ok_or(Overflow { point: start })? < gap

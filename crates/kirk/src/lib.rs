@@ -2,7 +2,7 @@
 //!
 //! [`plan`] answers with plans as data (`tpn::Plan`), or with why there is none. Time is exact: bounds are scaled to
 //! integers by their common denominator, and what does not fit into 64 bits is [`Status::Error`], with the event where
-//! that was found in [`Outcome::overflow`]. Nothing here checks its own answers: that is `verify`'s work.
+//! that was found in [`Outcome::too_large`]. Nothing here checks its own answers: that is `verify`'s work.
 
 mod answer;
 mod antichain;
@@ -22,7 +22,6 @@ mod model;
 mod nature_run;
 mod nesting;
 mod options;
-mod overflow;
 mod partial_order;
 mod planner;
 mod precedence;
@@ -34,6 +33,7 @@ mod selection;
 mod solution;
 mod solver;
 mod structure;
+mod too_large;
 mod trace;
 mod trace_lines;
 mod whole;
@@ -47,6 +47,7 @@ pub use failure::{Failure, FailureKind, GAP_LABEL, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 pub use planner::Planner;
 pub use replay::{Replay, ReplayStep};
+pub use too_large::TooLarge;
 pub use trace::{
     Constraint, CycleMember, Departing, Entry, Event, SearchRound, Trace, TreeChoice, TreeNode, TreeNodeId,
     TreeStatus,
@@ -80,5 +81,5 @@ pub fn plan_except(
 ) -> Outcome {
     let model = Model::new(network, options.threat_gap);
     let outcome = model.and_then(|model| answer(network, &model, options, excluded, termination));
-    outcome.map_or_else(Outcome::of_overflow, |(outcome, _)| outcome)
+    outcome.map_or_else(Outcome::of_size, |(outcome, _)| outcome)
 }

@@ -9,8 +9,8 @@ use typed_index_collections::{TiSlice, TiVec};
 use crate::conditions::Conditions;
 use crate::demands::Demands;
 use crate::nesting::Nesting;
-use crate::overflow::TimeOverflow;
 use crate::structure::{Relation, Structure};
+use crate::too_large::TooLarge;
 use crate::wording;
 
 /// No upper bound.
@@ -89,12 +89,12 @@ pub(crate) struct ModelDecision {
 
 impl Model {
     /// Prepares `network`, with `threat_gap` instead of its own if given.
-    pub(crate) fn new(network: &Network, threat_gap: Option<Time>) -> Result<Self, TimeOverflow> {
+    pub(crate) fn new(network: &Network, threat_gap: Option<Time>) -> Result<Self, TooLarge> {
         let gap = threat_gap.unwrap_or(network.threat_gap);
         let scale = common_scale(network, gap)?;
         let mut arcs = TiVec::with_capacity(network.arcs.len());
         for (id, arc) in network.arcs.iter().enumerate() {
-            let overflow = |Overflow| TimeOverflow::at(arc.to);
+            let overflow = |Overflow| TooLarge::at(arc.to);
             let is_uncertain = network.is_uncertain(ArcId::from_index(id));
             arcs.push(ModelArc {
                 lower: scale.ticks(arc.lower).map_err(overflow)?,
@@ -126,7 +126,7 @@ impl Model {
         });
         let mut model = Self {
             scale,
-            gap: scale.ticks(gap).map_err(|Overflow| TimeOverflow::at(network.start))?,
+            gap: scale.ticks(gap).map_err(|Overflow| TooLarge::at(network.start))?,
             start: network.start,
             num_nodes: network.nodes.len(),
             decisions: decisions.collect(),
@@ -167,7 +167,7 @@ impl Model {
     }
 
     /// Brings the structure up to date with all bounds.
-    pub(crate) fn refresh_structure(&mut self) -> Result<(), TimeOverflow> {
+    pub(crate) fn refresh_structure(&mut self) -> Result<(), TooLarge> {
         if let Some(mut structure) = self.structure.take() {
             structure.refresh(self)?;
             self.structure = Some(structure);
@@ -409,17 +409,17 @@ fn join(representatives: &mut TiSlice<NodeId, NodeId>, earlier: NodeId, later: N
     representatives[later] = find(representatives, later);
 }
 
-fn common_scale(network: &Network, gap: Time) -> Result<Scale, TimeOverflow> {
-    let with_gap = Scale::UNITS.refined(gap).map_err(|Overflow| TimeOverflow::at(network.start))?;
+fn common_scale(network: &Network, gap: Time) -> Result<Scale, TooLarge> {
+    let with_gap = Scale::UNITS.refined(gap).map_err(|Overflow| TooLarge::at(network.start))?;
     let departures = network.departures.iter().filter_map(|departure| departure.least);
     let with_departures = departures
         .into_iter()
         .try_fold(with_gap, Scale::refined)
-        .map_err(|Overflow| TimeOverflow::at(network.start))?;
+        .map_err(|Overflow| TooLarge::at(network.start))?;
     network.arcs.iter().try_fold(with_departures, |scale, arc| {
         let scale = scale.refined(arc.lower);
         let upper = arc.upper.finite().unwrap_or_default();
-        scale.and_then(|scale| scale.refined(upper)).map_err(|Overflow| TimeOverflow::at(arc.to))
+        scale.and_then(|scale| scale.refined(upper)).map_err(|Overflow| TooLarge::at(arc.to))
     })
 }
 

@@ -2,10 +2,10 @@
 
 use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
-use tpn::{Network, NodeId, Plan};
+use tpn::{Network, Plan};
 
 use crate::failure::Failure;
-use crate::overflow::TimeOverflow;
+use crate::too_large::TooLarge;
 use crate::trace::Trace;
 
 /// How to search. Both list the same plans where all are asked for, and say of the same missions that they have none.
@@ -149,7 +149,7 @@ pub enum Status {
     NoPlan,
     /// The termination condition stopped the search before it had an answer (or all the plans asked for).
     Limit,
-    /// A time does not fit into 64 bits after scaling by the common denominator.
+    /// The network is too large ([`TooLarge`]).
     Error,
 }
 
@@ -169,13 +169,13 @@ pub struct Outcome {
     pub stats: Stats,
     /// The search, if it was asked for.
     pub trace: Option<Trace>,
-    /// The event at which a time did not fit, if that was the end of it.
-    pub overflow: Option<NodeId>,
+    /// What did not fit, if that was the end of it.
+    pub too_large: Option<TooLarge>,
 }
 
 impl Outcome {
-    /// The answer where times do not fit.
-    pub(crate) fn of_overflow(overflow: TimeOverflow) -> Self {
+    /// The answer where something does not fit.
+    pub(crate) fn of_size(what: TooLarge) -> Self {
         Self {
             status: Status::Error,
             plans: Vec::new(),
@@ -183,12 +183,12 @@ impl Outcome {
             failure: None,
             stats: Stats::default(),
             trace: None,
-            overflow: Some(overflow.event),
+            too_large: Some(what),
         }
     }
 
-    /// What does not fit, in the author's terms: a time, and the event at which that was found. `None` if all times fit.
-    pub fn overflow_message(&self, network: &Network) -> Option<String> {
-        self.overflow.map(|event| TimeOverflow::at(event).message(network))
+    /// What does not fit, in the author's terms. `None` if everything fits.
+    pub fn too_large_message(&self, network: &Network) -> Option<String> {
+        self.too_large.map(|what| what.message(network))
     }
 }

@@ -17,8 +17,8 @@ use crate::antichain::heaviest_antichain;
 use crate::before::Before;
 use crate::demands::{ModelSupply, ModelUse, ResourceDemand};
 use crate::model::{Alternatives, INFINITE, Model};
-use crate::overflow::TimeOverflow;
 use crate::solver::Kept;
+use crate::too_large::TooLarge;
 
 /// What a solution chooses, and times that fit.
 #[derive(Clone, Debug)]
@@ -36,11 +36,7 @@ pub(crate) struct Solution {
 
 /// The plan of a solution; `None` if intervals that the solution only lets touch are not forced to, so that the gap
 /// between them that SPEC 5.3 asks for is not there.
-pub(crate) fn plan(
-    network: &Network,
-    model: &Model,
-    solution: &Solution,
-) -> Result<Option<Plan>, TimeOverflow> {
+pub(crate) fn plan(network: &Network, model: &Model, solution: &Solution) -> Result<Option<Plan>, TooLarge> {
     let mut choices = choices(&solution.alternatives);
     let (selected_nodes, selected_arcs) = closure(network, &choices);
     // What is decided inside an alternative that is not taken is no part of the plan.
@@ -134,7 +130,7 @@ impl Making<'_> {
     }
 
     /// `false` if the selected bounds contradict each other, which no solution's do.
-    fn add_arcs(&mut self) -> Result<bool, TimeOverflow> {
+    fn add_arcs(&mut self) -> Result<bool, TooLarge> {
         self.stn.set_origin(point(self.model.start));
         self.stn.propose(self.solution.times.iter().copied());
         for (id, arc) in self.model.arcs.iter_enumerated() {
@@ -151,11 +147,11 @@ impl Making<'_> {
     }
 
     /// `later − earlier ≥ least`, which the solution's times satisfy. `false` if the network refuses it.
-    fn insert(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TimeOverflow> {
+    fn insert(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TooLarge> {
         done(self.stn.insert(point(later), point(earlier), -least, 0))
     }
 
-    fn add_links(&mut self) -> Result<Vec<CausalLink>, TimeOverflow> {
+    fn add_links(&mut self) -> Result<Vec<CausalLink>, TooLarge> {
         let mut links: Vec<CausalLink> =
             self.solution.kept.links.iter().map(|&(ask, tell)| CausalLink { ask, tell }).collect();
         let carried = self.solution.carriers.iter_enumerated();
@@ -176,7 +172,7 @@ impl Making<'_> {
     }
 
     /// Movements take at least as long as from where the one before them ends (SPEC 10.3).
-    fn add_departures(&mut self) -> Result<(), TimeOverflow> {
+    fn add_departures(&mut self) -> Result<(), TooLarge> {
         let model = self.model;
         for (&movement, departures) in &model.demands.departures {
             let sides = &self.solution.kept.sides;
@@ -200,14 +196,14 @@ impl Making<'_> {
         Ok(())
     }
 
-    fn find_windows(&mut self) -> Result<(), TimeOverflow> {
+    fn find_windows(&mut self) -> Result<(), TooLarge> {
         self.num_edges = self.stn.num_edges();
         let (from_start, to_start) = &mut self.windows;
         Ok(self.stn.sweep_distances(point(self.model.start), &self.model.order, from_start, to_start)?)
     }
 
     /// Whether every schedule has `later − earlier ≥ least`.
-    fn is_entailed(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TimeOverflow> {
+    fn is_entailed(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TooLarge> {
         let (at_latest, at_earliest) = (self.windows.0[earlier.index()], self.windows.1[later.index()]);
         let ends_by = at_latest != INFINITE
             && at_earliest != INFINITE
@@ -227,7 +223,7 @@ impl Making<'_> {
     }
 
     /// Makes sure that one event is no later than another. Whether that had to be added.
-    fn ensure(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, TimeOverflow> {
+    fn ensure(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, TooLarge> {
         if self.is_entailed(earlier, later, 0)? {
             return Ok(false);
         }
@@ -235,7 +231,7 @@ impl Making<'_> {
     }
 
     /// Orders what excludes or breaks each other among variables that keep their values (SPEC 10.2).
-    fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, TimeOverflow> {
+    fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, TooLarge> {
         let network = self.network;
         let mut order = Vec::new();
         let before = Before::new(&self.solution.kept.sides);
@@ -294,7 +290,7 @@ impl Making<'_> {
         &mut self,
         order: &mut Vec<Ordering>,
         added: &mut Vec<Ordering>,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         let labels: Vec<LabelId> = self.selected_labels().collect();
         let mut pairs: Vec<(i64, LabelId, LabelId)> = Vec::new();
         for &left in &labels {
@@ -347,7 +343,7 @@ impl Making<'_> {
     }
 
     /// Orders uses as the solution does, as far as that does not follow from the rest.
-    fn keep_uses_ordered(&mut self, added: &mut Vec<UseOrdering>) -> Result<(), TimeOverflow> {
+    fn keep_uses_ordered(&mut self, added: &mut Vec<UseOrdering>) -> Result<(), TooLarge> {
         for &(first, then) in &self.solution.uses_ordered {
             let ordering = UseOrdering { first, then };
             let Precedence { earlier, later, .. } = ordering.precedence(self.network);
@@ -359,7 +355,7 @@ impl Making<'_> {
     }
 
     /// Orders the uses of a resource so that no schedule takes more than there is.
-    fn share(&mut self, resource: &ResourceDemand, added: &mut Vec<UseOrdering>) -> Result<(), TimeOverflow> {
+    fn share(&mut self, resource: &ResourceDemand, added: &mut Vec<UseOrdering>) -> Result<(), TooLarge> {
         let uses: Vec<ModelUse> =
             resource.uses.iter().filter(|used| self.is_selected[used.arc]).copied().collect();
         match resource.supply {
@@ -379,7 +375,7 @@ impl Making<'_> {
         mut uses: Vec<ModelUse>,
         capacity: i64,
         added: &mut Vec<UseOrdering>,
-    ) -> Result<(), TimeOverflow> {
+    ) -> Result<(), TooLarge> {
         uses.sort_by_key(|used| (self.time(used.start), self.time(used.end), used.id));
         let mut free = capacity;
         // Uses that are over or running, with what they still have to hand on.
@@ -437,7 +433,7 @@ impl Making<'_> {
         range: (i64, i64),
         level: i64,
         added: &mut Vec<UseOrdering>,
-    ) -> Result<(), TimeOverflow> {
+    ) -> Result<(), TooLarge> {
         let mut by_time: Vec<&ModelUse> = uses.iter().collect();
         by_time.sort_by_key(|used| (self.time(used.moment()), used.id));
         for used in by_time {
@@ -477,13 +473,13 @@ impl Making<'_> {
         used: &ModelUse,
         (least, greatest): (i64, i64),
         level: i64,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         let extreme = self.extreme(uses, used, level)?;
         Ok(if used.change == Change::Produces { extreme <= greatest } else { extreme >= least })
     }
 
     /// The lowest level after a consumption, or the highest after a production (SPEC 11).
-    fn extreme(&mut self, uses: &[ModelUse], used: &ModelUse, level: i64) -> Result<i64, TimeOverflow> {
+    fn extreme(&mut self, uses: &[ModelUse], used: &ModelUse, level: i64) -> Result<i64, TooLarge> {
         let mut extreme = level;
         let now = used.moment();
         let (mut until_now, mut since_now) = (Vec::new(), Vec::new());
@@ -515,7 +511,7 @@ impl Making<'_> {
         Ok(extreme)
     }
 
-    fn levels(&mut self, resource: &ResourceDemand) -> Result<Levels, TimeOverflow> {
+    fn levels(&mut self, resource: &ResourceDemand) -> Result<Levels, TooLarge> {
         let uses: Vec<ModelUse> =
             resource.uses.iter().filter(|used| self.is_selected[used.arc]).copied().collect();
         match resource.supply {
@@ -543,7 +539,7 @@ impl Making<'_> {
         }
     }
 
-    fn windows(&mut self, selected: &[bool]) -> Result<Vec<Option<Window>>, TimeOverflow> {
+    fn windows(&mut self, selected: &[bool]) -> Result<Vec<Option<Window>>, TooLarge> {
         let (mut latest, mut earliest) = self.windows.clone();
         self.stn.tighten_distances(self.num_edges, &self.model.order, &mut latest, &mut earliest)?;
         let model = self.model;
@@ -559,7 +555,7 @@ impl Making<'_> {
 }
 
 /// Whether the network took it.
-fn done(result: Result<(), Inconsistency>) -> Result<bool, TimeOverflow> {
+fn done(result: Result<(), Inconsistency>) -> Result<bool, TooLarge> {
     match result {
         Ok(()) => Ok(true),
         Err(Inconsistency::NegativeCycle) => Ok(false),

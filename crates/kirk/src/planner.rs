@@ -8,8 +8,8 @@ use tpn::{ArcId, Network};
 use crate::answer;
 use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Termination};
-use crate::overflow::TimeOverflow;
 use crate::search::Choices;
+use crate::too_large::TooLarge;
 
 /// Plans one network repeatedly. Plans are those of [`crate::plan`] on the changed network, whatever was asked before;
 /// only the statistics tell how little was left to do.
@@ -22,7 +22,7 @@ pub struct Planner {
     network: Network,
     threat_gap: Option<Time>,
     /// The network prepared, if times fit.
-    model: Result<Model, TimeOverflow>,
+    model: Result<Model, TooLarge>,
     last: Option<Searched>,
 }
 
@@ -77,7 +77,7 @@ impl Planner {
     pub fn plan(&mut self, options: &Options, termination: &mut dyn Termination) -> Outcome {
         let model = match &self.model {
             Ok(model) => model,
-            Err(overflow) => return Outcome::of_overflow(*overflow),
+            Err(overflow) => return Outcome::of_size(*overflow),
         };
         let is_repeatable = !options.all && options.trace_events.is_none();
         if is_repeatable
@@ -93,7 +93,7 @@ impl Planner {
             Ok(answer) => answer,
             Err(overflow) => {
                 self.last = None;
-                return Outcome::of_overflow(overflow);
+                return Outcome::of_size(overflow);
             }
         };
         self.last = outcome.plans.first().filter(|_| is_repeatable && !has_doubts).map(|plan| {
@@ -114,7 +114,7 @@ impl Planner {
     }
 
     /// Changes the prepared network in place, if it can be.
-    fn keep_model(&mut self, arc: ArcId, lower: Time, upper: Bound) -> Result<bool, TimeOverflow> {
+    fn keep_model(&mut self, arc: ArcId, lower: Time, upper: Bound) -> Result<bool, TooLarge> {
         let Ok(model) = &mut self.model else { return Ok(false) };
         let (Ok(lower), Ok(upper)) = (model.units(lower), model.bound_units(upper)) else { return Ok(false) };
         if lower < 0 {

@@ -6,11 +6,11 @@ use tpn::{CausalLink, Choice, NodeId, Ordering, Plan, Window};
 use crate::demanding;
 use crate::levels::Kind;
 use crate::model::INFINITE;
-use crate::overflow::TimeOverflow;
 use crate::search::Engine;
+use crate::too_large::TooLarge;
 
 /// The plan that the search stands at.
-pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, TimeOverflow> {
+pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, TooLarge> {
     let conflict_order = engine.conflict_order()?;
     let model = engine.model;
     let (latest, earliest) = engine.windows_now()?;

@@ -1,6 +1,7 @@
 //! `enroute plan`: plans a mission or a network, and says why where there is no plan.
 
 use std::cell::Cell;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -342,7 +343,7 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
         Status::NoPlan => "no plan\n".to_owned(),
         Status::Limit => "no answer within the limit\n".to_owned(),
         Status::Error => {
-            let message = outcome.overflow_message(&planned.network);
+            let message = outcome.too_large_message(&planned.network);
             message.map(|message| format!("{message}\n")).unwrap_or_default()
         }
     };
@@ -382,6 +383,9 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
     text
 }
 
+/// The text tells so many orders of conditions; what excludes each other may be ordered in a square of ways.
+const MAX_ORDERS_TOLD: usize = 200;
+
 fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     let mut text = String::new();
     if !plan.choices.is_empty() {
@@ -399,10 +403,16 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
             network.label_name(link.ask)
         ));
     }
-    for order in plan.telling_order(network) {
-        let added = if plan.orderings_added.contains(order) { " (added)" } else { "" };
+    let added: BTreeSet<&tpn::Ordering> = plan.orderings_added.iter().collect();
+    let mut orders = plan.telling_order(network);
+    for order in orders.by_ref().take(MAX_ORDERS_TOLD) {
+        let added = if added.contains(order) { " (added)" } else { "" };
         let (first, then) = (network.label_name(order.first), network.label_name(order.then));
         text.push_str(&format!("order     {first} before {then}{added}\n"));
+    }
+    let more = orders.count();
+    if more > 0 {
+        text.push_str(&format!("order     and {more} more, all in `--json`\n"));
     }
     for order in &plan.uses_ordered {
         let (first, then) = (network.use_name(order.first), network.use_name(order.then));

@@ -3,25 +3,23 @@
 use tpn::Plan;
 
 use super::{Attempt, Searching};
-use crate::overflow::TimeOverflow;
 use crate::partial_order;
 use crate::solver::{Frontier, LeastSums, Problem, Solver, Visit};
+use crate::too_large::TooLarge;
 use crate::trace::Event;
 
 impl Searching<'_> {
     /// The plan that a best-first search comes to first, which no other one is better than. `None` if too many states are open,
     /// or if the plan is not as good as its state promised.
     #[expect(clippy::option_option, reason = "no plan is not no answer")]
-    pub(super) fn best_first(&mut self) -> Result<Option<Option<Plan>>, TimeOverflow> {
+    pub(super) fn best_first(&mut self) -> Result<Option<Option<Plan>>, TooLarge> {
         let model = self.model;
         let goals = &model.demands.goals;
         let mut best: Option<(LeastSums, Plan)> = None;
         for &gaps in self.gaps() {
             let limits = vec![None; goals.len()];
-            let Ok(Attempt { mut problem, mut solver, .. }) = self.recorded_problem(gaps, &limits, true)
-            else {
-                return Err(TimeOverflow::at(model.start));
-            };
+            let attempt = self.recorded_problem(gaps, &limits, true)?;
+            let Some(Attempt { mut problem, mut solver, .. }) = attempt else { break };
             let mut frontier = Frontier::new(goals.len());
             let than = best.as_ref().map(|(sums, _)| sums.clone());
             let (visit, found) = loop {

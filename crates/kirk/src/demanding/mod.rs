@@ -15,11 +15,11 @@ use crate::controllable;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
 use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Stats, Status, Termination};
-use crate::overflow::TimeOverflow;
 use crate::partial_order;
 use crate::search::Gaps;
-use crate::solver::{Answer, GoalSums, Part, Problem, Record, Solver, TooLarge};
+use crate::solver::{Answer, GoalSums, Growth, Part, Problem, Record, Solver, Unencoded};
 use crate::structure::Relation;
+use crate::too_large::TooLarge;
 use crate::trace::{Event, SearchRound};
 
 /// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
@@ -97,7 +97,7 @@ pub(crate) fn search(
     options: &Options,
     excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
-) -> Result<Outcome, TimeOverflow> {
+) -> Result<Outcome, TooLarge> {
     if excluded.is_empty()
         && let Some(outcome) = controllable::first_plan(network, model, options, termination)?
     {
@@ -120,7 +120,7 @@ pub(crate) fn search(
     searching.stats.arcs = model.arcs.len() as u64;
     searching.stats.decisions = model.decisions.len() as u64;
     if !model.has_contexts {
-        return Err(TimeOverflow::at(model.start));
+        return Err(TooLarge::at(model.start));
     }
     let (status, plans) =
         if options.all { searching.all(options.max_plans)? } else { searching.several(options.best)? };
@@ -129,7 +129,7 @@ pub(crate) fn search(
         record.fail();
     }
     let trace = record.map(|record| record.into_trace());
-    Ok(Outcome { status, plans, bound, failure: None, stats, trace, overflow: None })
+    Ok(Outcome { status, plans, bound, failure: None, stats, trace, too_large: None })
 }
 
 struct Searching<'a> {
@@ -175,16 +175,28 @@ impl<'a> Searching<'a> {
         if self.model.gap == 0 || !has_conflicts { &[Gaps::Ignored] } else { &[Gaps::Trusted, Gaps::Ignored] }
     }
 
-    /// A problem and its solver, which goes on with the record.
+    /// A problem and its solver, which goes on with the record. `None` if it was stopped meanwhile.
     fn recorded_problem(
         &mut self,
         gaps: Gaps,
         limits: &Limits,
         is_in_order: bool,
-    ) -> Result<Attempt<'a>, TooLarge> {
-        let mut attempt = self.problem(gaps, limits, is_in_order)?;
-        self.begin_record(&mut attempt, gaps, limits);
-        Ok(attempt)
+    ) -> Result<Option<Attempt<'a>>, TooLarge> {
+        let (termination, stats) = (&mut self.termination, &self.stats);
+        let attempt = Problem::new(self.model, gaps, Part::default(), &mut || termination.should_stop(stats))
+            .and_then(|encoded| self.attempt(encoded, limits, is_in_order));
+        match attempt {
+            Ok(mut attempt) => {
+                self.begin_record(&mut attempt, gaps, limits);
+                Ok(Some(attempt))
+            }
+            Err(Unencoded::Stopped) => {
+                self.is_stopped = true;
+                Ok(None)
+            }
+            Err(Unencoded::TimesTooLarge) => Err(TooLarge::at(self.model.start)),
+            Err(Unencoded::TooManyLinks) => Err(TooLarge::Links),
+        }
     }
 
     /// Goes on with the record in a solver that begins to search within these limits.
@@ -209,8 +221,13 @@ impl<'a> Searching<'a> {
         attempt.solver.begin_record(&attempt.problem, Some(record), round);
     }
 
-    fn problem(&self, gaps: Gaps, limits: &Limits, is_in_order: bool) -> Result<Attempt<'a>, TooLarge> {
-        let (problem, mut solver) = Problem::new(self.model, gaps, Part::default())?;
+    /// A problem that is new to its solver, with what this search asks for beside the network.
+    fn attempt(
+        &self,
+        (problem, mut solver): (Problem<'a>, Solver),
+        limits: &Limits,
+        is_in_order: bool,
+    ) -> Result<Attempt<'a>, Unencoded> {
         solver.is_in_textual_order = is_in_order;
         for choices in &self.excluded {
             problem.forbid_choices(&mut solver, choices);
@@ -252,7 +269,7 @@ impl<'a> Searching<'a> {
         problem: &mut Problem<'_>,
         solver: &mut Solver,
         most: Option<u64>,
-    ) -> Result<Next, TimeOverflow> {
+    ) -> Result<Next, TooLarge> {
         loop {
             match self.solve(problem, solver, most) {
                 None => return Ok(Next::Stopped),
@@ -275,7 +292,7 @@ impl<'a> Searching<'a> {
     }
 
     /// So many plans that differ in their choices, the best first.
-    fn several(&mut self, count: usize) -> Result<(Status, Vec<Plan>), TimeOverflow> {
+    fn several(&mut self, count: usize) -> Result<(Status, Vec<Plan>), TooLarge> {
         let mut plans: Vec<Plan> = Vec::new();
         while plans.len() < count.max(1) && !self.is_stopped {
             let plan = if self.model.demands.goals.is_empty() { self.first()? } else { self.best()? };
@@ -293,14 +310,12 @@ impl<'a> Searching<'a> {
         Ok((self.status(!plans.is_empty()), plans))
     }
 
-    fn first(&mut self) -> Result<Option<Plan>, TimeOverflow> {
+    fn first(&mut self) -> Result<Option<Plan>, TooLarge> {
         let model = self.model;
         for &gaps in self.gaps() {
             for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
-                let Ok(attempt) = self.recorded_problem(gaps, &Vec::new(), most.is_some()) else {
-                    return Err(TimeOverflow::at(model.start));
-                };
-                let Attempt { mut problem, mut solver, .. } = attempt;
+                let attempt = self.recorded_problem(gaps, &Vec::new(), most.is_some())?;
+                let Some(Attempt { mut problem, mut solver, .. }) = attempt else { return Ok(None) };
                 let next = self.next_plan(model, &mut problem, &mut solver, most)?;
                 self.record = solver.record.take();
                 match next {
@@ -315,15 +330,16 @@ impl<'a> Searching<'a> {
     }
 
     /// Every plan that differs in its choices, its links, or the order of what excludes each other.
-    fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), TimeOverflow> {
+    fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), TooLarge> {
         let model = self.model;
         let mut plans: Vec<Plan> = Vec::new();
         for &gaps in self.gaps() {
-            let Ok(attempt) = self.recorded_problem(gaps, &Vec::new(), true) else {
-                return Err(TimeOverflow::at(model.start));
+            let Some(attempt) = self.recorded_problem(gaps, &Vec::new(), true)? else {
+                return Ok((Status::Limit, plans));
             };
             let Attempt { mut problem, mut solver, .. } = attempt;
-            problem.order_all_pairs(&mut solver);
+            let is_small = problem.order_all_pairs(&mut solver, &mut Growth::new(&mut || false));
+            is_small.map_err(|_| TooLarge::Links)?;
             solver.record_choice_points(&problem);
             loop {
                 match self.next_plan(model, &mut problem, &mut solver, None)? {
@@ -359,7 +375,7 @@ impl<'a> Searching<'a> {
     }
 
     /// A plan that no other one is better than, goal by goal; the best one found where the search is stopped before.
-    fn best(&mut self) -> Result<Option<Plan>, TimeOverflow> {
+    fn best(&mut self) -> Result<Option<Plan>, TooLarge> {
         if self.is_best_first {
             if let Some(plan) = self.best_first()? {
                 return Ok(plan);
@@ -399,29 +415,26 @@ impl<'a> Searching<'a> {
     }
 
     /// Tells what a plan is worth that is better than those before.
-    fn tell_values(&mut self, plan: &Plan) -> Result<(), TimeOverflow> {
+    fn tell_values(&mut self, plan: &Plan) -> Result<(), TooLarge> {
         let Some(record) = &mut self.record else { return Ok(()) };
         let goals = self.model.demands.goals.iter();
         let values = goals.map(|goal| Ok(goal.value(goal.sum(self.model, plan)?)));
-        record.tell_improvement(values.collect::<Result<_, TimeOverflow>>()?);
+        record.tell_improvement(values.collect::<Result<_, TooLarge>>()?);
         Ok(())
     }
 
     /// What follows for a goal from the limits of those before it, whatever is decided.
     fn proven_bound(&self, goal: usize, limits: &Limits) -> Option<Rational> {
         let gaps = if self.model.gap == 0 { Gaps::Ignored } else { Gaps::Trusted };
-        let Attempt { problem, solver, .. } = self.problem(gaps, limits, false).ok()?;
+        let encoded = Problem::new(self.model, gaps, Part::default(), &mut || false).ok()?;
+        let Attempt { problem, solver, .. } = self.attempt(encoded, limits, false).ok()?;
         let goal = &self.model.demands.goals[goal];
         Some(goal.value(problem.goal_bound(&solver, goal)))
     }
 
     /// A plan within the limits, the same one each time. The last of them is no greater than in the attempts before, with
     /// whose solver the search goes on.
-    fn better(
-        &mut self,
-        improving: &mut Improving<'a>,
-        limits: &Limits,
-    ) -> Result<Option<Plan>, TimeOverflow> {
+    fn better(&mut self, improving: &mut Improving<'a>, limits: &Limits) -> Result<Option<Plan>, TooLarge> {
         let model = self.model;
         let limit = limits.iter().rev().find_map(|limit| *limit).unwrap_or(0);
         while let Some(&gaps) = self.gaps().get(improving.exhausted) {
@@ -431,9 +444,9 @@ impl<'a> Searching<'a> {
                     self.begin_record(&mut attempt, gaps, limits);
                     attempt
                 }
-                None => match self.recorded_problem(gaps, limits, false) {
-                    Ok(attempt) => attempt,
-                    Err(TooLarge) => return Err(TimeOverflow::at(model.start)),
+                None => match self.recorded_problem(gaps, limits, false)? {
+                    Some(attempt) => attempt,
+                    None => return Ok(None),
                 },
             };
             let next = self.next_plan(model, &mut attempt.problem, &mut attempt.solver, None)?;

@@ -5,8 +5,8 @@ use tpn::LabelId;
 
 use super::{Lookahead, MAX_PAUSE, Origin, context_of, interval, link_edges};
 use crate::model::{Alternatives, INFINITE, Model};
-use crate::overflow::TimeOverflow;
 use crate::structure::{Relation, Structure};
+use crate::too_large::TooLarge;
 
 /// What can become of one assertion for a requirement.
 enum Candidate {
@@ -37,7 +37,7 @@ impl Lookahead {
         &mut self,
         model: &Model,
         result: Result<(), Inconsistency>,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         match result {
             Ok(()) => Ok(true),
             Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
@@ -72,7 +72,7 @@ impl Lookahead {
         structure: &Structure,
         chosen: &Alternatives,
         first: usize,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         for position in 0..first {
             let label = self.labels[position];
             if !self.is_in_question(model, label) {
@@ -140,7 +140,7 @@ impl Lookahead {
         structure: &Structure,
         left: LabelId,
         right: LabelId,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         let arc = |label: LabelId| model.conditions.labels[label].arc;
         if arc(left) == arc(right) {
             self.conflict.clear();
@@ -172,12 +172,7 @@ impl Lookahead {
     }
 
     /// Whether some assertion can carry a requirement.
-    fn check_ask(
-        &mut self,
-        model: &Model,
-        chosen: &Alternatives,
-        ask: LabelId,
-    ) -> Result<bool, TimeOverflow> {
+    fn check_ask(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, TooLarge> {
         self.conflict.clear();
         let mut only = None;
         for tell in model.conditions.supporters(ask) {
@@ -208,7 +203,7 @@ impl Lookahead {
         model: &Model,
         chosen: &Alternatives,
         ask: LabelId,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         let has_guess = self.guessed[ask].is_some() || self.guess_carrier(model, ask)?;
         let is_due = self.is_thorough && self.num_decided >= self.due[ask].0;
         let is_settled = if is_due {
@@ -239,7 +234,7 @@ impl Lookahead {
     }
 
     /// Whether the assertion found last can still carry a requirement.
-    fn can_stay(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, TimeOverflow> {
+    fn can_stay(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, TooLarge> {
         let Some(tell) = self.witness[ask].filter(|&tell| self.is_active_label[tell]) else {
             return Ok(false);
         };
@@ -252,7 +247,7 @@ impl Lookahead {
         chosen: &Alternatives,
         ask: LabelId,
         tell: LabelId,
-    ) -> Result<Candidate, TimeOverflow> {
+    ) -> Result<Candidate, TooLarge> {
         if !self.is_active_label[tell] {
             let mut context = context_of(model, tell);
             while let Some(choice) = context {
@@ -287,7 +282,7 @@ impl Lookahead {
         model: &Model,
         labels: &[LabelId],
         edges: &[(PointId, PointId, i64)],
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         for &label in labels {
             self.add_label_to_conflict(model, label);
         }
@@ -315,7 +310,7 @@ impl Lookahead {
         schedule[to.index()].checked_sub(schedule[from.index()]).is_some_and(|distance| distance <= weight)
     }
 
-    fn admits(&mut self, model: &Model, edge: (PointId, PointId, i64)) -> Result<bool, TimeOverflow> {
+    fn admits(&mut self, model: &Model, edge: (PointId, PointId, i64)) -> Result<bool, TooLarge> {
         if self.is_guided(edge) {
             return Ok(true);
         }

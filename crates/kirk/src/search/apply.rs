@@ -7,13 +7,13 @@ use super::{Engine, Gaps, Origin};
 use crate::failure::FailureKind;
 use crate::ids::LevelId;
 use crate::levels::Kind;
-use crate::overflow::TimeOverflow;
 use crate::structure::Structure;
+use crate::too_large::TooLarge;
 use crate::trace::Event;
 
 impl Engine<'_> {
     /// Takes an alternative at a level. `false` if it fails at once; then `conflict` says why.
-    pub(super) fn apply(&mut self, depth: LevelId, alternative: u32) -> Result<bool, TimeOverflow> {
+    pub(super) fn apply(&mut self, depth: LevelId, alternative: u32) -> Result<bool, TooLarge> {
         let tag = Origin::Level(depth).tag();
         match self.levels[depth].kind {
             Kind::Decision { decision } => self.choose(depth, Choice { decision, alternative }),
@@ -76,7 +76,7 @@ impl Engine<'_> {
         self.model.gap - self.model.gap_after[first]
     }
 
-    fn choose(&mut self, depth: LevelId, choice: Choice) -> Result<bool, TimeOverflow> {
+    fn choose(&mut self, depth: LevelId, choice: Choice) -> Result<bool, TooLarge> {
         self.leaf.is_ready = false;
         let Choice { decision, alternative } = choice;
         self.chosen[decision] = Some(alternative);
@@ -123,7 +123,7 @@ impl Engine<'_> {
         depth: LevelId,
         structure: &Structure,
         choice: Choice,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         let (Some(lookahead), Some(tree)) = (&mut self.lookahead, &self.tree) else { return Ok(true) };
         if lookahead.decide(self.model, structure, tree, &self.chosen, choice, depth)? {
             return Ok(true);
@@ -144,7 +144,7 @@ impl Engine<'_> {
         edges: &[(PointId, PointId, i64)],
         tag: Tag,
         kind: FailureKind,
-    ) -> Result<bool, TimeOverflow> {
+    ) -> Result<bool, TooLarge> {
         match self.stn.insert_all(edges, tag) {
             Ok(()) => {
                 let moved = self.stn.num_changed() as u32;

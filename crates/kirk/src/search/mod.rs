@@ -25,9 +25,9 @@ use crate::levels::{Kind, Level, LevelSet, Nogoods};
 use crate::lookahead::Lookahead;
 use crate::model::{Context, INFINITE, Model, ModelArc, point};
 use crate::options::{Stats, Termination};
-use crate::overflow::TimeOverflow;
 use crate::record::FailureRecorder;
 use crate::structure::{Structure, TreeState};
+use crate::too_large::TooLarge;
 use crate::trace::{Event, Recorder, TreeChoice, TreeNodeId, TreeStatus};
 
 pub(crate) use origin::Origin;
@@ -123,7 +123,7 @@ impl<'m> Engine<'m> {
     }
 
     /// Searches for the next plan.
-    pub(crate) fn run(&mut self, termination: &mut dyn Termination) -> Result<Halt, TimeOverflow> {
+    pub(crate) fn run(&mut self, termination: &mut dyn Termination) -> Result<Halt, TooLarge> {
         if self.has_begun {
             // The plan found last rests on every choice made.
             self.conflict.clear();
@@ -259,7 +259,7 @@ impl<'m> Engine<'m> {
     }
 
     /// What every plan has. `false` if that alone is inconsistent.
-    fn begin(&mut self) -> Result<bool, TimeOverflow> {
+    fn begin(&mut self) -> Result<bool, TooLarge> {
         self.conflict.clear();
         if self.setup.is_checking {
             return Ok(true);
@@ -277,7 +277,7 @@ impl<'m> Engine<'m> {
     }
 
     /// What to do next in the present state.
-    fn next(&mut self) -> Result<Next, TimeOverflow> {
+    fn next(&mut self) -> Result<Next, TooLarge> {
         let (first_ask, first_pair) = match self.levels.last().map(|level| &level.kind) {
             None => {
                 if let Some(decision) = self.next_decision(None) {
@@ -371,7 +371,7 @@ impl<'m> Engine<'m> {
 
     /// Tries the alternatives that are left at the topmost level. `false` if none stands: then the level is gone and
     /// `conflict` says what that rests on.
-    fn try_alternatives(&mut self) -> Result<bool, TimeOverflow> {
+    fn try_alternatives(&mut self) -> Result<bool, TooLarge> {
         let Some(depth) = self.levels.last_key() else { return Ok(false) };
         loop {
             let level = &mut self.levels[depth];

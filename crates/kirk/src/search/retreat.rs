@@ -6,7 +6,7 @@ use super::Engine;
 use crate::failure::FailureKind;
 use crate::ids::LevelId;
 use crate::levels::Kind;
-use crate::overflow::TimeOverflow;
+use crate::too_large::TooLarge;
 use crate::trace::{Event, TreeStatus};
 
 impl Engine<'_> {
@@ -68,7 +68,7 @@ impl Engine<'_> {
 
     /// Goes back from a failure that rests on `conflict` to a level with an alternative that may avoid it.
     /// `false` if there is none.
-    pub(super) fn retreat(&mut self) -> Result<bool, TimeOverflow> {
+    pub(super) fn retreat(&mut self) -> Result<bool, TooLarge> {
         loop {
             let last = self.levels.last_key();
             let target = if self.setup.jumps { self.conflict.highest() } else { last };

@@ -7,6 +7,7 @@ use tpn::{CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, VariableId}
 use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
+use super::growth::{Growth, LINK, Unencoded};
 use super::lasting::Sides;
 use super::literal::{Literal, Side, Variable};
 use super::resources::Shares;
@@ -16,13 +17,6 @@ use crate::partial_order::Solution;
 use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
 use crate::structure::Relation;
 use crate::trace::TreeChoice;
-
-/// The problem does not fit: its times into 62 bits, or its links into memory.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TooLarge;
-
-/// More possible causal links than this are not put up with.
-pub(super) const MAX_LINKS: usize = 2_000_000;
 
 /// A labelled interval.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +57,6 @@ pub(crate) struct Problem<'m> {
     pub(super) times: TiVec<NodeId, Variable>,
     /// When what each label asserts begins to hold.
     pub(super) ready: TiVec<LabelId, Variable>,
-    pub(super) num_links: usize,
     pub(super) sides: Sides,
     pub(super) shares: Shares,
     /// By decision and alternative.
@@ -76,8 +69,14 @@ pub(crate) struct Problem<'m> {
 }
 
 impl<'m> Problem<'m> {
-    /// The problem and a solver that knows it. The model's contexts must be known.
-    pub(crate) fn new(model: &'m Model, gaps: Gaps, part: Part<'_>) -> Result<(Self, Solver), TooLarge> {
+    /// The problem and a solver that knows it, unless it is stopped before. The model's contexts must be known.
+    pub(crate) fn new(
+        model: &'m Model,
+        gaps: Gaps,
+        part: Part<'_>,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(Self, Solver), Unencoded> {
+        let mut growth = Growth::new(stop);
         let reach = reach(model)?;
         let mut solver = Solver::new();
         let alternatives = add_alternatives(model, &mut solver);
@@ -91,7 +90,6 @@ impl<'m> Problem<'m> {
             has_exclusion: vec![false; model.conditions.variables.len()].into(),
             times: TiVec::new(),
             ready: TiVec::new(),
-            num_links: 0,
             sides: Sides::default(),
             shares: Shares::default(),
             alternatives,
@@ -109,12 +107,12 @@ impl<'m> Problem<'m> {
             solver.is_contradictory = true;
         }
         if !solver.is_contradictory {
-            problem.add_links(&mut solver, part)?;
-            problem.add_lasting(&mut solver, part)?;
+            problem.add_links(&mut solver, part, &mut growth)?;
+            problem.add_lasting(&mut solver, part, &mut growth)?;
             problem.add_resources(&solver, part);
             if problem.faces_nature {
                 // What the least times keep apart nature's times may not.
-                problem.order_all_pairs(&mut solver);
+                problem.order_all_pairs(&mut solver, &mut growth)?;
             }
         }
         Ok((problem, solver))
@@ -177,10 +175,12 @@ impl<'m> Problem<'m> {
     }
 
     /// Makes all conflicting pairs choice points.
-    pub(crate) fn order_all_pairs(&mut self, solver: &mut Solver) {
-        if !solver.is_contradictory {
-            solver.add_all_pairs(self);
-        }
+    pub(crate) fn order_all_pairs(
+        &mut self,
+        solver: &mut Solver,
+        growth: &mut Growth<'_>,
+    ) -> Result<(), Unencoded> {
+        if solver.is_contradictory { Ok(()) } else { solver.add_all_pairs(self, growth) }
     }
 
     /// Forbids the present solution, and all that differ from it only in the orders of resource uses.
@@ -450,9 +450,13 @@ impl<'m> Problem<'m> {
         self.model.order.iter().rev().for_each(|point| carry(time(point).upper()));
     }
 
-    fn add_links(&mut self, solver: &mut Solver, part: Part<'_>) -> Result<(), TooLarge> {
+    fn add_links(
+        &mut self,
+        solver: &mut Solver,
+        part: Part<'_>,
+        growth: &mut Growth<'_>,
+    ) -> Result<(), Unencoded> {
         let conditions = &self.model.conditions;
-        let mut count = 0;
         for ask in conditions.labels.keys() {
             let is_active = part.active_labels.is_none_or(|active| active[ask]);
             let asked = self.intervals[ask];
@@ -468,10 +472,7 @@ impl<'m> Problem<'m> {
             }
             let tells: Vec<LabelId> =
                 conditions.supporters(ask).filter(|&tell| self.can_carry(solver, ask, tell)).collect();
-            count += tells.len();
-            if count > MAX_LINKS {
-                return Err(TooLarge);
-            }
+            growth.add(LINK * tells.len())?;
             let mut options = Vec::with_capacity(tells.len());
             let is_only = tells.len() == 1;
             for tell in tells {
@@ -524,7 +525,7 @@ impl<'m> Problem<'m> {
 }
 
 /// Between which times everything fits: more than all bounds together.
-fn reach(model: &Model) -> Result<(i64, i64), TooLarge> {
+fn reach(model: &Model) -> Result<(i64, i64), Unencoded> {
     let mut total = i128::from(model.gap) * (model.conditions.labels.len() as i128 + 1) + 1;
     let mut can_precede_start = false;
     for arc in &model.arcs {
@@ -536,9 +537,9 @@ fn reach(model: &Model) -> Result<(i64, i64), TooLarge> {
             total += i128::from(arc.upper).abs();
         }
     }
-    let most = i64::try_from(total).map_err(|_| TooLarge)?;
+    let most = i64::try_from(total).map_err(|_| Unencoded::TimesTooLarge)?;
     if most > 1 << 60 {
-        return Err(TooLarge);
+        return Err(Unencoded::TimesTooLarge);
     }
     Ok((if can_precede_start { -most } else { 0 }, most))
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use exact::Rational;
 use tpn::{Choice, DecisionId, LabelId};
 
-use super::encode::{Problem, TooLarge};
+use super::encode::Problem;
+use super::growth::Unencoded;
 use super::linear;
 use super::literal::{Literal, Variable};
 use super::relaxation::{self, Relaxation, Row, SCALE};
@@ -36,7 +37,7 @@ impl Problem<'_> {
         goal: &ModelGoal,
         limit: i64,
         is_sought: bool,
-    ) -> Result<GoalSums, TooLarge> {
+    ) -> Result<GoalSums, Unencoded> {
         let relaxation = self.relaxation(solver, goal);
         if is_sought && !relaxation.rows.is_empty() {
             self.prefer_taken(solver, &relaxation);
@@ -123,7 +124,7 @@ impl Problem<'_> {
     }
 
     /// The sums that a goal's is at least: its own, and with these rows at their prices.
-    fn sums(&self, solver: &Solver, goal: &ModelGoal, rows: &[(i64, Row)]) -> Result<Vec<Sum>, TooLarge> {
+    fn sums(&self, solver: &Solver, goal: &ModelGoal, rows: &[(i64, Row)]) -> Result<Vec<Sum>, Unencoded> {
         let own = self.weights(goal);
         let mut priced: Weights =
             own.iter().map(|(&variable, &weight)| (variable, weight * i128::from(SCALE))).collect();
@@ -134,7 +135,7 @@ impl Problem<'_> {
                 *priced.entry(variable).or_default() += i128::from(*price) * i128::from(weight);
             }
         }
-        let mut sums = vec![self.charged(solver, own, 0, 1).ok_or(TooLarge)?];
+        let mut sums = vec![self.charged(solver, own, 0, 1).ok_or(Unencoded::TimesTooLarge)?];
         if !rows.is_empty() {
             sums.extend(self.charged(solver, priced, constant, SCALE));
         }

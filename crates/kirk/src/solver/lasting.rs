@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 
 use tpn::{CausalLink, LabelId, Ordering};
 
-use super::encode::{MAX_LINKS, Part, Problem, TooLarge};
+use super::encode::{Part, Problem};
+use super::growth::{CLAUSE, Growth, LINK, ORDER, Unencoded};
 use super::literal::Literal;
 use super::tours::MAX_MOVEMENTS;
 use super::{ChoicePoint, ChoicePointKind, Solver};
@@ -46,7 +47,12 @@ pub(crate) struct Kept {
 
 impl Problem<'_> {
     /// Adds the orders and links of all variables that keep their values.
-    pub(super) fn add_lasting(&mut self, solver: &mut Solver, part: Part<'_>) -> Result<(), TooLarge> {
+    pub(super) fn add_lasting(
+        &mut self,
+        solver: &mut Solver,
+        part: Part<'_>,
+        growth: &mut Growth<'_>,
+    ) -> Result<(), Unencoded> {
         let model = self.model;
         let is_active = |label: &LabelId| part.active_labels.is_none_or(|active| active[*label]);
         let mut changing: Vec<Vec<LabelId>> = Vec::with_capacity(model.demands.variables.len());
@@ -60,30 +66,42 @@ impl Problem<'_> {
         // Links come before orders, both in textual order (SPEC 5.4).
         requirements.sort_unstable();
         for &(ask, index) in &requirements {
-            self.add_carriers(solver, ask, &model.demands.variables[index])?;
+            self.add_carriers(solver, ask, &model.demands.variables[index], growth)?;
         }
         let mut pairs: Vec<(LabelId, LabelId)> = Vec::new();
         for changes in &changing {
             for (position, &left) in changes.iter().enumerate() {
-                pairs.extend(changes[position + 1..].iter().map(|&right| (left, right)));
+                let later = &changes[position + 1..];
+                growth.look_at(later.len())?;
+                let before = pairs.len();
+                pairs
+                    .extend(later.iter().map(|&right| (left, right)).filter(|&pair| self.is_unordered(pair)));
+                growth.add(ORDER * (pairs.len() - before))?;
             }
         }
         pairs.sort_unstable();
         for (left, right) in pairs {
+            growth.look_at(ORDER)?;
             self.add_sides(solver, left, right);
         }
-        self.add_threats(solver, &requirements, &changing);
+        self.add_threats(solver, &requirements, &changing, growth)?;
         for (variable, changes) in model.demands.variables.iter().zip(&changing) {
             // Between movements that do not count the vehicle is somewhere else.
             if variable.changes.iter().all(is_active) {
-                self.add_departures(solver, variable, changes);
+                self.add_departures(solver, variable, changes, growth)?;
             }
         }
         Ok(())
     }
 
     /// A movement takes at least as long as it does from where the one right before it ends (SPEC 10.3).
-    fn add_departures(&mut self, solver: &mut Solver, variable: &LastingVariable, changes: &[LabelId]) {
+    fn add_departures(
+        &mut self,
+        solver: &mut Solver,
+        variable: &LastingVariable,
+        changes: &[LabelId],
+        growth: &mut Growth<'_>,
+    ) -> Result<(), Unencoded> {
         let model = self.model;
         let mut durations = vec![vec![None; changes.len()]; changes.len() + 1];
         for (column, &movement) in changes.iter().enumerate() {
@@ -98,6 +116,7 @@ impl Problem<'_> {
                 let is_initial = Some(before) == variable.initial;
                 let order = if is_initial { Some(Literal::TRUE) } else { self.before(before, movement) };
                 let Some(order) = order.filter(|&order| !solver.trail.fails(order)) else { continue };
+                growth.add(LINK + CLAUSE * changes.len())?;
                 let last = solver.boolean();
                 solver.resize();
                 solver.imply(last, order);
@@ -142,6 +161,7 @@ impl Problem<'_> {
                 }
             }
         }
+        Ok(())
     }
 
     /// Tries first that one change comes before another.
@@ -183,7 +203,8 @@ impl Problem<'_> {
         solver: &mut Solver,
         ask: LabelId,
         variable: &LastingVariable,
-    ) -> Result<(), TooLarge> {
+        growth: &mut Growth<'_>,
+    ) -> Result<(), Unencoded> {
         let asked = self.intervals[ask];
         // Nothing that is nested before what breaks the requirement can carry it.
         let breaks = |change: LabelId| self.model.conditions.breaks(change, ask);
@@ -195,10 +216,8 @@ impl Problem<'_> {
             .chain(possible)
             .filter(|&change| self.can_give(solver, ask, change))
             .collect();
-        self.num_links += carriers.len();
-        if self.num_links > MAX_LINKS {
-            return Err(TooLarge);
-        }
+        growth.look_at(variable.changes.len())?;
+        growth.add(LINK * carriers.len())?;
         let is_only = carriers.len() == 1;
         let mut options = Vec::with_capacity(carriers.len());
         for change in carriers {
@@ -240,14 +259,16 @@ impl Problem<'_> {
             && solver.trail.least(self.ready[change]) <= solver.trail.most(asked.start)
     }
 
+    /// Whether two changes exclude each other, and planning has to order them.
+    fn is_unordered(&self, (left, right): (LabelId, LabelId)) -> bool {
+        self.model.conditions.exclude(left, right)
+            && self.can_be_together(left, right)
+            && self.model.nested_order(left, right) == Relation::Open
+    }
+
+    /// A choice point of the orders of two changes that exclude each other.
     fn add_sides(&mut self, solver: &mut Solver, left: LabelId, right: LabelId) {
-        if !self.model.conditions.exclude(left, right) || !self.can_be_together(left, right) {
-            return;
-        }
         let (one, other) = (self.intervals[left], self.intervals[right]);
-        if self.model.nested_order(left, right) != Relation::Open {
-            return;
-        }
         let left_first = solver.boolean();
         let presences = [one.presence, other.presence];
         let is_certain = presences.iter().all(|&presence| solver.trail.holds(presence));
@@ -314,11 +335,13 @@ impl Problem<'_> {
         solver: &mut Solver,
         requirements: &[(LabelId, usize)],
         changing: &[Vec<LabelId>],
-    ) {
+        growth: &mut Growth<'_>,
+    ) -> Result<(), Unencoded> {
         for (position, &(ask, variable)) in requirements.iter().enumerate() {
             let asked = self.intervals[ask];
             let options = self.sides.carriers[position].1.clone();
             for &threat in &changing[variable] {
+                growth.look_at(1 + options.len())?;
                 if !self.model.conditions.breaks(threat, ask)
                     || !self.can_be_together(ask, threat)
                     || self.model.nested_order(ask, threat) == Relation::Before
@@ -347,11 +370,13 @@ impl Problem<'_> {
                         solver.check_differences(first);
                         after
                     });
+                    growth.add(CLAUSE)?;
                     let clause = [!link, !threatening.presence, after];
                     solver.at_least_one(clause.into_iter().chain(is_before));
                 }
             }
         }
+        Ok(())
     }
 
     /// What the literals of variables that keep their values say.

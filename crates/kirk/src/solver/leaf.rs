@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use tpn::{LabelId, VariableId};
 
 use super::encode::Problem;
+use super::growth::{Growth, ORDER, Unencoded};
 use super::literal::Literal;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::trace::Event;
@@ -52,12 +53,18 @@ impl Solver {
     }
 
     /// Makes all conflicting pairs choice points, so that solutions differ in their orders.
-    pub(super) fn add_all_pairs(&mut self, problem: &mut Problem<'_>) {
+    pub(super) fn add_all_pairs(
+        &mut self,
+        problem: &mut Problem<'_>,
+        growth: &mut Growth<'_>,
+    ) -> Result<(), Unencoded> {
         let exists = |label: LabelId| !self.trail.fails(problem.intervals[label].presence);
         let mut pairs: BTreeSet<(LabelId, LabelId)> = BTreeSet::new();
         for labels in &problem.labels_by_variable {
             for (position, &left) in labels.iter().enumerate() {
                 let later = labels[position + 1..].iter().copied();
+                growth.look_at(later.len())?;
+                let before = pairs.len();
                 pairs.extend(later.map(|right| (left, right)).filter(|&(left, right)| {
                     exists(left)
                         && exists(right)
@@ -65,6 +72,7 @@ impl Solver {
                         && problem.must_be_ordered((left, right))
                         && !self.is_ordered_by_windows(problem, (left, right))
                 }));
+                growth.add(ORDER * (pairs.len() - before))?;
             }
         }
         let first = self.differences.len();
@@ -72,6 +80,7 @@ impl Solver {
             self.add_pair(problem, left, right);
         }
         self.check_differences(first);
+        Ok(())
     }
 
     /// Whether the least times keep all conflicting pairs apart and satisfy all differences in force.

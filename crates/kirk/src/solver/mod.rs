@@ -27,6 +27,7 @@ mod difference;
 mod disjunctive;
 mod encode;
 mod goals;
+mod growth;
 mod interchangeable;
 mod lasting;
 mod leaf;
@@ -61,8 +62,9 @@ use tours::Tours;
 use trail::{Conflict, Trail};
 
 pub(crate) use best_first::{Frontier, LeastSums, Visit};
-pub(crate) use encode::{Part, Problem, TooLarge};
+pub(crate) use encode::{Part, Problem};
 pub(crate) use goals::GoalSums;
+pub(crate) use growth::{Growth, Unencoded};
 pub(crate) use lasting::Kept;
 pub(crate) use record::Record;
 

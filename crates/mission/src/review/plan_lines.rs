@@ -1,5 +1,7 @@
 //! The lines about a plan: its choices, links, conflicts, events and traverses.
 
+use std::collections::BTreeSet;
+
 use exact::{Bound, Time};
 use motion::DriveLimits;
 use rmpl::Span;
@@ -140,6 +142,7 @@ impl<'input> PlanLines<'input> {
     fn ordered_labels(&mut self) -> Vec<ConflictReview> {
         let (plan, network) = (self.plan, self.network);
         let orders: Vec<&tpn::Ordering> = plan.telling_order(network).collect();
+        let added: BTreeSet<&tpn::Ordering> = plan.orderings_added.iter().collect();
         let pairs: Vec<(NodeId, NodeId)> = orders
             .iter()
             .map(|order| (network.interval(order.first).1, network.interval(order.then).0))
@@ -149,7 +152,7 @@ impl<'input> PlanLines<'input> {
             |((order, gap), (end, start)): ((&&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
                 let gap = (*gap)?;
                 let (first, then) = (network.label_name(order.first), network.label_name(order.then));
-                let is_added = plan.orderings_added.contains(order);
+                let is_added = added.contains(order);
                 let by = if is_added {
                     "the planner has put them in this order"
                 } else {

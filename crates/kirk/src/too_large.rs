@@ -1,0 +1,62 @@
+//! What stands in the way of planning a network at all.
+
+use std::collections::VecDeque;
+
+use serde::{Deserialize, Serialize};
+use tpn::{Network, NodeId};
+
+/// Something of a network, or of what planning it takes, does not fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TooLarge {
+    /// A time does not fit into 64 bits after scaling by the common denominator: that of this event, or its distance from
+    /// another; of several at one time any of them.
+    Time(NodeId),
+    /// There are more possible causal links and orders than memory is taken for.
+    Links,
+}
+
+impl TooLarge {
+    /// A time at an event.
+    pub(crate) const fn at(event: NodeId) -> Self {
+        Self::Time(event)
+    }
+
+    /// In the author's terms.
+    pub(crate) fn message(self, network: &Network) -> String {
+        match self {
+            Self::Time(event) => {
+                let what = "a time does not fit into 64 bits after scaling by the common denominator";
+                match name(network, event) {
+                    Some(event) => format!("{what}: that of {event}"),
+                    None => what.to_owned(),
+                }
+            }
+            Self::Links => {
+                "more than a million causal links and orders are possible, which is more than planning keeps"
+                    .to_owned()
+            }
+        }
+    }
+}
+
+impl From<stn::Overflow> for TooLarge {
+    fn from(overflow: stn::Overflow) -> Self {
+        Self::Time(NodeId(overflow.point.0))
+    }
+}
+
+/// What people call an event: its innermost name, where it has one, otherwise that of the nearest event after it.
+fn name(network: &Network, event: NodeId) -> Option<String> {
+    let mut seen = vec![false; network.nodes.len()];
+    let mut open = VecDeque::from([event]);
+    while let Some(node) = open.pop_front() {
+        let Some(found) = network.nodes.get(node.index()) else { continue };
+        if let Some(&named) = found.events.last() {
+            return Some(network.event_name(named));
+        }
+        if !std::mem::replace(&mut seen[node.index()], true) {
+            open.extend(found.out_arcs.iter().map(|arc| network.arcs[arc.index()].to));
+        }
+    }
+    None
+}
