@@ -120,7 +120,7 @@ pub(crate) fn with_choices(
 /// How often the search in textual order may go back before the solver takes over.
 const MAX_BACKTRACKS: u64 = 100;
 /// The same where there are only links and orders to choose, about which it does not learn.
-const MAX_BACKTRACKS_UNDECIDED: u64 = 10;
+const MAX_BACKTRACKS_UNDECIDED: u64 = 3;
 /// How often it may go back where the solver knows a plan in which intervals touch.
 const MAX_BACKTRACKS_TOUCHING: u64 = 2_000;
 
