@@ -5,8 +5,11 @@ use std::collections::BTreeSet;
 
 use acceptance::mission::compile;
 use acceptance::missions::missions;
-use kirk::{Event, ExpansionLimit, Options, Search, Status, Trace, TreeNodeId, TreeStatus};
-use tpn::Top;
+use kirk::{
+    Event, ExpansionLimit, Options, Search, Status, Trace, TreeChoice, TreeNodeId, TreeStatus, Unlimited,
+};
+use tpn::{Network, Plan, Top};
+use workbench::state::search::exclusions;
 
 /// Random missions of each kind.
 const MISSIONS: u64 = 150;
@@ -87,5 +90,99 @@ fn a_finished_search_leaves_no_state_open() {
     assert!(
         finished > 1_500 && jumps > 100 && excluded > 50,
         "{finished} searches, {jumps} jumps, {excluded} excluded"
+    );
+}
+
+/// The choices from the root to a state.
+fn way(trace: &Trace, id: TreeNodeId) -> Vec<TreeChoice> {
+    let above = |&id: &TreeNodeId| trace.tree[id as usize].parent;
+    std::iter::successors(Some(id), above).filter_map(|id| trace.tree[id as usize].choice).collect()
+}
+
+/// Whether a plan makes all of these choices, which are alternatives of decisions.
+fn makes(plan: &Plan, choices: &[TreeChoice]) -> bool {
+    choices.iter().all(|choice| match *choice {
+        TreeChoice::Decision { decision, alternative } => {
+            plan.choices.iter().any(|it| it.decision == decision && it.alternative == alternative)
+        }
+        _ => false,
+    })
+}
+
+/// What is wrong with the learned conflicts that are said to exclude states.
+fn false_exclusions(network: &Network, trace: &Trace) -> Vec<String> {
+    let excluded = exclusions(trace);
+    let ways = ways_to_plans(trace);
+    let mut wrong = Vec::new();
+    for (id, node) in (0..).zip(&trace.tree) {
+        let way = way(trace, id);
+        let contains = |choices: &[TreeChoice]| choices.iter().all(|choice| way.contains(choice));
+        let own: Vec<&Event> =
+            trace.events.iter().filter(|it| it.tree_node == id).map(|it| &it.event).collect();
+        let Some(exclusion) = excluded[id as usize] else {
+            if own.iter().any(|event| matches!(event, Event::Known { .. })) {
+                wrong.push(format!("state {id} contains a learned conflict, and nothing says so"));
+            }
+            continue;
+        };
+        let conflict = exclusion.conflict(trace);
+        let is_told = exclusion.taught.is_none_or(|step| {
+            let taught = &trace.events[step].event;
+            step < exclusion.step && matches!(taught, Event::Learn { choices } if choices == conflict)
+        });
+        let is_left = matches!(node.status, TreeStatus::Failed | TreeStatus::Excluded)
+            && !ways.contains(&id)
+            && matches!(
+                own.last(),
+                None | Some(Event::Known { .. } | Event::Backtrack { .. } | Event::Backjump { .. })
+            );
+        // A search that goes by conflicts rests on what follows from its choices as well.
+        let is_contained = trace.is_conflict_driven() || (!conflict.is_empty() && contains(conflict));
+        if !is_told || !is_left || !is_contained {
+            let label = trace.label(network, id);
+            wrong.push(format!("state {id}, {label}: {exclusion:?}, {conflict:?}, {is_told} {is_left} {is_contained}, {own:?}"));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn a_state_is_excluded_by_a_learned_conflict_that_it_contains_and_that_no_plan_does() {
+    let mut wrong = Vec::new();
+    let (mut entered, mut passed, mut learned) = (0, 0, 0);
+    for (name, text) in missions(MISSIONS) {
+        let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
+        for search in [Search::ConflictDirected, Search::BestFirst] {
+            let options = Options {
+                search,
+                trace_events: Some(20_000),
+                explain: false,
+                relax: false,
+                ..Options::default()
+            };
+            let outcome = kirk::plan(&network, &options, &mut ExpansionLimit(2_000));
+            let Some(trace) = outcome.trace else { continue };
+            wrong.extend(false_exclusions(&network, &trace).into_iter().map(|it| format!("{name}: {it}")));
+            for exclusion in exclusions(&trace).into_iter().flatten() {
+                let is_entered = matches!(trace.events[exclusion.step].event, Event::Known { .. });
+                (entered, passed) = (entered + usize::from(is_entered), passed + usize::from(!is_entered));
+            }
+            if trace.is_conflict_driven() || trace.learned(usize::MAX).next().is_none() {
+                continue;
+            }
+            let all = Options { all: true, max_plans: 200, ..Options::default() };
+            let plans = kirk::plan(&network, &all, &mut Unlimited).plans;
+            for (step, choices) in trace.learned(usize::MAX) {
+                learned += 1;
+                if plans.iter().any(|plan| makes(plan, choices)) {
+                    wrong.push(format!("{name}, step {step}: a plan makes {choices:?}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}: {}", wrong.len(), wrong.join("\n"));
+    assert!(
+        entered > 20 && passed > 50 && learned > 200,
+        "{entered} entered, {passed} passed, {learned} learned"
     );
 }

@@ -282,6 +282,77 @@ fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_want
     assert_eq!(trees(&app).len(), 2, "{:?}", trees(&app));
 }
 
+/// The texts on screen, as one.
+fn said(app: &App) -> String {
+    app.texts(Rect::EVERYTHING).into_iter().map(|(text, _)| text + "\n").collect()
+}
+
+#[test]
+fn states_that_a_learned_conflict_excludes_name_it_in_the_drawing_and_beside_it() {
+    let mut app = opened("lesson=learning&stop=3", [1280.0, 800.0]);
+    for is_merged in [true, false] {
+        let drawn = app.texts(Rect::EVERYTHING);
+        let is_excluded = |text: &str| text.starts_with("D2=1") && text.contains("never D1=0");
+        let (_, place) =
+            drawn.iter().rfind(|(text, _)| is_excluded(text)).unwrap_or_else(|| panic!("{drawn:?}"));
+        assert!(drawn.iter().all(|(text, _)| !text.starts_with("D1=1 ·")), "that is what is left: {drawn:?}");
+        let sign = place.left_center() - egui::vec2(9.0, 0.0);
+        app.harness.hover_at(sign);
+        app.settle();
+        let told = said(&app);
+        let sentence = "taught: never D1=0.";
+        let line = told.lines().find(|line| line.contains(sentence)).unwrap_or_else(|| panic!("{told}"));
+        // The step that it names is the one that taught it.
+        let number: String = line.chars().filter(char::is_ascii_digit).collect();
+        let step: u64 = number.strip_suffix("10").expect("D1=0 comes last").parse().expect("a step");
+        for pressed in [true, false] {
+            let (button, modifiers) = (egui::PointerButton::Primary, Modifiers::NONE);
+            app.harness.event(egui::Event::PointerButton { pos: sign, button, pressed, modifiers });
+            app.settle();
+        }
+        assert_eq!(self::step(&app), step, "{line}");
+        app.harness.hover_at(egui::pos2(2.0, 400.0));
+        app.settle();
+        assert!(said(&app).contains("Learned: never D1=0."));
+        assert!(
+            !app.texts(Rect::EVERYTHING).iter().any(|(text, _)| is_excluded(text)),
+            "nothing is passed over yet"
+        );
+        press(&mut app, Key::Period);
+        if is_merged {
+            app.harness.get_by_label("Merged").click();
+            app.settle();
+        }
+    }
+}
+
+#[test]
+fn the_figures_of_a_search_and_the_list_of_what_it_learned_agree_at_each_step() {
+    let mut app = lesson("");
+    dispatch(&mut app, "plan.compare", &json!(null));
+    let steps = app.json()["search"]["compare"]["searches"][1]["steps"].as_u64().expect("a number");
+    if app.json()["search"]["compare"]["side"] == 0 {
+        dispatch(&mut app, "search.turn", &json!(null));
+    }
+    let mut learned = 0;
+    for step in (1..=steps).step_by(7).chain([steps]) {
+        dispatch(&mut app, "search.goTo", &json!({ "step": step }));
+        let told = said(&app);
+        let figure = |name: &str| {
+            let own = told.lines().filter_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+            // Those of the second search, which is turned to, come last.
+            let mut numbers = own.filter_map(|own| own.split(' ').next()?.parse::<u64>().ok());
+            numbers.next_back().unwrap_or_else(|| panic!("step {step}: no {name} in {told}"))
+        };
+        assert_eq!(figure("steps"), step);
+        assert!(told.contains(&format!("{step} / {steps}")), "beside the tree: {told}");
+        let listed = told.lines().find_map(|line| line.strip_prefix("Learned conflicts: "));
+        assert_eq!(listed.map_or(0, |count| count.parse::<u64>().expect("a number")), figure("learned"));
+        learned = figure("learned");
+    }
+    assert_eq!(learned, 1);
+}
+
 #[test]
 fn labels_of_the_tree_never_overlap_at_any_size() {
     for size in [[1440.0, 900.0], [1024.0, 700.0], [800.0, 600.0]] {

@@ -9,7 +9,7 @@
 
 use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
-use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, Ordering, UseId, UseOrdering};
+use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, Network, NodeId, Ordering, UseId, UseOrdering};
 
 /// A node of the search tree, by position in [`Trace::tree`]. The root is 0.
 pub type TreeNodeId = u32;
@@ -95,7 +95,10 @@ pub enum Event {
         right: LabelId,
     },
     /// The choices made contain a conflict learned before.
-    Known,
+    Known {
+        /// The choices of the conflict, the last one made last; none if there is no solution.
+        choices: Vec<TreeChoice>,
+    },
     /// Back to the last choice.
     Backtrack {
         /// The state in which it was made.
@@ -322,6 +325,12 @@ pub enum TreeChoice {
     Departure(Departing),
 }
 
+impl From<Choice> for TreeChoice {
+    fn from(Choice { decision, alternative }: Choice) -> Self {
+        Self::Decision { decision, alternative }
+    }
+}
+
 impl TreeChoice {
     /// Whether both are alternatives of one choice point.
     pub fn is_alternative_of(self, other: Self) -> bool {
@@ -401,7 +410,7 @@ impl Trace {
         one.parent == other.parent && is_one_point
     }
 
-    /// What a conflict-driven search has learned by a step, each with the step in which it did.
+    /// What a search has learned by a step, each with the step in which it did.
     pub fn learned(&self, step: usize) -> impl Iterator<Item = (usize, &[TreeChoice])> {
         self.events.iter().take(step.saturating_add(1)).enumerate().filter_map(|(step, entry)| {
             match &entry.event {

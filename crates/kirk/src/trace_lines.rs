@@ -80,17 +80,16 @@ fn event_json(network: &Network, event: &Event) -> Value {
         Event::Unresolvable { left, right } => {
             json!({ "event": "unresolvable", "left": label(*left), "right": label(*right) })
         }
-        Event::Known => json!({ "event": "known" }),
         Event::Backtrack { to } => json!({ "event": "backtrack", "to": to }),
         Event::Backjump { to, because } => json!({ "event": "backjump", "to": to, "because": because }),
         Event::Solution { plan } => json!({ "event": "solution", "plan": plan }),
         Event::Exhausted => json!({ "event": "exhausted" }),
-        _ => conflict_driven_json(network, event),
+        _ => learning_json(network, event),
     }
 }
 
-/// What only conflict-driven searches do.
-fn conflict_driven_json(network: &Network, event: &Event) -> Value {
+/// What only searches that learn do.
+fn learning_json(network: &Network, event: &Event) -> Value {
     let choices = |choices: &[TreeChoice]| -> Vec<Value> {
         choices.iter().map(|&choice| choice_json(network, choice)).collect()
     };
@@ -129,6 +128,7 @@ fn conflict_driven_json(network: &Network, event: &Event) -> Value {
         }
         Event::Circle { orders } => json!({ "event": "circle", "orders": choices(orders) }),
         Event::NoRoomForGap => json!({ "event": "no-room-for-gap" }),
+        Event::Known { choices: those } => json!({ "event": "known", "choices": choices(those) }),
         Event::Learn { choices: those } => json!({ "event": "learn", "choices": choices(those) }),
         Event::Overload { uses: those } => json!({ "event": "overload", "uses": uses(those) }),
         Event::OutOfRange { early, late } => {

@@ -160,9 +160,11 @@ impl Told<'_> {
                     let before = &self.trace.events[..step];
                     holds(before.iter().any(|it| is_threat(&it.event)), "nothing said that they may overlap")
                 }
-                Event::Known => {
+                Event::Known { choices } | Event::Learn { choices } => {
+                    says(&wording::never(self.network, choices))?;
                     let chosen: Vec<TreeChoice> = line.iter().filter_map(|&it| self.choice_of(it)).collect();
-                    holds(self.excludes(&chosen), "there is a plan with these choices")
+                    holds(choices.iter().all(|it| chosen.contains(it)), "it is about other choices")?;
+                    holds(!choices.is_empty() && self.excludes(choices), "there is a plan with these choices")
                 }
                 Event::Backtrack { to } => {
                     holds(line.contains(to), "it goes to a state that did not lead here")

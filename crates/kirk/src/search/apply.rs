@@ -9,7 +9,7 @@ use crate::ids::LevelId;
 use crate::levels::Kind;
 use crate::structure::Structure;
 use crate::too_large::TooLarge;
-use crate::trace::Event;
+use crate::trace::{Event, TreeChoice};
 
 impl Engine<'_> {
     /// Takes an alternative at a level. `false` if it fails at once; then `conflict` says why.
@@ -89,10 +89,13 @@ impl Engine<'_> {
         {
             let others: Vec<Choice> = others.to_vec();
             self.conflict.insert(depth);
-            for other in others {
+            for other in &others {
                 self.add_decision_to_conflict(other.decision);
             }
-            self.log(|_| Event::Known);
+            self.log(|_| {
+                let made = others.iter().copied().chain([choice]);
+                Event::Known { choices: made.map(TreeChoice::from).collect() }
+            });
             return Ok(false);
         }
         if let (Some(structure), Some(tree)) = (self.structure, &mut self.tree) {

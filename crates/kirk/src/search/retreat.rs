@@ -2,12 +2,12 @@
 
 use tpn::{Choice, LabelId};
 
-use super::Engine;
+use super::{Engine, Gaps};
 use crate::failure::FailureKind;
 use crate::ids::LevelId;
 use crate::levels::Kind;
 use crate::too_large::TooLarge;
-use crate::trace::{Event, TreeStatus};
+use crate::trace::{Event, TreeChoice, TreeStatus};
 
 impl Engine<'_> {
     /// Removes the topmost level, whose alternatives have all failed.
@@ -130,7 +130,14 @@ impl Engine<'_> {
         }
         if self.setup.jumps && target.is_some() && !self.setup.is_enumerating {
             let choices: Vec<Choice> = self.conflict_choices().collect();
-            self.stats.nogoods += u64::from(self.nogoods.learn(&choices));
+            if self.nogoods.learn(&choices) {
+                self.stats.nogoods += 1;
+                if self.has_doubts && self.setup.gaps == Gaps::Trusted {
+                    // It may hold in this search alone.
+                    return;
+                }
+                self.log(|_| Event::Learn { choices: choices.into_iter().map(TreeChoice::from).collect() });
+            }
         }
     }
 

@@ -175,17 +175,18 @@ impl Solver {
         for ancestor in frontier.way_to(state) {
             let State { decided, tree_node, .. } = frontier.states[ancestor];
             let Some(literal) = decided else { continue };
-            let is_possible = !self.trail.fails(literal) && {
-                self.trail.open_level();
-                // An open Boolean can be either.
-                let _ = self.trail.set(literal, Cause::Decision);
-                self.record_again(tree_node);
-                self.settle(problem)
-            };
-            if !is_possible {
-                if let Some(tree_node) = frontier.states[state].tree_node {
-                    self.record_refused(tree_node, Event::Known);
-                }
+            let refused = frontier.states[state].tree_node;
+            if self.trail.fails(literal) {
+                self.record_known(refused, Some(literal));
+                return false;
+            }
+            self.trail.open_level();
+            // An open Boolean can be either.
+            let _ = self.trail.set(literal, Cause::Decision);
+            self.record_again(tree_node);
+            if !self.settle(problem) {
+                // A failure of its own has been told.
+                self.record_known(refused.filter(|_| ancestor != state), None);
                 return false;
             }
         }

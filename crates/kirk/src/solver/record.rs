@@ -129,6 +129,15 @@ impl Record {
         self.seen = self.seen.min(num_events);
     }
 
+    fn last_learned(&self) -> Vec<TreeChoice> {
+        let mut last = self.recorder.trace.events.iter().rev();
+        last.find_map(|entry| match &entry.event {
+            Event::Learn { choices } => Some(choices.clone()),
+            _ => None,
+        })
+        .unwrap_or_default()
+    }
+
     /// What a literal says, if it is a choice that is made.
     fn name(&self, literal: Literal) -> Option<TreeChoice> {
         let named = self.names.get(&literal.side).and_then(|names| names.first());
@@ -391,6 +400,21 @@ impl Solver {
         if let Some(record) = self.recording() {
             record.recorder.set_status(state, TreeStatus::Decision);
         }
+    }
+
+    /// Tells that a state contains what has been learned: of a decision on the way to it that has become impossible, or else
+    /// what was learned last.
+    pub(super) fn record_known(&mut self, state: Option<TreeNodeId>, impossible: Option<Literal>) {
+        let Some(state) = state.filter(|_| self.is_recording()) else { return };
+        let choices = match impossible {
+            Some(literal) => {
+                let mut choices = self.choices_behind(&[!literal], None);
+                choices.extend(self.record.as_deref().and_then(|record| record.name(literal)));
+                choices
+            }
+            None => self.record.as_deref().map(Record::last_learned).unwrap_or_default(),
+        };
+        self.record_refused(state, Event::Known { choices });
     }
 
     /// Tells why nothing is looked for in a state.

@@ -8,8 +8,8 @@ use kirk::{Event, Trace, TreeChoice, TreeNodeId, TreeStatus};
 use theme::size;
 use tpn::Network;
 use workbench::command::ViewAction;
-use workbench::state::search::Share;
 use workbench::state::search::focus::concerns;
+use workbench::state::search::{Share, wording};
 
 use super::merged::{self, Merged};
 use super::tree::{TreeDrawing, TreeIndex};
@@ -83,6 +83,14 @@ impl Tree<'_> {
         match &self.merged {
             Some(merged) => merged.status(id),
             None => self.index.status(self.trace, id, self.step()),
+        }
+    }
+
+    /// The learned conflict that excludes a state by the step: in either search, if two are merged.
+    fn learned(&self, id: TreeNodeId) -> Option<&[TreeChoice]> {
+        match &self.merged {
+            Some(merged) => merged.learned(id),
+            None => Some(self.index.exclusion(id, self.step())?.conflict(self.trace)),
         }
     }
 }
@@ -444,7 +452,7 @@ impl Scene<'_> {
                 let outline = Stroke::new((radius / 6.0).clamp(0.5, 1.2), tokens.text_muted);
                 self.painter.circle(center, radius * 0.8, tokens.surface, outline);
             }
-            // A failure that was never entered.
+            // A failure that was not searched.
             TreeStatus::Excluded => {
                 let square = Rect::from_center_size(center, vec2(radius, radius) * 1.5);
                 let outline = Stroke::new((radius / 5.0).clamp(0.6, 1.5), tokens.failure);
@@ -464,6 +472,13 @@ impl Scene<'_> {
                 let points = points.map(|(x, y)| pos2(center.x + x * radius, center.y + y * radius)).to_vec();
                 self.painter.add(Shape::convex_polygon(points, tokens.solution, Stroke::NONE));
             }
+        }
+        if radius >= 2.0 && self.tree.learned(id).is_some() {
+            // The bar of a road that is closed; where the other search did go in, within its failure.
+            let is_closed = self.tree.status(id) == TreeStatus::Excluded;
+            let color = if is_closed { tokens.failure } else { tokens.surface };
+            let bar = Rect::from_center_size(center, vec2(radius * 1.1, (radius * 0.4).max(1.0)));
+            self.painter.rect_filled(bar, 0.0, color);
         }
         if radius >= 4.0 && self.is_folded(id) {
             let (top, half) = (center.y + radius * 1.25, radius * 0.8);
@@ -505,6 +520,9 @@ impl Scene<'_> {
         let mut text = short_label(self.tree.network, choice);
         if let Some(bound) = self.bound(id) {
             text = format!("{text} · {bound}");
+        }
+        if let Some(conflict) = self.tree.learned(id) {
+            text = format!("{text} · {}", wording::never(self.tree.network, conflict));
         }
         if self.is_folded(id) {
             text = format!("{text} +{}", self.tree.index.below[id as usize]);

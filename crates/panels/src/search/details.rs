@@ -7,12 +7,12 @@ use tpn::Window;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::search::wording;
-use workbench::state::search::{Recording, SearchCommand, WindowChange};
+use workbench::state::search::{Exclusion, Recording, SearchCommand, WindowChange};
 use workbench::state::selection::node_name;
 use workbench::time_text;
 
-use super::step;
 use super::tree::TreeIndex;
+use super::{kind_name, step};
 use crate::Context;
 
 /// More changed windows than this are counted, not listed.
@@ -20,24 +20,43 @@ const MAX_CHANGES: usize = 60;
 /// Of more learned conflicts only the latest are listed.
 const MAX_LEARNED: usize = 40;
 
-/// Shows the details of `state`, or of the step that is looked at.
+/// A search that is told of.
+#[derive(Clone, Copy)]
+pub struct Told<'a> {
+    /// Which of two.
+    pub side: usize,
+    /// What was recorded.
+    pub recording: &'a Recording,
+    /// What is known of its states.
+    pub index: &'a TreeIndex,
+}
+
+/// Shows the details of `state`, or of the step that is looked at; and what the other search made of the same choices, if
+/// both are drawn as one.
 pub fn show(
     ui: &mut Ui,
     context: &Context<'_>,
-    recording: &Recording,
-    index: &TreeIndex,
+    told: Told<'_>,
     state: Option<TreeNodeId>,
+    other: Option<(Told<'_>, TreeNodeId)>,
     commands: &mut CommandSender,
 ) {
+    let recording = told.recording;
+    let show_states = |ui: &mut Ui, state: TreeNodeId| {
+        show_state(ui, context, told, state, false);
+        if let Some((other, state)) = other {
+            show_state(ui, context, other, state, true);
+        }
+    };
     ScrollArea::vertical().auto_shrink(false).id_salt("search-details").show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         if let Some(state) = state {
-            show_state(ui, context, recording, index, state);
+            show_states(ui, state);
             return;
         }
         step::show(ui, context, recording);
         if let Some(step) = context.state.search.step() {
-            show_state(ui, context, recording, index, step.tree_node);
+            show_states(ui, step.tree_node);
         }
         show_changes(ui, context, recording, commands);
         show_learned(ui, context, recording, commands);
@@ -64,19 +83,15 @@ fn show_learned(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
     }
 }
 
-/// What was decided in a state, and what became of it.
-fn show_state(
-    ui: &mut Ui,
-    context: &Context<'_>,
-    recording: &Recording,
-    index: &TreeIndex,
-    state: TreeNodeId,
-) {
+/// What was decided in a state, and what became of it; of a search that is only compared its name instead of the choice.
+fn show_state(ui: &mut Ui, context: &Context<'_>, told: Told<'_>, state: TreeNodeId, is_compared: bool) {
+    let Told { side, recording, index } = told;
     let tokens = context.tokens;
     let trace = recording.trace();
     let at = state as usize;
     let Some(node) = trace.tree.get(at) else { return };
-    let step = context.state.search.shown().filter(|it| it.recording.is(recording)).map(|it| it.step.step);
+    let view = context.state.search.view(side).filter(|view| view.recording.is(recording));
+    let step = view.map(|view| view.step.step);
     let (what, color) = match index.status(trace, state, step) {
         TreeStatus::Unexplored if index.bounded(trace, state, step).is_some() => {
             ("waiting", tokens.text_muted)
@@ -90,7 +105,10 @@ fn show_state(
     };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
-        let label = wording::choice(recording.network(), node.choice);
+        let label = match recording.kind().filter(|_| is_compared) {
+            Some(kind) => kind_name(kind).to_owned(),
+            None => wording::choice(recording.network(), node.choice),
+        };
         ui.label(RichText::new(label).small().color(tokens.text));
         ui.label(RichText::new(what).small().color(color));
         if let (Some(Some(first)), Some(Some(last))) = (index.first_step.get(at), index.last_step.get(at)) {
@@ -105,12 +123,16 @@ fn show_state(
             ui.label(RichText::new(text).small().color(tokens.text_muted));
         }
     });
-    if what == "excluded" {
-        let text = match index.excluded_by(trace, state) {
-            Some(step) => {
+    if let Some(exclusion) = index.exclusion(state, step) {
+        let text = exclusion_text(recording, &exclusion);
+        ui.label(RichText::new(text).small().color(tokens.failure));
+    } else if what == "excluded" {
+        let text = match (own_failure(trace, index, state), index.excluded_by(trace, state)) {
+            (Some(closed), _) => wording::event(recording.network(), trace, closed),
+            (None, Some(step)) => {
                 format!("Not tried: the failure of step {} does not depend on this choice.", step + 1)
             }
-            None => "Not tried: what failed does not depend on this choice.".to_owned(),
+            (None, None) => "Not tried: what failed does not depend on this choice.".to_owned(),
         };
         ui.label(RichText::new(text).small().color(tokens.failure));
     }
@@ -120,12 +142,23 @@ fn show_state(
     }
 }
 
+/// The learned conflict that a state contains.
+fn exclusion_text(recording: &Recording, exclusion: &Exclusion) -> String {
+    let conflict = wording::never(recording.network(), exclusion.conflict(recording.trace()));
+    match exclusion.taught {
+        Some(step) => format!("Excluded by what step {} taught: {conflict}.", step + 1),
+        None => format!("Excluded by what was learned: {conflict}."),
+    }
+}
+
 /// The failure that a state without states below it ended in.
 fn failure_of<'a>(trace: &'a Trace, index: &TreeIndex, state: TreeNodeId) -> Option<&'a Event> {
+    if index.children(state).is_empty() { own_failure(trace, index, state) } else { None }
+}
+
+/// The last failure that was met in a state itself.
+fn own_failure<'a>(trace: &'a Trace, index: &TreeIndex, state: TreeNodeId) -> Option<&'a Event> {
     let at = state as usize;
-    if !index.children(state).is_empty() {
-        return None;
-    }
     let (first, last) = ((*index.first_step.get(at)?)?, (*index.last_step.get(at)?)?);
     let events = trace.events.get(first..=last)?;
     let mut own = events.iter().rev().filter(|entry| entry.tree_node == state).map(|entry| &entry.event);

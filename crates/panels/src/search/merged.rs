@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use egui::{Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
-use kirk::{TreeNodeId, TreeStatus};
+use kirk::{TreeChoice, TreeNodeId, TreeStatus};
 use mission::SearchKind;
 use theme::space;
 use workbench::PanelKind;
@@ -54,6 +54,16 @@ impl Merged<'_> {
         (0..2).any(|side| {
             let step = self.steps[side].map(|(step, _)| step);
             own[side].is_some_and(|id| self.own[side].is_known(id, step))
+        })
+    }
+
+    /// The learned conflict that excludes a state in either search by its step.
+    pub fn learned(&self, id: TreeNodeId) -> Option<&[TreeChoice]> {
+        let own = self.tree.own.get(id as usize)?;
+        (0..2).find_map(|side| {
+            let step = self.steps[side].map(|(step, _)| step);
+            let exclusion = self.own[side].exclusion(own[side]?, step)?;
+            Some(exclusion.conflict(self.recordings[side].trace()))
         })
     }
 
@@ -134,6 +144,13 @@ impl MergedSide {
         Some((side, state))
     }
 
+    /// The state of the other search that stands for the same choices as `state` of `side`, while the two are merged.
+    pub fn counterpart(&self, side: usize, state: TreeNodeId) -> Option<TreeNodeId> {
+        let tree = &self.drawn.as_ref()?.tree;
+        let here = *tree.here.get(side)?.get(state as usize)?;
+        *tree.own.get(here as usize)?.get(1 - side)?
+    }
+
     fn answer(
         &mut self,
         pointed: Pointed,
@@ -149,7 +166,8 @@ impl MergedSide {
         } else if pointed.clicked {
             commands.send(Command::Activate(PanelKind::Search));
             commands.send(Command::Search(SearchCommand::Turn(side)));
-            commands.send(Command::Search(SearchCommand::GoToNode(state)));
+            let click = self.drawn.as_ref().map(|drawn| drawn.own[side].goal_of_click(state));
+            commands.send(Command::Search(click.unwrap_or(SearchCommand::GoToNode(state))));
             let choice = recordings[side].trace().tree.get(state as usize).and_then(|node| node.choice);
             commands.send(Command::Select(selection_of(recordings[side].network(), choice)));
         }

@@ -26,6 +26,7 @@ use workbench::state::search::{Recording, SearchCommand};
 
 use crate::{Context, Panel};
 use canvas::{Pointed, Tree};
+use details::Told;
 use merged::MergedSide;
 use tree::{TreeDrawing, TreeIndex};
 
@@ -122,7 +123,15 @@ impl Panel for SearchPanel {
         ui.painter().hline(lower.x_range(), lower.top(), egui::Stroke::new(1.0, context.tokens.line));
         let (shown, state) = pointed.map_or((side, None), |(side, state)| (side, Some(state)));
         if let Some(drawn) = &self.sides[shown].drawn {
-            details::show(&mut below, context, &drawn.recording, &drawn.index, state, commands);
+            let looked_at = state.or_else(|| Some(context.state.search.view(shown)?.step.tree_node));
+            let merged = (recordings.len() == 2 && self.merges).then_some(&self.merged);
+            let other = merged.zip(looked_at).and_then(|(merged, state)| {
+                let Drawn { recording, index, .. } = self.sides[1 - shown].drawn.as_ref()?;
+                let told = Told { side: 1 - shown, recording, index };
+                Some((told, merged.counterpart(shown, state)?))
+            });
+            let told = Told { side: shown, recording: &drawn.recording, index: &drawn.index };
+            details::show(&mut below, context, told, state, other, commands);
         }
         self.tell_hover(context, shown, state, commands);
         ui.advance_cursor_after_rect(room);
@@ -299,7 +308,7 @@ impl Side {
         } else if pointed.clicked {
             commands.send(Command::Activate(PanelKind::Search));
             commands.send(Command::Search(SearchCommand::Turn(number)));
-            commands.send(Command::Search(SearchCommand::GoToNode(state)));
+            commands.send(Command::Search(drawn.index.goal_of_click(state)));
             let choice = drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice);
             commands.send(Command::Select(selection_of(drawn.recording.network(), choice)));
         }

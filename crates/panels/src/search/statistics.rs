@@ -44,16 +44,19 @@ pub fn show(
             ui.label(RichText::new(text).small().color(color));
         });
         let more = if recording.trace().is_truncated { "+" } else { "" };
+        let learned = |steps: usize| recording.trace().learned(steps.saturating_sub(1)).count() as u64;
         let figures = [
             ("steps", step.unwrap_or(recording.steps()) as u64, recording.steps() as u64),
             ("states", now.states.into(), all.states.into()),
             ("propagations", now.propagations.into(), all.propagations.into()),
             ("returns", now.backtracks.into(), all.backtracks.into()),
             ("failures", now.failures.into(), all.failures.into()),
+            ("learned", learned(step.unwrap_or(usize::MAX)), learned(usize::MAX)),
         ];
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 10.0;
-            for (name, now, all) in figures {
+            for (name, now, all) in figures.into_iter().filter(|&(name, _, all)| name != "learned" || all > 0)
+            {
                 let text = if now == all {
                     format!("{name} {all}{more}")
                 } else {

@@ -2,6 +2,7 @@
 //! together as they fit, after Reingold and Tilford (1981). Distances are in cells; linear in the size of the search.
 
 use kirk::{Event, Trace, TreeNodeId, TreeStatus};
+use workbench::state::search::{Exclusion, SearchCommand, exclusions};
 
 /// The tree as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,6 +35,8 @@ pub struct TreeIndex {
     pub failures: Vec<u32>,
     /// Whether there is a plan in or below each state.
     pub has_solution: Vec<bool>,
+    /// What excludes each state that contains a learned conflict.
+    excluded: Vec<Option<Exclusion>>,
     /// The states in the order in which they were entered.
     pub entered: Vec<TreeNodeId>,
     /// The state that the search is for: its last plan, or where it was when it ended without one.
@@ -52,6 +55,7 @@ impl TreeIndex {
             known_from: vec![usize::MAX; count],
             below: vec![0; count],
             failures: vec![0; count],
+            excluded: exclusions(trace),
             has_solution: trace.tree.iter().map(|node| node.status == TreeStatus::Solution).collect(),
             ..Self::default()
         };
@@ -144,6 +148,9 @@ impl TreeIndex {
 
     /// What is known of a state at `step`.
     pub fn status(&self, trace: &Trace, id: TreeNodeId, step: Option<usize>) -> TreeStatus {
+        if self.exclusion(id, step).is_some() {
+            return TreeStatus::Excluded;
+        }
         let at = id as usize;
         let status = trace.tree.get(at).map_or(TreeStatus::Unexplored, |node| node.status);
         if status == TreeStatus::Excluded && step.is_some() && self.excluded_by(trace, id) > step {
@@ -184,6 +191,19 @@ impl TreeIndex {
         let parent = trace.tree.get(id as usize)?.parent?;
         let beside = self.children(parent).iter().filter(|&&other| trace.are_alternatives(other, id));
         beside.filter_map(|&other| self.last_step.get(other as usize).copied().flatten()).max()
+    }
+
+    /// The learned conflict that excludes a state by `step`, or at all.
+    pub fn exclusion(&self, id: TreeNodeId, step: Option<usize>) -> Option<Exclusion> {
+        let exclusion = self.excluded.get(id as usize).copied().flatten()?;
+        step.is_none_or(|step| exclusion.step <= step).then_some(exclusion)
+    }
+
+    /// Where a click on a state leads: to its first step, or of one that was never entered to what taught to leave it.
+    pub fn goal_of_click(&self, id: TreeNodeId) -> SearchCommand {
+        let is_entered = self.first_step.get(id as usize).is_some_and(Option::is_some);
+        let taught = self.exclusion(id, None).filter(|_| !is_entered).and_then(|exclusion| exclusion.taught);
+        taught.map_or(SearchCommand::GoToNode(id), SearchCommand::GoTo)
     }
 
     /// Whether the search went elsewhere from a state without a plan, and without having tried all that is below it.

@@ -133,7 +133,7 @@ fn event_name(event: &kirk::Event) -> &'static str {
         Event::Threat { .. } => "threat",
         Event::TryOrder { .. } => "try-order",
         Event::Unresolvable { .. } => "unresolvable",
-        Event::Known => "known",
+        Event::Known { .. } => "known",
         Event::Backtrack { .. } => "backtrack",
         Event::Backjump { .. } => "backjump",
         Event::Solution { .. } => "solution",

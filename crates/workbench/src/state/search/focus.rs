@@ -95,13 +95,13 @@ impl Focus {
             | Event::Clash { choices }
             | Event::Uncontrollable { choices }
             | Event::Circle { orders: choices }
+            | Event::Known { choices }
             | Event::Learn { choices } => focus.add_choices(network, choices.iter().copied()),
             Event::Keep { orders, uses } => {
                 focus.add_choices(network, orders.iter().map(|&order| TreeChoice::Order(order)));
                 focus.add_choices(network, uses.iter().map(|&order| TreeChoice::UseOrder(order)));
             }
             Event::Propagate { .. }
-            | Event::Known
             | Event::Solution { .. }
             | Event::Exhausted
             | Event::Begin(_)
@@ -203,7 +203,7 @@ pub fn is_failure(event: &Event) -> bool {
         Event::Inconsistent { .. }
             | Event::Unclosable { .. }
             | Event::Unresolvable { .. }
-            | Event::Known
+            | Event::Known { .. }
             | Event::NoAlternative { .. }
             | Event::Unsharable { .. }
             | Event::NotBetter { .. }

@@ -70,7 +70,7 @@ impl MergedTree {
                 let Some(&here) = merged.here[side].get(entry.tree_node as usize) else { continue };
                 let entered = &mut merged.entered[here as usize];
                 if !entered.contains(&true) {
-                    merged.trace.events.push(Entry { tree_node: here, event: Event::Known });
+                    merged.trace.events.push(Entry { tree_node: here, event: Event::Propagate { moved: 0 } });
                 }
                 entered[side] = true;
             }

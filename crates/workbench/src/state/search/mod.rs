@@ -2,6 +2,7 @@
 //! two searches of the same mission side by side.
 
 mod counts;
+mod exclusion;
 pub mod focus;
 mod merged;
 mod recording;
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use tpn::{Network, Plan};
 
 pub use counts::Counts;
+pub use exclusion::{Exclusion, exclusions};
 pub use focus::Focus;
 pub use merged::{MergedTree, Share, ShareCounts};
 pub use recording::{Recording, View, WindowChange, recorded};

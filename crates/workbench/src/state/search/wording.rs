@@ -7,8 +7,8 @@ use tpn::Network;
 
 use crate::state::selection::{alternative_text, node_name};
 
-pub use conflict_driven::learned;
 use conflict_driven::{gives, named};
+pub use conflict_driven::{learned, never};
 
 /// What was chosen in a state, in words.
 pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
@@ -68,7 +68,6 @@ fn plain(network: &Network, event: &Event) -> String {
             Some(contradiction) => format!("Failure: {contradiction}."),
             None => "Failure: the bounds contradict each other.".to_owned(),
         },
-        Event::Known => "Failure: these choices contain a conflict that was learned before.".to_owned(),
         Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
         Event::Solution { .. } => "This is a plan.".to_owned(),
         Event::Exhausted => "Nothing is left to try.".to_owned(),

@@ -88,6 +88,7 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
             "Failure: intervals only touch that are not forced to, and there is no room for a gap.".to_owned()
         }
         Event::Learn { choices } => learned(network, choices),
+        Event::Known { choices } => format!("Failure, as was learned before: {}.", never(network, choices)),
         Event::Threat { left, right } => {
             let why = reason_of_order(network, Ordering { first: *left, then: *right });
             let (left, right) = (owner(network, *left), owner(network, *right));
@@ -140,11 +141,16 @@ fn is_best_first(trace: &Trace) -> bool {
 
 /// What was learned, in a sentence.
 pub fn learned(network: &Network, choices: &[TreeChoice]) -> String {
+    format!("Learned: {}.", never(network, choices))
+}
+
+/// Choices that a search has learned never to make together again.
+pub fn never(network: &Network, choices: &[TreeChoice]) -> String {
     match choices {
-        [] => "Learned: whatever is chosen, it cannot succeed.".to_owned(),
-        [only] => format!("Learned: never {}.", fact(network, *only)),
+        [] => "whatever is chosen, it cannot succeed".to_owned(),
+        [only] => format!("never {}", fact(network, *only)),
         [first, rest @ ..] => {
-            format!("Learned: never again {} together with {}.", fact(network, *first), facts(network, rest))
+            format!("never again {} together with {}", fact(network, *first), facts(network, rest))
         }
     }
 }
