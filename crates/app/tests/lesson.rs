@@ -170,6 +170,27 @@ fn the_manual_is_searched_and_a_panel_leads_to_its_page() {
 }
 
 #[test]
+fn the_hover_of_a_term_has_a_link_that_leads_into_the_manual() {
+    let mut app = opened("lesson=first-line&stop=1", [1280.0, 800.0]);
+    let hover = |app: &mut App, link: &str| {
+        let place = app.harness.get_by_role_and_label(Role::Link, link).rect().center();
+        app.harness.hover_at(place);
+        // A hover shows once the pointer has rested a while.
+        (0..8).for_each(|_| app.settle());
+        place
+    };
+    hover(&mut app, "mission");
+    let place = hover(&mut app, "The language");
+    for pressed in [true, false] {
+        let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+        app.harness.event(egui::Event::PointerButton { pos: place, button, pressed, modifiers });
+        app.settle();
+    }
+    assert_eq!(app.json()["manual"]["page"], "language");
+    app.harness.get_by_role_and_label(Role::Heading, "A first mission");
+}
+
+#[test]
 fn nothing_of_a_lesson_is_wider_than_its_panel() {
     for size in [[1280.0, 800.0], [1024.0, 700.0]] {
         let mut app = opened("lesson=first-line&stop=1", size);

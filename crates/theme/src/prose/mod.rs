@@ -114,15 +114,16 @@ impl Prose<'_> {
         clicked
     }
 
-    /// What the hover of a link shows.
-    fn show_hover(&self, response: Response, link: &str) -> Response {
-        match (self.hover)(link) {
-            Some(blocks) => response.on_hover_ui(|ui| {
+    /// What the hover of a link shows. Returns the link in there that was clicked, or this one if it was.
+    fn show_hover(&self, response: Response, link: &str) -> Option<String> {
+        let mut clicked = response.clicked().then(|| link.to_owned());
+        if let Some(blocks) = (self.hover)(link) {
+            response.on_hover_ui(|ui| {
                 ui.set_max_width(POPUP);
-                self.show(ui, blocks);
-            }),
-            None => response,
+                clicked = self.show(ui, blocks).or(clicked.take());
+            });
         }
+        clicked
     }
 }
 

@@ -107,9 +107,7 @@ pub(super) fn place(
                 let stroke = Stroke::new(1.0, prose.tokens.accent);
                 ui.painter().rect_stroke(rect.expand(1.0), 2.0, stroke, egui::StrokeKind::Outside);
             }
-            if prose.show_hover(response, link).clicked() {
-                clicked = Some(link.clone());
-            }
+            clicked = prose.show_hover(response, link).or(clicked);
         }
         from = to;
     }
