@@ -70,6 +70,14 @@ impl Tree<'_> {
         self.step.map(|(step, _)| step)
     }
 
+    /// The state of the step: that of each search, if two are merged.
+    fn at_step(&self) -> [Option<TreeNodeId>; 2] {
+        match &self.merged {
+            Some(merged) => merged.steps.map(|step| step.map(|(_, state)| state)),
+            None => [self.step.map(|(_, state)| state), None],
+        }
+    }
+
     /// Whether a state is known at the step: at that of either search, if two are merged.
     fn is_known(&self, id: TreeNodeId) -> bool {
         match &self.merged {
@@ -295,11 +303,7 @@ impl Scene<'_> {
             self.sign_of(id);
         }
         self.jump();
-        let states = match &self.tree.merged {
-            Some(merged) => merged.steps.map(|step| step.map(|(_, state)| state)),
-            None => [self.tree.step.map(|(_, state)| state), None],
-        };
-        for state in states.into_iter().flatten() {
+        for state in self.tree.at_step().into_iter().flatten() {
             self.current(self.tree.drawing.stand_in(self.tree.trace, state));
         }
     }
@@ -510,7 +514,7 @@ impl Scene<'_> {
     /// A label beside a state, cut to the room before `right`, or none where there is no room.
     fn label(&self, id: TreeNodeId, center: Pos2, radius: f32, right: f32) {
         let tokens = self.context.tokens;
-        let is_ringed = self.tree.step.is_some_and(|(_, state)| state == id);
+        let is_ringed = self.tree.at_step().contains(&Some(id));
         let left = center.x + if is_ringed { radius * 1.5 + 5.0 } else { radius + 3.0 };
         let room = right - left;
         if room < LEAST_LABEL {
