@@ -35,8 +35,18 @@ enum Task {
     Bench(bench::Options),
     /// Reloads, closes and starves the page while somebody types, and counts the key presses that are lost.
     Disturb(Disturbances),
+    /// Gives mutated inputs to every reader of other people's data, and prints what came of it, reader by reader.
+    Fuzz(Fuzzing),
     /// Takes a picture of the built page in headless Chromium.
     Shot(shot::Options),
+}
+
+/// How long each reader is attacked.
+#[derive(clap::Args)]
+struct Fuzzing {
+    /// `--executions N` inputs for each reader, `--reader NAME` for one, `--seed N`, `--input FILE` for one input.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    arguments: Vec<String>,
 }
 
 /// How often the page is disturbed, and with which chance.
@@ -92,6 +102,9 @@ fn main() -> ExitCode {
         Task::Dist => write_dist(),
         Task::Bench(options) => bench::run_all(&options),
         Task::Disturb(options) => disturb_page(&options),
+        Task::Fuzz(fuzzing) => process::run(
+            process::cargo().args(["run", "--quiet", "--package", "fuzz", "--"]).args(fuzzing.arguments),
+        ),
         Task::Shot(options) => shot::run(&options),
     };
     match outcome {

@@ -148,6 +148,10 @@ pub(crate) struct Index {
     first_of_rivals: FxHashMap<(Namespace, Symbol), DeclarationKey>,
     /// What components of the plant can be, by their states' names.
     components: FxHashMap<Symbol, ComponentState>,
+    /// The components of each block that has some.
+    components_by_block: FxHashMap<DeclarationKey, Vec<ComponentState>>,
+    /// Whether blocks with components have come or gone since the components were found.
+    components_changed: bool,
     /// The declarations of states that are read from the plant.
     states_of_plant: BTreeSet<DeclarationKey>,
     names_changed_at: [u32; Namespace::COUNT],
@@ -234,8 +238,13 @@ impl Index {
         self.first_of_rivals.get(&(namespace, symbol)).copied()
     }
 
-    /// Finds out which declaration of each name comes first; `keys` are those of all declarations, in textual order.
-    pub(crate) fn find_rivals(&mut self, keys: impl Iterator<Item = DeclarationKey>) {
+    /// Finds out which declaration of each name and of each component comes first; `keys` are those of all declarations,
+    /// in textual order.
+    pub(crate) fn find_rivals(&mut self, keys: impl Iterator<Item = DeclarationKey> + Clone) {
+        if std::mem::take(&mut self.components_changed) {
+            self.find_components(keys.clone());
+        }
+        self.fill_states_of_plant();
         self.first_of_rivals.clear();
         for key in keys {
             let Some(Some(definition)) = self.definitions.get(key.index()) else { continue };
@@ -330,8 +339,23 @@ impl Index {
                 self.last_change = self.revision;
             }
         }
-        self.fill_states_of_plant();
         if global_before != self.globals() {
+            self.global_changed_at = self.revision;
+            self.last_change = self.revision;
+        }
+    }
+
+    /// Finds out what the plant is made of: of components with one name the first in the text counts.
+    fn find_components(&mut self, keys: impl Iterator<Item = DeclarationKey>) {
+        let mut components: FxHashMap<Symbol, ComponentState> = FxHashMap::default();
+        for component in keys.filter_map(|key| self.components_by_block.get(&key)).flatten() {
+            components.entry(component.name).or_insert_with(|| component.clone());
+        }
+        let before = std::mem::replace(&mut self.components, components);
+        let has_same_names = before.len() == self.components.len()
+            && before.keys().all(|name| self.components.contains_key(name));
+        // Components that are missing are told by those that are there.
+        if !has_same_names && !self.states_of_plant.is_empty() {
             self.global_changed_at = self.revision;
             self.last_change = self.revision;
         }
@@ -393,11 +417,12 @@ impl Index {
                 step(&mut self.scenarios);
             }
         }
-        for component in &summary.components {
+        if !summary.components.is_empty() {
+            self.components_changed = true;
             if is_added {
-                self.components.entry(component.name).or_insert_with(|| component.clone());
+                self.components_by_block.insert(key, summary.components.clone());
             } else {
-                self.components.remove(&component.name);
+                self.components_by_block.remove(&key);
             }
         }
         if summary.definition.as_ref().is_some_and(|definition| definition.is_from_plant) {

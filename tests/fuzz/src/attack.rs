@@ -1,0 +1,82 @@
+//! One reader, attacked: so many mutated inputs, counted and timed.
+
+use std::collections::BTreeSet;
+use std::panic::catch_unwind;
+use std::time::{Duration, Instant};
+
+use crate::mutation::{Random, mutated};
+use crate::readers::Reader;
+
+/// Inputs that led to something new, besides the seeds, that are mutated further.
+const MAX_POOL: usize = 4_000;
+
+/// An input that made a reader panic.
+#[derive(Clone, Debug)]
+pub struct Breaking {
+    /// The input.
+    pub input: Vec<u8>,
+    /// How many inputs came before it.
+    pub number: u64,
+}
+
+/// What became of an attack.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// Inputs that were exercised.
+    pub executions: u64,
+    /// Inputs that were read, and not refused.
+    pub read: u64,
+    /// How long that took.
+    pub took: Duration,
+    /// Different things that inputs led to.
+    pub outcomes: usize,
+    /// What made the reader panic.
+    pub breaking: Vec<Breaking>,
+    /// The input that took longest, and how long.
+    pub slowest: (Duration, Vec<u8>),
+}
+
+/// Attacks a reader with its kept inputs, its seeds, and then with mutations of these until there were `executions`.
+/// `watch` is told each input before it is exercised. The same seed gives the same inputs.
+pub fn attack(reader: &Reader, executions: u64, seed: u64, watch: &mut dyn FnMut(&[u8])) -> Tally {
+    let mut tally = Tally::default();
+    let mut seen = BTreeSet::new();
+    let mut pool: Vec<Vec<u8>> = reader.broken().into_iter().chain(reader.seeds()).collect();
+    let given = pool.len();
+    let mut random = Random::new(seed);
+    let begun = Instant::now();
+    while tally.executions < executions.max(given as u64) {
+        let known = pool.get(tally.executions as usize).filter(|_| tally.executions < given as u64).cloned();
+        let is_known = known.is_some();
+        let input = known.unwrap_or_else(|| {
+            // What is given is known to be read.
+            let known = if random.below(2) == 0 { &pool[..given] } else { &pool[..] };
+            let mut input = mutated(&mut random, known, reader.words);
+            if random.below(2) == 0 {
+                (reader.mend)(&mut input);
+            }
+            input
+        });
+        watch(&input);
+        let started = Instant::now();
+        let outcome = catch_unwind(|| (reader.exercise)(&input));
+        let took = started.elapsed();
+        tally.executions += 1;
+        if took > tally.slowest.0 {
+            tally.slowest = (took, input.clone());
+        }
+        match outcome {
+            Ok(outcome) => {
+                tally.read += u64::from(outcome.is_read);
+                let is_new = seen.insert(outcome.signature);
+                if is_new && !is_known && pool.len() < given + MAX_POOL {
+                    pool.push(input);
+                }
+            }
+            Err(_) => tally.breaking.push(Breaking { input, number: tally.executions - 1 }),
+        }
+    }
+    tally.took = begun.elapsed();
+    tally.outcomes = seen.len();
+    tally
+}

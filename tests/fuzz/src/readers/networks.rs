@@ -1,0 +1,143 @@
+//! Networks of other tools, networks with uncertainty, and plans.
+
+use std::sync::{Arc, LazyLock};
+
+use mission::Snapshot;
+use stnu::{Document as Uncertain, Layout, check};
+use tpn::Network;
+use tpn::interchange::Source;
+use tpn::plan_schema::Document;
+
+use super::{NOTHING, Outcome, Reader, magnitude, nothing, read, refused, text_of};
+
+/// plan-schema and Enroute's own, as JSON and EDN: read, planned, checked, and written so that they can be read again.
+pub(super) const NETWORKS: Reader = Reader {
+    name: "networks",
+    seeds: &[],
+    words: &[
+        "\"tpn-type\"",
+        ":tpn-type",
+        "\"temporal-constraint\"",
+        "\"parallel-begin\"",
+        "\"choice-begin\"",
+        "\"end-node\"",
+        "\"constraints\"",
+        "\"controllable\"",
+        "\"guard\"",
+        "#{",
+        "#_",
+        "n1",
+        "n2",
+        "\"n3\"",
+        "[0 10]",
+        "[0, \"Infinity\"]",
+    ],
+    mend: nothing,
+    exercise: networks,
+    tested: 1200,
+};
+
+fn networks(input: &[u8]) -> Outcome {
+    let text = &*text_of(input);
+    let source = match Source::read(text) {
+        Ok(source) => source,
+        Err(reason) => return refused(&reason.to_string()),
+    };
+    let said = source.not_honoured().join(" ");
+    let network = Arc::new(source.into_network());
+    let written = tpn::plan_schema::write(&network);
+    assert!(Document::parse(&written.to_string()).is_ok(), "what is written can be read");
+    let mut left = 200;
+    let mut stop = || {
+        left -= 1;
+        left <= 0
+    };
+    let snapshot = Snapshot::of_network(text.into(), Arc::clone(&network), Vec::new(), &mut stop);
+    let plan = snapshot.plan();
+    if let Some(plan) = plan {
+        let plan = tpn::plan_json::plan_to_json(&network, plan);
+        assert!(tpn::plan_json::plan_from_json(&network, &plan).is_ok(), "what is written can be read");
+    }
+    let counts = [network.nodes.len(), network.arcs.len(), network.decisions.len()].map(magnitude);
+    read(&format!("{} {} {said}", plan.is_some(), String::from_iter(counts)))
+}
+
+/// Networks with uncertainty in both layouts: decided, or said to be too large, and written.
+pub(super) const UNCERTAIN: Reader = Reader {
+    name: "uncertain-networks",
+    seeds: &[],
+    words: &[
+        "Z",
+        "inf",
+        "<!--",
+        "UC(",
+        "LC(",
+        "contingent",
+        "<edge ",
+        "<data key=\"Value\">",
+        "# Contingent Links\n",
+    ],
+    mend: nothing,
+    exercise: uncertain,
+    tested: 4000,
+};
+
+fn uncertain(input: &[u8]) -> Outcome {
+    let document = match Uncertain::parse(&text_of(input)) {
+        Ok(document) => document,
+        Err(reason) => return refused(&reason.to_string()),
+    };
+    let _ = check(&document.network, &mut || false);
+    for layout in [Layout::Plain, Layout::GraphMl] {
+        let written = document.write(layout);
+        let again = Uncertain::parse(&written);
+        assert_eq!(again.map(|read| read.names.len()), Ok(document.names.len()), "{layout:?}: {written}");
+    }
+    read(&String::from(magnitude(document.names.len())))
+}
+
+/// Plans of a mission: read, and held against the network by the checker.
+pub(super) const PLANS: Reader = Reader {
+    name: "plans",
+    seeds: &[],
+    words: &[
+        "\"choices\"",
+        "\"windows\"",
+        "\"causal_links\"",
+        "\"conflict_order\"",
+        "\"levels\"",
+        "[0, 1]",
+        "null",
+    ],
+    mend: nothing,
+    exercise: plans,
+    tested: 1200,
+};
+
+/// A mission with links.
+static NETWORK: LazyLock<Network> = LazyLock::new(|| {
+    let program = rmpl::parse(include_str!("../../../../assets/missions/causal-links.rmpl")).program();
+    mission::compile(&program, &mission::Goal::Default, &mut Vec::new()).expect("the example")
+});
+
+fn plans(input: &[u8]) -> Outcome {
+    let network = &*NETWORK;
+    let value: serde_json::Value = match serde_json::from_str(&text_of(input)) {
+        Ok(value) => value,
+        Err(_) => return NOTHING,
+    };
+    match tpn::plan_json::plans_from_json(network, &value) {
+        Ok(plans) => {
+            for plan in &plans {
+                let written = tpn::plan_json::plan_to_json(network, plan);
+                assert!(
+                    tpn::plan_json::plan_from_json(network, &written).is_ok(),
+                    "what is written can be read"
+                );
+            }
+            let verdicts: Vec<_> = plans.iter().map(|plan| verify::check_plan(network, plan)).collect();
+            read(&format!("{verdicts:?}"))
+        }
+        Err(reason) => refused(&reason.to_string()),
+    }
+}
