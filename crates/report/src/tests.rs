@@ -136,6 +136,10 @@ fn the_report_needs_nothing_from_elsewhere_and_no_scripts() {
     let policy =
         page.find("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';").expect("a policy");
     assert!(policy < page.find("<title>").expect("a title"));
+    // One style sheet is allowed, by its digest, and elements have no styles of their own.
+    assert!(page.contains("style-src 'sha256-") && !page.contains("unsafe-inline"));
+    assert_eq!(page.matches("<style").count(), 1);
+    assert!(!page.contains(" style="));
     for outside in ["http://", "https://", "src=", "url(", "@import", "<script", "<link", "<iframe"] {
         assert!(!page.contains(outside), "{outside}");
     }
