@@ -143,3 +143,27 @@ fn what_tools_write_differently_is_read() {
     let file = written("reversed.tpn.json", &network(|file| file["c1"]["value"] = json!([5, 2])).to_string());
     assert_eq!(enroute(&["plan", text(&file)]).status.code(), Some(2));
 }
+
+#[test]
+fn a_network_becomes_a_mission_with_the_same_windows_or_says_why_not() {
+    let file = written("to-rmpl.tpn.json", &network(|_| {}).to_string());
+    let output = enroute(&["tpn", text(&file), "--as", "rmpl"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let mission = String::from_utf8(output.stdout).expect("UTF-8");
+    let plan = enroute(&["plan", text(&written("from-network.rmpl", &mission)), "--format", "json"]);
+    assert_eq!(told(&plan)["plans"][0]["windows"]["Dig#1.end"], json!([5, 11]), "{mission}");
+    // A third activity leads past the middle to nothing.
+    let loose = network(|file| {
+        file["n2"]["activities"] = json!(["a2", "a3"]);
+        file["net"]["end-node"] = json!("n4");
+        file["n5"] = json!({ "tpn-type": "state", "activities": [], "constraints": [] });
+        file["a3"] = json!({ "tpn-type": "activity", "name": "Look", "end-node": "n5", "constraints": [] });
+    });
+    let file = written("loose.tpn.json", &loose.to_string());
+    let output = enroute(&["tpn", text(&file), "--as", "rmpl"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("the node `n5` is left by nothing, and is not the network's end (`a3`)"), "{said}");
+    let output = enroute(&["tpn", text(&file), "--as", "rmpl", "--format", "json"]);
+    assert_eq!((&told(&output)["rmpl"], output.status.code()), (&json!(null), Some(1)));
+}

@@ -11,53 +11,58 @@ pub(crate) struct Vocabulary {
 }
 
 impl Vocabulary {
-    /// The literal of a printed condition: `X`, `X=V`, `not(X)`, `not(X=V)`.
+    /// The literal of a printed condition: `X`, `X=V`, `X in {V, W}`, and `not(…)` of these.
     pub(crate) fn literal(&mut self, text: &str) -> Option<Literal> {
         let (positive, is_negated) = match text.strip_prefix("not(").and_then(|inner| inner.strip_suffix(')'))
         {
             Some(inner) => (inner, true),
             None => (text, false),
         };
-        let (name, value) =
-            positive.split_once('=').map_or((positive, None), |(name, value)| (name, Some(value)));
-        if name.is_empty() || value.is_some_and(str::is_empty) {
+        let several = positive.strip_suffix('}').and_then(|inner| inner.split_once(" in {"));
+        let (name, values) = match (several, positive.split_once('=')) {
+            (Some((name, values)), _) => (name, values.split(", ").collect()),
+            (None, Some((name, value))) => (name, vec![value]),
+            (None, None) => (positive, Vec::new()),
+        };
+        if name.is_empty() || values.contains(&"") {
             return None;
         }
-        let index = match self.variables.iter().position(|variable| variable.name == name) {
-            Some(index) => index,
-            None if self.is_complete => return None,
-            None => {
-                // Without declarations an atom is Boolean, and a compared variable is open.
-                let is_atom = value.is_none();
-                let values = if is_atom { vec!["true".into(), "false".into()] } else { Vec::new() };
-                self.variables.push(Variable {
-                    name: name.into(),
-                    values,
-                    closed: is_atom,
-                    is_lasting: false,
-                });
-                self.variables.len() - 1
-            }
-        };
+        let index = self.variable(name, values.is_empty())?;
+        let values = if values.is_empty() { vec!["true"] } else { values };
         let variable = &mut self.variables[index];
-        let value = value.unwrap_or("true");
-        let position = match variable.values.iter().position(|known| known == value) {
-            Some(position) => position,
-            None if self.is_complete || variable.closed => return None,
-            None => {
-                variable.values.push(value.into());
-                variable.values.len() - 1
-            }
-        };
-        let value = ValueId::from_index(position);
+        let mut listed = Vec::new();
+        for value in values {
+            let position = match variable.values.iter().position(|known| known == value) {
+                Some(position) => position,
+                None if self.is_complete || variable.closed => return None,
+                None => {
+                    variable.values.push(value.into());
+                    variable.values.len() - 1
+                }
+            };
+            listed.push(ValueId::from_index(position));
+        }
+        listed.sort_unstable();
+        listed.dedup();
         let values = match (is_negated, variable.closed) {
-            (false, _) => ValueSet::In(vec![value]),
-            (true, false) => ValueSet::NotIn(vec![value]),
+            (false, _) => ValueSet::In(listed),
+            (true, false) => ValueSet::NotIn(listed),
             (true, true) => {
                 let all = (0..variable.values.len()).map(ValueId::from_index);
-                ValueSet::In(all.filter(|&other| other != value).collect())
+                ValueSet::In(all.filter(|other| !listed.contains(other)).collect())
             }
         };
         Some(Literal { variable: VariableId::from_index(index), values })
+    }
+
+    /// The variable of that name. Without declarations an atom is Boolean, and a compared variable is open.
+    fn variable(&mut self, name: &str, is_atom: bool) -> Option<usize> {
+        let known = self.variables.iter().position(|variable| variable.name == name);
+        if known.is_some() || self.is_complete {
+            return known;
+        }
+        let values = if is_atom { vec!["true".into(), "false".into()] } else { Vec::new() };
+        self.variables.push(Variable { name: name.into(), values, closed: is_atom, is_lasting: false });
+        Some(self.variables.len() - 1)
     }
 }

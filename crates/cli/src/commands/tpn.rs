@@ -10,7 +10,9 @@ use tpn::interchange::Source;
 
 use crate::diagnostics::print_problems;
 use crate::load::{Loaded, Target};
-use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text, print_verbatim};
+use crate::output::{
+    Format, NO, WRONG, YES, document, exit, print_error, print_json, print_text, print_verbatim,
+};
 
 /// Compiles a mission to its temporal plan network.
 #[derive(clap::Args)]
@@ -38,6 +40,8 @@ enum Notation {
     Svg,
     /// The interchange format of other planners' tools.
     PlanSchema,
+    /// A mission in RMPL, where the network's structure allows: what is in the way is said otherwise.
+    Rmpl,
 }
 
 /// Runs the command.
@@ -58,6 +62,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Notation::Text => print_text(&tpn::text::to_text(network))?,
         Notation::Dot => print_verbatim(&tpn::text::to_dot(network))?,
         Notation::Svg => print_verbatim(&drawing(network))?,
+        Notation::Rmpl => return print_rmpl(&loaded, network, args.format),
         Notation::PlanSchema => print_json(&plan_schema(&loaded, network)?)?,
     }
     Ok(exit(YES))
@@ -81,6 +86,36 @@ fn plan_schema(loaded: &Loaded, network: &Network) -> anyhow::Result<serde_json:
         return Ok(read.to_json());
     }
     Ok(tpn::plan_schema::write(network))
+}
+
+/// The network as a mission's text, or what keeps it from being one.
+fn print_rmpl(loaded: &Loaded, network: &Network, format: Format) -> anyhow::Result<ExitCode> {
+    let (mut nodes, mut arcs, mut remarks) = (Vec::new(), Vec::new(), Vec::new());
+    if loaded.program.is_none()
+        && let Ok(Source::PlanSchema(read)) = Source::read(&loaded.source)
+    {
+        remarks.extend(read.not_honoured().iter().map(|said| format!("Not honoured: {said}.")));
+        (nodes, arcs) = (read.node_uids, read.arc_uids);
+    }
+    match (tpn::rmpl_text::write(network, &remarks), format) {
+        (Ok(text), Format::Text) => print_verbatim(&text)?,
+        (Ok(text), Format::Json) => print_json(&document("rmpl", &loaded.problems, json!({ "rmpl": text })))?,
+        (Err(obstacle), format) => {
+            let told = obstacle.told(network, &nodes, &arcs);
+            match format {
+                Format::Text => print_error(&format!("this network cannot be written in RMPL: {told}")),
+                Format::Json => {
+                    print_json(&document(
+                        "rmpl",
+                        &loaded.problems,
+                        json!({ "rmpl": null, "obstacle": told }),
+                    ))?;
+                }
+            }
+            return Ok(exit(NO));
+        }
+    }
+    Ok(exit(YES))
 }
 
 fn drawing(network: &Network) -> String {
