@@ -102,7 +102,7 @@ pub fn read_network(name: &str, source: &str) -> anyhow::Result<(Network, Vec<Pr
 /// Whether a file holds a network rather than a mission text.
 pub fn is_network(name: &str, source: &str) -> bool {
     let is_named_so = [".json", ".edn"].iter().any(|ending| name.ends_with(ending));
-    is_named_so || (name == "-" && source.trim_start().starts_with('{'))
+    is_named_so || (name == "-" && tpn::interchange::is_network_text(source))
 }
 
 fn parse_bounds(text: &str) -> anyhow::Result<(Time, Bound)> {

@@ -183,7 +183,7 @@ impl<'network> Reduction<'network> {
     fn is_done(&self) -> bool {
         let (start, end) = (self.network.start, self.network.end);
         let left: usize = self.outs.iter().map(BTreeSet::len).sum();
-        left == 1 && !self.open[start.index()] && self.ins[end.index()].len() == 1
+        start != end && left == 1 && !self.open[start.index()] && self.ins[end.index()].len() == 1
     }
 
     fn tree(mut self, root: usize) -> Tree {
@@ -220,11 +220,6 @@ impl<'network> Reduction<'network> {
     /// Where the network does not nest: the first event at which something stays apart.
     fn obstacle(&self) -> Obstacle {
         let (start, end) = (self.network.start, self.network.end);
-        let mut stuck = Obstacle {
-            problem: "leads to no end of the network".to_owned(),
-            nodes: vec![start],
-            arcs: Vec::new(),
-        };
         for node in (0..self.network.nodes.len()).map(NodeId::from_index) {
             let (ins, outs) = (&self.ins[node.index()], &self.outs[node.index()]);
             let arcs_in: Vec<ArcId> = ins.iter().take(2).map(|&edge| self.edges[edge].last).collect();
@@ -246,12 +241,17 @@ impl<'network> Reduction<'network> {
         for node in (0..self.network.nodes.len()).map(NodeId::from_index) {
             let outs = &self.outs[node.index()];
             if outs.len() > 1 || (self.open[node.index()] && !outs.is_empty()) {
-                stuck.problem = "is where arcs part that do not meet at one event alone".to_owned();
-                stuck.nodes = vec![node];
-                stuck.arcs = outs.iter().take(2).map(|&edge| self.edges[edge].first).collect();
-                break;
+                return Obstacle {
+                    problem: "is where arcs part that do not meet at one event alone".to_owned(),
+                    nodes: vec![node],
+                    arcs: outs.iter().take(2).map(|&edge| self.edges[edge].first).collect(),
+                };
             }
         }
-        stuck
+        Obstacle {
+            problem: "leads to no end of the network".to_owned(),
+            nodes: vec![self.network.start],
+            arcs: Vec::new(),
+        }
     }
 }
