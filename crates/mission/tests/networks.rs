@@ -119,6 +119,6 @@ fn what_cannot_be_read_says_where_and_is_no_list_of_mistakes_in_rmpl() {
     assert!(snapshot.network.is_none());
     let snapshot = shown(&mut core, 2, &CHOICE[..CHOICE.len() / 2]);
     assert_eq!(codes(&snapshot.problems), ["E-NETWORK"]);
-    let edn = include_str!("corpus/network.tpn.edn");
+    let edn = include_str!("../../../tests/fuzz/corpus/networks/network.tpn.edn");
     assert!(shown(&mut core, 3, edn).plan().is_some());
 }

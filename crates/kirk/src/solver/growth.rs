@@ -66,14 +66,14 @@ mod tests {
             false
         };
         let mut growth = Growth::new(&mut never);
-        let orders = (0..).take_while(|_| growth.add(ORDER).is_ok()).count();
+        let orders = (0..MAX_SIZE).take_while(|_| growth.add(ORDER).is_ok()).count();
         assert_eq!(orders, MAX_SIZE / ORDER);
         assert_eq!(growth.add(CLAUSE), Err(Unencoded::TooManyLinks));
         assert_eq!(looks, MAX_SIZE / STEPS);
 
         let mut at_once = || true;
         let mut growth = Growth::new(&mut at_once);
-        let steps = (0..).take_while(|_| growth.look_at(1).is_ok()).count();
+        let steps = (0..MAX_SIZE).take_while(|_| growth.look_at(1).is_ok()).count();
         assert_eq!(steps, STEPS - 1);
     }
 }
