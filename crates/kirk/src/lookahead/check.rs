@@ -82,6 +82,8 @@ impl Lookahead {
                 return Ok(false);
             }
         }
+        // Without choices the search looks at each pair as soon as this does.
+        let looks_at_pairs = !model.decisions.is_empty();
         for position in first..self.labels.len() {
             let label = self.labels[position];
             if self.is_in_question(model, label) {
@@ -89,6 +91,9 @@ impl Lookahead {
                     return Ok(false);
                 }
                 self.guess_carrier(model, label)?;
+            }
+            if !looks_at_pairs {
+                continue;
             }
             for other in model.conditions.conflicts(label) {
                 let is_earlier = self.is_active_label[other] && self.label_position[other] < position as u32;
