@@ -3,12 +3,14 @@
 //! A mission counts as unsolved after [`LIMIT`]. Ratios are of each mission alone, aries to ours; a solver that gave up
 //! counts with the time it was given, and a mission that both gave up on does not count.
 
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use kirk::{Options, Stats};
 use tpn::Network;
 use tpn::compile::{Top, compile};
 use tpn::families::{Family, families};
+use tpn::interchange::Source;
 
 use super::instance::Instance;
 use super::{Answer, Verdict, aries, best, verdict};
@@ -38,27 +40,47 @@ pub(crate) fn compare(wanted: &[String], quick: bool) {
             "agrees",
         ],
     );
-    for family in families(if quick { 1_000 } else { 10_000 }) {
-        if wanted.is_empty() || wanted.iter().any(|name| family.name.starts_with(name)) {
-            table.row(row(&family));
+    let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|wanted| name.starts_with(wanted));
+    for Family { name, missions } in families(if quick { 1_000 } else { 30_000 }) {
+        if is_wanted(&name) {
+            let networks: Vec<Network> = missions.iter().map(|text| network(text)).collect();
+            table.row(row(&name, &networks));
+        }
+    }
+    if is_wanted(REAL) {
+        match real_networks() {
+            networks if networks.is_empty() => table.note("No file of `../shared/data/tpn` is here."),
+            networks => table.row(row(REAL, &networks)),
         }
     }
     table.note("Times are of the processor and hold encoding and solving, from a compiled network in memory; each mission counts with its best of up to twenty tries within a third of a second, in both solvers alike. Unsolved after ten seconds of one try.");
     table.print();
 }
 
-fn row(family: &Family) -> Vec<String> {
+/// The networks that another tool's authors wrote.
+const REAL: &str = "plan-schema networks by others";
+
+/// Those of `../shared/data/tpn` that can be read; none where that is absent.
+fn real_networks() -> Vec<Network> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/tpn");
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    let texts = paths.iter().filter_map(|path| std::fs::read_to_string(path).ok());
+    texts.filter_map(|text| Some(Source::read(&text).ok()?.into_network())).collect()
+}
+
+fn row(name: &str, networks: &[Network]) -> Vec<String> {
     let mut answers = Vec::new();
-    for text in &family.missions {
-        let network = network(text);
-        let instance = Instance::of(&network);
-        let ours = repeated(|| ours(&network));
+    for network in networks {
+        let instance = Instance::of(network);
+        let ours = repeated(|| ours(network));
         let theirs = repeated(|| aries::solve(&instance, LIMIT));
         answers.push((ours, theirs));
     }
     let ours: Vec<Answer> = answers.iter().map(|&(ours, _)| ours).collect();
     let theirs: Vec<Answer> = answers.iter().map(|&(_, theirs)| theirs).collect();
-    let mut cells = vec![family.name.clone(), family.missions.len().to_string()];
+    let mut cells = vec![name.to_owned(), networks.len().to_string()];
     cells.extend(columns(&ours));
     cells.extend(columns(&theirs));
     let is_open = |answer: Answer| answer.verdict == Verdict::Limit;
