@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use acceptance::mission::{all_plans, network};
-use acceptance::random::small_mission;
+use acceptance::random::{crowded_mission, small_mission, timed_mission};
 use kirk::{Search, Status};
 use tpn::generate::{Recipe, Tightness, mission};
 use tpn::interchange::Source;
@@ -42,20 +42,22 @@ fn written(network: &Network) -> String {
 #[test]
 fn random_missions_come_back_from_both_formats_with_the_same_plans() {
     let mut with_plan = 0;
-    for seed in 0..600 {
-        let text = small_mission(seed);
+    let small = (0..600).map(|seed| (format!("small {seed}"), small_mission(seed)));
+    let timed = (0..300).map(|seed| (format!("timed {seed}"), timed_mission(seed)));
+    let crowded = (0..100).map(|seed| (format!("crowded {seed}"), crowded_mission(seed)));
+    for (name, text) in small.chain(timed).chain(crowded) {
         let one = network(&text);
         let plans = windows(&one);
         let json = network_json::network_to_json(&one);
         let ours = network_json::network_from_json(&json).expect("our own network");
         let again = written(&ours);
-        assert_eq!(windows(&network(&again)), plans, "seed {seed}\n{text}\n{again}");
+        assert_eq!(windows(&network(&again)), plans, "{name}\n{text}\n{again}");
         let theirs = Document::parse(&plan_schema::write(&one).to_string()).expect("plan-schema").network;
         let again = written(&theirs);
-        assert_eq!(windows(&network(&again)), plans, "seed {seed}, plan-schema\n{text}\n{again}");
+        assert_eq!(windows(&network(&again)), plans, "{name}, plan-schema\n{text}\n{again}");
         with_plan += usize::from(!plans.is_empty());
     }
-    assert!(with_plan > 200, "only {with_plan} missions have a plan");
+    assert!(with_plan > 300, "only {with_plan} missions have a plan");
 }
 
 #[test]

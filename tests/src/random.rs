@@ -54,7 +54,7 @@ pub fn timed_mission(seed: u64) -> String {
     let mut rng = Rng::new(seed ^ 0x71_3D);
     let body = timed_block(&mut rng, 3);
     let horizon = rng.between(4, 24);
-    format!("scenario S[0,{horizon}] = {body}\n")
+    format!("scenario S[0,{horizon}] = {{ {body} }}\n")
 }
 
 fn timed_block(rng: &mut Rng, depth: u32) -> String {
