@@ -194,3 +194,25 @@ fn a_ring_is_drawn_around_a_panel_only_for_those_who_use_keys() {
     }
     assert_eq!(rings(&app), 1, "a key brought it to {}", app.json()["activePanel"]);
 }
+
+#[test]
+fn the_palette_turns_the_network_of_another_tool_into_rmpl() {
+    let network = r#"{"network-id": "net", "net": {"tpn-type": "network", "begin-node": "a", "end-node": "b"},
+        "a": {"tpn-type": "state", "activities": ["drive"]}, "b": {"tpn-type": "state", "activities": []},
+        "drive": {"tpn-type": "activity", "name": "Drive", "end-node": "b", "constraints": ["bounds"]},
+        "bounds": {"tpn-type": "temporal-constraint", "value": [2, 5], "end-node": "b"}}"#;
+    let mut app = support::start();
+    app.settle();
+    let arguments = json!({ "text": network });
+    app.harness.state_mut().dispatch("edit.setSource", &arguments).expect("a text");
+    app.settle();
+    app.harness.key_press(Key::F1);
+    app.settle();
+    app.harness.get_by_role_and_label(egui::Role::TextInput, "Command palette").type_text("into rmpl");
+    app.settle();
+    app.harness.key_press(Key::Enter);
+    app.settle();
+    let source = app.harness.state().source();
+    assert!(source.contains("Drive()[2,5]"), "{source}");
+    assert_eq!(app.json()["status"], "plan");
+}

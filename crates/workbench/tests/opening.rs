@@ -60,6 +60,54 @@ fn networks_open_as_missions_in_whichever_way_and_are_saved_as_they_were_written
 }
 
 #[test]
+fn a_network_is_turned_into_a_mission_in_rmpl_and_nothing_is_lost() {
+    let mut app = started();
+    let refused = app.session.dispatch("file.toRmpl", &json!(null)).expect_err("a mission in RMPL");
+    let refused = refused.to_string();
+    assert!(refused.contains("not the network of another tool"), "{refused}");
+    open(&mut app, "day.tpn.edn", NETWORK.as_bytes());
+    app.dispatch("file.toRmpl", &json!(null));
+    let text = text_of(&app);
+    assert!(text.starts_with("// planning does not honour what this file says"), "{text}");
+    assert!(text.contains("Drive()[1,inf]"), "{text}");
+    let state = app.json();
+    assert_eq!((&state["status"], &state["diagnostics"]), (&json!("plan"), &json!([])), "{state}");
+    let versions = |app: &App| {
+        let library = &app.session.state().library;
+        let mission = library.open_id().and_then(|id| library.mission(id)).expect("a mission of the library");
+        let kept =
+            mission.versions.iter().map(|version| (version.name.clone(), version.texts[0].text.to_string()));
+        kept.collect::<Vec<_>>()
+    };
+    assert_eq!(versions(&app), [("Network".to_owned(), NETWORK.to_owned())]);
+    app.dispatch("edit.undo", &json!(null));
+    assert_eq!(text_of(&app), NETWORK);
+    assert_eq!(app.json()["status"], "plan");
+}
+
+#[test]
+fn a_network_that_does_not_nest_says_what_is_in_the_way_and_stays() {
+    // b goes on to both ends of what a and c part into.
+    let network = r#"{"network-id": "net", "net": {"tpn-type": "network", "begin-node": "s", "end-node": "e"},
+        "s": {"tpn-type": "p-begin", "activities": ["sa", "sb"]}, "e": {"tpn-type": "p-end", "activities": []},
+        "a": {"tpn-type": "state", "activities": ["ac", "ad"]}, "b": {"tpn-type": "state", "activities": ["bd"]},
+        "c": {"tpn-type": "state", "activities": ["ce"]}, "d": {"tpn-type": "state", "activities": ["de"]},
+        "sa": {"tpn-type": "activity", "name": "sa", "end-node": "a"},
+        "sb": {"tpn-type": "activity", "name": "sb", "end-node": "b"},
+        "ac": {"tpn-type": "activity", "name": "ac", "end-node": "c"},
+        "ad": {"tpn-type": "activity", "name": "ad", "end-node": "d"},
+        "bd": {"tpn-type": "activity", "name": "bd", "end-node": "d"},
+        "ce": {"tpn-type": "activity", "name": "ce", "end-node": "e"},
+        "de": {"tpn-type": "activity", "name": "de", "end-node": "e"}}"#;
+    let mut app = started();
+    open(&mut app, "crossing.tpn.json", network.as_bytes());
+    app.dispatch("file.toRmpl", &json!(null));
+    assert_eq!(text_of(&app), network);
+    let toasts = app.json()["toasts"].to_string();
+    assert!(toasts.contains("cannot be written in RMPL") && toasts.contains("`ad#1`, `bd#1`"), "{toasts}");
+}
+
+#[test]
 fn documents_that_are_no_mission_open_nothing_and_say_what_is_read() {
     let mut app = started();
     let before = text_of(&app);

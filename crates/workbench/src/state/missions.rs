@@ -41,6 +41,8 @@ pub enum LibraryCommand {
     KeepVersion(String),
     /// Makes the text what it was in a version, as an edit that can be undone.
     RestoreVersion(usize),
+    /// Writes the open network of another tool in RMPL.
+    TurnIntoRmpl,
     /// Lets the user save the whole open mission as one file.
     SaveWhole,
     /// Lets the user save what is kept and cannot be read.
@@ -112,6 +114,7 @@ impl AppState {
                 self.toasts.add(ToastKind::Done, format!("The version \"{name}\" is kept"));
             }
             LibraryCommand::RestoreVersion(index) => self.restore_version(index),
+            LibraryCommand::TurnIntoRmpl => self.turn_into_rmpl(),
             LibraryCommand::SaveWhole => self.save(true),
             LibraryCommand::SaveUnreadable(index) => {
                 if let Some(unreadable) = self.library.unreadable.get(index) {
@@ -132,7 +135,7 @@ impl AppState {
     }
 
     /// The id of the open mission; an original becomes a mission of its own.
-    fn mission_of_its_own(&mut self) -> MissionId {
+    pub(super) fn mission_of_its_own(&mut self) -> MissionId {
         if let Some(id) = self.library.open_id() {
             return id.clone();
         }

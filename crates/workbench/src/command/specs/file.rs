@@ -10,6 +10,7 @@ use crate::command::{Command, PictureFormat};
 use crate::host::FileKind;
 use crate::library::{MissionId, TEMPLATES, template};
 use crate::mission_file;
+use crate::state::AppState;
 use crate::state::files::FileCommand;
 use crate::state::missions::LibraryCommand;
 
@@ -35,6 +36,12 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("file.duplicate", "Duplicate the mission", Group::File, &[], Scope::Everywhere, |_| {
         Command::Library(LibraryCommand::Duplicate(None))
     }),
+    when(
+        plain("file.toRmpl", "Turn the network into RMPL", Group::File, &[], Scope::Everywhere, |_| {
+            Command::Library(LibraryCommand::TurnIntoRmpl)
+        }),
+        AppState::has_read_network,
+    ),
     when(
         plain("file.delete", "Delete the mission", Group::File, &[], Scope::Everywhere, |_| {
             Command::Library(LibraryCommand::Delete(None))
