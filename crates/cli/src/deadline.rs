@@ -32,8 +32,33 @@ impl Enforced {
 
 /// There was no answer in time.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
-#[error("the time limit was reached before there was an answer")]
-pub struct TimeIsUp;
+#[error("the time limit was reached before {}", .0.in_words())]
+pub struct TimeIsUp(pub Undecided);
+
+/// What was not done when the time was up.
+#[derive(Clone, Copy, Debug)]
+pub enum Undecided {
+    /// Whether there is a plan.
+    Plan,
+    /// How the execution of the plan ends.
+    Execution,
+    /// How many of the executions of the plan succeed.
+    Robustness,
+    /// What a review says of the plan.
+    Review,
+}
+
+impl Undecided {
+    /// That it was done, as the end of a sentence.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Plan => "it was decided whether there is a plan",
+            Self::Execution => "the execution had ended",
+            Self::Robustness => "all executions had ended",
+            Self::Review => "the plan had been reviewed",
+        }
+    }
+}
 
 impl TimeLimit {
     /// The limit, from now on.
@@ -55,8 +80,8 @@ impl Deadline {
         self.0.is_some_and(|deadline| Instant::now() >= deadline + GRACE)
     }
 
-    /// From now on the process ends when the time is up, whatever it does, until there is an answer.
-    pub fn enforce(self) -> Enforced {
+    /// From now on the process ends when the time is up, whatever it does, until what is undecided is answered.
+    pub fn enforce(self, undecided: Undecided) -> Enforced {
         let enforced = Enforced(Arc::new(Mutex::new(false)));
         if let Some(moment) = self.0 {
             let is_answered = Arc::clone(&enforced.0);
@@ -65,7 +90,7 @@ impl Deadline {
                 // Who answers does not let go before the answer is there.
                 let is_answered = is_answered.lock().unwrap_or_else(PoisonError::into_inner);
                 if !*is_answered {
-                    print_error(&format!("error: {TimeIsUp}"));
+                    print_error(&format!("error: {}", TimeIsUp(undecided)));
                     std::process::exit(i32::from(LIMIT));
                 }
             });
@@ -75,6 +100,10 @@ impl Deadline {
 
     /// An error if what was planned is not decided because the time is up.
     pub fn check(self, outcome: &kirk::Outcome) -> Result<(), TimeIsUp> {
-        if outcome.status == kirk::Status::Limit && self.is_over() { Err(TimeIsUp) } else { Ok(()) }
+        if outcome.status == kirk::Status::Limit && self.is_over() {
+            Err(TimeIsUp(Undecided::Plan))
+        } else {
+            Ok(())
+        }
     }
 }

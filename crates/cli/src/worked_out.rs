@@ -7,7 +7,7 @@ use std::time::Instant;
 use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use terrain::Terrain;
 
-use crate::deadline::{Deadline, TimeIsUp};
+use crate::deadline::{Deadline, TimeIsUp, Undecided};
 use crate::ground::map_file;
 use crate::input::{read_mission, read_text};
 use crate::load::{Target, is_network, read_network};
@@ -74,14 +74,17 @@ pub fn work_out_text(
         }
     }
     core.handle(Request::Update(update), &mut answers);
-    if answers.snapshot.is_none() && deadline.is_over() {
-        return Err(TimeIsUp.into());
+    let late = TimeIsUp(Undecided::Plan);
+    let Some(snapshot) = answers.snapshot else {
+        anyhow::ensure!(!deadline.is_over(), late);
+        anyhow::bail!("the planning core gave no answer");
+    };
+    match &snapshot.planning {
+        Some(planning) => deadline.check(&planning.outcome)?,
+        // What is compiled is answered before it is planned.
+        None => anyhow::ensure!(snapshot.network.is_none() || !deadline.is_over(), late),
     }
-    Ok(WorkedOut {
-        name,
-        snapshot: answers.snapshot.ok_or_else(|| anyhow::anyhow!("the planning core gave no answer"))?,
-        ground: answers.ground,
-    })
+    Ok(WorkedOut { name, snapshot, ground: answers.ground })
 }
 
 /// Keeps the last answers of the core.

@@ -16,7 +16,7 @@ use crate::diagnostics::print_problems;
 use crate::input::{mission_of, read_text};
 use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
-use crate::worked_out::{WorkedOut, work_out_text};
+use crate::worked_out::work_out_text;
 
 /// Compares two plans: what was added, removed, moved, re-chosen or done otherwise.
 ///
@@ -104,9 +104,9 @@ impl Args {
     fn worked_out(&self, file: &Path, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
         let name = file.display().to_string();
         let deadline = self.time_limit.start();
-        let WorkedOut { name, snapshot, .. } = work_out_text(name, file, source, goal, seed, deadline)?;
-        let side = Side::of_snapshot(&name, &snapshot);
-        Ok(Read { side, source: source.to_owned(), problems: snapshot.problems.to_vec() })
+        let worked_out = work_out_text(name.clone(), file, source, goal, seed, deadline).context(name)?;
+        let side = Side::of_snapshot(&worked_out.name, &worked_out.snapshot);
+        Ok(Read { side, source: source.to_owned(), problems: worked_out.snapshot.problems.to_vec() })
     }
 }
 

@@ -341,7 +341,10 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
     let mut text = match outcome.status {
         Status::Plan => String::new(),
         Status::NoPlan => "no plan\n".to_owned(),
-        Status::Limit => "no answer within the limit\n".to_owned(),
+        Status::Limit if outcome.plans.is_empty() => {
+            "no answer within the limit: whether there is a plan is not decided\n".to_owned()
+        }
+        Status::Limit => "the limit was reached: whether there are more plans is not decided\n".to_owned(),
         Status::Error => {
             let message = outcome.too_large_message(&planned.network);
             message.map(|message| format!("{message}\n")).unwrap_or_default()

@@ -11,7 +11,7 @@ use mission::review::{
 use mission::{Robustness, RobustnessSettings};
 use serde_json::{Value, json};
 
-use crate::deadline::TimeLimit;
+use crate::deadline::{TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::load::Target;
@@ -49,7 +49,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let deadline = args.time_limit.start();
     let worked_out = work_out(&args.target, args.seed, deadline)?;
-    let limit = deadline.enforce();
+    let limit = deadline.enforce(Undecided::Review);
     let WorkedOut { name, snapshot, ground } = &worked_out;
     let mut review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
     let record = args.review.as_deref().map(read_record).transpose()?.unwrap_or_default();
@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         None => record.runs_of(&review.content_hash).map(Runs::robustness),
     };
     review.hold_against(snapshot, &rules, robustness.as_ref(), &mut || false);
-    if let Some(path) = &args.output {
+    let page = args.output.as_deref().map(|path| {
         let page = report::html(&report::Document {
             name,
             snapshot,
@@ -72,7 +72,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             seed: args.seed,
             ground: ground.as_deref(),
         });
-        limit.answered();
+        (path, page)
+    });
+    limit.answered();
+    if let Some((path, page)) = page {
         std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()))?;
     }
     match args.format {

@@ -7,7 +7,7 @@ use mission::review::record::{Entry, RecordError, Runs, short};
 use mission::review::{PlanStatus, Present, Record, Standing, review, standing};
 use serde_json::{Value, json};
 
-use crate::deadline::TimeLimit;
+use crate::deadline::{TimeLimit, Undecided};
 use crate::input::read_text;
 use crate::load::Target;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Target { file: mission.clone(), scenario: args.scenario.clone(), activity: None, bounds: None };
     let deadline = args.time_limit.start();
     let WorkedOut { snapshot, .. } = work_out(&target, args.seed, deadline)?;
-    let limit = deadline.enforce();
+    let limit = deadline.enforce(Undecided::Review);
     let mut review = review(&snapshot, &target.goal()?, args.seed, &mut || false);
     let found = record.runs_of(&review.content_hash).map(Runs::robustness);
     review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);

@@ -13,7 +13,7 @@ use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
 use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
 
-use crate::deadline::{TimeIsUp, TimeLimit};
+use crate::deadline::{TimeIsUp, TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
 use crate::ground::ground;
 use crate::input::{read_json, read_text};
@@ -175,12 +175,12 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         return Ok(Err(exit(NO)));
     };
     let sampler = sampler?;
-    let limit = deadline.enforce();
+    let limit = deadline.enforce(Undecided::Robustness);
     let settings = RobustnessSettings { runs: args.runs, seed: args.seed, uncertainty: uncertainty.clone() };
     let mut tally = Tally::default();
     let mut number = args.shard.part - 1;
     while number < args.runs {
-        ensure!(!deadline.is_over(), TimeIsUp);
+        ensure!(!deadline.is_over(), TimeIsUp(Undecided::Robustness));
         sampler.run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)?;
         number += args.shard.of;
     }

@@ -12,7 +12,7 @@ use rmpl::program::Program;
 use serde_json::{Value, json};
 use tpn::Network;
 
-use crate::deadline::TimeLimit;
+use crate::deadline::{TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
 use crate::ground::ground;
 use crate::input::read_json;
@@ -75,7 +75,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if matches!(args.format, Format::Text) {
         print_problems(&loaded.name, &loaded.source, &problems)?;
     }
-    let limit = deadline.enforce();
+    let limit = deadline.enforce(Undecided::Execution);
     let executed = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths);
     limit.answered();
     let Some(outcome) = executed else {
