@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use anyhow::Context as _;
 use mission::{Grounds, MapKey};
+use rmpl::Diagnostic;
 use rmpl::program::World;
 use terrain::Terrain;
 use terrain::format::{FileFormat, attach_label, image_of_label};
@@ -23,17 +24,28 @@ const LARGEST_LABEL_BYTES: u64 = 1 << 20;
 /// The ground that a mission names, read from the folder of the mission's file unless it comes with Enroute. Fails when
 /// it is nowhere, or the file is no map.
 pub fn ground(mission: &Path, world: &World) -> anyhow::Result<(Grounds, Ground)> {
+    let (grounds, found) = ground_or_problem(mission, world)?;
+    let ground = found.map_err(|problem| {
+        let hint = problem.hint.map_or_else(String::new, |hint| format!(" ({hint})"));
+        anyhow::anyhow!("{}{hint}", problem.message)
+    })?;
+    Ok((grounds, ground))
+}
+
+/// The ground as `ground` finds it, or what is wrong with the mission that names it. Fails when the file is no map.
+pub fn ground_or_problem(
+    mission: &Path,
+    world: &World,
+) -> anyhow::Result<(Grounds, Result<Ground, Diagnostic>)> {
     let mut grounds = Grounds::default();
     if let Some((name, bytes)) = map_file(mission, world)? {
         grounds.import(&name, &bytes).map_err(anyhow::Error::msg).with_context(|| cannot_read(&name))?;
     }
-    let (ground, diagnostics) = grounds.resolve(world);
-    if let Some(diagnostic) = diagnostics.first() {
-        let beside = "a map file stands in the mission's folder";
-        let hint = diagnostic.hint.as_deref().map_or(beside.to_owned(), |hint| format!("{hint}; {beside}"));
-        anyhow::bail!("{} ({hint})", diagnostic.message);
-    }
-    Ok((grounds, ground))
+    let (ground, problems) = grounds.resolve(world);
+    let Some(mut problem) = problems.into_iter().next() else { return Ok((grounds, Ok(ground))) };
+    let beside = "a map file stands in the mission's folder";
+    problem.hint = Some(problem.hint.map_or_else(|| beside.to_owned(), |hint| format!("{hint}; {beside}")));
+    Ok((grounds, Err(problem)))
 }
 
 /// The name and the bytes of the map file that a mission names, if there is such a file beside the mission's.

@@ -138,6 +138,30 @@ fn a_map_is_read_from_the_missions_own_folder_only() {
 }
 
 #[test]
+fn a_terrain_that_cannot_be_read_is_told_whatever_the_mission_does() {
+    let folder = folder("terrain");
+    let vehicle =
+        "location A (2, 2);\nlocation B (5, 5);\nvehicle R : ATRV at A;\nprimitive Go(to)[1,9] moves R;\n";
+    let moves = format!("{vehicle}scenario M[0,100] = {{ Go(B) }}\n");
+    written(&folder, "no-map.png", "no map");
+    for (asset, told) in [
+        ("/etc/passwd", "there is no terrain called \"/etc/passwd\""),
+        ("../secret.asc", "there is no terrain called \"../secret.asc\""),
+        ("no-map.png", "the terrain \"no-map.png\" cannot be used"),
+    ] {
+        for rest in
+            ["scenario M[0,10] = { P() }\nprimitive P()[1,2];\n", moves.as_str(), "location A (2, 2);\n"]
+        {
+            let file = written(&folder, "day.rmpl", &format!("terrain \"{asset}\";\n{rest}"));
+            let check = enroute(&["check", &file]);
+            let printed = String::from_utf8_lossy(&check.stderr);
+            assert_eq!(check.status.code(), Some(2), "{asset}, {rest}: {printed}");
+            assert!(printed.contains(told), "{asset}, {rest}: {printed}");
+        }
+    }
+}
+
+#[test]
 fn numbers_without_a_sense_are_refused() {
     let folder = folder("numbers");
     let text = "location A (2, 2);\nlocation B (18, 18);\nvehicle R : ATRV at A;\n\

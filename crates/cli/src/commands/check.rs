@@ -11,7 +11,7 @@ use serde_json::json;
 
 use crate::deadline::{Deadline, TimeLimit};
 use crate::diagnostics::print_problems;
-use crate::ground::ground;
+use crate::ground::ground_or_problem;
 use crate::input::{read_mission, read_text};
 use crate::load::{is_network, read_network};
 use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
@@ -76,9 +76,13 @@ fn check(file: &Path, source: &str, deadline: Deadline) -> anyhow::Result<Vec<Pr
         }
         (true, true) => Some(Vec::new()),
     };
-    let ground = if networks.is_some() && has_ground { ground(file, &program.world).ok() } else { None };
+    let (mut grounds, ground) = ground_or_problem(file, &program.world)?;
+    let ground = ground.unwrap_or_else(|problem| {
+        diagnostics.push(problem);
+        None
+    });
     // What planning warns of is about vehicles on the ground.
-    if let Some((mut grounds, Some((key, map)))) = ground {
+    if let Some((key, map)) = ground {
         let mut paths = Paths::default();
         for network in networks.into_iter().flatten().map(Arc::new) {
             let problem = planning::Problem {
