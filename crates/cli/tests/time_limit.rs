@@ -6,10 +6,19 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// How long a command may take that has to end after half a second, on a machine that does much else.
-const FOREVER: Duration = Duration::from_secs(120);
+const FOREVER: Duration = Duration::from_mins(2);
 
 /// The exit status of what was not decided.
 const LIMIT: i32 = 3;
+
+/// All that comes from `from`, read beside what else is done.
+fn reader(mut from: impl Read + Send + 'static) -> std::thread::JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut text = String::new();
+        from.read_to_string(&mut text).expect("UTF-8");
+        text
+    })
+}
 
 /// Runs the command with a limit of half a second: its exit status and all that it printed.
 fn limited(arguments: &[&str]) -> (ExitStatus, String) {
@@ -20,13 +29,6 @@ fn limited(arguments: &[&str]) -> (ExitStatus, String) {
         .stderr(Stdio::piped())
         .spawn()
         .expect("the command runs");
-    fn reader(mut from: impl Read + Send + 'static) -> std::thread::JoinHandle<String> {
-        std::thread::spawn(move || {
-            let mut text = String::new();
-            from.read_to_string(&mut text).expect("UTF-8");
-            text
-        })
-    }
     let printed = [reader(child.stdout.take().expect("piped")), reader(child.stderr.take().expect("piped"))];
     let begun = Instant::now();
     let status = loop {
