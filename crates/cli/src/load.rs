@@ -8,14 +8,15 @@ use exact::{Bound, Time};
 use mission::{Goal, Problem};
 use rmpl::diagnostics::network;
 use rmpl::program::Program;
-use tpn::Network;
+use tpn::interchange::Source;
+use tpn::{Network, plandev};
 
 use crate::input::{read_mission, read_text};
 
 /// What is to be compiled or planned.
 #[derive(clap::Args, Debug)]
 pub struct Target {
-    /// A mission text, or a network in JSON or EDN (`.tpn.json`, `.tpn.edn`); `-` is standard input.
+    /// A mission text, or a network in JSON or EDN (`.tpn.json`, `.tpn.edn`), or a plan of `PlanDev` (`.json`); `-` is standard input.
     pub file: PathBuf,
     /// The scenario; the first of the file by default.
     #[arg(long, conflicts_with = "activity")]
@@ -90,9 +91,18 @@ impl Target {
     }
 }
 
+/// What a file holds that another tool wrote: one of the notations of networks, or a plan of `PlanDev`.
+pub fn read_source(text: &str) -> anyhow::Result<Source> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    match serde_json::from_str(text) {
+        Ok(file) if plandev::is_plan(&file) => Ok(Source::PlanSchema(Box::new(plandev::read(&file)?))),
+        _ => Ok(Source::read(text)?),
+    }
+}
+
 /// The network that a file holds, and what is to be said of the file.
 pub fn read_network(name: &str, source: &str) -> anyhow::Result<(Network, Vec<Problem>)> {
-    let read = tpn::interchange::Source::read(source).with_context(|| format!("cannot read {name}"))?;
+    let read = read_source(source).with_context(|| format!("cannot read {name}"))?;
     let not_honoured = read.not_honoured();
     let told = (!not_honoured.is_empty()).then(|| network::not_honoured(&not_honoured));
     let problems = Problem::all(told.as_slice(), source);

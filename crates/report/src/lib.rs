@@ -10,6 +10,7 @@ pub mod export;
 mod figure;
 mod html;
 mod listing;
+pub mod plandev;
 mod style;
 mod tables;
 

@@ -13,6 +13,7 @@ pub mod path;
 pub mod plan;
 pub mod plan_json;
 pub mod plan_schema;
+pub mod plandev;
 pub mod rmpl_text;
 pub mod selection;
 mod spans;

@@ -33,7 +33,8 @@ pub struct Args {
         long,
         value_name = "ISO-DATE",
         required_if_eq("form", "icalendar"),
-        required_if_eq("form", "open-mct")
+        required_if_eq("form", "open-mct"),
+        required_if_eq("form", "plandev")
     )]
     epoch: Option<String>,
     /// The history of the review, as the page saves it: how the plan stands with its board is written.
@@ -63,6 +64,9 @@ enum Form {
     OpenMct,
     /// A calendar.
     Icalendar,
+    /// A plan for `PlanDev` (Aerie).
+    #[value(name = "plandev")]
+    PlanDev,
 }
 
 /// Runs the command.
@@ -112,6 +116,7 @@ impl Args {
             Form::Csv => export::csv(snapshot, &about).context(beyond),
             Form::Json => written(export::json(snapshot, &about).context(beyond)?),
             Form::OpenMct => written(export::open_mct(snapshot, &about).context(beyond)?),
+            Form::PlanDev => written(report::plandev::plandev(snapshot, &about).context(beyond)?),
             Form::Icalendar => export::icalendar(snapshot, &about).context(beyond),
         }
     }

@@ -7,12 +7,13 @@ use anyhow::Context as _;
 use tpn::interchange::Source;
 
 use crate::input::read_text;
+use crate::load::read_source;
 use crate::output::{Format, YES, document, exit, print_json, print_text};
 
 /// Reads a network that another tool wrote, and prints it as `enroute tpn` would.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A plan-schema file in JSON or EDN, or an enroute-tpn document; `-` is standard input.
+    /// A plan-schema file in JSON or EDN, an enroute-tpn document, or a plan of `PlanDev` (Aerie); `-` is standard input.
     file: PathBuf,
     /// For whom the answer is.
     #[arg(long, value_enum, default_value_t)]
@@ -22,7 +23,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let text = read_text(&args.file)?;
-    let source = Source::read(&text).with_context(|| format!("cannot read {}", args.file.display()))?;
+    let source = read_source(&text).with_context(|| format!("cannot read {}", args.file.display()))?;
     let not_planned = match &source {
         Source::Enroute(_) => Vec::new(),
         Source::PlanSchema(document) => document.not_planned.clone(),

@@ -74,9 +74,14 @@ impl Document {
             }
         };
         match value {
-            Value::Object(objects) => read::read(objects),
+            Value::Object(objects) => Self::of_objects(objects),
             _ => Err(PlanSchemaError::Shape("the file is not a map of objects".to_owned())),
         }
+    }
+
+    /// Reads objects by uid, as a file has them.
+    pub(crate) fn of_objects(objects: Map<String, Value>) -> Result<Self, PlanSchemaError> {
+        read::read(objects)
     }
 
     /// Whether `text` looks like a plan-schema file in either notation, rather than a mission in RMPL.
