@@ -76,7 +76,7 @@ fn a_network_is_turned_into_a_mission_in_rmpl_and_nothing_is_lost() {
         let library = &app.session.state().library;
         let mission = library.open_id().and_then(|id| library.mission(id)).expect("a mission of the library");
         let kept =
-            mission.versions.iter().map(|version| (version.name.clone(), version.texts[0].text.to_string()));
+            mission.versions.iter().map(|version| (version.name.clone(), version.texts[0].text.clone()));
         kept.collect::<Vec<_>>()
     };
     assert_eq!(versions(&app), [("Network".to_owned(), NETWORK.to_owned())]);
