@@ -1,7 +1,7 @@
 //! A network as the text of a mission in RMPL that compiles to an equivalent one: the same choices, conditions and
 //! bounds between the events, where its structure allows.
 //!
-//! The arcs have to nest ([`series_parallel`]); bounds beside them become bounds of blocks, or `constrain` where they
+//! The arcs have to nest (`series_parallel`); bounds beside them become bounds of blocks, or `constrain` where they
 //! cover no whole block. What the notation has no words for, or would read differently, is an [`Obstacle`], never left out.
 
 mod blocks;
