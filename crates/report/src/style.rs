@@ -14,11 +14,13 @@ p, ul { margin: .4em 0; }
 table { border-collapse: collapse; width: 100%; margin: .5em 0 1em; font-size: .92em; }
 th { text-align: left; font-weight: 600; color: #4e5b6a; border-bottom: 1px solid #a9b5c2; }
 th, td { padding: .25em .8em .25em 0; vertical-align: top; overflow-wrap: anywhere; }
-td { border-bottom: 1px solid #eef1f4; }
+td { border-bottom: 1px solid #eef1f4; min-width: 4.8em; }
+td.figure { min-width: 0; }
 td.figure, th.figure { text-align: right; font-variant-numeric: tabular-nums; }
 th { overflow-wrap: normal; vertical-align: bottom; }
 td.figure, td:last-child { white-space: nowrap; overflow-wrap: normal; }
 thead { display: table-header-group; }
+.in-print { display: none; }
 del { background: #fbe4e1; text-decoration: none; }
 ins { background: #dff3e4; text-decoration: none; }
 .facts { display: grid; grid-template-columns: max-content 1fr; gap: .1em 1.2em; margin: 1em 0; }
@@ -53,6 +55,8 @@ figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
   :root { font-size: 9.5pt; -webkit-print-color-adjust: exact; print-color-adjust: exact; }
   body { max-width: none; margin: 0; padding: 0; }
   a { color: inherit; }
+  .on-screen { display: none; }
+  .in-print { display: table-row; }
   h2, h3 { break-after: avoid; }
   tr, figure { break-inside: avoid; }
   figure svg { max-height: 225mm; }

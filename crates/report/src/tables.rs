@@ -97,7 +97,6 @@ const MAX_ROWS: usize = 2000;
 fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
     let more = rows.len().saturating_sub(MAX_ROWS);
     if more > 0 {
-        let has_passed = |row: &Vec<String>| row.first().is_some_and(|cell| cell.starts_with(PASSED));
         let mut room = MAX_ROWS;
         let mut keep = vec![false; rows.len()];
         for passed in [false, true] {
@@ -115,6 +114,43 @@ fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
 /// How the cell of what has passed begins.
 const PASSED: &str = "<span class=\"status passed\">";
 
+/// How high the rows of a table may be on paper together, in points: about two pages, so that a report of all sections
+/// stays below what people leaf through.
+const PRINTED_HEIGHT: usize = 1500;
+
+/// How high a row is on paper, in points, judged by how much is written in its cells.
+fn printed_height(row: &[String]) -> usize {
+    let visible = |cell: &String| {
+        let mut is_tag = false;
+        let is_text = |letter: &char| {
+            is_tag = *letter == '<' || (is_tag && *letter != '>');
+            !is_tag && *letter != '>'
+        };
+        cell.chars().filter(is_text).count()
+    };
+    let letters: usize = row.iter().map(visible).sum();
+    5 + 13 * letters.div_ceil(45).max(1)
+}
+
+/// Which rows of a table are printed: what has not passed before what has, while there is room. The others stand on
+/// the screen.
+fn printed(rows: &[Vec<String>]) -> Vec<bool> {
+    let mut room = PRINTED_HEIGHT;
+    let mut is_printed = vec![false; rows.len()];
+    for passed in [false, true] {
+        for (row, is_printed) in rows.iter().zip(&mut is_printed).filter(|(row, _)| has_passed(row) == passed)
+        {
+            *is_printed = room > 0;
+            room = room.saturating_sub(printed_height(row));
+        }
+    }
+    is_printed
+}
+
+fn has_passed(row: &[String]) -> bool {
+    row.first().is_some_and(|cell| cell.starts_with(PASSED))
+}
+
 /// A table of rows of cells that are HTML already; a heading that begins with `#` is that of figures.
 pub(crate) fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let is_figure: Vec<bool> = headings.iter().map(|heading| heading.starts_with('#')).collect();
@@ -128,15 +164,23 @@ pub(crate) fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String
     }
     out.push_str("</tr></thead><tbody>\n");
     let (rows, more) = readable(rows.into_iter().collect());
-    for row in rows {
-        out.push_str("<tr>");
+    let columns = headings.len();
+    let is_printed = printed(&rows);
+    for (row, &is_printed) in rows.iter().zip(&is_printed) {
+        out.push_str(if is_printed { "<tr>" } else { "<tr class=\"on-screen\">" });
         for (column, cell) in row.iter().enumerate() {
             out.push_str(&format!("<td{}>{cell}</td>", class(column)));
         }
         out.push_str("</tr>\n");
     }
+    let on_screen = is_printed.iter().filter(|it| !**it).count();
+    if on_screen > 0 {
+        out.push_str(&format!(
+            "<tr class=\"in-print\"><td colspan=\"{columns}\">and {on_screen} more that are not printed: they stand in this \
+             file on the screen</td></tr>\n"
+        ));
+    }
     if more > 0 {
-        let columns = headings.len();
         out.push_str(&format!(
             "<tr><td colspan=\"{columns}\">and {more} more that are not listed here</td></tr>\n"
         ));
@@ -371,7 +415,13 @@ mod tests {
         };
         let html = table(&["", "What"], (0..80_000).map(row));
         assert_eq!(html.matches("status failed").count(), 80);
-        assert_eq!(html.matches("<tr>").count(), 1 + MAX_ROWS + 1);
+        assert_eq!(html.matches("<tr").count(), 1 + MAX_ROWS + 2);
+        let is_printed = |row: &&str| row.starts_with("<tr>");
+        let printed: Vec<&str> = html.lines().filter(is_printed).collect();
+        assert_eq!(printed.iter().filter(|row| row.contains("status failed")).count(), 80);
+        assert!(printed.len() < 2 + PRINTED_HEIGHT / 18, "{}", printed.len());
+        let on_screen = html.matches("class=\"on-screen\"").count();
+        assert!(html.contains(&format!("and {on_screen} more that are not printed")));
         assert!(html.contains("and 78000 more that are not listed here"));
         assert!(!table(&["", "What"], (0..MAX_ROWS).map(row)).contains("not listed"));
     }
