@@ -117,14 +117,15 @@ pub(crate) fn with_choices(
     }))
 }
 
-/// How often the search in textual order may go back before the solver takes over.
+/// How often the search in textual order may go back before an active schedule is tried and the solver takes over.
 const MAX_BACKTRACKS: u64 = 100;
 /// The same where there are only links and orders to choose, about which it does not learn.
-const MAX_BACKTRACKS_UNDECIDED: u64 = 3;
+const MAX_BACKTRACKS_UNDECIDED: u64 = 0;
 /// How often it may go back where the solver knows a plan in which intervals touch.
 const MAX_BACKTRACKS_TOUCHING: u64 = 2_000;
 
-/// A plan, by a search in textual order where that meets few failures, and otherwise by the solver.
+/// A plan, by a search in textual order where that meets few failures, or by an active schedule from where it stands then,
+/// and otherwise by the solver.
 ///
 /// Both first expect no choice to force intervals to touch. Where there is no plan then and gaps had to do with it, one
 /// that asks for no gaps may show that there is none; otherwise a search that rests such failures on every choice decides.
@@ -143,7 +144,8 @@ fn first_plan(
     first_by_solver(model, options, outcome.stats, termination)
 }
 
-/// The first plan in textual order of those in which no choice forces intervals to touch, if few failures are met.
+/// A plan of those in which no choice forces intervals to touch, if few failures are met: the first one in textual order,
+/// or one with the orders of an active schedule.
 pub(crate) fn first_soon(
     model: &Model,
     options: &Options,
@@ -154,7 +156,8 @@ pub(crate) fn first_soon(
     Ok((outcome.status == Status::Plan).then_some(outcome))
 }
 
-/// One search that trusts gaps and ends after few failures, whether it has doubts, and whether it was stopped.
+/// One search that trusts gaps and ends after few failures with an active schedule, whether it has doubts, and whether it
+/// was stopped.
 fn run_briefly(
     model: &Model,
     options: &Options,
@@ -166,8 +169,17 @@ fn run_briefly(
         is_stopped = termination.should_stop(stats);
         is_stopped || stats.backtracks > most
     };
-    let (outcome, has_doubts) = run(model, options, (Gaps::Trusted, Stats::default()), &mut soon)?;
-    Ok((outcome, has_doubts, is_stopped))
+    let mut engine = engine(model, options, Gaps::Trusted, Stats::default());
+    let mut halt = engine.run(&mut soon)?;
+    if halt == Halt::Stopped && !is_stopped && engine.order_as_scheduled()? {
+        halt = Halt::Solution;
+    }
+    let (status, plans) = match halt {
+        Halt::Solution => (Status::Plan, vec![solution::plan_at(&mut engine)?]),
+        Halt::Exhausted => (Status::NoPlan, Vec::new()),
+        Halt::Stopped => (Status::Limit, Vec::new()),
+    };
+    Ok((ended(status, plans, engine.stats), engine.has_doubts, is_stopped))
 }
 
 /// A plan by the solver.
@@ -279,13 +291,8 @@ fn first_in_order(
     run(model, options, (Gaps::Exact, outcome.stats), termination)
 }
 
-/// One search, after others with `stats`, and whether it has doubts that there is nothing where it found nothing.
-fn run(
-    model: &Model,
-    options: &Options,
-    (gaps, stats): (Gaps, Stats),
-    termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TooLarge> {
+/// A search that is about to begin, after others with `stats`.
+fn engine<'m>(model: &'m Model, options: &Options, gaps: Gaps, stats: Stats) -> Engine<'m> {
     let jumps = options.search.learns();
     let setup = Setup {
         jumps,
@@ -302,6 +309,17 @@ fn run(
         decisions: engine.stats.decisions,
         ..stats
     };
+    engine
+}
+
+/// One search, after others with `stats`, and whether it has doubts that there is nothing where it found nothing.
+fn run(
+    model: &Model,
+    options: &Options,
+    (gaps, stats): (Gaps, Stats),
+    termination: &mut dyn Termination,
+) -> Result<(Outcome, bool), TooLarge> {
+    let mut engine = engine(model, options, gaps, stats);
     let mut plans: Vec<Plan> = Vec::new();
     let mut known = BTreeSet::new();
     let status = loop {
@@ -401,5 +419,40 @@ mod tests {
             }
         }
         assert!(plans > 300 && none > 300, "{plans} have a plan and {none} have none");
+    }
+
+    /// Wherever textual order meets a failure and an active schedule is found instead, it makes a plan.
+    #[test]
+    fn what_is_ordered_as_an_active_schedule_is_a_plan() {
+        let mut texts = Vec::new();
+        for seed in 0..60 {
+            texts.extend([100, 110, 130].map(|percent| open_shop(3 + seed as usize % 3, percent, seed)));
+            texts.extend([85, 100].map(|percent| long_requirements(4, 3, seed, percent)));
+            texts.push(nested(60, 110, seed));
+            texts.push(mission(Recipe { nodes: 60, tightness: Tightness::Feasible, seed }));
+        }
+        let (mut scheduled, mut unscheduled) = (0, 0);
+        for text in &texts {
+            for gap in [None, Some(Time::from(1))] {
+                let mut network = network(text);
+                network.threat_gap = gap.unwrap_or(network.threat_gap);
+                let model = Model::new(&network, None).expect("times fit");
+                let options = Options { search: Search::ConflictDirected, ..Options::default() };
+                let mut engine = engine(&model, &options, Gaps::Trusted, Stats::default());
+                let mut at_once = |stats: &Stats| stats.backtracks > 0;
+                if engine.run(&mut at_once).expect("times fit") != Halt::Stopped {
+                    continue;
+                }
+                if !engine.order_as_scheduled().expect("times fit") {
+                    unscheduled += 1;
+                    continue;
+                }
+                scheduled += 1;
+                let plan = solution::plan_at(&mut engine).expect("times fit");
+                let verdict = verify::check_plan(&network, &plan);
+                assert!(verdict.violations.is_empty(), "{verdict:?}\n{text}");
+            }
+        }
+        assert!(scheduled > 150 && unscheduled > 20, "{scheduled} scheduled, {unscheduled} not");
     }
 }

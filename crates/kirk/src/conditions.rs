@@ -74,7 +74,7 @@ impl Conditions {
             vec![VariableIndex::default(); network.variables.len()].into();
         let mut literals: TiVec<VariableId, TiVec<LiteralId, &Literal>> =
             vec![TiVec::new(); network.variables.len()].into();
-        let mut known: HashMap<&Literal, LiteralId> = HashMap::new();
+        let mut known: HashMap<&Literal, LiteralId> = HashMap::with_capacity(network.labels.len());
         let mut labels = TiVec::with_capacity(network.labels.len());
         for label in &network.labels {
             let variable = label.literal.variable;

@@ -31,6 +31,13 @@ pub(crate) struct Leaf {
     pub(crate) schedule: Vec<i64>,
 }
 
+impl Leaf {
+    /// Distances from and to the start with all links and no order, once they are found.
+    pub(crate) fn windows(&self) -> (&[i64], &[i64]) {
+        (&self.from_start, &self.to_start)
+    }
+}
+
 impl Engine<'_> {
     /// Prepares phase 2. `false` if the selection is inconsistent, or contradicts itself on one arc.
     pub(crate) fn make_leaf(&mut self) -> Result<bool, TooLarge> {
@@ -130,6 +137,7 @@ impl Engine<'_> {
     fn select_chosen(&mut self) {
         let model = self.model;
         self.deselect(0, 0);
+        self.prepare_stn();
         self.stn.clear();
         if let Some(lookahead) = &self.lookahead {
             // Times that fit what the look-ahead knows leave little to move for links.
@@ -187,17 +195,13 @@ impl Engine<'_> {
 
     /// Which of two intervals is over before the other begins, in every schedule (SPEC 5.3).
     fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, TooLarge> {
+        let nested = self.nested_relation(left, right);
+        if nested != Relation::Open {
+            return Ok(nested);
+        }
         let (left_start, left_end) = self.model.interval(left);
         let (right_start, right_end) = self.model.interval(right);
         let (gap_after_left, gap_after_right) = (self.model.gap_after[left], self.model.gap_after[right]);
-        if let Some(structure) = &self.model.structure {
-            let arc = |label: LabelId| self.model.conditions.labels[label].arc;
-            match structure.relation(arc(left), arc(right)) {
-                Relation::Before if gap_after_left == 0 => return Ok(Relation::Before),
-                Relation::After if gap_after_right == 0 => return Ok(Relation::After),
-                _ => {}
-            }
-        }
         self.find_windows()?;
         if self.ends_by(left_end, right_start, gap_after_left) {
             return Ok(Relation::Before);
@@ -213,6 +217,34 @@ impl Engine<'_> {
             return Ok(Relation::After);
         }
         Ok(Relation::Open)
+    }
+
+    /// Which of two intervals nesting alone puts before the other.
+    fn nested_relation(&self, left: LabelId, right: LabelId) -> Relation {
+        let Some(structure) = &self.model.structure else { return Relation::Open };
+        let arc = |label: LabelId| self.model.conditions.labels[label].arc;
+        match structure.relation(arc(left), arc(right)) {
+            Relation::Before if self.model.gap_after[left] == 0 => Relation::Before,
+            Relation::After if self.model.gap_after[right] == 0 => Relation::After,
+            _ => Relation::Open,
+        }
+    }
+
+    /// Which of two intervals nesting or windows put before the other, once there are windows.
+    pub(crate) fn ordered_by_windows(&self, left: LabelId, right: LabelId) -> Relation {
+        let nested = self.nested_relation(left, right);
+        if nested != Relation::Open {
+            return nested;
+        }
+        let (left_start, left_end) = self.model.interval(left);
+        let (right_start, right_end) = self.model.interval(right);
+        if self.ends_by(left_end, right_start, self.model.gap_after[left]) {
+            Relation::Before
+        } else if self.ends_by(right_end, left_start, self.model.gap_after[right]) {
+            Relation::After
+        } else {
+            Relation::Open
+        }
     }
 
     /// Whether the times that are given leave less than the gap between two intervals.
@@ -240,7 +272,7 @@ impl Engine<'_> {
         Origin::Level(self.levels.next_key()).tag()
     }
 
-    fn find_windows(&mut self) -> Result<(), TooLarge> {
+    pub(crate) fn find_windows(&mut self) -> Result<(), TooLarge> {
         if self.leaf.has_windows {
             return Ok(());
         }

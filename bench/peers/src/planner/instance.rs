@@ -5,10 +5,10 @@
 //! them alike: a merge after a choice exists when the choice does, and a pair of conditions that the arcs put in an
 //! order in any case is left out.
 
-use exact::Bound;
+use exact::{Bound, Time};
 use rmpl::program::LabelMode;
 use serde::Serialize;
-use tpn::{ArcKind, Network};
+use tpn::{ArcKind, Label, Network, NodeId};
 
 /// A time interval that exists when a literal holds.
 #[derive(Clone, Copy, Serialize)]
@@ -60,41 +60,53 @@ pub(crate) struct Instance {
 }
 
 impl Instance {
-    /// The problem of a network with whole-numbered bounds, whose start is its first node.
+    /// The problem of a network, in the greatest unit of which all its bounds are whole multiples. Where nothing bounds
+    /// the whole, no event is later than if everything took the longest and came one after the other.
     pub(crate) fn of(network: &Network) -> Self {
-        assert_eq!(network.start.index(), 0, "the start of a program's network is its first node");
         let mut contexts = Contexts::default();
-        let events = contexts.of_events(network);
-        let horizon = network.arcs.iter().filter(|arc| arc.from == network.start && arc.to == network.end);
-        let horizon =
-            horizon.filter_map(|arc| arc.upper.finite()).min().expect("generated missions have a horizon");
+        let mut events = contexts.of_events(network);
+        // Event 0 is the start.
+        let start = network.start.index();
+        events.swap(0, start);
+        let event = |node: NodeId| match node.index() {
+            0 => start,
+            node if node == start => 0,
+            node => node,
+        };
+        let units = units_of(network);
+        let whole = |time: Time| whole(time, units);
+        let spans = network.arcs.iter().filter(|arc| arc.from == network.start && arc.to == network.end);
+        let horizon = spans.filter_map(|arc| arc.upper.finite()).map(whole).min().unwrap_or_else(|| {
+            let longest = network.arcs.iter().map(|arc| whole(arc.upper.finite().unwrap_or(arc.lower)));
+            longest.fold(0_i32, i32::saturating_add).min(i32::MAX / 4)
+        });
         let bounds: Vec<Bounds> = (network.arcs.iter())
             .map(|arc| Bounds {
-                from: arc.from.index(),
-                to: arc.to.index(),
+                from: event(arc.from),
+                to: event(arc.to),
                 lower: whole(arc.lower),
                 upper: match arc.upper {
                     Bound::Finite(upper) => Some(whole(upper)),
                     Bound::Infinite => None,
                 },
                 when: if arc.kind == ArcKind::Choice {
-                    events[arc.to.index()]
+                    events[event(arc.to)]
                 } else {
-                    events[arc.from.index()]
+                    events[event(arc.from)]
                 },
             })
             .collect();
         let choices = (network.decisions.iter())
             .map(|decision| Choice {
-                when: events[decision.node.index()],
+                when: events[event(decision.node)],
                 alternatives: (decision.alternatives.iter())
-                    .map(|arc| events[network.arcs[arc.index()].to.index()])
+                    .map(|arc| events[event(network.arcs[arc.index()].to)])
                     .collect(),
             })
             .collect();
-        let interval = |label: &tpn::Label| {
+        let interval = |label: &Label| {
             let arc = &network.arcs[label.arc.index()];
-            Interval { when: events[arc.from.index()], start: arc.from.index(), end: arc.to.index() }
+            Interval { when: events[event(arc.from)], start: event(arc.from), end: event(arc.to) }
         };
         let requirements = (network.labels.iter().filter(|label| label.mode == LabelMode::Ask))
             .map(|ask| Requirement {
@@ -103,7 +115,7 @@ impl Instance {
                     .filter(|tell| tell.mode == LabelMode::Tell && tell.literal.supports(&ask.literal))
                     .map(interval)
                     .filter(|tell| {
-                        !contexts.exclude(tell.when, events[network.arcs[ask.arc.index()].from.index()])
+                        !contexts.exclude(tell.when, events[event(network.arcs[ask.arc.index()].from)])
                     })
                     .collect(),
             })
@@ -114,8 +126,8 @@ impl Instance {
                 if first.literal.conflicts(&second.literal) {
                     let (one, other) = (interval(first), interval(second));
                     if !contexts.exclude(one.when, other.when)
-                        && !is_ordered(network, first, one, other)
-                        && !is_ordered(network, second, other, one)
+                        && !is_ordered(network, first, second)
+                        && !is_ordered(network, second, first)
                     {
                         conflicts.push((one, other));
                     }
@@ -125,7 +137,7 @@ impl Instance {
         Self {
             literals: contexts.parents.len(),
             events,
-            horizon: whole(horizon),
+            horizon,
             choices,
             bounds,
             requirements,
@@ -136,27 +148,41 @@ impl Instance {
 }
 
 /// Whether the arcs alone put `first` before `second`; touching is enough, unless it is a point.
-fn is_ordered(network: &Network, label: &tpn::Label, first: Interval, second: Interval) -> bool {
-    let arc = &network.arcs[label.arc.index()];
-    if arc.upper == Bound::Finite(exact::Time::ZERO) {
+fn is_ordered(network: &Network, first: &Label, second: &Label) -> bool {
+    let arc = &network.arcs[first.arc.index()];
+    if arc.upper == Bound::Finite(Time::ZERO) {
         return false;
     }
+    let start = network.arcs[second.arc.index()].from;
     let mut seen = vec![false; network.nodes.len()];
-    let mut open = vec![first.end];
+    let mut open = vec![arc.to];
     while let Some(node) = open.pop() {
-        if node == second.start {
+        if node == start {
             return true;
         }
-        if !std::mem::replace(&mut seen[node], true) {
-            open.extend(network.nodes[node].out_arcs.iter().map(|arc| network.arcs[arc.index()].to.index()));
+        if !std::mem::replace(&mut seen[node.index()], true) {
+            open.extend(network.nodes[node.index()].out_arcs.iter().map(|arc| network.arcs[arc.index()].to));
         }
     }
     false
 }
 
-fn whole(time: exact::Time) -> i32 {
-    assert!(time.is_integer(), "generated missions have whole bounds");
-    i32::try_from(time.numerator()).expect("generated missions are short")
+/// In how many parts a unit of time is divided for all bounds to be whole.
+fn units_of(network: &Network) -> i128 {
+    let bounds = network.arcs.iter().flat_map(|arc| [Some(arc.lower), arc.upper.finite()]).flatten();
+    bounds.chain([network.threat_gap]).fold(1, |units, time| {
+        let denominator = i128::from(time.denominator());
+        units / greatest_common_divisor(units, denominator) * denominator
+    })
+}
+
+fn greatest_common_divisor(one: i128, other: i128) -> i128 {
+    if other == 0 { one } else { greatest_common_divisor(other, one % other) }
+}
+
+fn whole(time: Time, units: i128) -> i32 {
+    let whole = i128::from(time.numerator()) * (units / i128::from(time.denominator()));
+    i32::try_from(whole).expect("missions of the benchmark are short")
 }
 
 /// The literals: 0 and one per alternative.

@@ -5,8 +5,9 @@
 //! order with assertions in textual order, and conflicting pairs in textual order with the textual order of the pair
 //! first; jumping back skips only what cannot hold a plan, and an assertion that windows refuse is tried last, where it
 //! fails as it would have failed before. So both find the same first plan, the canonical one, where this search comes to an
-//! end; where the one that jumps back meets many failures, the solver takes over.
+//! end; where the one that jumps back meets many failures, an active schedule is tried, and then the solver takes over.
 
+mod active_schedule;
 mod apply;
 mod origin;
 mod retreat;
@@ -80,9 +81,6 @@ impl<'m> Engine<'m> {
         let structure =
             model.structure.as_ref().filter(|_| setup.by_structure && setup.trace_events.is_none());
 
-        let mut stn = Stn::new(model.num_nodes);
-        stn.reserve(model.arcs.len() * 2 + 64);
-        stn.set_origin(point(model.start));
         let stats = Stats {
             nodes: model.num_nodes as u64,
             arcs: model.arcs.len() as u64,
@@ -91,9 +89,9 @@ impl<'m> Engine<'m> {
         };
         let (num_arcs, num_decisions) =
             if model.has_contexts { (0, 0) } else { (model.arcs.len(), model.decisions.len()) };
-        Self {
+        let mut engine = Self {
             model,
-            stn,
+            stn: Stn::new(0),
             chosen: vec![None; model.decisions.len()].into(),
             level_of: vec![None; model.decisions.len()].into(),
             levels: TiVec::new(),
@@ -119,6 +117,19 @@ impl<'m> Engine<'m> {
             has_begun: false,
             has_doubts: false,
             setup,
+        };
+        if structure.is_none() {
+            engine.prepare_stn();
+        }
+        engine
+    }
+
+    /// Gives the network of times its points, which a search by structure does not need before all choices are made.
+    pub(crate) fn prepare_stn(&mut self) {
+        if self.stn.num_points() == 0 {
+            self.stn.resize(self.model.num_nodes);
+            self.stn.reserve(self.model.arcs.len() * 2 + 64);
+            self.stn.set_origin(point(self.model.start));
         }
     }
 

@@ -106,7 +106,7 @@ impl Engine<'_> {
     }
 
     /// Removes a level that is jumped over.
-    fn drop_level(&mut self) {
+    pub(super) fn drop_level(&mut self) {
         let Some(level) = self.levels.pop() else { return };
         self.at = level.tree_node;
         if let Kind::Decision { decision } = level.kind {

@@ -1,0 +1,369 @@
+//! An active schedule of what excludes each other at a complete choice: none of its intervals could begin earlier without
+//! another one beginning later (Giffler and Thompson 1960).
+//!
+//! Where textual order has failed, tasks are placed one after the other, each as early as those placed before it allow. Of
+//! those that compete for the place that ends first, the most urgent one by a priority rule gets it. Where none of a few
+//! rules leads to times that fit, nothing is known, and the solver decides.
+
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, VecDeque};
+
+use tpn::LabelId;
+
+use super::{Choices, Engine};
+use crate::levels::Kind;
+use crate::model::{INFINITE, node};
+use crate::structure::Relation;
+use crate::too_large::TooLarge;
+
+/// In one schedule, times move at most so often for each edge and pair there is.
+const MAX_MOVES_EACH: usize = 8;
+/// More pairs than this are left alone.
+const MAX_PAIRS: usize = 1 << 23;
+/// The place of an interval that has none yet.
+const UNPLACED: u32 = u32::MAX;
+
+impl Engine<'_> {
+    /// Takes back the orders chosen so far and chooses those of an active schedule, if one is found. `false` if there is
+    /// none, or what was chosen before is not complete; then the search is of no further use.
+    pub(crate) fn order_as_scheduled(&mut self) -> Result<bool, TooLarge> {
+        while matches!(self.levels.last().map(|level| &level.kind), Some(Kind::Threat { .. })) {
+            if let Some(depth) = self.levels.last_key() {
+                self.undo_alternative(depth);
+                self.drop_level();
+            }
+        }
+        let num_linked = self.levels.iter().filter(|level| matches!(level.kind, Kind::Link { .. })).count();
+        if !self.leaf.is_ready || num_linked < self.leaf.asks.len() {
+            return Ok(false);
+        }
+        let Some(mut shop) = self.shop()? else { return Ok(false) };
+        let Some(times) = RULES.iter().find_map(|&rule| shop.schedule(rule)) else { return Ok(false) };
+        self.stn.propose(times.iter().copied());
+        let alternatives = vec![None; self.model.decisions.len()].into();
+        self.setup.assumed = Some(Choices { alternatives, times, ..Choices::default() });
+        let mut next = self.next_threat(0)?;
+        while let Some((position, left, right)) = next {
+            self.push_level(Kind::Threat { position, left, right });
+            if !self.try_alternatives()? {
+                return Ok(false);
+            }
+            next = self.next_threat(position + 1)?;
+        }
+        Ok(true)
+    }
+
+    /// What there is to schedule: the pairs that are in no order yet.
+    fn shop(&mut self) -> Result<Option<Shop>, TooLarge> {
+        self.find_windows()?;
+        let mut pairs = Vec::new();
+        for position in 0..self.leaf.pairs.len() {
+            let (left, right) = self.leaf.pairs[position];
+            if self.ordered_by_windows(left, right) == Relation::Open {
+                pairs.push((left, right));
+            }
+        }
+        let is_small = !pairs.is_empty() && pairs.len() <= MAX_PAIRS;
+        Ok(is_small.then(|| Shop::new(self, &pairs)))
+    }
+}
+
+/// Sets of numbers by number, one behind the other.
+struct Rows<T> {
+    first: Vec<u32>,
+    cells: Vec<T>,
+}
+
+impl<T: Copy + Default> Rows<T> {
+    fn new(rows: usize, entries: impl Iterator<Item = (usize, T)> + Clone) -> Self {
+        let mut first = vec![0_u32; rows + 1];
+        for (row, _) in entries.clone() {
+            first[row + 1] += 1;
+        }
+        for row in 0..rows {
+            first[row + 1] += first[row];
+        }
+        let mut next = first.clone();
+        let mut cells = vec![T::default(); first[rows] as usize];
+        for (row, cell) in entries {
+            cells[next[row] as usize] = cell;
+            next[row] += 1;
+        }
+        Self { first, cells }
+    }
+
+    fn row(&self, row: usize) -> &[T] {
+        &self.cells[self.range(row)]
+    }
+
+    fn range(&self, row: usize) -> std::ops::Range<usize> {
+        self.first[row] as usize..self.first[row + 1] as usize
+    }
+}
+
+/// Tasks over difference constraints: intervals that begin together, some of which exclude those of other tasks.
+struct Shop {
+    /// The points at which each interval starts and ends.
+    intervals: Vec<(usize, usize)>,
+    /// The task of each interval.
+    task_of: Vec<u32>,
+    /// By task: its intervals.
+    tasks: Rows<u32>,
+    /// By interval: those that exclude it.
+    rivals: Rows<u32>,
+    /// By point: the intervals that end there.
+    ending: Rows<u32>,
+    /// By point: others that are at most so much earlier.
+    edges: Rows<(u32, i64)>,
+    gap: i64,
+    earliest: Vec<i64>,
+    latest: Vec<i64>,
+
+    times: Vec<i64>,
+    /// When each task is placed.
+    place: Vec<u32>,
+    /// By interval: how long its rivals without a place take together.
+    work: Vec<i64>,
+    moved: VecDeque<u32>,
+    is_waiting: Vec<bool>,
+    moves_left: usize,
+}
+
+/// What makes one task more urgent than another.
+#[derive(Clone, Copy)]
+enum Urgency {
+    /// That it must begin early.
+    LatestStart,
+    /// How much work waits for what it uses, too.
+    WorkOfAll,
+    /// How much work waits for the most wanted of what it uses, too.
+    WorkOfOne,
+}
+
+/// How a schedule is made.
+#[derive(Clone, Copy)]
+struct Rule {
+    /// Whether only those compete that can begin first, so that nothing waits without need.
+    is_non_delay: bool,
+    urgency: Urgency,
+}
+
+/// The rules that are tried, in this order.
+const RULES: [Rule; 4] = [
+    Rule { is_non_delay: true, urgency: Urgency::WorkOfOne },
+    Rule { is_non_delay: true, urgency: Urgency::LatestStart },
+    Rule { is_non_delay: false, urgency: Urgency::WorkOfAll },
+    Rule { is_non_delay: false, urgency: Urgency::WorkOfOne },
+];
+
+impl Shop {
+    fn new(engine: &Engine<'_>, pairs: &[(LabelId, LabelId)]) -> Self {
+        let mut labels: Vec<LabelId> = pairs.iter().flat_map(|&(left, right)| [left, right]).collect();
+        labels.sort_unstable();
+        labels.dedup();
+        let mut number = vec![0_u32; engine.model.conditions.labels.len()];
+        for (position, &label) in labels.iter().enumerate() {
+            number[usize::from(label)] = position as u32;
+        }
+        let num_points = engine.stn.num_points();
+        let mut task_at = vec![UNPLACED; num_points];
+        let (mut intervals, mut task_of) = (Vec::new(), Vec::new());
+        let mut num_tasks = 0;
+        for &label in &labels {
+            let (start, end) = engine.model.interval(label);
+            intervals.push((start.index(), end.index()));
+            let task = &mut task_at[engine.model.representative(node(start)).index()];
+            if *task == UNPLACED {
+                *task = num_tasks;
+                num_tasks += 1;
+            }
+            task_of.push(*task);
+        }
+        let tasks = (0..).zip(&task_of).map(|(interval, &task)| (task as usize, interval));
+        let tasks = Rows::new(num_tasks as usize, tasks);
+        let rivals = pairs.iter().flat_map(|&(left, right)| {
+            let (left, right) = (number[usize::from(left)], number[usize::from(right)]);
+            [(left as usize, right), (right as usize, left)]
+        });
+        let rivals = Rows::new(intervals.len(), rivals);
+        let ending = (0..).zip(&intervals).map(|(interval, &(_, end))| (end, interval));
+        let ending = Rows::new(num_points, ending);
+        let stn = &engine.stn;
+        let edges = (0..stn.num_edges()).filter_map(|position| stn.edge(position));
+        let edges = edges.map(|edge| (edge.to.index(), (edge.from.index() as u32, edge.weight)));
+        let edges = Rows::new(num_points, edges);
+        let (latest, to_start) = engine.leaf.windows();
+        let earliest = to_start.iter().map(|&distance| if distance == INFINITE { 0 } else { -distance });
+        Self {
+            times: Vec::new(),
+            place: Vec::new(),
+            work: Vec::new(),
+            moved: VecDeque::new(),
+            is_waiting: vec![false; num_points],
+            moves_left: 0,
+            gap: engine.model.gap,
+            earliest: earliest.collect(),
+            latest: latest.to_vec(),
+            intervals,
+            task_of,
+            tasks,
+            rivals,
+            ending,
+            edges,
+        }
+    }
+
+    /// Times by point that fit, if this attempt finds some.
+    fn schedule(&mut self, rule: Rule) -> Option<Vec<i64>> {
+        self.times.clone_from(&self.earliest);
+        let num_tasks = self.tasks.first.len() - 1;
+        self.place.clear();
+        self.place.resize(num_tasks, UNPLACED);
+        self.moves_left = MAX_MOVES_EACH * (self.edges.cells.len() + self.rivals.cells.len());
+        self.sum_work();
+        let mut waiting: BinaryHeap<Reverse<(i64, usize)>> =
+            (0..num_tasks).map(|task| Reverse((self.end(task), task))).collect();
+        let mut placed = 0;
+        while let Some(Reverse((end, first))) = waiting.pop() {
+            if self.place[first] != UNPLACED {
+                continue;
+            }
+            let now = self.end(first);
+            if now > end {
+                waiting.push(Reverse((now, first)));
+                continue;
+            }
+            let chosen = self.most_urgent(first, rule);
+            if chosen != first {
+                waiting.push(Reverse((end, first)));
+            }
+            self.place[chosen] = placed;
+            placed += 1;
+            if self.put_rivals_behind(chosen).is_none() {
+                self.is_waiting.fill(false);
+                self.moved.clear();
+                return None;
+            }
+        }
+        Some(self.times.clone())
+    }
+
+    fn sum_work(&mut self) {
+        self.work.clear();
+        for interval in 0..self.intervals.len() {
+            let durations = self.rivals.row(interval).iter().map(|&rival| self.duration(rival as usize));
+            self.work.push(durations.fold(0, i64::saturating_add));
+        }
+    }
+
+    /// The least time that an interval takes.
+    fn duration(&self, interval: usize) -> i64 {
+        let (start, end) = self.intervals[interval];
+        self.earliest[end] - self.earliest[start]
+    }
+
+    /// Where a task begins.
+    fn start_point(&self, task: usize) -> usize {
+        self.intervals[self.tasks.row(task)[0] as usize].0
+    }
+
+    /// When a task begins, as things stand.
+    fn start(&self, task: usize) -> i64 {
+        self.times[self.start_point(task)]
+    }
+
+    /// When a task ends, as things stand.
+    fn end(&self, task: usize) -> i64 {
+        let ends =
+            self.tasks.row(task).iter().map(|&interval| self.times[self.intervals[interval as usize].1]);
+        ends.max().unwrap_or(0)
+    }
+
+    /// Of a task and its rivals that compete for its place, the one that is hurried most.
+    fn most_urgent(&self, first: usize, rule: Rule) -> usize {
+        let urgency = |task: usize| {
+            let intervals = self.tasks.row(task);
+            let works = intervals.iter().map(|&interval| self.work[interval as usize]);
+            let work = match rule.urgency {
+                Urgency::LatestStart => 0,
+                Urgency::WorkOfAll => works.fold(0, i64::saturating_add),
+                Urgency::WorkOfOne => works.max().unwrap_or(0),
+            };
+            let start = self.start_point(task);
+            (self.latest[start].saturating_sub(work), self.times[start], task)
+        };
+        let rivals = self.tasks.row(first).iter().flat_map(|&interval| self.rivals.row(interval as usize));
+        let rivals = rivals.map(|&rival| self.task_of[rival as usize] as usize);
+        let rivals = rivals.filter(|&rival| self.place[rival] == UNPLACED);
+        let end = if rule.is_non_delay {
+            rivals.clone().map(|rival| self.start(rival)).min().unwrap_or(i64::MAX).min(self.start(first)) + 1
+        } else {
+            self.end(first)
+        };
+        let competing = rivals.chain([first]).filter(|&task| self.start(task) < end);
+        competing.min_by_key(|&task| urgency(task)).unwrap_or(first)
+    }
+
+    /// Makes the rivals of a task that has been placed begin after it. `None` if something comes too late then.
+    fn put_rivals_behind(&mut self, placed: usize) -> Option<()> {
+        for position in self.tasks.range(placed) {
+            let interval = self.tasks.cells[position] as usize;
+            let duration = self.duration(interval);
+            for position in self.rivals.range(interval) {
+                let rival = self.rivals.cells[position] as usize;
+                let task = self.task_of[rival] as usize;
+                if self.place[task] == UNPLACED {
+                    self.work[rival] = self.work[rival].saturating_sub(duration);
+                    let time = self.times[self.intervals[interval].1].saturating_add(self.gap);
+                    self.delay(self.intervals[rival].0, time)?;
+                    self.settle()?;
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Moves a point to `time` at the earliest.
+    fn delay(&mut self, point: usize, time: i64) -> Option<()> {
+        if time <= self.times[point] {
+            return Some(());
+        }
+        if time > self.latest[point] || self.moves_left == 0 {
+            return None;
+        }
+        self.moves_left -= 1;
+        self.times[point] = time;
+        if !self.is_waiting[point] {
+            self.is_waiting[point] = true;
+            self.moved.push_back(point as u32);
+        }
+        Some(())
+    }
+
+    /// Moves what has to move with the points that have moved.
+    fn settle(&mut self) -> Option<()> {
+        while let Some(point) = self.moved.pop_front() {
+            let point = point as usize;
+            self.is_waiting[point] = false;
+            let time = self.times[point];
+            for position in self.edges.range(point) {
+                let (other, weight) = self.edges.cells[position];
+                self.delay(other as usize, time.saturating_sub(weight))?;
+            }
+            for position in self.ending.range(point) {
+                let ended = self.ending.cells[position] as usize;
+                let place = self.place[self.task_of[ended] as usize];
+                if place == UNPLACED {
+                    continue;
+                }
+                for position in self.rivals.range(ended) {
+                    let rival = self.rivals.cells[position] as usize;
+                    if self.place[self.task_of[rival] as usize] > place {
+                        self.delay(self.intervals[rival].0, time.saturating_add(self.gap))?;
+                    }
+                }
+            }
+        }
+        Some(())
+    }
+}
