@@ -170,6 +170,7 @@ fn run_briefly(
         is_stopped || stats.backtracks > most
     };
     let mut engine = engine(model, options, Gaps::Trusted, Stats::default());
+    engine.setup.schedules = true;
     let mut halt = engine.run(&mut soon)?;
     if halt == Halt::Stopped && !is_stopped && engine.order_as_scheduled()? {
         halt = Halt::Solution;

@@ -76,9 +76,7 @@ impl Engine<'_> {
 
     /// The first pair at `from` or later that is in neither order yet, with its position.
     pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, LabelId, LabelId)>, TooLarge> {
-        if !self.leaf.has_pairs {
-            self.find_pairs();
-        }
+        self.find_pairs();
         for position in from..self.leaf.pairs.len() as u32 {
             let (left, right) = self.leaf.pairs[position as usize];
             match self.relation(left, right)? {
@@ -167,8 +165,11 @@ impl Engine<'_> {
         }
     }
 
-    fn find_pairs(&mut self) {
-        self.leaf.has_pairs = true;
+    /// Finds the conflicting pairs, if they are not known yet.
+    pub(crate) fn find_pairs(&mut self) {
+        if std::mem::replace(&mut self.leaf.has_pairs, true) {
+            return;
+        }
         self.leaf.schedule.clear();
         self.leaf.schedule.extend_from_slice(self.stn.schedule());
         self.leaf.pairs.clear();
@@ -194,7 +195,7 @@ impl Engine<'_> {
     }
 
     /// Which of two intervals is over before the other begins, in every schedule (SPEC 5.3).
-    fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, TooLarge> {
+    pub(crate) fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, TooLarge> {
         let nested = self.nested_relation(left, right);
         if nested != Relation::Open {
             return Ok(nested);

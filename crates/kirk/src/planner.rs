@@ -3,20 +3,21 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
-use tpn::{ArcId, Network};
+use tpn::{ArcId, Network, Plan};
 
-use crate::answer;
 use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Termination};
 use crate::search::Choices;
 use crate::too_large::TooLarge;
+use crate::{answer, demanding};
 
-/// Plans one network repeatedly. Plans are those of [`crate::plan`] on the changed network, whatever was asked before;
-/// only the statistics tell how little was left to do.
+/// Plans one network repeatedly.
 ///
-/// While no bound is wider than when the network was last searched, all that failed then still fails, so that the
-/// choices of the plan found then need only be checked. Where that does not hold, or where gaps alone made something
-/// fail, the network is searched again.
+/// A conflict-directed search keeps what the last plan chose as long as that still is a plan, so that a small change
+/// changes little: it may be another plan than [`crate::plan`] finds. A chronological search answers as [`crate::plan`]
+/// does, whatever was asked before: while no bound is wider than when the network was last searched, all that failed then
+/// still fails, and the choices of the plan found then need only be checked. Where that does not hold, or where gaps alone
+/// made something fail, the network is searched again.
 #[derive(Clone, Debug)]
 pub struct Planner {
     network: Network,
@@ -83,7 +84,7 @@ impl Planner {
         if is_repeatable
             && let Some(last) = &mut self.last
             && last.search == options.search
-            && last.covers(model)
+            && (options.search.learns() || last.covers(model))
             && let Ok(Some(outcome)) =
                 answer::with_choices(model, &last.choices, &mut last.schedule, termination)
         {
@@ -96,19 +97,11 @@ impl Planner {
                 return Outcome::of_size(overflow);
             }
         };
-        self.last = outcome.plans.first().filter(|_| is_repeatable && !has_doubts).map(|plan| {
-            let mut choices = Choices {
-                alternatives: vec![None; model.decisions.len()].into(),
-                carriers: vec![None; model.conditions.labels.len()].into(),
-                times: Vec::new(),
-            };
-            for choice in &plan.choices {
-                choices.alternatives[choice.decision] = Some(choice.alternative);
-            }
-            for link in &plan.causal_links {
-                choices.carriers[link.ask] = Some(link.tell);
-            }
-            Searched { search: options.search, choices, schedule: Vec::new(), changed: BTreeMap::new() }
+        let can_be_kept = if options.search.learns() { !demanding::has_demands(model) } else { !has_doubts };
+        self.last = outcome.plans.first().filter(|_| is_repeatable && can_be_kept).map(|plan| {
+            let choices = choices_of(model, plan, options.search);
+            let schedule = choices.times.clone();
+            Searched { search: options.search, choices, schedule, changed: BTreeMap::new() }
         });
         outcome
     }
@@ -130,4 +123,26 @@ impl Planner {
         model.structure = Some(structure);
         Ok(is_kept)
     }
+}
+
+/// What a plan chose. A search that tries orders in their textual order is not told how the plan orders them.
+fn choices_of(model: &Model, plan: &Plan, search: Search) -> Choices {
+    let mut choices = Choices {
+        alternatives: vec![None; model.decisions.len()].into(),
+        carriers: vec![None; model.conditions.labels.len()].into(),
+        times: Vec::new(),
+    };
+    for choice in &plan.choices {
+        choices.alternatives[choice.decision] = Some(choice.alternative);
+    }
+    for link in &plan.causal_links {
+        choices.carriers[link.ask] = Some(link.tell);
+    }
+    if search.learns() {
+        let earliest =
+            plan.windows.iter().map(|window| window.as_ref().map_or(Time::ZERO, |window| window.earliest));
+        let times: Result<Vec<i64>, _> = earliest.map(|time| model.units(time)).collect();
+        choices.times = times.unwrap_or_default();
+    }
+    choices
 }

@@ -11,6 +11,7 @@ use std::collections::{BinaryHeap, VecDeque};
 use tpn::LabelId;
 
 use super::{Choices, Engine};
+use crate::conditions::Conditions;
 use crate::levels::Kind;
 use crate::model::{INFINITE, node};
 use crate::structure::Relation;
@@ -18,21 +19,36 @@ use crate::too_large::TooLarge;
 
 /// In one schedule, times move at most so often for each edge and pair there is.
 const MAX_MOVES_EACH: usize = 8;
+/// With more pairs than this a schedule is tried before textual order.
+const MAX_PAIRS_IN_ORDER: usize = 20_000;
 /// More pairs than this are left alone.
 const MAX_PAIRS: usize = 1 << 23;
-/// The place of an interval that has none yet.
+/// How many rivals in between are asked whether an order follows from theirs.
+const MAX_ASKED: usize = 8;
+/// The place of a task that has none yet.
 const UNPLACED: u32 = u32::MAX;
 
 impl Engine<'_> {
-    /// Takes back the orders chosen so far and chooses those of an active schedule, if one is found. `false` if there is
-    /// none, or what was chosen before is not complete; then the search is of no further use.
-    pub(crate) fn order_as_scheduled(&mut self) -> Result<bool, TooLarge> {
-        while matches!(self.levels.last().map(|level| &level.kind), Some(Kind::Threat { .. })) {
-            if let Some(depth) = self.levels.last_key() {
-                self.undo_alternative(depth);
-                self.drop_level();
-            }
+    /// Before the first order is chosen: whether all of them could be chosen at once, as times that were given have them,
+    /// or those of an active schedule where there are too many pairs to go through.
+    pub(super) fn orders_at_once(&mut self) -> Result<bool, TooLarge> {
+        let is_given = self.setup.assumed.as_ref().is_some_and(|assumed| !assumed.times.is_empty());
+        if is_given && !self.setup.orders_touching_last {
+            let Some(mut shop) = self.shop()? else { return Ok(false) };
+            let times = self.setup.assumed.as_ref().map_or_else(Vec::new, |assumed| assumed.times.clone());
+            shop.place_by(times);
+            return self.order_neighbours(&shop);
         }
+        if self.setup.schedules && self.leaf.pairs.len() > MAX_PAIRS_IN_ORDER {
+            return self.order_as_scheduled();
+        }
+        Ok(false)
+    }
+
+    /// Takes back the orders chosen so far and chooses those of an active schedule, if one is found. `false` if there is
+    /// none, or what was chosen before is not complete.
+    pub(crate) fn order_as_scheduled(&mut self) -> Result<bool, TooLarge> {
+        self.drop_orders();
         let num_linked = self.levels.iter().filter(|level| matches!(level.kind, Kind::Link { .. })).count();
         if !self.leaf.is_ready || num_linked < self.leaf.asks.len() {
             return Ok(false);
@@ -41,30 +57,56 @@ impl Engine<'_> {
         let Some(times) = RULES.iter().find_map(|&rule| shop.schedule(rule)) else { return Ok(false) };
         self.stn.propose(times.iter().copied());
         let alternatives = vec![None; self.model.decisions.len()].into();
-        self.setup.assumed = Some(Choices { alternatives, times, ..Choices::default() });
-        let mut next = self.next_threat(0)?;
-        while let Some((position, left, right)) = next {
-            self.push_level(Kind::Threat { position, left, right });
-            if !self.try_alternatives()? {
-                return Ok(false);
-            }
-            next = self.next_threat(position + 1)?;
-        }
-        Ok(true)
+        let assumed = self.setup.assumed.replace(Choices { alternatives, times, ..Choices::default() });
+        let is_ordered = self.order_neighbours(&shop);
+        self.setup.assumed = assumed;
+        is_ordered
     }
 
-    /// What there is to schedule: the pairs that are in no order yet.
+    fn drop_orders(&mut self) {
+        while matches!(self.levels.last().map(|level| &level.kind), Some(Kind::Threat { .. })) {
+            if let Some(depth) = self.levels.last_key() {
+                self.undo_alternative(depth);
+                self.drop_level();
+            }
+        }
+    }
+
+    /// What there is to schedule: the pairs that neither nesting nor windows order.
     fn shop(&mut self) -> Result<Option<Shop>, TooLarge> {
         self.find_windows()?;
         let mut pairs = Vec::new();
         for position in 0..self.leaf.pairs.len() {
             let (left, right) = self.leaf.pairs[position];
-            if self.ordered_by_windows(left, right) == Relation::Open {
-                pairs.push((left, right));
+            match self.ordered_by_windows(left, right) {
+                Relation::Open => pairs.push(position as u32),
+                order => self.leaf.is_swapped[position] = order == Relation::After,
             }
         }
         let is_small = !pairs.is_empty() && pairs.len() <= MAX_PAIRS;
-        Ok(is_small.then(|| Shop::new(self, &pairs)))
+        Ok(is_small.then(|| Shop::new(self, pairs)))
+    }
+
+    /// Orders what is scheduled one right after the other. The other pairs follow from that.
+    fn order_neighbours(&mut self, shop: &Shop) -> Result<bool, TooLarge> {
+        for &position in &shop.pairs {
+            let (left, right) = self.leaf.pairs[position as usize];
+            self.leaf.is_swapped[position as usize] = self.assumed_order(left, right) == Some(1);
+        }
+        for position in shop.neighbours(&self.model.conditions, &self.leaf.pairs) {
+            let (left, right) = self.leaf.pairs[position as usize];
+            match self.relation(left, right)? {
+                Relation::Open => {
+                    self.push_level(Kind::Threat { position, left, right });
+                    if !self.try_alternatives()? {
+                        self.drop_orders();
+                        return Ok(false);
+                    }
+                }
+                order => self.leaf.is_swapped[position as usize] = order == Relation::After,
+            }
+        }
+        Ok(true)
     }
 }
 
@@ -103,6 +145,10 @@ impl<T: Copy + Default> Rows<T> {
 
 /// Tasks over difference constraints: intervals that begin together, some of which exclude those of other tasks.
 struct Shop {
+    /// What there is to order, by position among the pairs of the leaf.
+    pairs: Vec<u32>,
+    /// The label of each interval, in ascending order.
+    labels: Vec<LabelId>,
     /// The points at which each interval starts and ends.
     intervals: Vec<(usize, usize)>,
     /// The task of each interval.
@@ -157,8 +203,9 @@ const RULES: [Rule; 4] = [
 ];
 
 impl Shop {
-    fn new(engine: &Engine<'_>, pairs: &[(LabelId, LabelId)]) -> Self {
-        let mut labels: Vec<LabelId> = pairs.iter().flat_map(|&(left, right)| [left, right]).collect();
+    fn new(engine: &Engine<'_>, pairs: Vec<u32>) -> Self {
+        let both = |&position: &u32| <[LabelId; 2]>::from(engine.leaf.pairs[position as usize]);
+        let mut labels: Vec<LabelId> = pairs.iter().flat_map(both).collect();
         labels.sort_unstable();
         labels.dedup();
         let mut number = vec![0_u32; engine.model.conditions.labels.len()];
@@ -181,8 +228,8 @@ impl Shop {
         }
         let tasks = (0..).zip(&task_of).map(|(interval, &task)| (task as usize, interval));
         let tasks = Rows::new(num_tasks as usize, tasks);
-        let rivals = pairs.iter().flat_map(|&(left, right)| {
-            let (left, right) = (number[usize::from(left)], number[usize::from(right)]);
+        let rivals = pairs.iter().flat_map(|pair| {
+            let [left, right] = both(pair).map(|label| number[usize::from(label)]);
             [(left as usize, right), (right as usize, left)]
         });
         let rivals = Rows::new(intervals.len(), rivals);
@@ -204,6 +251,8 @@ impl Shop {
             gap: engine.model.gap,
             earliest: earliest.collect(),
             latest: latest.to_vec(),
+            pairs,
+            labels,
             intervals,
             task_of,
             tasks,
@@ -246,6 +295,54 @@ impl Shop {
             }
         }
         Some(self.times.clone())
+    }
+
+    /// Takes these times for a schedule.
+    fn place_by(&mut self, times: Vec<i64>) {
+        self.times = times;
+        let mut tasks: Vec<usize> = (0..self.tasks.first.len() - 1).collect();
+        tasks.sort_by_key(|&task| self.start(task));
+        self.place.resize(tasks.len(), UNPLACED);
+        for (place, task) in (0..).zip(tasks) {
+            self.place[task] = place;
+        }
+    }
+
+    /// The pairs, in textual order, from whose orders in the schedule found last those of all others follow.
+    ///
+    /// Of two rivals that come after an interval and exclude each other, the later one comes after the earlier one. Few
+    /// rivals are asked for that: an order too many is harmless.
+    fn neighbours(&self, conditions: &Conditions, pairs: &[(LabelId, LabelId)]) -> Vec<u32> {
+        let mut neighbours = Vec::new();
+        let (mut later, mut next) = (Vec::new(), Vec::new());
+        for interval in 0..self.intervals.len() {
+            let place = self.place[self.task_of[interval] as usize];
+            let rivals = self.rivals.row(interval).iter().map(|&rival| rival as usize);
+            later.clear();
+            later.extend(rivals.filter(|&rival| self.place[self.task_of[rival] as usize] > place));
+            later.sort_unstable_by_key(|&rival| {
+                (self.times[self.intervals[rival].0], self.place[self.task_of[rival] as usize], rival)
+            });
+            next.clear();
+            for &rival in &later {
+                let start = self.times[self.intervals[rival].0];
+                let follows = next.iter().rev().take(MAX_ASKED).any(|&between: &usize| {
+                    self.times[self.intervals[between].1] <= start
+                        && conditions.conflict(self.labels[between], self.labels[rival])
+                });
+                if !follows {
+                    next.push(rival);
+                    let (one, other) = (self.labels[interval], self.labels[rival]);
+                    neighbours.push((one.min(other), one.max(other)));
+                }
+            }
+        }
+        neighbours.sort_unstable();
+        let positions = neighbours.iter().filter_map(|pair| {
+            let at = self.pairs.binary_search_by(|&position| pairs[position as usize].cmp(pair));
+            at.ok().map(|at| self.pairs[at])
+        });
+        positions.collect()
     }
 
     fn sum_work(&mut self) {

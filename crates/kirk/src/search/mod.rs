@@ -324,6 +324,12 @@ impl<'m> Engine<'m> {
             }
             return Ok(Next::Choice(Kind::Link { position, ask, tells }));
         }
+        if first_pair == 0 {
+            self.find_pairs();
+            if self.orders_at_once()? {
+                return Ok(Next::Solution);
+            }
+        }
         match self.next_threat(first_pair)? {
             Some((position, left, right)) => {
                 self.log(|_| Event::Threat { left, right });
