@@ -10,8 +10,8 @@ use crate::nature_run::nature_run;
 use crate::options::{Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 use crate::search::{Choices, Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part, Problem, Unencoded};
-use crate::too_large::TooLarge;
 use crate::trace::Event;
+use crate::unplannable::Unplannable;
 use crate::{demanding, explain, relax, solution};
 
 /// Plans, or explains why there is no plan; also, whether gaps alone made something fail on the way.
@@ -21,7 +21,7 @@ pub(crate) fn answer(
     options: &Options,
     excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TooLarge> {
+) -> Result<(Outcome, bool), Unplannable> {
     let is_list = options.best > 1 || !excluded.is_empty();
     let is_demanding = demanding::has_demands(model) || (is_list && model.has_contexts);
     let (mut outcome, mut has_doubts) = if is_demanding {
@@ -73,7 +73,7 @@ fn searched(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TooLarge> {
+) -> Result<(Outcome, bool), Unplannable> {
     if options.search.learns() && !options.all {
         first_plan(model, options, termination)
     } else {
@@ -88,7 +88,7 @@ pub(crate) fn with_choices(
     choices: &Choices,
     proposed: &mut Vec<i64>,
     termination: &mut dyn Termination,
-) -> Result<Option<Outcome>, TooLarge> {
+) -> Result<Option<Outcome>, Unplannable> {
     if !model.has_contexts {
         return Ok(None);
     }
@@ -113,7 +113,7 @@ pub(crate) fn with_choices(
         failure: None,
         stats,
         trace: None,
-        too_large: None,
+        unplannable: None,
     }))
 }
 
@@ -133,7 +133,7 @@ fn first_plan(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TooLarge> {
+) -> Result<(Outcome, bool), Unplannable> {
     if options.trace_events.is_some() || !model.has_contexts {
         return first_in_order(model, options, Stats::default(), termination);
     }
@@ -150,7 +150,7 @@ pub(crate) fn first_soon(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<Option<Outcome>, TooLarge> {
+) -> Result<Option<Outcome>, Unplannable> {
     let options = Options { search: Search::ConflictDirected, ..*options };
     let (outcome, ..) = run_briefly(model, &options, termination)?;
     Ok((outcome.status == Status::Plan).then_some(outcome))
@@ -162,7 +162,7 @@ fn run_briefly(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool, bool), TooLarge> {
+) -> Result<(Outcome, bool, bool), Unplannable> {
     let most = if model.decisions.is_empty() { MAX_BACKTRACKS_UNDECIDED } else { MAX_BACKTRACKS };
     let mut is_stopped = false;
     let mut soon = |stats: &Stats| {
@@ -172,7 +172,8 @@ fn run_briefly(
     let mut engine = engine(model, options, Gaps::Trusted, Stats::default());
     engine.setup.schedules = true;
     let mut halt = engine.run(&mut soon)?;
-    if halt == Halt::Stopped && !is_stopped && engine.order_as_scheduled()? {
+    let is_cut_short = halt == Halt::Stopped && !is_stopped && engine.stats.backtracks > most;
+    if is_cut_short && engine.order_as_scheduled()? {
         halt = Halt::Solution;
     }
     let (status, plans) = match halt {
@@ -192,7 +193,7 @@ fn first_by_solver(
     options: &Options,
     mut stats: Stats,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TooLarge> {
+) -> Result<(Outcome, bool), Unplannable> {
     let mut touching = None;
     let all_gaps = [Gaps::Trusted, Gaps::Ignored];
     for &gaps in if model.gap == 0 { &all_gaps[1..] } else { &all_gaps[..] } {
@@ -232,7 +233,7 @@ fn first_by_solver(
 }
 
 fn ended(status: Status, plans: Vec<Plan>, stats: Stats) -> Outcome {
-    Outcome { status, plans, bound: None, failure: None, stats, trace: None, too_large: None }
+    Outcome { status, plans, bound: None, failure: None, stats, trace: None, unplannable: None }
 }
 
 /// One search by the solver, whose work is added to `stats`.
@@ -253,7 +254,11 @@ pub(crate) fn solve(
 
 /// The plan with these choices, where conflicting pairs are ordered by the times given. `None` if a pair that only
 /// touches is not forced to.
-fn plan_with(model: &Model, choices: Choices, orders_touching_last: bool) -> Result<Option<Plan>, TooLarge> {
+fn plan_with(
+    model: &Model,
+    choices: Choices,
+    orders_touching_last: bool,
+) -> Result<Option<Plan>, Unplannable> {
     let proposed = choices.times.clone();
     let setup = Setup {
         jumps: true,
@@ -276,7 +281,7 @@ fn first_in_order(
     options: &Options,
     stats: Stats,
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TooLarge> {
+) -> Result<(Outcome, bool), Unplannable> {
     let (mut outcome, has_doubts) = run(model, options, (Gaps::Trusted, stats), termination)?;
     if outcome.status != Status::NoPlan || !has_doubts {
         return Ok((outcome, has_doubts));
@@ -319,7 +324,7 @@ fn run(
     options: &Options,
     (gaps, stats): (Gaps, Stats),
     termination: &mut dyn Termination,
-) -> Result<(Outcome, bool), TooLarge> {
+) -> Result<(Outcome, bool), Unplannable> {
     let mut engine = engine(model, options, gaps, stats);
     let mut plans: Vec<Plan> = Vec::new();
     let mut known = BTreeSet::new();
@@ -356,7 +361,7 @@ fn run(
         failure: None,
         stats: engine.stats,
         trace: engine.recorder.take().map(|recorder| recorder.trace),
-        too_large: None,
+        unplannable: None,
     };
     Ok((outcome, engine.has_doubts))
 }

@@ -7,7 +7,7 @@ use crate::demanding;
 use crate::model::Model;
 use crate::options::{Options, Outcome, Stats, Termination};
 use crate::structure::Relation;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// Looks for the first plan as if the executive chose all durations: none that comes before it in textual order is
 /// controllable, so that it is the first of these, too, if it is controllable. `None` where it is not, where it cannot be
@@ -17,7 +17,7 @@ pub(crate) fn first_plan(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<Option<Outcome>, TooLarge> {
+) -> Result<Option<Outcome>, Unplannable> {
     let is_one_asked_for = !options.all && options.best <= 1 && options.trace_events.is_none();
     if !is_one_asked_for || !demanding::is_only_natures(model) || !model.has_contexts {
         return Ok(None);

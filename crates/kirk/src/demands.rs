@@ -12,7 +12,7 @@ use tpn::{
 };
 
 use crate::model::Model;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// A variable that keeps its value, by its labels.
 #[derive(Clone, Debug)]
@@ -92,10 +92,10 @@ pub(crate) struct ModelGoal {
 
 impl ModelGoal {
     /// What the goal is of a plan.
-    pub(crate) fn sum(&self, model: &Model, plan: &Plan) -> Result<i64, TooLarge> {
+    pub(crate) fn sum(&self, model: &Model, plan: &Plan) -> Result<i64, Unplannable> {
         let selected = self.by_arc.iter().filter(|(arc, _)| plan.selected_arcs[arc.index()]);
         let by_arc: i64 = selected.map(|&(_, weight)| weight).sum();
-        let overflow = |_| TooLarge::at(model.demands.end);
+        let overflow = |_| Unplannable::at(model.demands.end);
         let end = model.units(plan.quality.end).map_err(overflow)?;
         let by_departure: i64 = if self.by_departure.is_empty() {
             0
@@ -104,7 +104,7 @@ impl ModelGoal {
             departures.iter().filter_map(|departure| self.by_departure.get(departure)).sum()
         };
         let sum = i128::from(by_arc) + i128::from(by_departure) + i128::from(end) * i128::from(self.per_tick);
-        i64::try_from(sum).map_err(|_| TooLarge::at(model.demands.end))
+        i64::try_from(sum).map_err(|_| Unplannable::at(model.demands.end))
     }
 
     /// A sum as the goal measures it.
@@ -177,8 +177,8 @@ impl Demands {
     }
 
     /// Of a network whose times are counted in the ticks of `scale`.
-    pub(crate) fn new(network: &Network, scale: Scale) -> Result<Self, TooLarge> {
-        let overflow = || TooLarge::at(network.start);
+    pub(crate) fn new(network: &Network, scale: Scale) -> Result<Self, Unplannable> {
+        let overflow = || Unplannable::at(network.start);
         let ticks = scale.ticks_per_unit();
         Ok(Self {
             variables: lasting_variables(network),
@@ -211,7 +211,7 @@ pub(crate) fn lasting_variables(network: &Network) -> Vec<LastingVariable> {
     variables
 }
 
-fn resources(network: &Network) -> Result<Vec<ResourceDemand>, TooLarge> {
+fn resources(network: &Network) -> Result<Vec<ResourceDemand>, Unplannable> {
     let mut demands = Vec::new();
     for (index, resource) in network.resources.iter().enumerate() {
         let id = ResourceId::from_index(index);
@@ -222,9 +222,9 @@ fn resources(network: &Network) -> Result<Vec<ResourceDemand>, TooLarge> {
         };
         let amounts = used().map(|(_, used)| used.amount);
         let Some(unit) = common_unit(supply.into_iter().chain(amounts)) else {
-            return Err(TooLarge::at(network.start));
+            return Err(Unplannable::at(network.start));
         };
-        let units = |amount: Rational, at: NodeId| units(amount, unit).ok_or_else(|| TooLarge::at(at));
+        let units = |amount: Rational, at: NodeId| units(amount, unit).ok_or_else(|| Unplannable::at(at));
         let start = network.start;
         let supply = match resource.supply {
             Supply::Reusable { capacity } => ModelSupply::Reusable { capacity: units(capacity, start)? },

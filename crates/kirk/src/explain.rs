@@ -14,8 +14,8 @@ use crate::options::{Stats, Termination, Unlimited};
 use crate::record::RecordedFailure;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup, UNBOUNDED_BELOW};
 use crate::solver::{self, Answer};
-use crate::too_large::TooLarge;
 use crate::trace::{Constraint, CycleMember};
+use crate::unplannable::Unplannable;
 use crate::{answer, demanding, whole, wording};
 
 /// Explaining stops adding reasons after this many.
@@ -103,7 +103,7 @@ pub(crate) fn explain(
     model: &Model,
     given: &[Choice],
     termination: &mut dyn Termination,
-) -> Result<Failure, TooLarge> {
+) -> Result<Failure, Unplannable> {
     let mut effort = Effort::for_size(model.num_nodes, termination);
     if demanding::has_demands(model) {
         let reasons: Vec<Reason> = whole::reason(network, model, given, &mut effort).into_iter().collect();
@@ -140,7 +140,7 @@ fn reason(
     model: &Model,
     failure: &RecordedFailure,
     effort: &mut Effort<'_>,
-) -> Result<Reason, TooLarge> {
+) -> Result<Reason, Unplannable> {
     let mut part = Part::new(model, &failure.choices);
     let mut members = failure.members.clone();
     for &member in &members {
@@ -281,7 +281,7 @@ impl Part {
     }
 
     /// Whether the part has no plan; `None` if that takes too long to find out.
-    fn fails(&self, effort: &mut Effort<'_>) -> Result<Option<bool>, TooLarge> {
+    fn fails(&self, effort: &mut Effort<'_>) -> Result<Option<bool>, Unplannable> {
         if !effort.spend() {
             return Ok(None);
         }
@@ -326,7 +326,7 @@ impl Part {
     }
 
     /// A contradiction among the bounds of the part, if there is one to show.
-    fn first_cycle(&self, effort: &mut Effort<'_>) -> Result<Vec<CycleMember>, TooLarge> {
+    fn first_cycle(&self, effort: &mut Effort<'_>) -> Result<Vec<CycleMember>, Unplannable> {
         let mut engine = Engine::new(&self.model, self.setup(true));
         engine.run(&mut |stats: &Stats| effort.is_spent(stats))?;
         Ok(engine

@@ -7,7 +7,7 @@ use crate::failure::FailureKind;
 use crate::model::{INFINITE, point};
 use crate::search::{Engine, Origin};
 use crate::structure::Relation;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// What the present complete choice has to satisfy.
 #[derive(Clone, Debug, Default)]
@@ -40,7 +40,7 @@ impl Leaf {
 
 impl Engine<'_> {
     /// Prepares phase 2. `false` if the selection is inconsistent, or contradicts itself on one arc.
-    pub(crate) fn make_leaf(&mut self) -> Result<bool, TooLarge> {
+    pub(crate) fn make_leaf(&mut self) -> Result<bool, Unplannable> {
         self.stats.leaves += 1;
         self.look_harder();
         self.conflict.clear();
@@ -75,7 +75,7 @@ impl Engine<'_> {
     }
 
     /// The first pair at `from` or later that is in neither order yet, with its position.
-    pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, LabelId, LabelId)>, TooLarge> {
+    pub(crate) fn next_threat(&mut self, from: u32) -> Result<Option<(u32, LabelId, LabelId)>, Unplannable> {
         self.find_pairs();
         for position in from..self.leaf.pairs.len() as u32 {
             let (left, right) = self.leaf.pairs[position as usize];
@@ -90,7 +90,7 @@ impl Engine<'_> {
 
     /// Whether the plan that the search stands at leaves room for the gap between all pairs that nesting does not order:
     /// then none of them rests on being forced to touch.
-    pub(crate) fn has_room_for_gaps(&mut self) -> Result<bool, TooLarge> {
+    pub(crate) fn has_room_for_gaps(&mut self) -> Result<bool, Unplannable> {
         let (checkpoint, tag) = (self.stn.checkpoint(), self.next_tag());
         let mut inserted = Ok(());
         for position in 0..self.leaf.pairs.len() {
@@ -116,7 +116,7 @@ impl Engine<'_> {
     /// Every conflicting pair, with the one that comes first in front. A pair that is in both orders at once, as
     /// intervals of no length at one instant are where no gap is asked for, is in the textual one: what the search met
     /// last on its way may have forced them together.
-    pub(crate) fn conflict_order(&mut self) -> Result<Vec<(LabelId, LabelId)>, TooLarge> {
+    pub(crate) fn conflict_order(&mut self) -> Result<Vec<(LabelId, LabelId)>, Unplannable> {
         let mut ordered = self.leaf.pairs.clone();
         for (position, pair) in ordered.iter_mut().enumerate() {
             let (left, right) = *pair;
@@ -195,7 +195,7 @@ impl Engine<'_> {
     }
 
     /// Which of two intervals is over before the other begins, in every schedule (SPEC 5.3).
-    pub(crate) fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, TooLarge> {
+    pub(crate) fn relation(&mut self, left: LabelId, right: LabelId) -> Result<Relation, Unplannable> {
         let nested = self.nested_relation(left, right);
         if nested != Relation::Open {
             return Ok(nested);
@@ -273,7 +273,7 @@ impl Engine<'_> {
         Origin::Level(self.levels.next_key()).tag()
     }
 
-    pub(crate) fn find_windows(&mut self) -> Result<(), TooLarge> {
+    pub(crate) fn find_windows(&mut self) -> Result<(), Unplannable> {
         if self.leaf.has_windows {
             return Ok(());
         }
@@ -285,7 +285,7 @@ impl Engine<'_> {
     }
 
     /// The present distances of all nodes from and to the start.
-    pub(crate) fn windows_now(&mut self) -> Result<(Vec<i64>, Vec<i64>), TooLarge> {
+    pub(crate) fn windows_now(&mut self) -> Result<(Vec<i64>, Vec<i64>), Unplannable> {
         self.find_windows()?;
         let Self { stn, leaf, model, .. } = self;
         let (mut from_start, mut to_start) = (leaf.from_start.clone(), leaf.to_start.clone());
@@ -303,7 +303,7 @@ impl Engine<'_> {
     }
 
     /// Whether every schedule has `start − end ≥ gap`.
-    fn is_entailed(&mut self, end: PointId, start: PointId, gap: i64) -> Result<bool, TooLarge> {
+    fn is_entailed(&mut self, end: PointId, start: PointId, gap: i64) -> Result<bool, Unplannable> {
         let tag = self.next_tag();
         let schedule = self.stn.schedule();
         if schedule[start.index()].checked_sub(schedule[end.index()]).ok_or(Overflow { point: start })? < gap

@@ -2,7 +2,7 @@
 //!
 //! [`plan`] answers with plans as data (`tpn::Plan`), or with why there is none. Time is exact: bounds are scaled to
 //! integers by their common denominator, and what does not fit into 64 bits is [`Status::Error`], with the event where
-//! that was found in [`Outcome::too_large`]. Nothing here checks its own answers: that is `verify`'s work.
+//! that was found in [`Outcome::unplannable`]. Nothing here checks its own answers: that is `verify`'s work.
 
 mod answer;
 mod antichain;
@@ -33,9 +33,9 @@ mod selection;
 mod solution;
 mod solver;
 mod structure;
-mod too_large;
 mod trace;
 mod trace_lines;
+mod unplannable;
 mod whole;
 mod wording;
 
@@ -47,12 +47,12 @@ pub use failure::{Failure, FailureKind, GAP_LABEL, Member, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 pub use planner::Planner;
 pub use replay::{Replay, ReplayStep};
-pub use too_large::TooLarge;
 pub use trace::{
     Constraint, CycleMember, Departing, Entry, Event, SearchRound, Trace, TreeChoice, TreeNode, TreeNodeId,
     TreeStatus,
 };
 pub use trace_lines::trace_json_lines;
+pub use unplannable::Unplannable;
 pub use wording::contradiction;
 
 use answer::answer;

@@ -1,5 +1,7 @@
 //! A network prepared for planning: times as integers, flat adjacency, contexts of arcs, and conditions by variable.
 
+use std::collections::BTreeSet;
+
 use exact::{Bound, Overflow, Scale, Time};
 use rmpl::program::Controllability;
 use stn::PointId;
@@ -10,7 +12,7 @@ use crate::conditions::Conditions;
 use crate::demands::Demands;
 use crate::nesting::Nesting;
 use crate::structure::{Relation, Structure};
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 use crate::wording;
 
 /// No upper bound.
@@ -89,12 +91,12 @@ pub(crate) struct ModelDecision {
 
 impl Model {
     /// Prepares `network`, with `threat_gap` instead of its own if given.
-    pub(crate) fn new(network: &Network, threat_gap: Option<Time>) -> Result<Self, TooLarge> {
+    pub(crate) fn new(network: &Network, threat_gap: Option<Time>) -> Result<Self, Unplannable> {
         let gap = threat_gap.unwrap_or(network.threat_gap);
         let scale = common_scale(network, gap)?;
         let mut arcs = TiVec::with_capacity(network.arcs.len());
         for (id, arc) in network.arcs.iter().enumerate() {
-            let overflow = |Overflow| TooLarge::at(arc.to);
+            let overflow = |Overflow| Unplannable::at(arc.to);
             let is_uncertain = network.is_uncertain(ArcId::from_index(id));
             arcs.push(ModelArc {
                 lower: scale.ticks(arc.lower).map_err(overflow)?,
@@ -126,7 +128,7 @@ impl Model {
         });
         let mut model = Self {
             scale,
-            gap: scale.ticks(gap).map_err(|Overflow| TooLarge::at(network.start))?,
+            gap: scale.ticks(gap).map_err(|Overflow| Unplannable::at(network.start))?,
             start: network.start,
             num_nodes: network.nodes.len(),
             decisions: decisions.collect(),
@@ -167,7 +169,7 @@ impl Model {
     }
 
     /// Brings the structure up to date with all bounds.
-    pub(crate) fn refresh_structure(&mut self) -> Result<(), TooLarge> {
+    pub(crate) fn refresh_structure(&mut self) -> Result<(), Unplannable> {
         if let Some(mut structure) = self.structure.take() {
             structure.refresh(self)?;
             self.structure = Some(structure);
@@ -301,21 +303,71 @@ impl Model {
         order
     }
 
-    /// Finds the context of every arc and decision; `false` if the network is not nested as its blocks say.
+    /// Where the alternatives of each decision come together again, in a network that has no blocks. `None` if some of them
+    /// do so before all do.
+    fn found_merges(&self) -> Option<TiVec<DecisionId, NodeId>> {
+        let mut waiting: TiVec<NodeId, u32> = vec![0; self.num_nodes].into();
+        let leads_on = |arc: ArcId| self.arcs[arc].to != self.start;
+        for &arc in self.out_arcs.iter().filter(|&&arc| leads_on(arc)) {
+            waiting[self.arcs[arc].to] += 1;
+        }
+        let mut merges: TiVec<DecisionId, Option<NodeId>> = vec![None; self.decisions.len()].into();
+        let mut incoming: TiVec<NodeId, BTreeSet<Vec<Choice>>> = vec![BTreeSet::new(); self.num_nodes].into();
+        incoming[self.start].insert(Vec::new());
+        let mut open = vec![self.start];
+        while let Some(node) = open.pop() {
+            let mut paths = std::mem::take(&mut incoming[node]);
+            // The innermost alternatives come together first.
+            while paths.len() > 1 {
+                let inner = paths.iter().max_by_key(|path| path.len())?.clone();
+                let (&Choice { decision, .. }, before) = inner.split_last()?;
+                for alternative in 0..self.decisions[decision].alternatives.len() as u32 {
+                    let path = [before, &[Choice { decision, alternative }]].concat();
+                    if !paths.remove(&path) {
+                        return None;
+                    }
+                }
+                paths.insert(before.to_vec());
+                merges[decision] = Some(node);
+            }
+            let path = paths.pop_first()?;
+            for position in self.out_range(node) {
+                let arc = self.out_arcs[position];
+                if !leads_on(arc) {
+                    continue;
+                }
+                let mut path = path.clone();
+                path.extend(self.choice_at(node, arc));
+                let to = self.arcs[arc].to;
+                incoming[to].insert(path);
+                waiting[to] -= 1;
+                if waiting[to] == 0 {
+                    open.push(to);
+                }
+            }
+        }
+        merges.into_iter().collect()
+    }
+
+    /// The choice that takes an arc which leaves a node, where that is an alternative.
+    fn choice_at(&self, node: NodeId, arc: ArcId) -> Context {
+        let decision = self.decision_of[node]?;
+        let position = self.decisions[decision].alternatives.iter().position(|&other| other == arc)?;
+        Some(Choice { decision, alternative: position as u32 })
+    }
+
+    /// Finds the context of every arc and decision; `false` if its choices are not nested as its blocks say.
     fn find_contexts(&mut self, network: &Network) -> bool {
         // Arcs back to the start hold what has happened already.
         let is_fact = |arc: &ModelArc| arc.to == network.start;
-        if network.root.is_none() || self.arcs.iter().any(|arc| arc.lower < 0 && !is_fact(arc)) {
+        if self.arcs.iter().any(|arc| arc.lower < 0 && !is_fact(arc)) {
             return false;
         }
-        for block in &network.blocks {
-            if let BlockKind::Choose { decision, .. } = block.kind {
-                self.decisions[decision].merge = Some(block.end);
-            }
-        }
-        let merges: Option<TiVec<DecisionId, NodeId>> =
-            self.decisions.iter().map(|decision| decision.merge).collect();
+        let merges = if network.root.is_some() { merges_of_blocks(network) } else { self.found_merges() };
         let Some(merges) = merges else { return false };
+        for (decision, &merge) in self.decisions.iter_mut().zip(&merges) {
+            decision.merge = Some(merge);
+        }
         let mut contexts: TiVec<NodeId, Option<Context>> = vec![None; self.num_nodes].into();
         contexts[self.start] = Some(None);
         let mut stack = vec![self.start];
@@ -393,6 +445,17 @@ pub(crate) const fn node(point: PointId) -> NodeId {
     NodeId(point.0)
 }
 
+/// Where the choices of a network that was compiled from a program end.
+fn merges_of_blocks(network: &Network) -> Option<TiVec<DecisionId, NodeId>> {
+    let mut merges: TiVec<DecisionId, Option<NodeId>> = vec![None; network.decisions.len()].into();
+    for block in &network.blocks {
+        if let BlockKind::Choose { decision, .. } = block.kind {
+            merges[decision] = Some(block.end);
+        }
+    }
+    merges.into_iter().collect()
+}
+
 fn find(representatives: &TiSlice<NodeId, NodeId>, node: NodeId) -> NodeId {
     let mut at = node;
     while representatives[at] != at {
@@ -409,17 +472,17 @@ fn join(representatives: &mut TiSlice<NodeId, NodeId>, earlier: NodeId, later: N
     representatives[later] = find(representatives, later);
 }
 
-fn common_scale(network: &Network, gap: Time) -> Result<Scale, TooLarge> {
-    let with_gap = Scale::UNITS.refined(gap).map_err(|Overflow| TooLarge::at(network.start))?;
+fn common_scale(network: &Network, gap: Time) -> Result<Scale, Unplannable> {
+    let with_gap = Scale::UNITS.refined(gap).map_err(|Overflow| Unplannable::at(network.start))?;
     let departures = network.departures.iter().filter_map(|departure| departure.least);
     let with_departures = departures
         .into_iter()
         .try_fold(with_gap, Scale::refined)
-        .map_err(|Overflow| TooLarge::at(network.start))?;
+        .map_err(|Overflow| Unplannable::at(network.start))?;
     network.arcs.iter().try_fold(with_departures, |scale, arc| {
         let scale = scale.refined(arc.lower);
         let upper = arc.upper.finite().unwrap_or_default();
-        scale.and_then(|scale| scale.refined(upper)).map_err(|Overflow| TooLarge::at(arc.to))
+        scale.and_then(|scale| scale.refined(upper)).map_err(|Overflow| Unplannable::at(arc.to))
     })
 }
 

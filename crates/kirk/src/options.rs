@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use tpn::{Network, Plan};
 
 use crate::failure::Failure;
-use crate::too_large::TooLarge;
 use crate::trace::Trace;
+use crate::unplannable::Unplannable;
 
 /// How to search. Both list the same plans where all are asked for, and say of the same missions that they have none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -149,7 +149,7 @@ pub enum Status {
     NoPlan,
     /// The termination condition stopped the search before it had an answer (or all the plans asked for).
     Limit,
-    /// The network is too large ([`TooLarge`]).
+    /// The network is too large ([`Unplannable`]).
     Error,
 }
 
@@ -170,12 +170,12 @@ pub struct Outcome {
     /// The search, if it was asked for.
     pub trace: Option<Trace>,
     /// What did not fit, if that was the end of it.
-    pub too_large: Option<TooLarge>,
+    pub unplannable: Option<Unplannable>,
 }
 
 impl Outcome {
     /// The answer where something does not fit.
-    pub(crate) fn of_size(what: TooLarge) -> Self {
+    pub(crate) fn of_size(what: Unplannable) -> Self {
         Self {
             status: Status::Error,
             plans: Vec::new(),
@@ -183,12 +183,12 @@ impl Outcome {
             failure: None,
             stats: Stats::default(),
             trace: None,
-            too_large: Some(what),
+            unplannable: Some(what),
         }
     }
 
     /// What does not fit, in the author's terms. `None` if everything fits.
-    pub fn too_large_message(&self, network: &Network) -> Option<String> {
-        self.too_large.map(|what| what.message(network))
+    pub fn unplannable_message(&self, network: &Network) -> Option<String> {
+        self.unplannable.map(|what| what.message(network))
     }
 }

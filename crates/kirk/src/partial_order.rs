@@ -18,7 +18,7 @@ use crate::before::Before;
 use crate::demands::{ModelSupply, ModelUse, ResourceDemand};
 use crate::model::{Alternatives, INFINITE, Model};
 use crate::solver::Kept;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// What a solution chooses, and times that fit.
 #[derive(Clone, Debug)]
@@ -36,7 +36,11 @@ pub(crate) struct Solution {
 
 /// The plan of a solution; `None` if intervals that the solution only lets touch are not forced to, so that the gap
 /// between them that SPEC 5.3 asks for is not there.
-pub(crate) fn plan(network: &Network, model: &Model, solution: &Solution) -> Result<Option<Plan>, TooLarge> {
+pub(crate) fn plan(
+    network: &Network,
+    model: &Model,
+    solution: &Solution,
+) -> Result<Option<Plan>, Unplannable> {
     let mut choices = choices(&solution.alternatives);
     let (selected_nodes, selected_arcs) = closure(network, &choices);
     // What is decided inside an alternative that is not taken is no part of the plan.
@@ -130,7 +134,7 @@ impl Making<'_> {
     }
 
     /// `false` if the selected bounds contradict each other, which no solution's do.
-    fn add_arcs(&mut self) -> Result<bool, TooLarge> {
+    fn add_arcs(&mut self) -> Result<bool, Unplannable> {
         self.stn.set_origin(point(self.model.start));
         self.stn.propose(self.solution.times.iter().copied());
         for (id, arc) in self.model.arcs.iter_enumerated() {
@@ -147,11 +151,11 @@ impl Making<'_> {
     }
 
     /// `later − earlier ≥ least`, which the solution's times satisfy. `false` if the network refuses it.
-    fn insert(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TooLarge> {
+    fn insert(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, Unplannable> {
         done(self.stn.insert(point(later), point(earlier), -least, 0))
     }
 
-    fn add_links(&mut self) -> Result<Vec<CausalLink>, TooLarge> {
+    fn add_links(&mut self) -> Result<Vec<CausalLink>, Unplannable> {
         let mut links: Vec<CausalLink> =
             self.solution.kept.links.iter().map(|&(ask, tell)| CausalLink { ask, tell }).collect();
         let carried = self.solution.carriers.iter_enumerated();
@@ -172,7 +176,7 @@ impl Making<'_> {
     }
 
     /// Movements take at least as long as from where the one before them ends (SPEC 10.3).
-    fn add_departures(&mut self) -> Result<(), TooLarge> {
+    fn add_departures(&mut self) -> Result<(), Unplannable> {
         let model = self.model;
         for (&movement, departures) in &model.demands.departures {
             let sides = &self.solution.kept.sides;
@@ -196,14 +200,14 @@ impl Making<'_> {
         Ok(())
     }
 
-    fn find_windows(&mut self) -> Result<(), TooLarge> {
+    fn find_windows(&mut self) -> Result<(), Unplannable> {
         self.num_edges = self.stn.num_edges();
         let (from_start, to_start) = &mut self.windows;
         Ok(self.stn.sweep_distances(point(self.model.start), &self.model.order, from_start, to_start)?)
     }
 
     /// Whether every schedule has `later − earlier ≥ least`.
-    fn is_entailed(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, TooLarge> {
+    fn is_entailed(&mut self, earlier: NodeId, later: NodeId, least: i64) -> Result<bool, Unplannable> {
         let (at_latest, at_earliest) = (self.windows.0[earlier.index()], self.windows.1[later.index()]);
         let ends_by = at_latest != INFINITE
             && at_earliest != INFINITE
@@ -223,7 +227,7 @@ impl Making<'_> {
     }
 
     /// Makes sure that one event is no later than another. Whether that had to be added.
-    fn ensure(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, TooLarge> {
+    fn ensure(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, Unplannable> {
         if self.is_entailed(earlier, later, 0)? {
             return Ok(false);
         }
@@ -231,7 +235,7 @@ impl Making<'_> {
     }
 
     /// Orders what excludes or breaks each other among variables that keep their values (SPEC 10.2).
-    fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, TooLarge> {
+    fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, Unplannable> {
         let network = self.network;
         let mut order = Vec::new();
         let before = Before::new(&self.solution.kept.sides);
@@ -290,7 +294,7 @@ impl Making<'_> {
         &mut self,
         order: &mut Vec<Ordering>,
         added: &mut Vec<Ordering>,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         let labels: Vec<LabelId> = self.selected_labels().collect();
         let mut pairs: Vec<(i64, LabelId, LabelId)> = Vec::new();
         for &left in &labels {
@@ -343,7 +347,7 @@ impl Making<'_> {
     }
 
     /// Orders uses as the solution does, as far as that does not follow from the rest.
-    fn keep_uses_ordered(&mut self, added: &mut Vec<UseOrdering>) -> Result<(), TooLarge> {
+    fn keep_uses_ordered(&mut self, added: &mut Vec<UseOrdering>) -> Result<(), Unplannable> {
         for &(first, then) in &self.solution.uses_ordered {
             let ordering = UseOrdering { first, then };
             let Precedence { earlier, later, .. } = ordering.precedence(self.network);
@@ -355,7 +359,7 @@ impl Making<'_> {
     }
 
     /// Orders the uses of a resource so that no schedule takes more than there is.
-    fn share(&mut self, resource: &ResourceDemand, added: &mut Vec<UseOrdering>) -> Result<(), TooLarge> {
+    fn share(&mut self, resource: &ResourceDemand, added: &mut Vec<UseOrdering>) -> Result<(), Unplannable> {
         let uses: Vec<ModelUse> =
             resource.uses.iter().filter(|used| self.is_selected[used.arc]).copied().collect();
         match resource.supply {
@@ -375,7 +379,7 @@ impl Making<'_> {
         mut uses: Vec<ModelUse>,
         capacity: i64,
         added: &mut Vec<UseOrdering>,
-    ) -> Result<(), TooLarge> {
+    ) -> Result<(), Unplannable> {
         uses.sort_by_key(|used| (self.time(used.start), self.time(used.end), used.id));
         let mut free = capacity;
         // Uses that are over or running, with what they still have to hand on.
@@ -433,7 +437,7 @@ impl Making<'_> {
         range: (i64, i64),
         level: i64,
         added: &mut Vec<UseOrdering>,
-    ) -> Result<(), TooLarge> {
+    ) -> Result<(), Unplannable> {
         let mut by_time: Vec<&ModelUse> = uses.iter().collect();
         by_time.sort_by_key(|used| (self.time(used.moment()), used.id));
         for used in by_time {
@@ -473,13 +477,13 @@ impl Making<'_> {
         used: &ModelUse,
         (least, greatest): (i64, i64),
         level: i64,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         let extreme = self.extreme(uses, used, level)?;
         Ok(if used.change == Change::Produces { extreme <= greatest } else { extreme >= least })
     }
 
     /// The lowest level after a consumption, or the highest after a production (SPEC 11).
-    fn extreme(&mut self, uses: &[ModelUse], used: &ModelUse, level: i64) -> Result<i64, TooLarge> {
+    fn extreme(&mut self, uses: &[ModelUse], used: &ModelUse, level: i64) -> Result<i64, Unplannable> {
         let mut extreme = level;
         let now = used.moment();
         let (mut until_now, mut since_now) = (Vec::new(), Vec::new());
@@ -511,7 +515,7 @@ impl Making<'_> {
         Ok(extreme)
     }
 
-    fn levels(&mut self, resource: &ResourceDemand) -> Result<Levels, TooLarge> {
+    fn levels(&mut self, resource: &ResourceDemand) -> Result<Levels, Unplannable> {
         let uses: Vec<ModelUse> =
             resource.uses.iter().filter(|used| self.is_selected[used.arc]).copied().collect();
         match resource.supply {
@@ -539,7 +543,7 @@ impl Making<'_> {
         }
     }
 
-    fn windows(&mut self, selected: &[bool]) -> Result<Vec<Option<Window>>, TooLarge> {
+    fn windows(&mut self, selected: &[bool]) -> Result<Vec<Option<Window>>, Unplannable> {
         let (mut latest, mut earliest) = self.windows.clone();
         self.stn.tighten_distances(self.num_edges, &self.model.order, &mut latest, &mut earliest)?;
         let model = self.model;
@@ -555,7 +559,7 @@ impl Making<'_> {
 }
 
 /// Whether the network took it.
-fn done(result: Result<(), Inconsistency>) -> Result<bool, TooLarge> {
+fn done(result: Result<(), Inconsistency>) -> Result<bool, Unplannable> {
     match result {
         Ok(()) => Ok(true),
         Err(Inconsistency::NegativeCycle) => Ok(false),

@@ -8,7 +8,7 @@ use tpn::{ArcId, Network, Plan};
 use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Termination};
 use crate::search::Choices;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 use crate::{answer, demanding};
 
 /// Plans one network repeatedly.
@@ -23,7 +23,7 @@ pub struct Planner {
     network: Network,
     threat_gap: Option<Time>,
     /// The network prepared, if times fit.
-    model: Result<Model, TooLarge>,
+    model: Result<Model, Unplannable>,
     last: Option<Searched>,
 }
 
@@ -107,7 +107,7 @@ impl Planner {
     }
 
     /// Changes the prepared network in place, if it can be.
-    fn keep_model(&mut self, arc: ArcId, lower: Time, upper: Bound) -> Result<bool, TooLarge> {
+    fn keep_model(&mut self, arc: ArcId, lower: Time, upper: Bound) -> Result<bool, Unplannable> {
         let Ok(model) = &mut self.model else { return Ok(false) };
         let (Ok(lower), Ok(upper)) = (model.units(lower), model.bound_units(upper)) else { return Ok(false) };
         if lower < 0 {

@@ -12,8 +12,8 @@ use crate::model::{INFINITE, Model};
 use crate::options::{Options, Search, Stats, Status, Termination};
 use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part};
-use crate::too_large::TooLarge;
 use crate::trace::Constraint;
+use crate::unplannable::Unplannable;
 use crate::{answer, demanding, wording};
 
 /// At most so many are offered.
@@ -25,7 +25,7 @@ pub(crate) fn relaxations(
     model: &Model,
     failure: &Failure,
     termination: &mut dyn Termination,
-) -> Result<Vec<Relaxation>, TooLarge> {
+) -> Result<Vec<Relaxation>, Unplannable> {
     let effort = Effort::for_size(model.num_nodes, termination);
     let mut trial =
         Trial { network, model: model.clone(), is_demanding: demanding::has_demands(model), effort };
@@ -49,7 +49,7 @@ pub(crate) fn has_plan_without_gap(
     model: &Model,
     options: &Options,
     termination: &mut dyn Termination,
-) -> Result<bool, TooLarge> {
+) -> Result<bool, Unplannable> {
     let has_conflicts = model.conditions.variables.iter().any(|variable| variable.labels.len() > 1);
     if model.gap == 0 || !has_conflicts {
         return Ok(false);
@@ -128,7 +128,7 @@ struct Trial<'a> {
 
 impl Trial<'_> {
     /// The value closest to the present one that gives a plan, if any does and it is found in time.
-    fn closest(&mut self, arcs: &[ArcId], is_lower: bool) -> Result<Option<i64>, TooLarge> {
+    fn closest(&mut self, arcs: &[ArcId], is_lower: bool) -> Result<Option<i64>, Unplannable> {
         let first = &self.model.arcs[arcs[0]];
         let (lower, upper) = (first.lower, first.upper);
         let (old, most) = match (first.is_uncertain, is_lower) {
@@ -176,7 +176,7 @@ impl Trial<'_> {
         is_lower: bool,
         value: i64,
         (lower, upper): (i64, i64),
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         if !self.effort.spend() {
             return Ok(false);
         }

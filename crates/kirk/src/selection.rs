@@ -5,12 +5,12 @@ use tpn::{ArcId, Choice, NodeId};
 
 use crate::model::{Context, INFINITE, ModelArc, node, point};
 use crate::search::{Engine, Origin, UNBOUNDED_BELOW};
-use crate::too_large::TooLarge;
 use crate::trace::Event;
+use crate::unplannable::Unplannable;
 
 impl Engine<'_> {
     /// Selects what every plan has. `false` if that is inconsistent.
-    pub(crate) fn select_mandatory(&mut self) -> Result<bool, TooLarge> {
+    pub(crate) fn select_mandatory(&mut self) -> Result<bool, Unplannable> {
         // Where nobody watches, all arcs are propagated at once.
         let is_bulk = self.recorder.is_none();
         self.select_node(self.model.start, None);
@@ -21,7 +21,7 @@ impl Engine<'_> {
     }
 
     /// Selects what an alternative brings. `false` if it is inconsistent; then `conflict` says why.
-    pub(crate) fn select_alternative(&mut self, choice: Choice) -> Result<bool, TooLarge> {
+    pub(crate) fn select_alternative(&mut self, choice: Choice) -> Result<bool, Unplannable> {
         let context = Some(choice);
         let arc = self.model.decisions[choice.decision].alternatives[choice.alternative as usize];
         if !self.select_arc(arc, context, false)? {
@@ -63,7 +63,7 @@ impl Engine<'_> {
     }
 
     /// Propagates everything pushed so far. `false` if it is inconsistent.
-    pub(crate) fn settle_selected(&mut self) -> Result<bool, TooLarge> {
+    pub(crate) fn settle_selected(&mut self) -> Result<bool, Unplannable> {
         let mut order: Vec<PointId> = Vec::with_capacity(self.selected_nodes.len());
         order.extend(self.model.order.iter().filter(|&&point| self.is_selected_node[node(point)]));
         match self.stn.settle(&order) {
@@ -77,7 +77,12 @@ impl Engine<'_> {
     }
 
     /// Expands selected nodes, the textually first one next.
-    fn expand(&mut self, mut stack: Vec<NodeId>, context: Context, is_bulk: bool) -> Result<bool, TooLarge> {
+    fn expand(
+        &mut self,
+        mut stack: Vec<NodeId>,
+        context: Context,
+        is_bulk: bool,
+    ) -> Result<bool, Unplannable> {
         let model = self.model;
         while let Some(node) = stack.pop() {
             if model.decision_of[node].is_some() {
@@ -99,7 +104,7 @@ impl Engine<'_> {
         Ok(true)
     }
 
-    fn select_arc(&mut self, arc: ArcId, context: Context, is_bulk: bool) -> Result<bool, TooLarge> {
+    fn select_arc(&mut self, arc: ArcId, context: Context, is_bulk: bool) -> Result<bool, Unplannable> {
         self.set_found_context(arc, context);
         self.is_selected_arc[arc] = true;
         self.selected_arcs.push(arc);

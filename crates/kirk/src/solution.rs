@@ -7,10 +7,10 @@ use crate::demanding;
 use crate::levels::Kind;
 use crate::model::INFINITE;
 use crate::search::Engine;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// The plan that the search stands at.
-pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, TooLarge> {
+pub(crate) fn plan_at(engine: &mut Engine<'_>) -> Result<Plan, Unplannable> {
     let conflict_order = engine.conflict_order()?;
     let model = engine.model;
     let (latest, earliest) = engine.windows_now()?;

@@ -141,7 +141,7 @@ fn times_that_do_not_fit_are_an_error_and_not_a_wrong_answer() {
         let outcome = plan(&network, search, false);
         assert_eq!((outcome.status, outcome.plans.len()), (Status::Error, 0));
         // Two of the delays fit: only the third one's end is too late.
-        let message = outcome.too_large_message(&network).expect("a time does not fit");
+        let message = outcome.unplannable_message(&network).expect("a time does not fit");
         assert!(message.ends_with("that of delay#3.end"), "{message}");
     }
 }

@@ -320,7 +320,7 @@ impl Replanner for WithPaths<'_, '_> {
             self.replanned.push((facts.clone(), planned));
             return Ok(found);
         }
-        if let Some(message) = outcome.too_large_message(&planned.network) {
+        if let Some(message) = outcome.unplannable_message(&planned.network) {
             return Err(message);
         }
         let reasons = outcome.failure.iter().flat_map(|failure| &failure.reasons);

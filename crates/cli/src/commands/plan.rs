@@ -91,7 +91,11 @@ const TRACE_EVENTS: usize = 1_000_000;
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let begun = Instant::now();
     let options = args.options()?;
-    let loaded = args.target.load()?;
+    let mut loaded = args.target.load()?;
+    if let (Some(gap), Some(network)) = (options.threat_gap, &mut loaded.network) {
+        // The checker asks for the same gap.
+        network.threat_gap = gap;
+    }
     let compile_millis = millis_since(begun);
     let Some(network) = loaded.network.clone() else { return report_errors(args, &loaded) };
     let begun = Instant::now();
@@ -346,7 +350,7 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
         }
         Status::Limit => "the limit was reached: whether there are more plans is not decided\n".to_owned(),
         Status::Error => {
-            let message = outcome.too_large_message(&planned.network);
+            let message = outcome.unplannable_message(&planned.network);
             message.map(|message| format!("{message}\n")).unwrap_or_default()
         }
     };

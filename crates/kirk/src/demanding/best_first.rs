@@ -5,14 +5,14 @@ use tpn::Plan;
 use super::{Attempt, Searching};
 use crate::partial_order;
 use crate::solver::{Frontier, LeastSums, Problem, Solver, Visit};
-use crate::too_large::TooLarge;
 use crate::trace::Event;
+use crate::unplannable::Unplannable;
 
 impl Searching<'_> {
     /// The plan that a best-first search comes to first, which no other one is better than. `None` if too many states are open,
     /// or if the plan is not as good as its state promised.
     #[expect(clippy::option_option, reason = "no plan is not no answer")]
-    pub(super) fn best_first(&mut self) -> Result<Option<Option<Plan>>, TooLarge> {
+    pub(super) fn best_first(&mut self) -> Result<Option<Option<Plan>>, Unplannable> {
         let model = self.model;
         let goals = &model.demands.goals;
         let mut best: Option<(LeastSums, Plan)> = None;

@@ -19,8 +19,8 @@ use crate::partial_order;
 use crate::search::Gaps;
 use crate::solver::{Answer, GoalSums, Growth, Part, Problem, Record, Solver, Unencoded};
 use crate::structure::Relation;
-use crate::too_large::TooLarge;
 use crate::trace::{Event, SearchRound};
+use crate::unplannable::Unplannable;
 
 /// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
 const MAX_CONFLICTS_IN_ORDER: u64 = 5_000;
@@ -97,7 +97,7 @@ pub(crate) fn search(
     options: &Options,
     excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
-) -> Result<Outcome, TooLarge> {
+) -> Result<Outcome, Unplannable> {
     if excluded.is_empty()
         && let Some(outcome) = controllable::first_plan(network, model, options, termination)?
     {
@@ -115,12 +115,13 @@ pub(crate) fn search(
         incumbent: None,
         record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
         is_best_first: options.search == Search::BestFirst,
+        passes_over: false,
     };
     searching.stats.nodes = model.num_nodes as u64;
     searching.stats.arcs = model.arcs.len() as u64;
     searching.stats.decisions = model.decisions.len() as u64;
     if !model.has_contexts {
-        return Err(TooLarge::at(model.start));
+        return Err(Unplannable::Entangled);
     }
     let (status, plans) =
         if options.all { searching.all(options.max_plans)? } else { searching.several(options.best)? };
@@ -129,7 +130,7 @@ pub(crate) fn search(
         record.fail();
     }
     let trace = record.map(|record| record.into_trace());
-    Ok(Outcome { status, plans, bound, failure: None, stats, trace, too_large: None })
+    Ok(Outcome { status, plans, bound, failure: None, stats, trace, unplannable: None })
 }
 
 struct Searching<'a> {
@@ -147,7 +148,13 @@ struct Searching<'a> {
     /// What is told of all searches; the solver has it while it searches.
     record: Option<Box<Record>>,
     is_best_first: bool,
+    /// Whether something better may have been passed over.
+    passes_over: bool,
 }
+
+/// After so many solutions in which intervals touch without need, and which become plans that are no better than those
+/// known, no better one is looked for among what touches.
+const MAX_BEYOND: u32 = 5_000;
 
 /// What came of looking for the next plan of a problem.
 enum Next {
@@ -181,7 +188,7 @@ impl<'a> Searching<'a> {
         gaps: Gaps,
         limits: &Limits,
         is_in_order: bool,
-    ) -> Result<Option<Attempt<'a>>, TooLarge> {
+    ) -> Result<Option<Attempt<'a>>, Unplannable> {
         let (termination, stats) = (&mut self.termination, &self.stats);
         let attempt = Problem::new(self.model, gaps, Part::default(), &mut || termination.should_stop(stats))
             .and_then(|encoded| self.attempt(encoded, limits, is_in_order));
@@ -194,8 +201,8 @@ impl<'a> Searching<'a> {
                 self.is_stopped = true;
                 Ok(None)
             }
-            Err(Unencoded::TimesTooLarge) => Err(TooLarge::at(self.model.start)),
-            Err(Unencoded::TooManyLinks) => Err(TooLarge::Links),
+            Err(Unencoded::TimesTooLarge) => Err(Unplannable::at(self.model.start)),
+            Err(Unencoded::TooManyLinks) => Err(Unplannable::Links),
         }
     }
 
@@ -262,14 +269,15 @@ impl<'a> Searching<'a> {
         }
     }
 
-    /// The next plan of a problem whose solutions are all looked at in turn, as long as they become plans.
+    /// The next plan of a problem whose solutions are all looked at in turn, as long as they become plans within `limits`.
     fn next_plan(
         &mut self,
-        model: &Model,
-        problem: &mut Problem<'_>,
-        solver: &mut Solver,
+        (problem, solver): (&mut Problem<'_>, &mut Solver),
+        limits: &Limits,
         most: Option<u64>,
-    ) -> Result<Next, TooLarge> {
+    ) -> Result<Next, Unplannable> {
+        let model = self.model;
+        let mut num_beyond = 0;
         loop {
             match self.solve(problem, solver, most) {
                 None => return Ok(Next::Stopped),
@@ -277,12 +285,19 @@ impl<'a> Searching<'a> {
                 Some(true) => {}
             }
             let solution = problem.whole_solution(solver);
-            if let Some(plan) = partial_order::plan(self.network, model, &solution)? {
+            let plan = partial_order::plan(self.network, model, &solution)?;
+            let is_within = plan.as_ref().map_or(Ok(true), |plan| self.is_within(plan, limits))?;
+            if let Some(plan) = plan.filter(|_| is_within) {
                 solver.record_solution(|| Event::Keep {
                     orders: plan.orderings_added.clone(),
                     uses: plan.uses_ordered.clone(),
                 });
                 return Ok(Next::Plan(Box::new(plan)));
+            }
+            num_beyond += u32::from(!is_within);
+            if num_beyond > MAX_BEYOND {
+                self.passes_over = true;
+                return Ok(Next::Nothing);
             }
             // Intervals that touch without need: another order, link or choice may do.
             solver.record_failed(Event::NoRoomForGap);
@@ -291,8 +306,20 @@ impl<'a> Searching<'a> {
         }
     }
 
+    /// Whether a plan keeps the limits. One in which intervals need not touch may not, though its solution does.
+    fn is_within(&self, plan: &Plan, limits: &Limits) -> Result<bool, Unplannable> {
+        for (goal, limit) in self.model.demands.goals.iter().zip(limits) {
+            if let Some(limit) = *limit
+                && goal.sum(self.model, plan)? > limit
+            {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     /// So many plans that differ in their choices, the best first.
-    fn several(&mut self, count: usize) -> Result<(Status, Vec<Plan>), TooLarge> {
+    fn several(&mut self, count: usize) -> Result<(Status, Vec<Plan>), Unplannable> {
         let mut plans: Vec<Plan> = Vec::new();
         while plans.len() < count.max(1) && !self.is_stopped {
             let plan = if self.model.demands.goals.is_empty() { self.first()? } else { self.best()? };
@@ -310,13 +337,12 @@ impl<'a> Searching<'a> {
         Ok((self.status(!plans.is_empty()), plans))
     }
 
-    fn first(&mut self) -> Result<Option<Plan>, TooLarge> {
-        let model = self.model;
+    fn first(&mut self) -> Result<Option<Plan>, Unplannable> {
         for &gaps in self.gaps() {
             for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
                 let attempt = self.recorded_problem(gaps, &Vec::new(), most.is_some())?;
                 let Some(Attempt { mut problem, mut solver, .. }) = attempt else { return Ok(None) };
-                let next = self.next_plan(model, &mut problem, &mut solver, most)?;
+                let next = self.next_plan((&mut problem, &mut solver), &Vec::new(), most)?;
                 self.record = solver.record.take();
                 match next {
                     Next::Plan(plan) => return Ok(Some(*plan)),
@@ -330,8 +356,7 @@ impl<'a> Searching<'a> {
     }
 
     /// Every plan that differs in its choices, its links, or the order of what excludes each other.
-    fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), TooLarge> {
-        let model = self.model;
+    fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), Unplannable> {
         let mut plans: Vec<Plan> = Vec::new();
         for &gaps in self.gaps() {
             let Some(attempt) = self.recorded_problem(gaps, &Vec::new(), true)? else {
@@ -339,10 +364,10 @@ impl<'a> Searching<'a> {
             };
             let Attempt { mut problem, mut solver, .. } = attempt;
             let is_small = problem.order_all_pairs(&mut solver, &mut Growth::new(&mut || false));
-            is_small.map_err(|_| TooLarge::Links)?;
+            is_small.map_err(|_| Unplannable::Links)?;
             solver.record_choice_points(&problem);
             loop {
-                match self.next_plan(model, &mut problem, &mut solver, None)? {
+                match self.next_plan((&mut problem, &mut solver), &Vec::new(), None)? {
                     Next::Stopped => {
                         self.record = solver.record.take();
                         return Ok((Status::Limit, plans));
@@ -375,7 +400,7 @@ impl<'a> Searching<'a> {
     }
 
     /// A plan that no other one is better than, goal by goal; the best one found where the search is stopped before.
-    fn best(&mut self) -> Result<Option<Plan>, TooLarge> {
+    fn best(&mut self) -> Result<Option<Plan>, Unplannable> {
         if self.is_best_first {
             if let Some(plan) = self.best_first()? {
                 return Ok(plan);
@@ -410,16 +435,16 @@ impl<'a> Searching<'a> {
             }
         }
         let is_whole = model.demands.goals.iter().all(|goal| goal.is_whole);
-        plan.quality.is_optimal = Some(!self.is_stopped && is_whole);
+        plan.quality.is_optimal = Some(!self.is_stopped && !self.passes_over && is_whole);
         Ok(Some(plan))
     }
 
     /// Tells what a plan is worth that is better than those before.
-    fn tell_values(&mut self, plan: &Plan) -> Result<(), TooLarge> {
+    fn tell_values(&mut self, plan: &Plan) -> Result<(), Unplannable> {
         let Some(record) = &mut self.record else { return Ok(()) };
         let goals = self.model.demands.goals.iter();
         let values = goals.map(|goal| Ok(goal.value(goal.sum(self.model, plan)?)));
-        record.tell_improvement(values.collect::<Result<_, TooLarge>>()?);
+        record.tell_improvement(values.collect::<Result<_, Unplannable>>()?);
         Ok(())
     }
 
@@ -434,8 +459,11 @@ impl<'a> Searching<'a> {
 
     /// A plan within the limits, the same one each time. The last of them is no greater than in the attempts before, with
     /// whose solver the search goes on.
-    fn better(&mut self, improving: &mut Improving<'a>, limits: &Limits) -> Result<Option<Plan>, TooLarge> {
-        let model = self.model;
+    fn better(
+        &mut self,
+        improving: &mut Improving<'a>,
+        limits: &Limits,
+    ) -> Result<Option<Plan>, Unplannable> {
         let limit = limits.iter().rev().find_map(|limit| *limit).unwrap_or(0);
         while let Some(&gaps) = self.gaps().get(improving.exhausted) {
             let mut attempt = match improving.attempt.take() {
@@ -449,7 +477,7 @@ impl<'a> Searching<'a> {
                     None => return Ok(None),
                 },
             };
-            let next = self.next_plan(model, &mut attempt.problem, &mut attempt.solver, None)?;
+            let next = self.next_plan((&mut attempt.problem, &mut attempt.solver), limits, None)?;
             self.record = attempt.solver.record.take();
             match next {
                 Next::Plan(found) => {
@@ -506,5 +534,17 @@ mod tests {
         for objective in ["minimize length", "minimize cost", "maximize reward, minimize end + length"] {
             assert_eq!(is_optimal(&format!("objective {objective};")), Some(false), "{objective}");
         }
+    }
+
+    /// Better schedules in which intervals touch are no plans where nothing forces them to: that ends, too.
+    #[test]
+    fn what_would_be_sooner_only_by_touching_is_not_looked_for_for_ever() {
+        let text = "objective minimize end;
+             scenario S[0,30] = { { delay; ARM=a [4,4] }, { delay; ARM=b [3,3] }, { delay; ARM=c [9,9] } }";
+        let (network, diagnostics) = compile(&rmpl::parse(text).program(), &Top::Scenario(None));
+        let network = network.unwrap_or_else(|| panic!("{diagnostics:?}"));
+        let plan = &crate::plan(&network, &Options::default(), &mut Unlimited).plans[0];
+        let end = plan.windows[network.end.index()].map(|window| window.earliest);
+        assert_eq!((end, plan.quality.is_optimal), (Some(exact::Time::from(18)), Some(true)));
     }
 }

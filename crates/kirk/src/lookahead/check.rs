@@ -6,7 +6,7 @@ use tpn::LabelId;
 use super::{Lookahead, MAX_PAUSE, Origin, context_of, interval, link_edges};
 use crate::model::{Alternatives, INFINITE, Model};
 use crate::structure::{Relation, Structure};
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// What can become of one assertion for a requirement.
 enum Candidate {
@@ -37,7 +37,7 @@ impl Lookahead {
         &mut self,
         model: &Model,
         result: Result<(), Inconsistency>,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         match result {
             Ok(()) => Ok(true),
             Err(Inconsistency::Overflow(overflow)) => Err(overflow.into()),
@@ -72,7 +72,7 @@ impl Lookahead {
         structure: &Structure,
         chosen: &Alternatives,
         first: usize,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         for position in 0..first {
             let label = self.labels[position];
             if !self.is_in_question(model, label) {
@@ -145,7 +145,7 @@ impl Lookahead {
         structure: &Structure,
         left: LabelId,
         right: LabelId,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         let arc = |label: LabelId| model.conditions.labels[label].arc;
         if arc(left) == arc(right) {
             self.conflict.clear();
@@ -177,7 +177,7 @@ impl Lookahead {
     }
 
     /// Whether some assertion can carry a requirement.
-    fn check_ask(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, TooLarge> {
+    fn check_ask(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, Unplannable> {
         self.conflict.clear();
         let mut only = None;
         for tell in model.conditions.supporters(ask) {
@@ -208,7 +208,7 @@ impl Lookahead {
         model: &Model,
         chosen: &Alternatives,
         ask: LabelId,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         let has_guess = self.guessed[ask].is_some() || self.guess_carrier(model, ask)?;
         let is_due = self.is_thorough && self.num_decided >= self.due[ask].0;
         let is_settled = if is_due {
@@ -239,7 +239,7 @@ impl Lookahead {
     }
 
     /// Whether the assertion found last can still carry a requirement.
-    fn can_stay(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, TooLarge> {
+    fn can_stay(&mut self, model: &Model, chosen: &Alternatives, ask: LabelId) -> Result<bool, Unplannable> {
         let Some(tell) = self.witness[ask].filter(|&tell| self.is_active_label[tell]) else {
             return Ok(false);
         };
@@ -252,7 +252,7 @@ impl Lookahead {
         chosen: &Alternatives,
         ask: LabelId,
         tell: LabelId,
-    ) -> Result<Candidate, TooLarge> {
+    ) -> Result<Candidate, Unplannable> {
         if !self.is_active_label[tell] {
             let mut context = context_of(model, tell);
             while let Some(choice) = context {
@@ -287,7 +287,7 @@ impl Lookahead {
         model: &Model,
         labels: &[LabelId],
         edges: &[(PointId, PointId, i64)],
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         for &label in labels {
             self.add_label_to_conflict(model, label);
         }
@@ -315,7 +315,7 @@ impl Lookahead {
         schedule[to.index()].checked_sub(schedule[from.index()]).is_some_and(|distance| distance <= weight)
     }
 
-    fn admits(&mut self, model: &Model, edge: (PointId, PointId, i64)) -> Result<bool, TooLarge> {
+    fn admits(&mut self, model: &Model, edge: (PointId, PointId, i64)) -> Result<bool, Unplannable> {
         if self.is_guided(edge) {
             return Ok(true);
         }

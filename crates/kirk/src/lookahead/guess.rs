@@ -9,11 +9,11 @@ use tpn::LabelId;
 
 use super::{GuideOrigin, Lookahead, Origin, link_edges};
 use crate::model::Model;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 impl Lookahead {
     /// Guesses which assertion carries `ask`, in accord with all other guesses. `false` if none is found to.
-    pub(super) fn guess_carrier(&mut self, model: &Model, ask: LabelId) -> Result<bool, TooLarge> {
+    pub(super) fn guess_carrier(&mut self, model: &Model, ask: LabelId) -> Result<bool, Unplannable> {
         let witness = self.witness[ask];
         if let Some(witness) = witness
             && self.is_active_label[witness]
@@ -34,7 +34,7 @@ impl Lookahead {
         Ok(false)
     }
 
-    fn guess(&mut self, model: &Model, ask: LabelId, tell: LabelId) -> Result<bool, TooLarge> {
+    fn guess(&mut self, model: &Model, ask: LabelId, tell: LabelId) -> Result<bool, Unplannable> {
         let checkpoint = self.guide.checkpoint();
         let position = self.guide.num_edges() as u32;
         for (from, to, weight) in link_edges(model, ask, tell) {

@@ -17,7 +17,7 @@ use typed_index_collections::TiVec;
 use crate::ids::{ConsequenceId, LevelId};
 use crate::model::{Alternatives, Context, INFINITE, Model, node, point};
 use crate::structure::{BlockRelaxation, Structure, TreeState};
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 use origin::{GuideOrigin, Origin};
 
 /// The most decisions after which a requirement is looked through again although nothing ever followed from that.
@@ -135,7 +135,7 @@ impl Lookahead {
         model: &Model,
         structure: &Structure,
         chosen: &Alternatives,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         self.conflict.clear();
         self.activate_node(model.representatives[model.start]);
         self.collect(model, structure, None);
@@ -182,7 +182,7 @@ impl Lookahead {
     }
 
     /// Links, as far as windows alone tell, what every plan has; each link narrows the windows of others.
-    fn link_by_windows(&mut self, model: &Model, order: &[PointId]) -> Result<bool, TooLarge> {
+    fn link_by_windows(&mut self, model: &Model, order: &[PointId]) -> Result<bool, Unplannable> {
         let start = model.representative(model.start);
         self.stn.sweep_distances(start, order, &mut self.from_start, &mut self.to_start)?;
         loop {
@@ -202,7 +202,7 @@ impl Lookahead {
     }
 
     /// Narrows the windows of all active nodes by the edges from the given one on.
-    fn narrow_windows(&mut self, first_edge: usize, order: &[PointId]) -> Result<(), TooLarge> {
+    fn narrow_windows(&mut self, first_edge: usize, order: &[PointId]) -> Result<(), Unplannable> {
         Ok(self.stn.tighten_distances(first_edge, order, &mut self.from_start, &mut self.to_start)?)
     }
 
@@ -215,7 +215,7 @@ impl Lookahead {
         chosen: &Alternatives,
         choice: Choice,
         depth: LevelId,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         self.conflict.clear();
         self.num_decided += 1;
         self.marks.push(Mark {
@@ -280,7 +280,7 @@ impl Lookahead {
         chosen: &Alternatives,
         part: BlockId,
         relaxation: BlockRelaxation,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         let (from, to) = (model.representative(relaxation.from), model.representative(relaxation.to));
         let mut reason = Vec::new();
         structure.explain(tree, chosen, part, &mut |decision| reason.push(decision));

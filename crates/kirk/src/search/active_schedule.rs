@@ -15,12 +15,14 @@ use crate::conditions::Conditions;
 use crate::levels::Kind;
 use crate::model::{INFINITE, node};
 use crate::structure::Relation;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// In one schedule, times move at most so often for each edge and pair there is.
 const MAX_MOVES_EACH: usize = 8;
-/// With more pairs than this a schedule is tried before textual order.
-const MAX_PAIRS_IN_ORDER: usize = 20_000;
+/// With more pairs than this they are ordered at once, if that can be done.
+const MAX_PAIRS_IN_ORDER: usize = 16;
+/// With more pairs than this they are ordered by rules before textual order is searched, whatever else was chosen.
+const MAX_PAIRS_OF_CHOICE: usize = 20_000;
 /// More pairs than this are left alone.
 const MAX_PAIRS: usize = 1 << 23;
 /// How many rivals in between are asked whether an order follows from theirs.
@@ -28,37 +30,61 @@ const MAX_ASKED: usize = 8;
 /// The place of a task that has none yet.
 const UNPLACED: u32 = u32::MAX;
 
+/// What came of an attempt to choose all orders at once.
+pub(super) enum Ordered {
+    All,
+    /// No schedule fits, and the search would hardly find one either.
+    None,
+    NotTried,
+}
+
 impl Engine<'_> {
     /// Before the first order is chosen: whether all of them could be chosen at once, as times that were given have them,
-    /// or those of an active schedule where there are too many pairs to go through.
-    pub(super) fn orders_at_once(&mut self) -> Result<bool, TooLarge> {
-        let is_given = self.setup.assumed.as_ref().is_some_and(|assumed| !assumed.times.is_empty());
-        if is_given && !self.setup.orders_touching_last {
-            let Some(mut shop) = self.shop()? else { return Ok(false) };
-            let times = self.setup.assumed.as_ref().map_or_else(Vec::new, |assumed| assumed.times.clone());
+    /// or by a schedule. That may be the one in textual order, which the search would find, too; others only where there is
+    /// nothing but orders to choose, or so many pairs that the search would take long to go through them.
+    pub(super) fn order_at_once(&mut self) -> Result<Ordered, Unplannable> {
+        let assumed = self.setup.assumed.as_ref().filter(|assumed| !assumed.times.is_empty());
+        let given = assumed.filter(|_| !self.setup.orders_touching_last).map(|assumed| assumed.times.clone());
+        let num_pairs = self.leaf.pairs.len();
+        if given.is_none() && !(self.setup.schedules && num_pairs > MAX_PAIRS_IN_ORDER) {
+            return Ok(Ordered::NotTried);
+        }
+        let Some(mut shop) = self.shop()? else { return Ok(Ordered::NotTried) };
+        if let Some(times) = given {
             shop.place_by(times);
-            return self.order_neighbours(&shop);
+            return Ok(if self.order_neighbours(&shop)? { Ordered::All } else { Ordered::NotTried });
         }
-        if self.setup.schedules && self.leaf.pairs.len() > MAX_PAIRS_IN_ORDER {
-            return self.order_as_scheduled();
+        let is_of_orders = self.model.decisions.is_empty() && self.leaf.asks.is_empty();
+        if self.order_by(&mut shop, &[Rule::Textual])? {
+            return Ok(Ordered::All);
         }
-        Ok(false)
+        if !is_of_orders && num_pairs <= MAX_PAIRS_OF_CHOICE {
+            return Ok(Ordered::NotTried);
+        }
+        Ok(if self.order_by(&mut shop, &RULES)? { Ordered::All } else { Ordered::None })
     }
 
     /// Takes back the orders chosen so far and chooses those of an active schedule, if one is found. `false` if there is
     /// none, or what was chosen before is not complete.
-    pub(crate) fn order_as_scheduled(&mut self) -> Result<bool, TooLarge> {
+    pub(crate) fn order_as_scheduled(&mut self) -> Result<bool, Unplannable> {
         self.drop_orders();
         let num_linked = self.levels.iter().filter(|level| matches!(level.kind, Kind::Link { .. })).count();
         if !self.leaf.is_ready || num_linked < self.leaf.asks.len() {
             return Ok(false);
         }
-        let Some(mut shop) = self.shop()? else { return Ok(false) };
-        let Some(times) = RULES.iter().find_map(|&rule| shop.schedule(rule)) else { return Ok(false) };
+        match self.shop()? {
+            Some(mut shop) => self.order_by(&mut shop, &RULES),
+            None => Ok(false),
+        }
+    }
+
+    /// Chooses the orders of the first of these schedules that there is.
+    fn order_by(&mut self, shop: &mut Shop, rules: &[Rule]) -> Result<bool, Unplannable> {
+        let Some(times) = rules.iter().find_map(|&rule| shop.schedule(rule)) else { return Ok(false) };
         self.stn.propose(times.iter().copied());
         let alternatives = vec![None; self.model.decisions.len()].into();
         let assumed = self.setup.assumed.replace(Choices { alternatives, times, ..Choices::default() });
-        let is_ordered = self.order_neighbours(&shop);
+        let is_ordered = self.order_neighbours(shop);
         self.setup.assumed = assumed;
         is_ordered
     }
@@ -73,7 +99,7 @@ impl Engine<'_> {
     }
 
     /// What there is to schedule: the pairs that neither nesting nor windows order.
-    fn shop(&mut self) -> Result<Option<Shop>, TooLarge> {
+    fn shop(&mut self) -> Result<Option<Shop>, Unplannable> {
         self.find_windows()?;
         let mut pairs = Vec::new();
         for position in 0..self.leaf.pairs.len() {
@@ -88,7 +114,7 @@ impl Engine<'_> {
     }
 
     /// Orders what is scheduled one right after the other. The other pairs follow from that.
-    fn order_neighbours(&mut self, shop: &Shop) -> Result<bool, TooLarge> {
+    fn order_neighbours(&mut self, shop: &Shop) -> Result<bool, Unplannable> {
         for &position in &shop.pairs {
             let (left, right) = self.leaf.pairs[position as usize];
             self.leaf.is_swapped[position as usize] = self.assumed_order(left, right) == Some(1);
@@ -167,7 +193,8 @@ struct Shop {
 
     times: Vec<i64>,
     /// When each task is placed.
-    place: Vec<u32>,
+    place_of: Vec<u32>,
+    num_placed: u32,
     /// By interval: how long its rivals without a place take together.
     work: Vec<i64>,
     moved: VecDeque<u32>,
@@ -188,18 +215,21 @@ enum Urgency {
 
 /// How a schedule is made.
 #[derive(Clone, Copy)]
-struct Rule {
-    /// Whether only those compete that can begin first, so that nothing waits without need.
-    is_non_delay: bool,
-    urgency: Urgency,
+enum Rule {
+    /// What is written first is placed first.
+    Textual,
+    /// Of those that can begin first, the most urgent one is placed, so that nothing waits without need.
+    NonDelay(Urgency),
+    /// Of those that can begin before the first one ends, the most urgent one is placed.
+    Active(Urgency),
 }
 
 /// The rules that are tried, in this order.
 const RULES: [Rule; 4] = [
-    Rule { is_non_delay: true, urgency: Urgency::WorkOfOne },
-    Rule { is_non_delay: true, urgency: Urgency::LatestStart },
-    Rule { is_non_delay: false, urgency: Urgency::WorkOfAll },
-    Rule { is_non_delay: false, urgency: Urgency::WorkOfOne },
+    Rule::NonDelay(Urgency::WorkOfOne),
+    Rule::NonDelay(Urgency::LatestStart),
+    Rule::Active(Urgency::WorkOfAll),
+    Rule::Active(Urgency::WorkOfOne),
 ];
 
 impl Shop {
@@ -243,7 +273,8 @@ impl Shop {
         let earliest = to_start.iter().map(|&distance| if distance == INFINITE { 0 } else { -distance });
         Self {
             times: Vec::new(),
-            place: Vec::new(),
+            place_of: Vec::new(),
+            num_placed: 0,
             work: Vec::new(),
             moved: VecDeque::new(),
             is_waiting: vec![false; num_points],
@@ -266,15 +297,28 @@ impl Shop {
     fn schedule(&mut self, rule: Rule) -> Option<Vec<i64>> {
         self.times.clone_from(&self.earliest);
         let num_tasks = self.tasks.first.len() - 1;
-        self.place.clear();
-        self.place.resize(num_tasks, UNPLACED);
+        self.place_of.clear();
+        self.place_of.resize(num_tasks, UNPLACED);
         self.moves_left = MAX_MOVES_EACH * (self.edges.cells.len() + self.rivals.cells.len());
+        self.num_placed = 0;
+        let placed = match rule {
+            Rule::Textual => (0..num_tasks).try_for_each(|task| self.place(task)),
+            Rule::NonDelay(urgency) => self.place_by_urgency(urgency, true),
+            Rule::Active(urgency) => self.place_by_urgency(urgency, false),
+        };
+        self.is_waiting.fill(false);
+        self.moved.clear();
+        placed.map(|()| self.times.clone())
+    }
+
+    /// Places all tasks. `None` if something comes too late.
+    fn place_by_urgency(&mut self, urgency: Urgency, is_non_delay: bool) -> Option<()> {
         self.sum_work();
+        let tasks = 0..self.place_of.len();
         let mut waiting: BinaryHeap<Reverse<(i64, usize)>> =
-            (0..num_tasks).map(|task| Reverse((self.end(task), task))).collect();
-        let mut placed = 0;
+            tasks.map(|task| Reverse((self.end(task), task))).collect();
         while let Some(Reverse((end, first))) = waiting.pop() {
-            if self.place[first] != UNPLACED {
+            if self.place_of[first] != UNPLACED {
                 continue;
             }
             let now = self.end(first);
@@ -282,19 +326,14 @@ impl Shop {
                 waiting.push(Reverse((now, first)));
                 continue;
             }
-            let chosen = self.most_urgent(first, rule);
+            let chosen = self.most_urgent(first, urgency, is_non_delay);
             if chosen != first {
                 waiting.push(Reverse((end, first)));
             }
-            self.place[chosen] = placed;
-            placed += 1;
-            if self.put_rivals_behind(chosen).is_none() {
-                self.is_waiting.fill(false);
-                self.moved.clear();
-                return None;
-            }
+            self.reduce_work(chosen);
+            self.place(chosen)?;
         }
-        Some(self.times.clone())
+        Some(())
     }
 
     /// Takes these times for a schedule.
@@ -302,9 +341,9 @@ impl Shop {
         self.times = times;
         let mut tasks: Vec<usize> = (0..self.tasks.first.len() - 1).collect();
         tasks.sort_by_key(|&task| self.start(task));
-        self.place.resize(tasks.len(), UNPLACED);
+        self.place_of.resize(tasks.len(), UNPLACED);
         for (place, task) in (0..).zip(tasks) {
-            self.place[task] = place;
+            self.place_of[task] = place;
         }
     }
 
@@ -316,12 +355,12 @@ impl Shop {
         let mut neighbours = Vec::new();
         let (mut later, mut next) = (Vec::new(), Vec::new());
         for interval in 0..self.intervals.len() {
-            let place = self.place[self.task_of[interval] as usize];
+            let place = self.place_of[self.task_of[interval] as usize];
             let rivals = self.rivals.row(interval).iter().map(|&rival| rival as usize);
             later.clear();
-            later.extend(rivals.filter(|&rival| self.place[self.task_of[rival] as usize] > place));
+            later.extend(rivals.filter(|&rival| self.place_of[self.task_of[rival] as usize] > place));
             later.sort_unstable_by_key(|&rival| {
-                (self.times[self.intervals[rival].0], self.place[self.task_of[rival] as usize], rival)
+                (self.times[self.intervals[rival].0], self.place_of[self.task_of[rival] as usize], rival)
             });
             next.clear();
             for &rival in &later {
@@ -377,11 +416,11 @@ impl Shop {
     }
 
     /// Of a task and its rivals that compete for its place, the one that is hurried most.
-    fn most_urgent(&self, first: usize, rule: Rule) -> usize {
-        let urgency = |task: usize| {
+    fn most_urgent(&self, first: usize, urgency: Urgency, is_non_delay: bool) -> usize {
+        let by_urgency = |task: usize| {
             let intervals = self.tasks.row(task);
             let works = intervals.iter().map(|&interval| self.work[interval as usize]);
-            let work = match rule.urgency {
+            let work = match urgency {
                 Urgency::LatestStart => 0,
                 Urgency::WorkOfAll => works.fold(0, i64::saturating_add),
                 Urgency::WorkOfOne => works.max().unwrap_or(0),
@@ -391,26 +430,37 @@ impl Shop {
         };
         let rivals = self.tasks.row(first).iter().flat_map(|&interval| self.rivals.row(interval as usize));
         let rivals = rivals.map(|&rival| self.task_of[rival as usize] as usize);
-        let rivals = rivals.filter(|&rival| self.place[rival] == UNPLACED);
-        let end = if rule.is_non_delay {
+        let rivals = rivals.filter(|&rival| self.place_of[rival] == UNPLACED);
+        let end = if is_non_delay {
             rivals.clone().map(|rival| self.start(rival)).min().unwrap_or(i64::MAX).min(self.start(first)) + 1
         } else {
             self.end(first)
         };
         let competing = rivals.chain([first]).filter(|&task| self.start(task) < end);
-        competing.min_by_key(|&task| urgency(task)).unwrap_or(first)
+        competing.min_by_key(|&task| by_urgency(task)).unwrap_or(first)
     }
 
-    /// Makes the rivals of a task that has been placed begin after it. `None` if something comes too late then.
-    fn put_rivals_behind(&mut self, placed: usize) -> Option<()> {
+    /// What is placed waits for nothing.
+    fn reduce_work(&mut self, placed: usize) {
         for position in self.tasks.range(placed) {
             let interval = self.tasks.cells[position] as usize;
             let duration = self.duration(interval);
             for position in self.rivals.range(interval) {
                 let rival = self.rivals.cells[position] as usize;
-                let task = self.task_of[rival] as usize;
-                if self.place[task] == UNPLACED {
-                    self.work[rival] = self.work[rival].saturating_sub(duration);
+                self.work[rival] = self.work[rival].saturating_sub(duration);
+            }
+        }
+    }
+
+    /// Places a task, and makes its rivals without a place begin after it. `None` if something comes too late then.
+    fn place(&mut self, task: usize) -> Option<()> {
+        self.place_of[task] = self.num_placed;
+        self.num_placed += 1;
+        for position in self.tasks.range(task) {
+            let interval = self.tasks.cells[position] as usize;
+            for position in self.rivals.range(interval) {
+                let rival = self.rivals.cells[position] as usize;
+                if self.place_of[self.task_of[rival] as usize] == UNPLACED {
                     let time = self.times[self.intervals[interval].1].saturating_add(self.gap);
                     self.delay(self.intervals[rival].0, time)?;
                     self.settle()?;
@@ -449,13 +499,13 @@ impl Shop {
             }
             for position in self.ending.range(point) {
                 let ended = self.ending.cells[position] as usize;
-                let place = self.place[self.task_of[ended] as usize];
+                let place = self.place_of[self.task_of[ended] as usize];
                 if place == UNPLACED {
                     continue;
                 }
                 for position in self.rivals.range(ended) {
                     let rival = self.rivals.cells[position] as usize;
-                    if self.place[self.task_of[rival] as usize] > place {
+                    if self.place_of[self.task_of[rival] as usize] > place {
                         self.delay(self.intervals[rival].0, time.saturating_add(self.gap))?;
                     }
                 }

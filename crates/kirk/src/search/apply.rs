@@ -8,12 +8,12 @@ use crate::failure::FailureKind;
 use crate::ids::LevelId;
 use crate::levels::Kind;
 use crate::structure::Structure;
-use crate::too_large::TooLarge;
 use crate::trace::{Event, TreeChoice};
+use crate::unplannable::Unplannable;
 
 impl Engine<'_> {
     /// Takes an alternative at a level. `false` if it fails at once; then `conflict` says why.
-    pub(super) fn apply(&mut self, depth: LevelId, alternative: u32) -> Result<bool, TooLarge> {
+    pub(super) fn apply(&mut self, depth: LevelId, alternative: u32) -> Result<bool, Unplannable> {
         let tag = Origin::Level(depth).tag();
         match self.levels[depth].kind {
             Kind::Decision { decision } => self.choose(depth, Choice { decision, alternative }),
@@ -76,7 +76,7 @@ impl Engine<'_> {
         self.model.gap - self.model.gap_after[first]
     }
 
-    fn choose(&mut self, depth: LevelId, choice: Choice) -> Result<bool, TooLarge> {
+    fn choose(&mut self, depth: LevelId, choice: Choice) -> Result<bool, Unplannable> {
         self.leaf.is_ready = false;
         let Choice { decision, alternative } = choice;
         self.chosen[decision] = Some(alternative);
@@ -126,7 +126,7 @@ impl Engine<'_> {
         depth: LevelId,
         structure: &Structure,
         choice: Choice,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         let (Some(lookahead), Some(tree)) = (&mut self.lookahead, &self.tree) else { return Ok(true) };
         if lookahead.decide(self.model, structure, tree, &self.chosen, choice, depth)? {
             return Ok(true);
@@ -147,7 +147,7 @@ impl Engine<'_> {
         edges: &[(PointId, PointId, i64)],
         tag: Tag,
         kind: FailureKind,
-    ) -> Result<bool, TooLarge> {
+    ) -> Result<bool, Unplannable> {
         match self.stn.insert_all(edges, tag) {
             Ok(()) => {
                 let moved = self.stn.num_changed() as u32;

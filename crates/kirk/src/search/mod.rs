@@ -28,9 +28,10 @@ use crate::model::{Context, INFINITE, Model, ModelArc, point};
 use crate::options::{Stats, Termination};
 use crate::record::FailureRecorder;
 use crate::structure::{Structure, TreeState};
-use crate::too_large::TooLarge;
 use crate::trace::{Event, Recorder, TreeChoice, TreeNodeId, TreeStatus};
+use crate::unplannable::Unplannable;
 
+use active_schedule::Ordered;
 pub(crate) use origin::Origin;
 pub(crate) use setup::{Choices, Gaps, Halt, Setup};
 
@@ -41,6 +42,7 @@ enum Next {
     Choice(Kind),
     Solution,
     Failure,
+    Stop,
 }
 
 pub(crate) struct Engine<'m> {
@@ -134,7 +136,7 @@ impl<'m> Engine<'m> {
     }
 
     /// Searches for the next plan.
-    pub(crate) fn run(&mut self, termination: &mut dyn Termination) -> Result<Halt, TooLarge> {
+    pub(crate) fn run(&mut self, termination: &mut dyn Termination) -> Result<Halt, Unplannable> {
         if self.has_begun {
             // The plan found last rests on every choice made.
             self.conflict.clear();
@@ -160,6 +162,7 @@ impl<'m> Engine<'m> {
                     self.set_status(self.at, TreeStatus::Solution);
                     return Ok(Halt::Solution);
                 }
+                Next::Stop => return Ok(Halt::Stopped),
                 Next::Choice(kind) => {
                     self.push_level(kind);
                     self.try_alternatives()? || self.retreat()?
@@ -270,7 +273,7 @@ impl<'m> Engine<'m> {
     }
 
     /// What every plan has. `false` if that alone is inconsistent.
-    fn begin(&mut self) -> Result<bool, TooLarge> {
+    fn begin(&mut self) -> Result<bool, Unplannable> {
         self.conflict.clear();
         if self.setup.is_checking {
             return Ok(true);
@@ -288,7 +291,7 @@ impl<'m> Engine<'m> {
     }
 
     /// What to do next in the present state.
-    fn next(&mut self) -> Result<Next, TooLarge> {
+    fn next(&mut self) -> Result<Next, Unplannable> {
         let (first_ask, first_pair) = match self.levels.last().map(|level| &level.kind) {
             None => {
                 if let Some(decision) = self.next_decision(None) {
@@ -326,8 +329,10 @@ impl<'m> Engine<'m> {
         }
         if first_pair == 0 {
             self.find_pairs();
-            if self.orders_at_once()? {
-                return Ok(Next::Solution);
+            match self.order_at_once()? {
+                Ordered::All => return Ok(Next::Solution),
+                Ordered::None => return Ok(Next::Stop),
+                Ordered::NotTried => {}
             }
         }
         match self.next_threat(first_pair)? {
@@ -388,7 +393,7 @@ impl<'m> Engine<'m> {
 
     /// Tries the alternatives that are left at the topmost level. `false` if none stands: then the level is gone and
     /// `conflict` says what that rests on.
-    fn try_alternatives(&mut self) -> Result<bool, TooLarge> {
+    fn try_alternatives(&mut self) -> Result<bool, Unplannable> {
         let Some(depth) = self.levels.last_key() else { return Ok(false) };
         loop {
             let level = &mut self.levels[depth];

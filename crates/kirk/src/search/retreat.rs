@@ -6,8 +6,8 @@ use super::{Engine, Gaps};
 use crate::failure::FailureKind;
 use crate::ids::LevelId;
 use crate::levels::Kind;
-use crate::too_large::TooLarge;
 use crate::trace::{Event, TreeChoice, TreeStatus};
+use crate::unplannable::Unplannable;
 
 impl Engine<'_> {
     /// Removes the topmost level, whose alternatives have all failed.
@@ -68,7 +68,7 @@ impl Engine<'_> {
 
     /// Goes back from a failure that rests on `conflict` to a level with an alternative that may avoid it.
     /// `false` if there is none.
-    pub(super) fn retreat(&mut self) -> Result<bool, TooLarge> {
+    pub(super) fn retreat(&mut self) -> Result<bool, Unplannable> {
         loop {
             let last = self.levels.last_key();
             let target = if self.setup.jumps { self.conflict.highest() } else { last };

@@ -25,7 +25,7 @@ pub(crate) struct Setup {
     /// Order conflicting pairs that the times given leave less than the gap after all others, which may then order them
     /// without a gap; otherwise in textual order, as SPEC 5.4 does.
     pub(crate) orders_touching_last: bool,
-    /// Whether a schedule by priority rules may be tried before textual order, where many pairs conflict.
+    /// Whether conflicting pairs may be ordered at once by a schedule, and the search may stop where that fails.
     pub(crate) schedules: bool,
     /// Times that are likely to fit, by node; it only saves work. None if empty.
     pub(crate) proposed: Vec<i64>,

@@ -6,14 +6,14 @@ use typed_index_collections::TiVec;
 use super::{Shape, Structure, TreeBlock};
 use crate::enclosed::Enclosed;
 use crate::model::{INFINITE, Model};
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// Parts of more blocks are not looked at for enclosed conditions.
 const MAX_ENCLOSED_BLOCKS: usize = 64;
 
 impl Structure {
     /// `None` if the blocks do not account for their own arcs, as in networks changed by other tools.
-    pub(crate) fn new(network: &Network, model: &Model) -> Result<Option<Self>, TooLarge> {
+    pub(crate) fn new(network: &Network, model: &Model) -> Result<Option<Self>, Unplannable> {
         let Some(root) = network.root else { return Ok(None) };
         let mut structure = Self {
             blocks: TiVec::with_capacity(network.blocks.len()),

@@ -4,7 +4,7 @@ use tpn::{BlockId, Choice, DecisionId};
 
 use super::{Duration, Shape, Structure, TreeState};
 use crate::model::Alternatives;
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 impl Structure {
     /// Takes an alternative; `Err` names the block that has become impossible.
@@ -13,7 +13,7 @@ impl Structure {
         state: &mut TreeState,
         chosen: &Alternatives,
         choice: Choice,
-    ) -> Result<Result<(), BlockId>, TooLarge> {
+    ) -> Result<Result<(), BlockId>, Unplannable> {
         let mut id = self.decision_blocks[choice.decision];
         let child = self.child(id, choice.alternative);
         if state.durations[child].is_empty() {

@@ -5,10 +5,10 @@ use tpn::{ArcId, BlockId};
 use super::{Duration, Shape, Structure, bounds, intersect, sum_of};
 use crate::enclosed::Durations;
 use crate::model::{INFINITE, Model};
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 impl Structure {
-    pub(super) fn initial_duration(&self, model: &Model, id: BlockId) -> Result<Duration, TooLarge> {
+    pub(super) fn initial_duration(&self, model: &Model, id: BlockId) -> Result<Duration, Unplannable> {
         let duration = self.nested_duration(id)?;
         let Some(enclosed) = self.blocks[id].enclosed.filter(|_| !duration.is_empty()) else {
             return Ok(duration);
@@ -23,7 +23,7 @@ impl Structure {
         })
     }
 
-    fn nested_duration(&self, id: BlockId) -> Result<Duration, TooLarge> {
+    fn nested_duration(&self, id: BlockId) -> Result<Duration, Unplannable> {
         let block = &self.blocks[id];
         let children = self.children(id);
         let parts = children.iter().map(|&child| {
@@ -74,7 +74,7 @@ impl Structure {
     }
 
     /// What the arcs around a block add to its duration.
-    pub(super) fn around(&self, model: &Model, id: BlockId) -> Result<(i64, i64), TooLarge> {
+    pub(super) fn around(&self, model: &Model, id: BlockId) -> Result<(i64, i64), Unplannable> {
         let (enter, leave) = self.blocks[id].around_arcs;
         let bounds = |arc: Option<ArcId>| arc.map_or((0, 0), |arc| bounds(model, arc));
         let (enter, leave) = (bounds(enter), bounds(leave));

@@ -16,7 +16,7 @@ use typed_index_collections::TiVec;
 use crate::enclosed::Enclosed;
 use crate::ids::EnclosedId;
 use crate::model::{INFINITE, Model};
-use crate::too_large::TooLarge;
+use crate::unplannable::Unplannable;
 
 /// The tree, with the duration of each block before any choice.
 #[derive(Clone, Debug)]
@@ -138,7 +138,7 @@ pub(crate) enum Relation {
 
 impl Structure {
     /// Computes all durations anew from the model's bounds.
-    pub(crate) fn refresh(&mut self, model: &Model) -> Result<(), TooLarge> {
+    pub(crate) fn refresh(&mut self, model: &Model) -> Result<(), Unplannable> {
         self.initial.clear();
         self.initial.resize(self.blocks.len(), Duration::NEVER);
         for id in self.blocks.keys() {
@@ -151,7 +151,7 @@ impl Structure {
 
     /// Changes one arc's bounds in the tree, where only its own block and its ancestors depend on it. `false` if the
     /// arc is structural and everything must be refreshed.
-    pub(crate) fn set_arc(&mut self, model: &Model, arc: ArcId) -> Result<bool, TooLarge> {
+    pub(crate) fn set_arc(&mut self, model: &Model, arc: ArcId) -> Result<bool, Unplannable> {
         let Some(own) = self.arc_blocks[arc] else { return Ok(false) };
         self.blocks[own].own = self.own_bounds(model, own);
         let mut above = Some(own);
@@ -187,7 +187,7 @@ impl Structure {
     }
 
     /// The duration of a choice if its first possible alternative is taken.
-    pub(crate) fn first_alternative(&self, decision: DecisionId) -> Result<Option<(i64, i64)>, TooLarge> {
+    pub(crate) fn first_alternative(&self, decision: DecisionId) -> Result<Option<(i64, i64)>, Unplannable> {
         let children = self.children(self.decision_blocks[decision]);
         let first = children.iter().find(|&&child| !self.initial[child].is_empty());
         let duration = first.map(|&child| self.with_around(self.initial[child], child));
@@ -332,18 +332,18 @@ impl Structure {
     }
 
     /// What a block's duration and the arcs around it come to.
-    fn contribution(&self, state: &TreeState, id: BlockId) -> Result<Duration, TooLarge> {
+    fn contribution(&self, state: &TreeState, id: BlockId) -> Result<Duration, Unplannable> {
         self.with_around(state.durations[id], id)
     }
 
     /// The duration of a block with that of the arcs around it.
-    fn with_around(&self, duration: Duration, id: BlockId) -> Result<Duration, TooLarge> {
+    fn with_around(&self, duration: Duration, id: BlockId) -> Result<Duration, Unplannable> {
         add(duration, self.blocks[id].around).ok_or_else(|| self.overflow(id))
     }
 
     /// That the duration of a block does not fit.
-    fn overflow(&self, id: BlockId) -> TooLarge {
-        TooLarge::at(self.blocks[id].ends.1)
+    fn overflow(&self, id: BlockId) -> Unplannable {
+        Unplannable::at(self.blocks[id].ends.1)
     }
 }
 

@@ -199,7 +199,7 @@ fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
 
 fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
     let outcome = &planning.outcome;
-    let what = outcome.too_large_message(network).unwrap_or_else(|| match outcome.status {
+    let what = outcome.unplannable_message(network).unwrap_or_else(|| match outcome.status {
         kirk::Status::Limit => "planning was stopped before it had an answer".to_owned(),
         kirk::Status::NoPlan | kirk::Status::Plan | kirk::Status::Error => "there is no plan".to_owned(),
     });

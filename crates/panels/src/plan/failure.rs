@@ -31,7 +31,7 @@ pub(crate) fn show(
         icon::label(ui, Icon::Error, tokens.error);
         ui.label(theme::strong(verdict).color(tokens.error));
     });
-    if let Some(message) = planning.outcome.too_large_message(network) {
+    if let Some(message) = planning.outcome.unplannable_message(network) {
         ui.label(RichText::new(message).color(tokens.text_muted));
     }
     let Some(failure) = &planning.outcome.failure else { return };

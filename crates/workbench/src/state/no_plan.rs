@@ -38,7 +38,7 @@ pub(super) fn problems(snapshot: &Snapshot) -> Vec<Problem> {
         }
     };
     if let Some(network) = snapshot.network.as_deref()
-        && let Some(message) = planning.outcome.too_large_message(network)
+        && let Some(message) = planning.outcome.unplannable_message(network)
     {
         return vec![problem(format!("No plan: {message}"), &[], &[])];
     }

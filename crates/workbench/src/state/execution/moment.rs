@@ -49,7 +49,7 @@ pub(super) fn at(base: &Snapshot, executed: &Executed, time: f64) -> (Snapshot, 
         failure: None,
         stats: base.planning.as_ref().map_or_else(Stats::default, |planning| planning.outcome.stats),
         trace: None,
-        too_large: None,
+        unplannable: None,
     };
     let planning = Planning {
         outcome,

@@ -7,15 +7,18 @@ use tpn::{Network, NodeId};
 
 /// Something of a network, or of what planning it takes, does not fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum TooLarge {
+pub enum Unplannable {
     /// A time does not fit into 64 bits after scaling by the common denominator: that of this event, or its distance from
     /// another; of several at one time any of them.
     Time(NodeId),
     /// There are more possible causal links and orders than memory is taken for.
     Links,
+    /// The network's choices are not nested, and it has something that is planned by what each of them brings: states,
+    /// resources, objectives, durations that nature chooses, constraints between threads, or several plans to compare.
+    Entangled,
 }
 
-impl TooLarge {
+impl Unplannable {
     /// A time at an event.
     pub(crate) const fn at(event: NodeId) -> Self {
         Self::Time(event)
@@ -35,11 +38,17 @@ impl TooLarge {
                 "more than a million causal links and orders are possible, which is more than planning keeps"
                     .to_owned()
             }
+            Self::Entangled => {
+                "the choices of this network are not nested: states, resources, objectives, durations that are not \
+                 controlled and constraints between threads are planned only where each choice ends before what it is \
+                 part of, and no lower bound is negative"
+                    .to_owned()
+            }
         }
     }
 }
 
-impl From<stn::Overflow> for TooLarge {
+impl From<stn::Overflow> for Unplannable {
     fn from(overflow: stn::Overflow) -> Self {
         Self::Time(NodeId(overflow.point.0))
     }
