@@ -94,8 +94,8 @@ impl Enroute {
     /// Shows one frame, filling `ui`. `render_state` is for panels that draw with wgpu.
     pub fn show(&mut self, ui: &mut Ui, render_state: Option<&RenderState>) {
         let mut dropped = self.egui.input(|input| input.raw.dropped_files.clone());
-        // The label of an image comes before the image.
-        dropped.sort_by_key(|file| !file.path().extension().is_some_and(|it| it.eq_ignore_ascii_case("lbl")));
+        // What describes an image comes before the image.
+        dropped.sort_by_key(|file| !is_description(file.path()));
         for file in dropped {
             (self.read_dropped)(file);
         }
@@ -482,4 +482,10 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
     fn min_size(&self) -> f32 {
         80.0
     }
+}
+
+/// Whether a file is of a kind that describes an image in a file of its own.
+fn is_description(path: &std::path::Path) -> bool {
+    path.extension()
+        .is_some_and(|it| ["lbl", "yaml", "yml"].iter().any(|known| it.eq_ignore_ascii_case(known)))
 }

@@ -16,7 +16,7 @@ use crate::input::{folder_of, inside, read_bytes};
 pub type Ground = Option<(MapKey, Arc<Terrain>)>;
 
 /// A larger map file is refused before it is read.
-const LARGEST_MAP_BYTES: u64 = 512 << 20;
+pub const LARGEST_MAP_BYTES: u64 = 512 << 20;
 
 /// Labels are short texts.
 const LARGEST_LABEL_BYTES: u64 = 1 << 20;
@@ -59,15 +59,29 @@ pub fn map_file(mission: &Path, world: &World) -> anyhow::Result<Option<(String,
     let found = inside(folder_of(mission), name);
     let Some(file) = found.filter(|file| file.is_file()) else { return Ok(None) };
     let bytes = read_bytes(&file, LARGEST_MAP_BYTES).with_context(|| cannot_read(name))?;
-    let bytes = with_label(&file, bytes).with_context(|| cannot_read(name))?;
+    let bytes = with_label(folder_of(mission), &file, bytes).with_context(|| cannot_read(name))?;
     Ok(Some((name.to_owned(), bytes)))
 }
 
-/// A raw image with the PDS3 label that lies beside it, if there is one.
-fn with_label(image: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
-    if FileFormat::detect(&bytes).is_some() {
-        return Ok(bytes);
+/// The bytes of a map file with those of the file that belongs to it: a raw image with the PDS3 label beside it, if
+/// there is one, and the description of a ROS map with its image, which is refused outside of `folder`.
+pub fn with_label(folder: &Path, map: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
+    match FileFormat::detect(&bytes) {
+        Some(FileFormat::RosMap) => with_image(folder, map, bytes),
+        Some(_) => Ok(bytes),
+        None => with_pds_label(map, bytes),
     }
+}
+
+fn with_image(folder: &Path, description: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
+    let Some(name) = image_of_label(&bytes) else { return Ok(bytes) };
+    let beside = folder_of(description).join(&name);
+    let image = beside.to_str().and_then(|path| inside(folder, path)).filter(|file| file.is_file());
+    let image = image.with_context(|| format!("its image {name} is not in the folder"))?;
+    Ok(attach_label(&bytes, &read_bytes(&image, LARGEST_MAP_BYTES)?)?)
+}
+
+fn with_pds_label(image: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
     for extension in ["lbl", "LBL"] {
         let beside = image.with_extension(extension);
         if !beside.is_file() {

@@ -163,6 +163,64 @@ fn a_disturbed_level_is_in_the_log_and_one_out_of_range_is_refused() {
 }
 
 #[test]
+fn a_map_of_ros_is_read_with_its_image_from_the_folder_of_the_mission() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("ros");
+    std::fs::create_dir_all(folder.join("maps")).expect("the folder can be made");
+    // A wall from the north with a gap in the south; unknown beyond the east.
+    let level = |at: usize| match (at % 60, at / 60) {
+        (28..32, 0..50) => 0,
+        (56.., _) => 205,
+        _ => 254,
+    };
+    let image: Vec<u8> = (0..60 * 60).map(level).collect();
+    std::fs::write(folder.join("maps/yard.pgm"), [b"P5 60 60 255\n", image.as_slice()].concat())
+        .expect("written");
+    let yaml = "image: yard.pgm\nresolution: 0.5\norigin: [-10.0, -10.0, 0.0]\nnegate: 0\n\
+        occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    std::fs::write(folder.join("maps/yard.yaml"), yaml).expect("written");
+    let mission = folder.join("yard.rmpl");
+    let mission = mission.to_str().expect("a name");
+    let plan = |to: &str| {
+        let text = format!(
+            "terrain \"maps/yard.yaml\";\nlocation A (-7, 16);\nlocation B ({to});\nvehicle R : ATRV at A;\n\
+             primitive Go(to) moves R;\nscenario S[0,200] = {{ Go(B)[0,200] }}\n"
+        );
+        std::fs::write(mission, text).expect("written");
+        enroute(&["plan", mission, "--format", "json"])
+    };
+    let around = plan("14, 16");
+    assert_eq!(around.status.code(), Some(0), "{around:?}");
+    let length = answer(&around)["traverses"][0]["legs"][0]["length_m"].as_f64().expect("a length");
+    // Straight it is 21 m; the gap is south of -5.
+    assert!((45.0..65.0).contains(&length), "{length}");
+    for (place, reason) in [("5, 16", "in an obstacle"), ("19, 16", "where the map has no data")] {
+        let refused = plan(place);
+        let said = [refused.stdout, refused.stderr].concat();
+        let said = String::from_utf8_lossy(&said);
+        assert!(refused.status.code() == Some(1) && said.contains(reason), "{said}");
+    }
+    let path = folder.join("maps/yard.yaml");
+    let path = enroute(&[
+        "path",
+        path.to_str().expect("a name"),
+        "--from",
+        "6,8",
+        "--to",
+        "48,8",
+        "--format",
+        "json",
+    ]);
+    assert_eq!(path.status.code(), Some(0), "{path:?}");
+
+    // An image that is elsewhere is no image of the mission.
+    std::fs::write(folder.join("maps/yard.yaml"), yaml.replace("yard.pgm", "../../../etc/passwd"))
+        .expect("written");
+    let outside = plan("14, 16");
+    assert_eq!(outside.status.code(), Some(2), "{outside:?}");
+    assert!(String::from_utf8_lossy(&outside.stderr).contains("is not in the folder"), "{outside:?}");
+}
+
+#[test]
 fn a_raw_image_is_read_with_the_label_that_lies_beside_it() {
     let heights: Vec<u8> = (0..40_i16 * 40).flat_map(|at| ((at / 40 - 20).abs() * 2).to_be_bytes()).collect();
     let label = "PDS_VERSION_ID = PDS3\r\n^IMAGE = \"RAVINE.IMG\"\r\nLINES = 40\r\nLINE_SAMPLES = 40\r\n\

@@ -91,14 +91,16 @@ impl Grounds {
         };
         let imported = self.imported.get(&declared.asset);
         let version = imported.map_or(0, |imported| imported.version);
-        // A map of a file has its own scale, unless the mission says another one.
-        let of_file = imported.map(|imported| imported.map.frame().cell_size_m);
-        let cell_m = declared.cell_m.or(of_file).unwrap_or(terrain::format::DEFAULT_CELL_SIZE_M);
+        // A map of a file has its own scale and place, unless the mission says others.
+        let of_file = imported.map(|imported| imported.map.frame());
+        let cell_m = declared.cell_m.or(of_file.map(|frame| frame.cell_size_m));
+        let cell_m = cell_m.unwrap_or(terrain::format::DEFAULT_CELL_SIZE_M);
+        let origin_m = declared.origin_m.or(of_file.map(|frame| frame.origin_m.into())).unwrap_or_default();
         let millimetres = |metres: f64| (metres * 1000.0).round();
         let key = MapKey {
             asset: declared.asset.clone(),
             cell_mm: millimetres(cell_m) as u32,
-            origin_mm: declared.origin_m.map(|metres| millimetres(metres) as i64),
+            origin_mm: origin_m.map(|metres| millimetres(metres) as i64),
             version,
         };
         if let Some(map) = self.maps.get(&key) {
@@ -111,7 +113,7 @@ impl Grounds {
         let Some(made) = made else {
             return (None, vec![self.unknown_terrain(declared)]);
         };
-        let map = Arc::new(made.placed(cell_m, declared.origin_m.into()));
+        let map = Arc::new(made.placed(cell_m, origin_m.into()));
         self.maps.retain(|other, _| other.asset == key.asset);
         self.maps.insert(key.clone(), Arc::clone(&map));
         (Some((key, map)), Vec::new())

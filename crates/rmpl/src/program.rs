@@ -679,8 +679,8 @@ pub struct TerrainDecl {
     pub asset_span: Span,
     /// Metres per cell; without it those that the map's file says, or 0.6.
     pub cell_m: Option<f64>,
-    /// Mission coordinates of the map's south-west corner, in metres.
-    pub origin_m: [f64; 2],
+    /// Mission coordinates of the map's south-west corner, in metres; without it those that the map's file says, or 0.
+    pub origin_m: Option<[f64; 2]>,
     /// The whole declaration.
     pub span: Span,
 }

@@ -14,6 +14,8 @@ pub struct Terrain {
     heights_m: Vec<f32>,
     /// Whether each cell is a hole; empty when none is.
     no_data: Vec<bool>,
+    /// Whether each cell is an obstacle; empty when none is.
+    obstacles: Vec<bool>,
     rocks: Vec<Rock>,
 }
 
@@ -30,12 +32,23 @@ impl Terrain {
             no_data = heights_m.iter().map(|height| !height.is_finite()).collect();
             heights_m.iter_mut().filter(|height| !height.is_finite()).for_each(|height| *height = 0.0);
         }
-        Self { frame, heights_m, no_data, rocks: Vec::new() }
+        Self { frame, heights_m, no_data, obstacles: Vec::new(), rocks: Vec::new() }
     }
 
     /// A level map at height 0.
     pub fn flat(frame: GridFrame) -> Self {
         Self::new(frame, vec![0.0; frame.cell_count()])
+    }
+
+    /// The map with obstacles, row by row from the south. Their heights are theirs alone: the ground around them does not
+    /// rise towards them.
+    ///
+    /// # Panics
+    /// When there is not one entry for each cell.
+    pub fn with_obstacles(mut self, obstacles: Vec<bool>) -> Self {
+        assert_eq!(obstacles.len(), self.frame.cell_count(), "one entry for each cell");
+        self.obstacles = if obstacles.contains(&true) { obstacles } else { Vec::new() };
+        self
     }
 
     /// The map with rocks on it. They don't change the heights.
@@ -76,23 +89,29 @@ impl Terrain {
         self.no_data.get(self.frame.index(cell)).copied().unwrap_or(false)
     }
 
+    /// Whether a cell is an obstacle of the map itself.
+    pub fn is_obstacle(&self, cell: Cell) -> bool {
+        self.obstacles.get(self.frame.index(cell)).copied().unwrap_or(false)
+    }
+
     /// The number of cells without a height.
     pub fn no_data_count(&self) -> usize {
         self.no_data.iter().filter(|&&hole| hole).count()
     }
 
-    /// The height of a cell, if it has one. Cells beyond the border take the nearest cell's.
+    /// The height of the ground in a cell, if it has one; an obstacle has none. Cells beyond the border take the nearest
+    /// cell's.
     fn sample(&self, column: i64, row: i64) -> Option<f64> {
         let cell = Cell {
             column: column.clamp(0, i64::from(self.frame.width) - 1) as u32,
             row: row.clamp(0, i64::from(self.frame.height) - 1) as u32,
         };
-        (!self.is_no_data(cell)).then(|| f64::from(self.heights_m[self.frame.index(cell)]))
+        self.height_of(cell).filter(|_| !self.is_obstacle(cell))
     }
 
-    /// The height at a cell's centre in metres.
+    /// The height at a cell's centre in metres; in an obstacle, that of the obstacle.
     pub fn height_of(&self, cell: Cell) -> Option<f64> {
-        self.sample(i64::from(cell.column), i64::from(cell.row))
+        (!self.is_no_data(cell)).then(|| f64::from(self.heights_m[self.frame.index(cell)]))
     }
 
     /// The height at a point in metres, interpolated between the four nearest cell centres. `None` outside the map and
@@ -131,7 +150,7 @@ impl Terrain {
     /// Metres up for each metre east and north at a cell, over its eight neighbours (Horn 1981). 0 without data.
     pub fn cell_gradient(&self, cell: Cell) -> Vector2<f64> {
         let (column, row) = (i64::from(cell.column), i64::from(cell.row));
-        let Some(center) = self.sample(column, row) else { return Vector2::zeros() };
+        let Some(center) = self.height_of(cell) else { return Vector2::zeros() };
         let near = |east: i64, north: i64| self.sample(column + east, row + north).unwrap_or(center);
         let side = |a: f64, b: f64, c: f64| a + 2.0 * b + c;
         let east = side(near(1, 1), near(1, 0), near(1, -1)) - side(near(-1, 1), near(-1, 0), near(-1, -1));

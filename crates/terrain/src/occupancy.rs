@@ -82,10 +82,13 @@ impl Occupancy {
     pub fn of_terrain(terrain: &Terrain, obstacles: &[Obstacle], traversability: &Traversability) -> Self {
         let frame = *terrain.frame();
         let mut grid = Self::free(frame);
+        let is_ground = matches!(traversability, Traversability::Ground { .. });
         for index in 0..frame.cell_count() {
             let cell = frame.cell(index);
             grid.states[index] = if terrain.is_no_data(cell) {
                 CellState::NoData
+            } else if is_ground && terrain.is_obstacle(cell) {
+                CellState::Obstacle
             } else {
                 ground_state(terrain, cell, index, traversability)
             };

@@ -264,7 +264,7 @@ impl FileKind {
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Mission => &["rmpl", "enroute", "txt", "lisp", "json", "edn"],
-            Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl"],
+            Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl", "yaml", "yml"],
             Self::Json => &["json", "edn"],
             Self::Lesson => &["md", "markdown"],
             Self::Comparison => &["rmpl", "txt", "json"],

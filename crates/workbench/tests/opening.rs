@@ -169,6 +169,28 @@ fn a_label_and_its_image_are_one_map_whichever_comes_first() {
 }
 
 #[test]
+fn a_map_of_ros_and_its_image_are_one_map_whichever_comes_first() {
+    let yaml = b"image: maps/Site.pgm\nresolution: 0.1\norigin: [-1, 2, 0]\n".to_vec();
+    let files = [("site.yaml", yaml), ("site.pgm", b"P5 2 1 255\n\x00\xff".to_vec())];
+    for order in [[0, 1], [1, 0]] {
+        let mut app = started();
+        for at in order {
+            let (name, bytes) = &files[at];
+            open(&mut app, name, bytes);
+        }
+        let state = app.json();
+        let maps = state["library"]["missions"][0]["maps"].as_array().cloned().unwrap_or_default();
+        assert!(maps.contains(&json!("site.yaml")), "{state}");
+        assert!(state["toasts"].to_string().contains("site.yaml is a map of 2 × 1 cells"), "{state}");
+    }
+    // A map that is turned is refused once its image is there.
+    let mut app = started();
+    open(&mut app, "site.yaml", b"image: site.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n");
+    open(&mut app, "site.pgm", &files[1].1);
+    assert!(app.json()["toasts"].to_string().contains("turned by 0.5 rad"));
+}
+
+#[test]
 fn a_mission_that_is_too_long_for_a_link_is_saved_as_a_file_instead() {
     let mut app = started();
     let lines: String =

@@ -16,13 +16,14 @@ use serde_json::{Value, json};
 use terrain::format::{FileFormat, ImportOptions, read_raster};
 use terrain::{ConfigurationSpace, GridFrame, Occupancy};
 
-use crate::input::read_bytes;
+use crate::ground::{LARGEST_MAP_BYTES, with_label};
+use crate::input::{folder_of, read_bytes};
 use crate::output::{Format, LIMIT, NO, YES, document, exit, print_json, print_text, without_timings};
 
 /// Finds a path on a map of obstacles.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The map: PGM, PNG, TIFF, ESRI ASCII grid or `MovingAI` `.map`; `-` is standard input. Dark is obstacle.
+    /// The map: PGM, PNG, TIFF, ESRI ASCII grid, `MovingAI` `.map` or ROS `.yaml`; `-` is standard input. Dark is obstacle.
     map: PathBuf,
     /// Where it starts: x to the right and y down from the top left corner.
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
@@ -131,12 +132,16 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 fn load(args: &Args) -> anyhow::Result<ConfigurationSpace> {
-    const LARGEST_MAP_BYTES: u64 = 512 << 20;
     let bytes = read_bytes(&args.map, LARGEST_MAP_BYTES)?;
     let name = args.map.display();
+    let bytes = if FileFormat::detect(&bytes) == Some(FileFormat::RosMap) {
+        with_label(folder_of(&args.map), &args.map, bytes).with_context(|| format!("cannot read {name}"))?
+    } else {
+        bytes
+    };
     anyhow::ensure!(
         FileFormat::detect(&bytes).is_some(),
-        "{name} is no map: it begins like no PGM, PNG, TIFF, ESRI ASCII grid or MovingAI map"
+        "{name} is no map: it begins like no PGM, PNG, TIFF, ESRI ASCII grid, MovingAI map or ROS map"
     );
     let raster =
         read_raster(&bytes, &ImportOptions::default()).with_context(|| format!("cannot read {name}"))?;

@@ -151,8 +151,8 @@ pub(super) fn terrain(node: SyntaxNode<'_>) -> Option<TerrainDecl> {
     let cell = node.child(SyntaxKind::Cell).and_then(|cell| numbers(cell).first().copied());
     let origin = node.child(SyntaxKind::Origin).and_then(coordinates);
     let origin_m = match origin.as_ref().map(|(metres, _)| metres.as_slice()) {
-        Some(&[east, north]) => [east, north],
-        _ => [0.0, 0.0],
+        Some(&[east, north]) => Some([east, north]),
+        _ => None,
     };
     Some(TerrainDecl {
         asset: SmolStr::new(asset.text.trim_matches('"')),

@@ -58,7 +58,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     if samples.len() < count {
         return Err(malformed(format!("it has {} values for {width} × {height} cells", samples.len())));
     }
-    Ok(Raster { width, height, samples, cell_size_m, meaning: Meaning::Levels { greatest: None } })
+    Ok(Raster {
+        width,
+        height,
+        samples,
+        cell_size_m,
+        origin_m: None,
+        meaning: Meaning::Levels { greatest: None },
+    })
 }
 
 fn malformed(problem: String) -> FormatError {

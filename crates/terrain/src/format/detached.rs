@@ -1,11 +1,14 @@
-//! PDS3 labels in files of their own: which image one describes, and both as one file, as if the label had been written
-//! before its image.
+//! Files that describe an image which is a file of its own, PDS3 labels and the YAML of ROS maps: which image one names,
+//! and both as one file.
 
-use super::FormatError;
 use super::pds::Label;
+use super::{FileFormat, FormatError, ros_map};
 
-/// The name of the file in which the image of a detached label is; `None` if the file is none.
+/// The name of the file in which the image of a detached label, or of a ROS map, is; `None` if the file is neither.
 pub fn image_of_label(label: &[u8]) -> Option<String> {
+    if let Some(name) = ros_map::image_name(label) {
+        return Some(name);
+    }
     if !label.trim_ascii_start().to_ascii_uppercase().starts_with(BEGINNING.trim_ascii_end()) {
         return None;
     }
@@ -15,6 +18,9 @@ pub fn image_of_label(label: &[u8]) -> Option<String> {
 
 /// The image with its label before it.
 pub fn attach_label(label: &[u8], image: &[u8]) -> Result<Vec<u8>, FormatError> {
+    if FileFormat::detect(label) == Some(FileFormat::RosMap) {
+        return ros_map::join(label, image);
+    }
     let start = Label::parse(label).image_start(false)?;
     let text = String::from_utf8_lossy(label);
     let is_pointer = |line: &&str| {

@@ -10,6 +10,7 @@ mod moving_ai;
 mod pds;
 mod png;
 mod pnm;
+mod ros_map;
 mod tiff;
 
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,8 @@ pub enum FileFormat {
     AsciiGrid,
     /// `MovingAI` benchmark map: obstacles only.
     MovingAi,
+    /// Map of ROS, a YAML file and its image: obstacles only.
+    RosMap,
 }
 
 /// Why a file can't be read as a map.
@@ -49,7 +52,7 @@ pub enum FormatError {
     /// No known format begins like this.
     #[error(
         "this is no map file that can be read; what is read: PNG (.png), PGM (.pgm), TIFF and GeoTIFF (.tif), PDS3 \
-         image with its label (.img), ESRI ASCII grid (.asc) and MovingAI map (.map)"
+         image with its label (.img), ESRI ASCII grid (.asc), MovingAI map (.map) and ROS map with its image (.yaml)"
     )]
     Unknown,
     /// The file contradicts its format.
@@ -107,6 +110,8 @@ pub struct Raster {
     pub samples: Vec<f32>,
     /// Metres per cell, if the file says.
     pub cell_size_m: Option<f64>,
+    /// Where the south-west corner is in metres east and north, if the file says so in a plane of its own.
+    pub origin_m: Option<[f64; 2]>,
     /// What the samples are.
     pub meaning: Meaning,
 }
@@ -124,7 +129,7 @@ pub enum Meaning {
         /// The greatest grey level.
         greatest: u32,
     },
-    /// 1 in obstacles and 0 elsewhere.
+    /// 1 in obstacles, 0 where it is free, and NaN where neither is known.
     Obstacles,
 }
 
@@ -148,6 +153,8 @@ impl FileFormat {
             Some(Self::MovingAi)
         } else if starts("PDS_VERSION_ID") {
             Some(Self::Pds)
+        } else if ros_map::is_description(bytes) {
+            Some(Self::RosMap)
         } else {
             None
         }
@@ -167,6 +174,7 @@ pub fn read_raster(bytes: &[u8], options: &ImportOptions) -> Result<Raster, Form
         Some(FileFormat::Pds) => pds::read(bytes, options),
         Some(FileFormat::AsciiGrid) => ascii_grid::read(bytes),
         Some(FileFormat::MovingAi) => moving_ai::read(bytes),
+        Some(FileFormat::RosMap) => ros_map::read(bytes),
         // Two heights of a raw image may look like the beginning of anything, so that its size counts first.
         None => pds::read_without_label(bytes).map_err(|error| match error {
             FormatError::Unknown => foreign::refusal(bytes).unwrap_or(error),
@@ -176,23 +184,30 @@ pub fn read_raster(bytes: &[u8], options: &ImportOptions) -> Result<Raster, Form
     Ok(raster.with_options(options))
 }
 
-/// Reads an elevation map. An obstacle map becomes level ground, which is of no use: read it with [`read_raster`].
+/// Reads a map: heights, or obstacles on level ground.
 pub fn read_terrain(bytes: &[u8], options: &ImportOptions) -> Result<Terrain, FormatError> {
     Ok(read_raster(bytes, options)?.into_terrain())
 }
 
 impl Raster {
-    /// The elevation map with its south-west corner at the origin.
+    /// The map with its south-west corner where the file says, or else at the origin. Obstacles stand a metre above
+    /// the ground.
     pub fn into_terrain(self) -> Terrain {
         let frame = self.frame();
         let width = self.width as usize;
-        let heights = self.samples.chunks_exact(width).rev().flatten().copied().collect();
-        Terrain::new(frame, heights)
+        let heights: Vec<f32> = self.samples.chunks_exact(width).rev().flatten().copied().collect();
+        if self.meaning != Meaning::Obstacles {
+            return Terrain::new(frame, heights);
+        }
+        let obstacles = heights.iter().map(|&sample| sample > 0.0).collect();
+        Terrain::new(frame, heights).with_obstacles(obstacles)
     }
 
     /// The grid that the rows fill, with the caller's or the file's own or the default cell size.
     pub fn frame(&self) -> GridFrame {
-        GridFrame::new(self.width, self.height, self.cell_size_m.unwrap_or(DEFAULT_CELL_SIZE_M))
+        let cell_size_m = self.cell_size_m.unwrap_or(DEFAULT_CELL_SIZE_M);
+        let origin_m = self.origin_m.unwrap_or_default().into();
+        GridFrame { origin_m, ..GridFrame::new(self.width, self.height, cell_size_m) }
     }
 
     /// Which cells are obstacles, row by row from the top: those that the file calls so, grey levels in the darker

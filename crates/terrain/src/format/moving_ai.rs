@@ -39,7 +39,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             });
         }
     }
-    Ok(Raster { width, height, samples, cell_size_m: None, meaning: Meaning::Obstacles })
+    Ok(Raster { width, height, samples, cell_size_m: None, origin_m: None, meaning: Meaning::Obstacles })
 }
 
 fn size(word: &str) -> Result<u32, FormatError> {

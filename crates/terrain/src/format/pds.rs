@@ -185,7 +185,14 @@ fn read_samples(bytes: &[u8], layout: &RawLayout) -> Result<Raster, FormatError>
         })
         .collect();
     let (width, height, cell_size_m) = (layout.width, layout.height, layout.cell_size_m);
-    Ok(Raster { width, height, samples, cell_size_m, meaning: Meaning::Levels { greatest: None } })
+    Ok(Raster {
+        width,
+        height,
+        samples,
+        cell_size_m,
+        origin_m: None,
+        meaning: Meaning::Levels { greatest: None },
+    })
 }
 
 /// Reads a label; `attached` says whether the samples are in the same file.

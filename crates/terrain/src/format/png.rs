@@ -44,6 +44,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         height,
         samples,
         cell_size_m: None,
+        origin_m: None,
         meaning: Meaning::Levels { greatest: Some(greatest) },
     })
 }

@@ -349,30 +349,35 @@ impl AppState {
     /// A map with the label that describes it, where that is a file of its own: whichever of the two comes first waits
     /// for the other.
     fn with_label(&mut self, name: &str, bytes: Vec<u8>) -> Option<(String, Vec<u8>)> {
-        let is_image = |image: &str, name: &str| image.eq_ignore_ascii_case(name);
-        let (image_name, label, image) = if let Some(image_name) = image_of_label(&bytes) {
-            let known = self.last_map.take().filter(|(known, _)| is_image(&image_name, known));
-            let Some((known, image)) = known else {
-                let words = format!("{name} describes {image_name}: open or drop that file, too");
+        let (label, image_name, image) = if let Some(image_name) = image_of_label(&bytes) {
+            let label = WaitingLabel { name: name.to_owned(), image_name, bytes };
+            let Some((known, image)) = self.last_map.take().filter(|(known, _)| label.describes(known))
+            else {
+                let words = format!("{name} describes {}: open or drop that file, too", label.image_name);
                 self.toasts.add(ToastKind::Info, words);
-                self.waiting_label = Some((image_name, bytes));
+                self.waiting_label = Some(label);
                 return None;
             };
-            (known, bytes, image)
+            (label, known, image)
         } else {
-            let waiting = self.waiting_label.take().filter(|(image_name, _)| is_image(image_name, name));
-            let Some((_, label)) = waiting else {
+            let Some(label) = self.waiting_label.take().filter(|label| label.describes(name)) else {
                 // Its label may come after it.
-                let needs_one = FileFormat::detect(&bytes).is_none();
-                self.last_map = needs_one.then(|| (name.to_owned(), bytes.clone()));
+                let may_have_one = matches!(
+                    FileFormat::detect(&bytes),
+                    None | Some(FileFormat::Pgm | FileFormat::Png | FileFormat::Tiff)
+                );
+                self.last_map = may_have_one.then(|| (name.to_owned(), bytes.clone()));
                 return Some((name.to_owned(), bytes));
             };
-            (name.to_owned(), label, bytes)
+            (label, name.to_owned(), bytes)
         };
-        match attach_label(&label, &image) {
-            Ok(whole) => Some((image_name, whole)),
+        // Missions name a map of ROS by its description, and an image of PDS3 by itself.
+        let is_ros = FileFormat::detect(&label.bytes) == Some(FileFormat::RosMap);
+        let whole_name = if is_ros { label.name } else { image_name };
+        match attach_label(&label.bytes, &image) {
+            Ok(whole) => Some((whole_name, whole)),
             Err(reason) => {
-                self.toasts.add(ToastKind::Failed, format!("The map {image_name} cannot be used: {reason}"));
+                self.toasts.add(ToastKind::Failed, format!("The map {whole_name} cannot be used: {reason}"));
                 None
             }
         }
@@ -407,6 +412,22 @@ impl AppState {
         self.language.follow(&self.document);
         self.editor.folding.follow(&mut self.document, self.language.parse());
         self.automaton.follow(&self.document, self.language.is_control());
+    }
+}
+
+/// A file that describes an image that did not come yet.
+#[derive(Debug)]
+pub(super) struct WaitingLabel {
+    name: String,
+    /// As the label names it, maybe with folders.
+    image_name: String,
+    bytes: Vec<u8>,
+}
+
+impl WaitingLabel {
+    /// Whether its image is a file of this name, wherever that lies.
+    fn describes(&self, file_name: &str) -> bool {
+        self.image_name.rsplit(['/', '\\']).next().is_some_and(|it| it.eq_ignore_ascii_case(file_name))
     }
 }
 

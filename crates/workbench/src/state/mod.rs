@@ -71,8 +71,8 @@ pub struct AppState {
     set_aside: BTreeMap<MissionId, Document>,
     /// Maps that the user chose and that the core has not read yet.
     maps_in_hand: BTreeMap<SmolStr, Arc<[u8]>>,
-    /// A label that came without its image: the image's name, and the label.
-    waiting_label: Option<(String, Vec<u8>)>,
+    /// A label that came without its image.
+    waiting_label: Option<missions::WaitingLabel>,
     /// The map that was opened last, whose label may come after it.
     last_map: Option<(String, Vec<u8>)>,
     /// What the planning core answered.
