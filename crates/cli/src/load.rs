@@ -9,14 +9,14 @@ use mission::{Goal, Problem};
 use rmpl::diagnostics::network;
 use rmpl::program::Program;
 use tpn::interchange::Source;
-use tpn::{Network, plandev};
+use tpn::{Network, plandev, ptpn};
 
 use crate::input::{read_mission, read_text};
 
 /// What is to be compiled or planned.
 #[derive(clap::Args, Debug)]
 pub struct Target {
-    /// A mission text, or a network in JSON or EDN (`.tpn.json`, `.tpn.edn`), or a plan of `PlanDev` (`.json`); `-` is standard input.
+    /// A mission text, or a network in JSON or EDN (`.tpn.json`, `.tpn.edn`), a pTPN (`.tpn`, `.ptpn`, `.xml`), or a plan of `PlanDev` (`.json`); `-` is standard input.
     pub file: PathBuf,
     /// The scenario; the first of the file by default.
     #[arg(long, conflicts_with = "activity")]
@@ -94,6 +94,9 @@ impl Target {
 /// What a file holds that another tool wrote: one of the notations of networks, or a plan of `PlanDev`.
 pub fn read_source(text: &str) -> anyhow::Result<Source> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if ptpn::is_ptpn(text) {
+        return Ok(Source::PlanSchema(Box::new(ptpn::read(text)?)));
+    }
     match serde_json::from_str(text) {
         Ok(file) if plandev::is_plan(&file) => Ok(Source::PlanSchema(Box::new(plandev::read(&file)?))),
         _ => Ok(Source::read(text)?),
@@ -111,8 +114,8 @@ pub fn read_network(name: &str, source: &str) -> anyhow::Result<(Network, Vec<Pr
 
 /// Whether a file holds a network rather than a mission text.
 pub fn is_network(name: &str, source: &str) -> bool {
-    let is_named_so = [".json", ".edn"].iter().any(|ending| name.ends_with(ending));
-    is_named_so || (name == "-" && tpn::interchange::is_network_text(source))
+    let is_named_so = [".json", ".edn", ".tpn", ".ptpn", ".xml"].iter().any(|ending| name.ends_with(ending));
+    is_named_so || (name == "-" && (tpn::interchange::is_network_text(source) || ptpn::is_ptpn(source)))
 }
 
 fn parse_bounds(text: &str) -> anyhow::Result<(Time, Bound)> {

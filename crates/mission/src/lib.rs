@@ -13,6 +13,7 @@ mod core;
 pub mod departures;
 mod driving;
 pub mod execution;
+pub mod geojson;
 pub mod ground;
 pub mod job;
 pub mod json_text;

@@ -195,4 +195,11 @@ pub enum Response {
         /// Why, for the person who chose the file.
         reason: String,
     },
+    /// A file held places and obstacles instead of a map (`GeoJSON`).
+    PlacesRead {
+        /// The name of the file.
+        name: SmolStr,
+        /// Declarations in the language.
+        lines: String,
+    },
 }

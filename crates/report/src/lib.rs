@@ -8,6 +8,7 @@ pub mod calendar;
 mod escape;
 pub mod export;
 mod figure;
+pub mod geojson;
 mod html;
 mod listing;
 pub mod plandev;

@@ -253,7 +253,7 @@ impl FileKind {
     pub fn title(self) -> &'static str {
         match self {
             Self::Mission => "Missions and networks",
-            Self::Map => "Maps",
+            Self::Map => "Maps, and places in GeoJSON",
             Self::Json => "JSON documents",
             Self::Lesson => "Lessons",
             Self::Comparison => "Missions, plans and reviews",
@@ -264,7 +264,9 @@ impl FileKind {
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Mission => &["rmpl", "enroute", "txt", "lisp", "json", "edn"],
-            Self::Map => &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl", "yaml", "yml"],
+            Self::Map => {
+                &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl", "yaml", "yml", "geojson"]
+            }
             Self::Json => &["json", "edn"],
             Self::Lesson => &["md", "markdown"],
             Self::Comparison => &["rmpl", "txt", "json"],

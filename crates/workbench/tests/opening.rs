@@ -191,6 +191,33 @@ fn a_map_of_ros_and_its_image_are_one_map_whichever_comes_first() {
 }
 
 #[test]
+fn places_in_geojson_become_a_file_of_the_mission() {
+    let place = json!({ "type": "Point", "coordinates": [7.0, 8.0] });
+    let feature = json!({ "type": "Feature", "properties": { "name": "Crater rim" }, "geometry": place });
+    let file =
+        json!({ "type": "FeatureCollection", "enroute_frame": { "units": "metres" }, "features": [feature] });
+    for name in ["site.geojson", "site.json"] {
+        let mut app = started();
+        open(&mut app, name, file.to_string().as_bytes());
+        let text = text_of(&app);
+        assert!(
+            text.contains("import \"site.rmpl\";") && text.ends_with("location Crater_rim (7, 8);\n"),
+            "{text}"
+        );
+        let diagnostics = app.json()["diagnostics"].to_string();
+        assert!(!diagnostics.contains("\"error\""), "{diagnostics}");
+        app.session.dispatch("edit.undo", &json!(null)).expect("it can be undone");
+        app.settle();
+        assert!(!text_of(&app).contains("Crater_rim"));
+    }
+    let mut app = started();
+    let before = text_of(&app);
+    open(&mut app, "site.geojson", b"{\"type\": \"FeatureCollection\", \"features\": []}");
+    assert!(app.json()["toasts"].to_string().contains("it has no Point, Polygon"));
+    assert_eq!(text_of(&app), before);
+}
+
+#[test]
 fn a_mission_that_is_too_long_for_a_link_is_saved_as_a_file_instead() {
     let mut app = started();
     let lines: String =

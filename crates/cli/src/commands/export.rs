@@ -6,12 +6,14 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use clap::ValueEnum;
+use mission::geojson::{EARTH_RADIUS_M, Projection};
 use mission::review::record::Runs;
 use mission::review::{PlanStatus, Present, content_hash, review, standing};
 use report::calendar::Calendar;
 use report::export;
 use serde_json::{Value, json};
 
+use crate::commands::import::{parse_degrees, parse_radius};
 use crate::commands::report::read_record;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
@@ -37,6 +39,18 @@ pub struct Args {
         required_if_eq("form", "plandev")
     )]
     epoch: Option<String>,
+    /// The longitude and latitude in degrees that are at (0, 0) of the mission, for `GeoJSON`.
+    #[arg(
+        long,
+        value_name = "LON,LAT",
+        value_parser = parse_degrees,
+        allow_hyphen_values = true,
+        required_if_eq("form", "geojson")
+    )]
+    origin: Option<[f64; 2]>,
+    /// The radius of the body in metres, for `GeoJSON`; otherwise the Earth's, 6371008.8.
+    #[arg(long, value_name = "METRES", value_parser = parse_radius)]
+    radius: Option<f64>,
     /// The history of the review, as the page saves it: how the plan stands with its board is written.
     #[arg(long, value_name = "REVIEW.json")]
     review: Option<PathBuf>,
@@ -67,6 +81,9 @@ enum Form {
     /// A plan for `PlanDev` (Aerie).
     #[value(name = "plandev")]
     PlanDev,
+    /// Places, obstacles and paths in `GeoJSON`.
+    #[value(name = "geojson")]
+    GeoJson,
 }
 
 /// Runs the command.
@@ -117,6 +134,11 @@ impl Args {
             Form::Json => written(export::json(snapshot, &about).context(beyond)?),
             Form::OpenMct => written(export::open_mct(snapshot, &about).context(beyond)?),
             Form::PlanDev => written(report::plandev::plandev(snapshot, &about).context(beyond)?),
+            Form::GeoJson => {
+                let origin_deg = self.origin.unwrap_or_default();
+                let radius_m = self.radius.unwrap_or(EARTH_RADIUS_M);
+                written(report::geojson::geojson(snapshot, &Projection::Degrees { origin_deg, radius_m }))
+            }
             Form::Icalendar => export::icalendar(snapshot, &about).context(beyond),
         }
     }

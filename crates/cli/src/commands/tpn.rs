@@ -40,6 +40,9 @@ enum Notation {
     Svg,
     /// The interchange format of other planners' tools.
     PlanSchema,
+    /// The XML of MIT's MERS group, as `RMPyL` writes it.
+    #[value(name = "ptpn")]
+    Ptpn,
     /// A mission in RMPL, where the network's structure allows: what is in the way is said otherwise.
     Rmpl,
 }
@@ -62,6 +65,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Notation::Text => print_text(&tpn::text::to_text(network))?,
         Notation::Dot => print_verbatim(&tpn::text::to_dot(network))?,
         Notation::Svg => print_verbatim(&drawing(network))?,
+        Notation::Ptpn => {
+            print_verbatim(&tpn::ptpn::write(network).context("this network cannot be a pTPN")?)?
+        }
         Notation::Rmpl => return print_rmpl(&loaded, network, args.format),
         Notation::PlanSchema => print_json(&plan_schema(&loaded, network)?)?,
     }

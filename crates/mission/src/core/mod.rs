@@ -16,6 +16,7 @@ use terrain::Terrain;
 use crate::both_searches;
 use crate::content::{ContentKey, Keyed, Keys, PartKeys};
 use crate::control::ControlTexts;
+use crate::geojson;
 use crate::ground::Grounds;
 use crate::problem::Problem;
 use crate::reading::{Followed, Reading};
@@ -88,6 +89,13 @@ impl Core {
     }
 
     fn import_map(&mut self, name: smol_str::SmolStr, bytes: &[u8], host: &mut dyn CoreHost) {
+        if let Some(read) = geojson::declarations_of_file(&name, bytes) {
+            host.answer(match read {
+                Ok(lines) => Response::PlacesRead { name, lines },
+                Err(reason) => Response::MapRejected { name, reason: reason.to_string() },
+            });
+            return;
+        }
         host.answer(match self.grounds.import(&name, bytes) {
             Ok(map) => Response::MapAccepted {
                 name,

@@ -46,7 +46,7 @@ pub enum PlanSchemaError {
 }
 
 /// What says of a temporal constraint that it is between threads, so that it selects neither of its events.
-const BETWEEN_THREADS: &str = "between-threads";
+pub(crate) const BETWEEN_THREADS: &str = "between-threads";
 
 /// A network of another tool, with everything its file says.
 #[derive(Clone, Debug, PartialEq)]
@@ -140,10 +140,18 @@ fn said_in_vain(object: &Value) -> Vec<String> {
     if counts("reward") {
         said.push("a reward".to_owned());
     }
-    if kind.ends_with("activity") && object.get("controllable") == Some(&Value::Bool(false)) {
+    let holds = |key: &str| object.get(key).is_some_and(|value| !is_nothing(value));
+    if kind == "c-begin" && object.get("controllable") == Some(&Value::Bool(false)) {
+        said.push("a choice that is not controllable".to_owned());
+    }
+    if holds("state-constraint") {
+        said.push("a state constraint".to_owned());
+    }
+    if (kind.ends_with("activity") || kind == "temporal-constraint")
+        && object.get("controllable") == Some(&Value::Bool(false))
+    {
         said.push("a duration that is not controllable".to_owned());
     }
-    let holds = |key: &str| object.get(key).is_some_and(|value| !is_nothing(value));
     if holds("guard") || holds("guards") {
         said.push("a guard".to_owned());
     }

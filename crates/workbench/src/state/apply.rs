@@ -284,6 +284,7 @@ impl AppState {
                 self.maps_in_hand.remove(&name);
                 self.toasts.add(ToastKind::Failed, format!("The map {name} cannot be used: {reason}"));
             }
+            HostEvent::Answer(Response::PlacesRead { name, lines }) => self.take_places(&name, &lines),
             HostEvent::FragmentChanged(_) | HostEvent::Shelf(_) | HostEvent::TabSaid(_) => {}
             HostEvent::Answer(Response::Review { revision, review }) => self.take_review(revision, review),
             HostEvent::Answer(Response::Evaluated { token, snapshot }) => {
@@ -546,6 +547,8 @@ impl AppState {
                         self.open_mission_file(name, text.into_bytes());
                     } else if document["format"] == RULES_FORMAT {
                         self.import_rules(name, &text);
+                    } else if document["type"] == "FeatureCollection" {
+                        self.open_map_file(name, text.into_bytes());
                     } else if !self.open_run(&document) {
                         self.import_record(name, &text);
                     }

@@ -69,6 +69,20 @@ impl AppState {
         Ok(())
     }
 
+    /// Adds a file of declarations that another file came to, under that one's name.
+    pub(super) fn take_places(&mut self, of_file: &str, lines: &str) {
+        self.forget_map(of_file);
+        let stem = of_file.rsplit_once('.').map_or(of_file, |(stem, _)| stem);
+        let added = if self.language.is_network() || self.language.is_control() {
+            Err(format!("The places of {of_file} belong into a mission; open or begin one first"))
+        } else {
+            self.add_file(&format!("{stem}{EXTENSION}"), lines)
+        };
+        if let Err(reason) = added {
+            self.toasts.add(ToastKind::Failed, reason);
+        }
+    }
+
     fn rename_file(&mut self, name: &str) -> Result<(), String> {
         let (old, heading) = self.file_of_caret()?;
         if name.trim() == old {

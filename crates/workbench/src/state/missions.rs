@@ -383,6 +383,11 @@ impl AppState {
         }
     }
 
+    /// A file that was taken for a map was none.
+    pub(super) fn forget_map(&mut self, name: &str) {
+        self.maps_in_hand.remove(name);
+    }
+
     pub(crate) fn import_map(&mut self, name: SmolStr, bytes: Vec<u8>) {
         // The core reads it, and says what it has found.
         self.effects.push(Effect::Post(Request::ImportMap { name, bytes }));

@@ -1,0 +1,181 @@
+//! Between degrees on a body and metres on a mission's plane.
+
+use std::fmt;
+
+use nalgebra::Point2;
+use serde_json::Value;
+
+use super::{FRAME, GeoJsonError};
+
+/// The mean radius of the Earth (WGS 84), on which degrees of `GeoJSON` are unless a file says otherwise.
+pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
+
+/// Positions farther from the origin than this are refused: distances across them would be wrong by more than 0.2 %.
+const MAX_ANGLE_RAD: f64 = 0.1;
+
+/// What is known of the coordinates of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Whether they are metres east and north already.
+    pub is_metres: bool,
+    /// The longitude and latitude in degrees at which the mission's origin is; the south-west corner of what the file has
+    /// otherwise.
+    pub origin_deg: Option<[f64; 2]>,
+    /// The radius of the body; the Earth's otherwise.
+    pub radius_m: Option<f64>,
+}
+
+impl Frame {
+    /// What a file says of itself.
+    pub fn of_file(document: &Value) -> Result<Self, GeoJsonError> {
+        let said = |problem: &str| GeoJsonError::Shape(format!("`{FRAME}` {problem}"));
+        let Some(frame) = document.get(FRAME) else {
+            return known_system(document).map(|()| Self::default());
+        };
+        match frame.get("units").and_then(Value::as_str) {
+            Some("metres") => return Ok(Self { is_metres: true, ..Self::default() }),
+            None | Some("degrees") => {}
+            Some(_) => return Err(said("has other `units` than \"metres\" and \"degrees\"")),
+        }
+        let origin_deg = match frame.get("origin") {
+            None => None,
+            Some(origin) => {
+                let number = |axis: usize| origin.get(axis).and_then(Value::as_f64);
+                let both = number(0).zip(number(1)).map(|(lon, lat)| [lon, lat]);
+                Some(both.ok_or_else(|| said("has an `origin` that is not a longitude and a latitude"))?)
+            }
+        };
+        let radius_m = match frame.get("radius_m") {
+            None => None,
+            Some(radius) => {
+                let radius = radius.as_f64().filter(|radius| *radius > 0.0 && radius.is_finite());
+                Some(radius.ok_or_else(|| said("has a `radius_m` that is not a number above 0"))?)
+            }
+        };
+        Ok(Self { is_metres: false, origin_deg, radius_m })
+    }
+
+    /// The same, but with what `wanted` says where it says something.
+    pub fn overridden(self, wanted: &Self) -> Self {
+        let is_degrees = wanted.origin_deg.is_some() || wanted.radius_m.is_some();
+        Self {
+            is_metres: wanted.is_metres || (self.is_metres && !is_degrees),
+            origin_deg: wanted.origin_deg.or(self.origin_deg),
+            radius_m: wanted.radius_m.or(self.radius_m),
+        }
+    }
+
+    /// The way to metres, for these positions.
+    pub fn projection(self, positions: impl Iterator<Item = [f64; 2]>) -> Result<Projection, GeoJsonError> {
+        if self.is_metres {
+            return Ok(Projection::Metres);
+        }
+        let corner =
+            || positions.reduce(|low, it| [low[0].min(it[0]), low[1].min(it[1])]).unwrap_or_default();
+        let origin_deg = self.origin_deg.unwrap_or_else(corner);
+        check_degrees(origin_deg)
+            .map_err(|problem| GeoJsonError::Position { place: "the origin".to_owned(), problem })?;
+        Ok(Projection::Degrees { origin_deg, radius_m: self.radius_m.unwrap_or(EARTH_RADIUS_M) })
+    }
+}
+
+/// Refuses the `crs` of `GeoJSON` before RFC 7946, unless it means degrees.
+fn known_system(document: &Value) -> Result<(), GeoJsonError> {
+    let Some(system) = document.get("crs").filter(|system| !system.is_null()) else { return Ok(()) };
+    let name = system.get("properties").and_then(|it| it.get("name")).and_then(Value::as_str);
+    let name = name.unwrap_or("a reference system without a name");
+    let is_degrees = ["CRS84", ":4326"].iter().any(|known| name.ends_with(known));
+    if is_degrees { Ok(()) } else { Err(GeoJsonError::ReferenceSystem(super::one_line(name))) }
+}
+
+/// From a file's coordinates to metres east and north, and back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// They are metres.
+    Metres,
+    /// Longitude and latitude in degrees on a sphere, by the azimuthal equidistant projection (Snyder 1987, chapter 25):
+    /// distances and directions from the origin are exact.
+    Degrees {
+        /// Where the origin of the mission is.
+        origin_deg: [f64; 2],
+        /// The radius of the sphere.
+        radius_m: f64,
+    },
+}
+
+impl Projection {
+    /// Metres east and north of the origin; in words why there are none.
+    pub fn to_metres(&self, position: [f64; 2]) -> Result<Point2<f64>, String> {
+        let &Self::Degrees { origin_deg, radius_m } = self else {
+            let is_near = position.iter().all(|metres| metres.abs() < MAX_METRES);
+            return if is_near { Ok(position.into()) } else { Err("it is too far away".to_owned()) };
+        };
+        check_degrees(position)?;
+        let [lon, lat] = position.map(f64::to_radians);
+        let [lon_0, lat_0] = origin_deg.map(f64::to_radians);
+        let (east, north) = (libm::sin(lon - lon_0), libm::cos(lon - lon_0));
+        let x = libm::cos(lat) * east;
+        let y = libm::cos(lat_0) * libm::sin(lat) - libm::sin(lat_0) * libm::cos(lat) * north;
+        let z = libm::sin(lat_0) * libm::sin(lat) + libm::cos(lat_0) * libm::cos(lat) * north;
+        let sine = libm::hypot(x, y);
+        let angle = libm::atan2(sine, z);
+        if angle > MAX_ANGLE_RAD {
+            let far_km = angle * radius_m / 1000.0;
+            return Err(format!("it is {far_km:.0} km from the origin, too far for a plane"));
+        }
+        let scale = if sine > 0.0 { radius_m * angle / sine } else { radius_m };
+        Ok(Point2::new(scale * x, scale * y))
+    }
+
+    /// The position of a point in the coordinates of a file.
+    pub fn from_metres(&self, point_m: Point2<f64>) -> [f64; 2] {
+        let &Self::Degrees { origin_deg, radius_m } = self else { return point_m.into() };
+        let [lon_0, lat_0] = origin_deg.map(f64::to_radians);
+        let distance = libm::hypot(point_m.x, point_m.y);
+        if distance == 0.0 {
+            return origin_deg;
+        }
+        let angle = distance / radius_m;
+        let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+        let (east, north) = (point_m.x / distance, point_m.y / distance);
+        let lat = libm::asin((cosine * libm::sin(lat_0) + north * sine * libm::cos(lat_0)).clamp(-1.0, 1.0));
+        let lon =
+            lon_0 + libm::atan2(east * sine, libm::cos(lat_0) * cosine - libm::sin(lat_0) * sine * north);
+        [lon.to_degrees(), lat.to_degrees()]
+    }
+
+    /// What [`FRAME`] says of it.
+    pub fn to_json(&self) -> Value {
+        match self {
+            Self::Metres => serde_json::json!({ "units": "metres" }),
+            Self::Degrees { origin_deg, radius_m } => {
+                serde_json::json!({ "units": "degrees", "origin": origin_deg, "radius_m": radius_m })
+            }
+        }
+    }
+}
+
+const MAX_METRES: f64 = 1e8;
+
+fn check_degrees([lon, lat]: [f64; 2]) -> Result<(), String> {
+    if lon.abs() <= 360.0 && lat.abs() <= 90.0 {
+        Ok(())
+    } else {
+        Err(format!(
+            "({lon}, {lat}) is no longitude and latitude in degrees; a file in metres says so by \"{FRAME}\": \
+             {{\"units\": \"metres\"}}"
+        ))
+    }
+}
+
+impl fmt::Display for Projection {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Metres => out.write_str("metres as in the file"),
+            Self::Degrees { origin_deg: [lon, lat], radius_m } => write!(
+                out,
+                "metres east and north of longitude {lon}, latitude {lat}, on a sphere with a radius of {radius_m} m"
+            ),
+        }
+    }
+}
