@@ -162,6 +162,22 @@ fn a_terrain_that_cannot_be_read_is_told_whatever_the_mission_does() {
 }
 
 #[test]
+fn a_report_of_hundreds_of_intervals_that_exclude_each_other_can_be_read() {
+    let folder = folder("conflicts");
+    let values: Vec<String> = (0..400).map(|value| format!("V{value}")).collect();
+    let branches: Vec<String> =
+        values.iter().map(|value| format!("{{ delay[0,inf]; tell X={value} [1,1] }}")).collect();
+    let text = format!("var X : {{ {} }};\nscenario S = {{ {} }}\n", values.join(", "), branches.join(", "));
+    let file = written(&folder, "conflicts.rmpl", &text);
+    let report = folder.join("conflicts.html");
+    let output = enroute(&["report", &file, "-o", report.to_str().expect("UTF-8")]);
+    let page = std::fs::read_to_string(&report).unwrap_or_else(|_| panic!("{output:?}"));
+    assert!(page.contains("Threats and orderings") && page.contains("V399"));
+    // 79,800 pairs are in order: the drawing has a curve for each step, and the table what one reads.
+    assert!(page.len() < 2_000_000, "{}", page.len());
+}
+
+#[test]
 fn numbers_without_a_sense_are_refused() {
     let folder = folder("numbers");
     let text = "location A (2, 2);\nlocation B (18, 18);\nvehicle R : ATRV at A;\n\

@@ -3,7 +3,7 @@
 use display::geometry::curve_bounds;
 use display::{Measure, Piece, Point, Rect};
 use serde::{Deserialize, Serialize};
-use tpn::{LabelId, Network, NodeId, Plan, Role};
+use tpn::{LabelId, Network, NodeId, Plan, Role, precedence};
 
 use crate::drawing::{Item, NetworkDrawing, TextShape};
 use crate::metrics::{EVENT_RADIUS, TextRole, VERTEX_RADIUS};
@@ -64,7 +64,8 @@ pub fn causal_links(drawing: &NetworkDrawing, network: &Network, plan: &Plan) ->
 }
 
 /// The orderings that planning added: from the first interval's end to the other's start. Those of the uses of resources
-/// are numbered after those of conditions.
+/// are numbered after those of conditions. What follows from others is left out: of intervals that exclude each other
+/// there are as many as pairs, and one after each says the same.
 pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Vec<OverlayCurve> {
     let of_labels = plan.orderings_added.iter().map(|ordering| {
         let is_known = [ordering.first, ordering.then].iter().all(|it| it.index() < network.labels.len());
@@ -75,8 +76,13 @@ pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Ve
         let precedence = is_known.then(|| ordering.precedence(network))?;
         Some((precedence.earlier, precedence.later))
     });
+    let pairs =
+        |orderings: &mut dyn Iterator<Item = [usize; 2]>| precedence::needed(&orderings.collect::<Vec<_>>());
+    let labels = &mut plan.orderings_added.iter().map(|it| [it.first.index(), it.then.index()]);
+    let uses = &mut plan.uses_ordered.iter().map(|it| [it.first.index(), it.then.index()]);
+    let is_needed = [pairs(labels), pairs(uses)].concat();
     let curve = |(number, ends): (usize, Option<(NodeId, NodeId)>)| {
-        let (from, to) = ends?;
+        let (from, to) = ends.filter(|_| is_needed[number])?;
         if are_in_one_box(drawing, from, to) {
             return None;
         }

@@ -149,6 +149,9 @@ fn what_cannot_be_placed_is_refused_with_its_reason() {
     let far = collection(&[point("A", [0.0, 0.0]), point("B", [90.0, 0.0])]);
     assert!(refusal(&far).contains("B: it is 10008 km from the origin"), "{}", refusal(&far));
     assert!(refusal(&collection(&[])).contains("no Point, Polygon"));
+    let mut flat = point("Dot", [0.0, 0.0]);
+    flat["properties"]["radius_m"] = json!(0.0001);
+    assert!(refusal(&metres(&[flat])).contains("no radius of an obstacle"));
     assert!(refusal(&json!({ "type": "Topology" })).contains("no GeoJSON"));
     assert!(
         refusal(&metres(&[polygon(&json!([[[0, 0], [1, 1], [0, 0]]]))])).contains("less than three corners")

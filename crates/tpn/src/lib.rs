@@ -14,6 +14,7 @@ pub mod plan;
 pub mod plan_json;
 pub mod plan_schema;
 pub mod plandev;
+pub mod precedence;
 pub mod ptpn;
 pub mod rmpl_text;
 pub mod selection;

@@ -119,6 +119,21 @@ fn documents_that_are_no_mission_open_nothing_and_say_what_is_read() {
 }
 
 #[test]
+fn a_ptpn_is_refused_by_its_name() {
+    let mut app = started();
+    let before = text_of(&app);
+    for name in ["survey.tpn", "survey.xml"] {
+        open(
+            &mut app,
+            name,
+            b"<?xml version=\"1.0\" ?>\n<tpns xmlns=\"http://mers.csail.mit.edu/tpn\"><tpn/></tpns>",
+        );
+        assert!(app.json()["toasts"].to_string().contains(&format!("{name} is not opened: it is a pTPN")));
+    }
+    assert_eq!(text_of(&app), before);
+}
+
+#[test]
 fn what_is_too_large_is_refused_with_its_size() {
     let mut app = started();
     let before = text_of(&app);

@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Notation::Dot => print_verbatim(&tpn::text::to_dot(network))?,
         Notation::Svg => print_verbatim(&drawing(network))?,
         Notation::Ptpn => {
-            print_verbatim(&tpn::ptpn::write(network).context("this network cannot be a pTPN")?)?
+            print_verbatim(&tpn::ptpn::write(network).context("this network cannot be a pTPN")?)?;
         }
         Notation::Rmpl => return print_rmpl(&loaded, network, args.format),
         Notation::PlanSchema => print_json(&plan_schema(&loaded, network)?)?,

@@ -25,7 +25,8 @@ pub fn without_holes(border: Ring, mut holes: Vec<Ring>) -> Ring {
         let Some(outer) = visible(&ring, &hole, &holes) else { continue };
         let ends = [hole[0], ring[outer]];
         hole.extend(ends);
-        ring.splice(outer + 1..outer + 1, hole);
+        let rest = ring.split_off(outer + 1);
+        ring.extend(hole.into_iter().chain(rest));
     }
     ring
 }

@@ -162,7 +162,7 @@ impl Reader {
             Some(Value::Number(number)) => number.to_string(),
             _ => String::new(),
         };
-        let radius_m = property("radius_m").and_then(Value::as_f64).filter(|radius| *radius > 0.0);
+        let radius_m = property("radius_m").and_then(Value::as_f64);
         match feature.get("geometry") {
             // A feature may have no place.
             None | Some(Value::Null) => Ok(()),
@@ -196,6 +196,12 @@ impl Reader {
     fn point(&mut self, point: &Value, feature: &Feature) -> Result<(), GeoJsonError> {
         let position = self.position(point, feature)?;
         let (geometry, plain) = match feature.radius_m {
+            Some(radius_m) if !RADII_M.contains(&radius_m) => {
+                return Err(wrong(
+                    feature,
+                    format!("a `radius_m` of {radius_m} is no radius of an obstacle"),
+                ));
+            }
             Some(radius_m) => (Geometry::Circle { center: position, radius_m }, "Obstacle"),
             None => (Geometry::Place(position), "Place"),
         };
@@ -276,6 +282,9 @@ impl Reader {
 }
 
 const MAX_NAME_BYTES: usize = 60;
+
+/// Radii that a declaration can give: at least a millimetre.
+const RADII_M: std::ops::Range<f64> = 0.001..1e8;
 
 impl Shape {
     fn declare(&self, projection: &Projection, lines: &mut String) -> Result<(), GeoJsonError> {

@@ -16,8 +16,15 @@ pub(crate) struct Distances {
 
 impl Distances {
     /// `None` where times do not fit, which planning would already have said.
+    ///
+    /// Orderings that follow from others change no distance, and of intervals that exclude each other most do.
     pub(crate) fn new(network: &Network, plan: &Plan) -> Option<Self> {
-        PlanNetwork::new(network, plan).ok().map(|network| Self { network })
+        let pairs: Vec<[usize; 2]> =
+            plan.orderings_added.iter().map(|it| [it.first.index(), it.then.index()]).collect();
+        let mut plan = plan.clone();
+        let mut is_needed = tpn::precedence::needed(&pairs).into_iter();
+        plan.orderings_added.retain(|_| is_needed.next().unwrap_or(true));
+        PlanNetwork::new(network, &plan).ok().map(|network| Self { network })
     }
 
     /// For each pair, how much later the second event is than the first; `None` if nothing bounds it from below.

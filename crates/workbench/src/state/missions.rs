@@ -306,6 +306,12 @@ impl AppState {
                     refuse(self, &reason);
                 }
             }
+            Err(MissionError::NoMission) if tpn::ptpn::is_ptpn(&text) => {
+                refuse(
+                    self,
+                    "it is a pTPN, which `enroute tpn FILE --as plan-schema` makes a network that is read here",
+                );
+            }
             Err(MissionError::NoMission) if is_network_file(&text) || reads_as_mission(name, &text) => {
                 let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
                 let stem = stem.strip_suffix(".tpn").unwrap_or(stem);
