@@ -95,7 +95,9 @@ fn a_polygon_is_an_obstacle_and_its_holes_are_free_whichever_way_they_turn() {
     for turned in [false, true] {
         let mut holes = [square(1.0, 1.0, 2.0), square(6.0, 5.0, 3.0), square(4.0, 1.0, 1.0)];
         if turned {
-            holes.iter_mut().for_each(|ring| ring.reverse());
+            for ring in &mut holes {
+                ring.reverse();
+            }
         }
         let [a, b, c] = holes;
         let world = world(&metres(&[polygon(&json!([square(0.0, 0.0, 10.0), a, b, c]))]));

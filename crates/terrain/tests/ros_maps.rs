@@ -88,8 +88,8 @@ fn obstacles_of_other_maps_are_obstacles_too() {
     let map = b"type octile\nheight 1\nwidth 4\nmap\n.@T.\n";
     let terrain = read_raster(map, &ImportOptions::default()).expect("it is a map").into_terrain();
     let ground = Traversability::Ground { greatest_grade: 0.2, rock_diameter_m: 0.3 };
-    use CellState::{Free, Obstacle};
-    assert_eq!(states(&terrain.placed(30.0, Point2::origin()), &ground), [Free, Obstacle, Obstacle, Free]);
+    let (free, obstacle) = (CellState::Free, CellState::Obstacle);
+    assert_eq!(states(&terrain.placed(30.0, Point2::origin()), &ground), [free, obstacle, obstacle, free]);
 }
 
 #[test]

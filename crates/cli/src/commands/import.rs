@@ -91,6 +91,6 @@ pub fn parse_degrees(text: &str) -> Result<[f64; 2], String> {
 pub fn parse_radius(text: &str) -> Result<f64, String> {
     let radius: Option<f64> = text.parse().ok();
     radius
-        .filter(|it| it.is_finite() && *it >= 1.0)
-        .ok_or_else(|| "a number of metres, at least 1".to_owned())
+        .filter(|it| geojson::BODY_RADII_M.contains(it))
+        .ok_or_else(|| "a number of metres, from 1 to 1,000,000,000".to_owned())
 }

@@ -15,7 +15,7 @@ use rmpl::syntax::SyntaxKind;
 use serde_json::Value;
 
 pub use keyhole::without_holes;
-pub use projection::{EARTH_RADIUS_M, Frame, Projection};
+pub use projection::{BODY_RADII_M, EARTH_RADIUS_M, Frame, Projection};
 
 /// The member of a file, beside `type`, that says what its coordinates are: `{"units": "metres"}` for metres east and
 /// north of the mission's origin, or `{"origin": [LON, LAT], "radius_m": R}` for where the origin is and how large the

@@ -13,6 +13,9 @@ pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 /// Positions farther from the origin than this are refused: distances across them would be wrong by more than 0.2 %.
 const MAX_ANGLE_RAD: f64 = 0.1;
 
+/// Radii of bodies, in metres: from a boulder to a star.
+pub const BODY_RADII_M: std::ops::RangeInclusive<f64> = 1.0..=1e9;
+
 /// What is known of the coordinates of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
@@ -48,8 +51,8 @@ impl Frame {
         let radius_m = match frame.get("radius_m") {
             None => None,
             Some(radius) => {
-                let radius = radius.as_f64().filter(|radius| *radius > 0.0 && radius.is_finite());
-                Some(radius.ok_or_else(|| said("has a `radius_m` that is not a number above 0"))?)
+                let radius = radius.as_f64().filter(|radius| BODY_RADII_M.contains(radius));
+                Some(radius.ok_or_else(|| said("has a `radius_m` that is not within 1 to 1,000,000,000"))?)
             }
         };
         Ok(Self { is_metres: false, origin_deg, radius_m })
