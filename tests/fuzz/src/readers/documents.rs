@@ -12,7 +12,43 @@ use serde_json::Value;
 use tpn::{NodeId, Plan};
 
 use super::missions::{example, shared_network};
-use super::{NOTHING, Outcome, Reader, nothing, read, refused, text_of};
+use super::{NOTHING, Outcome, Reader, magnitude, nothing, read, refused, text_of};
+
+/// Places and obstacles in `GeoJSON`: what they come to is text of the language.
+pub(super) const PLACES: Reader = Reader {
+    name: "geojson",
+    seeds: &[],
+    words: &[
+        "\"type\": \"Point\"",
+        "\"type\": \"Polygon\"",
+        "\"coordinates\": ",
+        "\"radius_m\": ",
+        "\"name\": \"choose\"",
+        "\"units\": \"metres\"",
+        "\"origin\": [0, 90]",
+        "\"crs\": ",
+        "null",
+        "[[[",
+        "1e308",
+        "-180",
+    ],
+    mend: nothing,
+    exercise: places,
+    tested: 1200,
+};
+
+fn places(input: &[u8]) -> Outcome {
+    match mission::geojson::declarations("site.geojson", &text_of(input), &mission::geojson::Frame::default())
+    {
+        Ok(lines) => {
+            let parse = rmpl::parse(&lines);
+            assert!(parse.diagnostics().is_empty(), "{lines}");
+            let world = parse.program().world;
+            read(&format!("{} {}", magnitude(world.locations.len()), magnitude(world.obstacles.len())))
+        }
+        Err(reason) => refused(&reason.to_string()),
+    }
+}
 
 /// What happened, of a mission and its plan: held against the plan.
 pub(super) const OBSERVATIONS: Reader = Reader {

@@ -156,6 +156,28 @@ fn detached(input: &[u8]) -> Outcome {
     }
 }
 
+/// Maps of ROS, their description before their image.
+pub(super) const ROS: Reader = format(
+    "ros-maps",
+    &[],
+    &[
+        "image: ",
+        "resolution: ",
+        "origin: [0, 0, 0]\n",
+        "negate: 1\n",
+        "mode: raw\n",
+        "mode: scale\n",
+        "free_thresh: ",
+        "occupied_thresh: ",
+        "- 0\n",
+        "...\n",
+        "P5 2 2 255\n",
+        "P2 2 2 9\n",
+        "1e308",
+        ".nan",
+    ],
+);
+
 /// Files of any kind, also those that are refused by name.
 pub(super) const ANY: Reader = format(
     "maps",

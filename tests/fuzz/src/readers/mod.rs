@@ -40,11 +40,13 @@ pub const READERS: &[Reader] = &[
     control::CONTROL,
     control::RUN,
     networks::NETWORKS,
+    networks::PTPN,
     networks::UNCERTAIN,
     networks::PLANS,
     documents::OBSERVATIONS,
     documents::DISTURBANCES,
     documents::UNCERTAINTY,
+    documents::PLACES,
     documents::REVIEWS,
     documents::FLIGHT_RULES,
     archives::ARCHIVES,
@@ -60,6 +62,7 @@ pub const READERS: &[Reader] = &[
     maps::MOVING_AI,
     maps::PDS,
     maps::DETACHED,
+    maps::ROS,
     maps::ANY,
 ];
 

@@ -37,6 +37,42 @@ pub(super) const NETWORKS: Reader = Reader {
     tested: 1200,
 };
 
+/// pTPN: read, and written again.
+pub(super) const PTPN: Reader = Reader {
+    name: "ptpn",
+    seeds: &[],
+    words: &[
+        "<guard>",
+        "</guard>",
+        "<not>",
+        "</not>",
+        "<or>",
+        "<and/>",
+        "<boolean-constant>false</boolean-constant>",
+        "<lower-bound>",
+        "-INF",
+        "INF",
+        "<set-bounded-uncertain-duration>",
+        "<event><id>a</id></event>",
+        "<value>2</value>",
+        "aC",
+    ],
+    mend: nothing,
+    exercise: ptpn,
+    tested: 1200,
+};
+
+fn ptpn(input: &[u8]) -> Outcome {
+    match tpn::ptpn::read(&text_of(input)) {
+        Ok(document) => {
+            let said = document.not_honoured().join(" ");
+            let is_written = tpn::ptpn::write(&document.network).is_ok();
+            read(&format!("{said} {is_written} {}", magnitude(document.network.nodes.len())))
+        }
+        Err(reason) => refused(&reason.to_string()),
+    }
+}
+
 fn networks(input: &[u8]) -> Outcome {
     let text = &*text_of(input);
     let source = match Source::read(text) {
