@@ -64,7 +64,7 @@ pub(crate) fn signatures(record: &Record, review: &Review) -> String {
         format!("<p>In the way of an approval: {}.</p>\n", escaped(&blockers.join(", ")))
     };
     format!(
-        "<h2>Signatures</h2>\n{open}<div class=\"signatures\">\n{rows}</div>\n{}",
+        "<div class=\"signatures\">\n<h2>Signatures</h2>\n{open}{rows}</div>\n{}",
         open_comments(&standing)
     )
 }
@@ -104,12 +104,8 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
     }
     out.push_str(&plan(&since));
     if since.plan.as_ref().is_some_and(|plan| !plan.is_same()) {
-        let drawing = figure::timeline_since(document.snapshot, approved);
-        let caption = "Dashed: when it could be in the approved plan. “new” is not in it, and what is dashed alone is gone.";
-        out.push_str(&drawing.map(|it| figure::framed(&it, caption)).unwrap_or_default());
-        let drawing = figure::network_since(document.snapshot, approved);
-        let caption = "“new” is not in the approved plan; dashed, with “was”, could start at other times in it; what is crossed below is gone.";
-        out.push_str(&drawing.map(|it| figure::framed(&it, caption)).unwrap_or_default());
+        out.push_str(&figure::html(&figure::timeline_since(document.snapshot, approved)));
+        out.push_str(&figure::html(&figure::network_since(document.snapshot, approved)));
     }
     if !since.lines.is_empty() {
         let rows = since.lines.iter().map(line);

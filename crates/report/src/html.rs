@@ -121,28 +121,10 @@ pub(crate) fn readable_time(time: &str) -> String {
 fn figures(document: &Document<'_>) -> String {
     let snapshot = document.snapshot;
     let figures = [
-        (
-            "Timeline",
-            figure::timeline(snapshot, document.review),
-            "Solid: the earliest schedule. Pale: all the time in which it may happen. Green rows are conditions. \
-             Flight rules: a thin line where the plan is held against them, a filled stretch where it breaks them.",
-        ),
-        (
-            "Network",
-            figure::network(snapshot),
-            "What the plan selects is drawn strongly; windows stand below events.",
-        ),
-        (
-            "Map",
-            figure::map(snapshot, document.ground),
-            "North is up. Lines are the paths of the plan; shaded areas are obstacles.",
-        ),
+        ("Timeline", figure::timeline(snapshot, document.review)),
+        ("Network", figure::network(snapshot, document.review)),
+        ("Map", figure::map(snapshot, document.ground).into_iter().collect()),
     ];
-    let mut out = String::new();
-    for (heading, drawing, caption) in figures {
-        if let Some(drawing) = drawing {
-            out.push_str(&format!("<h2>{heading}</h2>\n{}", figure::framed(&drawing, caption)));
-        }
-    }
-    out
+    let drawn = figures.iter().filter(|(_, figures)| !figures.is_empty());
+    drawn.map(|(heading, figures)| format!("<h2>{heading}</h2>\n{}", figure::html(figures))).collect()
 }

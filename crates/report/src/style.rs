@@ -33,9 +33,12 @@ ins { background: #dff3e4; text-decoration: none; }
 .attention { color: #9a6200; }
 .failed { color: #b84300; }
 .signatures td { height: 2.2em; border-bottom: 1px solid #a9b5c2; width: 33%; }
+.criterion { min-width: 11em; }
 .muted { color: #5a6674; }
 figure { margin: .8em 0; }
 figure svg { display: block; max-width: 100%; height: auto; }
+figure.on-screen { overflow-x: auto; }
+figure.on-screen svg { max-width: none; }
 figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
 .listing { font-size: .86em; line-height: 1.45; white-space: pre-wrap; overflow-wrap: anywhere; margin: 0; }
 .listing .line { display: block; padding-left: 3.6em; text-indent: -3.6em; }
@@ -56,9 +59,10 @@ figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
   body { max-width: none; margin: 0; padding: 0; }
   a { color: inherit; }
   .on-screen { display: none; }
-  .in-print { display: table-row; }
+  tr.in-print { display: table-row; }
+  figure.in-print { display: block; }
   h2, h3 { break-after: avoid; }
-  tr, figure { break-inside: avoid; }
+  tr, figure, .signatures { break-inside: avoid; }
   figure svg { max-height: 225mm; }
   h2.page { break-before: page; }
 }

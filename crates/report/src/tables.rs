@@ -210,7 +210,8 @@ fn lines(lines: &[&Line]) -> String {
 
 /// What a line is held against.
 fn criterion(line: &Line) -> String {
-    line.criterion.as_deref().map(escaped).unwrap_or_default()
+    let criterion = line.criterion.as_deref().map(escaped);
+    criterion.map(|it| format!("<div class=\"criterion\">{it}</div>")).unwrap_or_default()
 }
 
 /// The flight rules, each in a line.

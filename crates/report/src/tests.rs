@@ -1,5 +1,7 @@
 //! The Enroute mission as documents, each read back; the times are those of SPEC 3.6.
 
+mod paper;
+
 use std::sync::Arc;
 
 use mission::review::record::{Act, LineKey, Subject, Who};

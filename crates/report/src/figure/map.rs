@@ -6,11 +6,13 @@ use mission::Snapshot;
 use nalgebra::{Point2, Vector3};
 use terrain::Terrain;
 
+use super::sheet::{Figure, Medium};
+
 /// The longer side of the drawing, in user units.
 const SIDE: f64 = 640.0;
 
 /// The map of a mission; `None` if it has no places.
-pub(crate) fn map(snapshot: &Snapshot, ground: Option<&Terrain>) -> Option<String> {
+pub(crate) fn map(snapshot: &Snapshot, ground: Option<&Terrain>) -> Option<Figure> {
     let world = &snapshot.program.world;
     let extent = extent_m(world, std::iter::empty()).filter(|_| !world.locations.is_empty())?;
     let [low_m, high_m] = ground.map_or(extent, |ground| {
@@ -34,7 +36,11 @@ pub(crate) fn map(snapshot: &Snapshot, ground: Option<&Terrain>) -> Option<Strin
         None => None,
     };
     let list = map_list(world, &paths, &frame, relief);
-    Some(display::svg(&[&list], Theme::Light, "Map with the paths of the plan"))
+    Some(Figure {
+        drawing: display::svg(&[&list], Theme::Light, "Map with the paths of the plan"),
+        caption: "North is up. Lines are the paths of the plan; shaded areas are obstacles.".to_owned(),
+        medium: Medium::Everywhere,
+    })
 }
 
 /// The brightness of the ground at a point, in steps.

@@ -1,10 +1,12 @@
-//! A plan over time: the chart that the timeline shows, with the earliest schedule written beside it.
+//! A plan over time: the chart that the timeline shows, with the earliest schedule written beside it, in sheets of rows
+//! under an axis each.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use display::{Rect, Theme};
 use layout::list::timeline::{
-    ROW_HEIGHT, Standing, TOP_MARGIN, TimelineState, Track, axis_list, timeline_list,
+    LinkCurve, ROW_HEIGHT, Standing, TOP_MARGIN, TimelineState, Track, axis_list, timeline_list,
 };
 use layout::timeline::before::Before;
 use layout::timeline::rule::{RuleBand, RuleStanding, RuleTrack};
@@ -17,11 +19,16 @@ use rmpl::program::TimeUnit;
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Network, Plan};
 
-/// Lengths in user units of the drawing; on paper one is about a point.
-const WIDTH: f64 = 940.0;
-const NAMES_WIDTH: f64 = 230.0;
-const TIMES_WIDTH: f64 = 110.0;
+use super::sheet::{Figure, HEIGHT, Medium, WIDTH};
+
+/// Lengths in units of the drawing.
+const NAMES_WIDTH: f64 = 190.0;
+const TIMES_WIDTH: f64 = 132.0;
 const AXIS_HEIGHT: f64 = 24.0;
+/// Rows of a sheet: as many as fit.
+const SHEET_ROWS: usize = ((HEIGHT - AXIS_HEIGHT - TOP_MARGIN) / ROW_HEIGHT) as usize;
+/// Sheets that are printed: of more, the first and the last, where flight rules and resources are.
+const MAX_SHEETS: [usize; 2] = [4, 2];
 
 /// What the report's timeline shows: everything, by activity.
 pub(super) const OPTIONS: ChartOptions = ChartOptions {
@@ -32,22 +39,30 @@ pub(super) const OPTIONS: ChartOptions = ChartOptions {
     grouping: Grouping::Structure,
 };
 
-/// The timeline of the snapshot's plan; `None` without one.
-pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Option<String> {
-    let (network, plan) = (snapshot.network.as_deref()?, snapshot.plan()?);
+/// The timeline of the snapshot's plan; nothing without one.
+pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Vec<Figure> {
+    let (Some(network), Some(plan)) = (snapshot.network.as_deref(), snapshot.plan()) else {
+        return Vec::new();
+    };
     let mut chart = Chart::new(&snapshot.program, network, plan, OPTIONS, &BTreeSet::new());
     chart.add_rules(rule_tracks(review), &BTreeSet::new());
-    Some(drawn(snapshot, &chart, (network, plan), "Timeline of the plan"))
+    let caption = "Solid: the earliest schedule. Pale: all the time in which it may happen. Green rows are conditions. \
+                   Flight rules: a thin line where the plan is held against them, a filled stretch where it breaks them.";
+    sheets(snapshot, &chart, (network, plan), ("Timeline of the plan", caption))
 }
 
-/// The timeline of the snapshot's plan with that of an approved one laid over it; `None` without one of them.
-pub(crate) fn timeline_since(snapshot: &Snapshot, approved: &Subject) -> Option<String> {
-    let (network, plan) = (snapshot.network.as_deref()?, snapshot.plan()?);
-    let before = windows_before(approved)?;
+/// The timeline of the snapshot's plan with that of an approved one laid over it; nothing without one of them.
+pub(crate) fn timeline_since(snapshot: &Snapshot, approved: &Subject) -> Vec<Figure> {
+    let (Some(network), Some(plan), Some(before)) =
+        (snapshot.network.as_deref(), snapshot.plan(), windows_before(approved))
+    else {
+        return Vec::new();
+    };
     let options = ChartOptions { states: false, resources: false, ..OPTIONS };
     let mut chart = Chart::new(&snapshot.program, network, plan, options, &BTreeSet::new());
     chart.compare_with(&before, network, plan);
-    Some(drawn(snapshot, &chart, (network, plan), "Timeline of the plan over the approved one"))
+    let caption = "Dashed: when it could be in the approved plan. “new” is not in it, and what is dashed alone is gone.";
+    sheets(snapshot, &chart, (network, plan), ("Timeline of the plan over the approved one", caption))
 }
 
 /// When the events of an approved plan could be; `None` where it was not kept.
@@ -59,14 +74,70 @@ pub fn windows_before(approved: &Subject) -> Option<Before> {
     Some(Before::new(times))
 }
 
-fn drawn(snapshot: &Snapshot, chart: &Chart, (network, plan): (&Network, &Plan), title: &str) -> String {
-    let height = AXIS_HEIGHT + TOP_MARGIN + ROW_HEIGHT * chart.rows.len() as f64 + 6.0;
+/// The rows of a chart in sheets, of which the first has the caption.
+fn sheets(
+    snapshot: &Snapshot,
+    chart: &Chart,
+    plan: (&Network, &Plan),
+    (title, caption): (&str, &str),
+) -> Vec<Figure> {
+    let sheets = ranges(chart);
+    let [first, last] = MAX_SHEETS;
+    let is_printed =
+        |sheet: usize| sheets.len() <= first + last || sheet < first || sheet >= sheets.len() - last;
+    let figure = |(sheet, rows): (usize, &Range<usize>)| Figure {
+        drawing: drawn(snapshot, chart, plan, rows.clone(), title),
+        caption: if sheets.len() > 1 {
+            format!("Rows {} to {} of {}.", rows.start + 1, rows.end, chart.rows.len())
+        } else {
+            String::new()
+        },
+        medium: if is_printed(sheet) { Medium::Everywhere } else { Medium::Screen },
+    };
+    let mut figures: Vec<Figure> = sheets.iter().enumerate().map(figure).collect();
+    let left_out = sheets.iter().enumerate().filter(|&(sheet, _)| !is_printed(sheet));
+    let left_out: usize = left_out.map(|(_, rows)| rows.len()).sum();
+    let Some(Figure { caption: words, .. }) = figures.first_mut() else { return figures };
+    if left_out > 0 {
+        words.push_str(&format!(" {left_out} rows are not printed: they stand in this file on the screen."));
+    }
+    words.insert_str(0, &format!("{caption} "));
+    figures
+}
+
+/// The rows of each sheet: none is cut within the profile of a resource, or below a heading.
+fn ranges(chart: &Chart) -> Vec<Range<usize>> {
+    let mut ranges = Vec::new();
+    let mut start = 0;
+    while start < chart.rows.len() {
+        let full = (start + SHEET_ROWS).min(chart.rows.len());
+        let is_cut = |row: usize| {
+            let kind = |row: usize| chart.rows.get(row).map(|row| row.kind);
+            let is_in_profile = matches!(kind(row), Some(RowKind::Profile(part)) if part.part > 0);
+            is_in_profile || kind(row - 1) == Some(RowKind::Heading)
+        };
+        let end = (start + 1..=full).rev().find(|&row| !is_cut(row)).unwrap_or(full);
+        ranges.push(start..end);
+        start = end;
+    }
+    ranges
+}
+
+/// Some rows of a chart under an axis.
+fn drawn(
+    snapshot: &Snapshot,
+    chart: &Chart,
+    (network, plan): (&Network, &Plan),
+    range: Range<usize>,
+    title: &str,
+) -> String {
+    let height = AXIS_HEIGHT + TOP_MARGIN + ROW_HEIGHT * range.len() as f64 + 6.0;
     let (left, right) = (NAMES_WIDTH, WIDTH - TIMES_WIDTH);
     let track = Track {
         frame: Rect::new(0.0, 0.0, WIDTH, height),
         left,
         right,
-        top: AXIS_HEIGHT,
+        top: AXIS_HEIGHT - ROW_HEIGHT * range.start as f64,
         start: 0.0,
         scale: (right - left) / chart.horizon,
         visible: Rect::new(left, AXIS_HEIGHT, right, height),
@@ -86,7 +157,10 @@ fn drawn(snapshot: &Snapshot, chart: &Chart, (network, plan): (&Network, &Plan),
         });
         format_smolstr!("{}–{}", times[0], times[1])
     };
-    let links: Vec<_> = track.links(chart).into_iter().map(|curve| (curve, false)).collect();
+    // Of the links those that begin or end on this sheet.
+    let is_here =
+        |curve: &LinkCurve<'_>| [curve.link.from, curve.link.to].iter().any(|(row, _)| range.contains(row));
+    let links: Vec<_> = track.links(chart).into_iter().filter(is_here).map(|curve| (curve, false)).collect();
     let state = TimelineState {
         now: None,
         is_executing: false,
@@ -96,7 +170,7 @@ fn drawn(snapshot: &Snapshot, chart: &Chart, (network, plan): (&Network, &Plan),
         links: &links,
         note: Some(&earliest),
     };
-    let rows = timeline_list(chart, (network, plan), &track, 0..chart.rows.len(), &state);
+    let rows = timeline_list(chart, (network, plan), &track, range, &state);
     display::svg(&[&axis, &rows], Theme::Light, title)
 }
 
