@@ -140,7 +140,8 @@ fn disturbances_and_uncertainty_that_mean_nothing_are_refused() {
 
 #[test]
 fn a_plan_is_checked_with_the_gap_it_was_planned_with() {
-    let text_of = "objective minimize end;\nscenario S[0,30] = { { delay; ARM=a [4,4] }, { delay; ARM=b [3,3] } }\n";
+    let text_of =
+        "objective minimize end;\nscenario S[0,30] = { { delay; ARM=a [4,4] }, { delay; ARM=b [3,3] } }\n";
     let mission = file("gap.rmpl", text_of);
     for (gap, end) in [("0", "[7, 30]"), ("0.5", "[7.5, 30]"), ("1", "[8, 30]")] {
         let output = enroute(&["plan", &mission, "--threat-gap", gap]);

@@ -286,14 +286,15 @@ fn first_in_order(
     if outcome.status != Status::NoPlan || !has_doubts {
         return Ok((outcome, has_doubts));
     }
-    // The search without gaps is no part of a trace, which is of one search with the rules as they are.
-    if options.trace_events.is_none() {
-        let (without_gaps, _) = run(model, options, (Gaps::Ignored, outcome.stats), termination)?;
-        if without_gaps.status != Status::Plan {
-            return Ok((without_gaps, true));
-        }
-        outcome = without_gaps;
+    // A trace is of one search with the rules as they are, and so is what is counted beside it.
+    if options.trace_events.is_some() {
+        return run(model, options, (Gaps::Exact, Stats::default()), termination);
     }
+    let (without_gaps, _) = run(model, options, (Gaps::Ignored, outcome.stats), termination)?;
+    if without_gaps.status != Status::Plan {
+        return Ok((without_gaps, true));
+    }
+    outcome = without_gaps;
     run(model, options, (Gaps::Exact, outcome.stats), termination)
 }
 

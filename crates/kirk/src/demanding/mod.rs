@@ -114,7 +114,8 @@ pub(crate) fn search(
         excluded: excluded.to_vec(),
         incumbent: None,
         record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
-        is_best_first: options.search == Search::BestFirst,
+        // Without an objective no state is better than another.
+        is_best_first: has_goals && options.search == Search::BestFirst,
         passes_over: false,
     };
     searching.stats.nodes = model.num_nodes as u64;

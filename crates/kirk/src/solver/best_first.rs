@@ -205,9 +205,12 @@ impl Solver {
         };
         self.record_failure(problem, &conflict);
         self.stats.conflicts += 1;
+        let Stats { backtracks, jumped_over, .. } = self.stats;
         if !self.learn(&conflict) {
             self.is_contradictory = true;
         }
+        // It goes on in the best state, wherever that is: none is returned to.
+        self.stats = Stats { backtracks, jumped_over, ..self.stats };
         false
     }
 
