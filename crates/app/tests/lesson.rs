@@ -223,26 +223,13 @@ fn sizes(galley: &egui::Galley) -> impl Iterator<Item = f32> {
 
 /// Texts on screen with letters that are smaller than `least` points.
 fn smaller(app: &App, least: f32) -> Vec<(f32, String)> {
-    fn collect(shape: &egui::Shape, clip: egui::Rect, least: f32, found: &mut Vec<(f32, String)>) {
-        match shape {
-            egui::Shape::Text(text) if clip.intersects(shape.visual_bounding_rect()) => {
-                let smallest = sizes(&text.galley).fold(f32::INFINITY, f32::min);
-                if smallest < least {
-                    found.push((smallest, text.galley.text().to_owned()));
-                }
-            }
-            egui::Shape::Vec(shapes) => {
-                for shape in shapes {
-                    collect(shape, clip, least, found);
-                }
-            }
-            _ => {}
-        }
-    }
     let mut found = Vec::new();
-    for shape in &app.harness.output().shapes {
-        collect(&shape.shape, shape.clip_rect, least, &mut found);
-    }
+    app.each_text(&mut |text, clip| {
+        let smallest = sizes(&text.galley).fold(f32::INFINITY, f32::min);
+        if smallest < least && clip.intersects(text.visual_bounding_rect()) {
+            found.push((smallest, text.galley.text().to_owned()));
+        }
+    });
     found
 }
 
@@ -279,30 +266,17 @@ fn a_best_first_search_shows_what_each_state_may_lead_to() {
 /// Texts on screen that are cut off at the left or at the right, where nothing scrolls; rows of lists come and go at the
 /// top and at the bottom. Each with the part of the screen that cuts it.
 fn cut_off(app: &App) -> Vec<(String, egui::Rect)> {
-    fn collect(shape: &egui::Shape, clip: egui::Rect, found: &mut Vec<(String, egui::Rect)>) {
-        match shape {
-            egui::Shape::Text(text) => {
-                let area = shape.visual_bounding_rect();
-                // A point more or less of what is around letters is no loss.
-                let is_whole = clip.x_range().expand(1.5).contains(area.left())
-                    && clip.x_range().expand(1.5).contains(area.right());
-                if clip.shrink(1.0).intersects(area) && !is_whole {
-                    found.push((text.galley.text().to_owned(), clip));
-                }
-            }
-            egui::Shape::Vec(shapes) => {
-                for shape in shapes {
-                    collect(shape, clip, found);
-                }
-            }
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
     let screen = app.harness.ctx.content_rect();
-    for shape in &app.harness.output().shapes {
-        collect(&shape.shape, shape.clip_rect.intersect(screen), &mut found);
-    }
+    let mut found = Vec::new();
+    app.each_text(&mut |text, clip| {
+        let (area, clip) = (text.visual_bounding_rect(), clip.intersect(screen));
+        // A point more or less of what is around letters is no loss.
+        let is_whole = clip.x_range().expand(1.5).contains(area.left())
+            && clip.x_range().expand(1.5).contains(area.right());
+        if clip.shrink(1.0).intersects(area) && !is_whole {
+            found.push((text.galley.text().to_owned(), clip));
+        }
+    });
     found
 }
 

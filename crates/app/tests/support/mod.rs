@@ -7,6 +7,7 @@ mod host;
 use std::rc::Rc;
 
 use app::Enroute;
+use egui::epaint::TextShape;
 use egui::{Rect, Shape};
 use egui_kittest::{Harness, HarnessBuilder};
 use workbench::host::{FileKind, HostEvent};
@@ -68,22 +69,26 @@ impl App {
     /// The texts that are drawn in a place, and where.
     pub fn texts(&self, place: Rect) -> Vec<(String, Rect)> {
         let mut found = Vec::new();
-        for shape in &self.harness.output().shapes {
-            collect_texts(&shape.shape, place, shape.clip_rect, &mut found);
-        }
-        found
-    }
-}
-
-fn collect_texts(shape: &Shape, place: Rect, clip: Rect, found: &mut Vec<(String, Rect)>) {
-    match shape {
-        Shape::Text(text) => {
+        self.each_text(&mut |text, clip| {
             let rect = Rect::from_min_size(text.pos, text.galley.size());
             if place.contains_rect(rect) && clip.intersects(rect) {
                 found.push((text.galley.text().to_owned(), rect));
             }
+        });
+        found
+    }
+
+    /// Calls `visit` for each text that was painted, with the part of the screen outside of which it is cut.
+    pub fn each_text(&self, visit: &mut dyn FnMut(&TextShape, Rect)) {
+        fn each(shape: &Shape, clip: Rect, visit: &mut dyn FnMut(&TextShape, Rect)) {
+            match shape {
+                Shape::Text(text) => visit(text, clip),
+                Shape::Vec(shapes) => shapes.iter().for_each(|shape| each(shape, clip, visit)),
+                _ => {}
+            }
         }
-        Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect_texts(shape, place, clip, found)),
-        _ => {}
+        for shape in &self.harness.output().shapes {
+            each(&shape.shape, shape.clip_rect, visit);
+        }
     }
 }
