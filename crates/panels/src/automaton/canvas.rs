@@ -6,6 +6,7 @@ use layout::{AutomatonDrawing, AutomatonItem};
 use text_editing::TextCommand;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::state::automaton::Moment;
 
 use super::{Drawn, Shown, legend, log, marks};
 use crate::Context;
@@ -25,6 +26,10 @@ type Press = (AutomatonItem, bool);
 
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
+/// At less than this, names are cut before they are too small to read: the part that matters is shown then.
+const LEAST_ZOOM: f64 = 0.92;
+/// A small automaton is not blown up further than this where all of it is asked for.
+const LARGEST_WHOLE: f64 = 1.3;
 /// How far from the pointer something may be to be pointed at, in points.
 const REACH: f64 = 6.0;
 /// What the legend takes of the height, in drawing units.
@@ -48,7 +53,7 @@ impl Canvas {
             log::marked_text(shown.automaton, shown.moment)
         );
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-        self.navigate(&response, panel, &drawn.drawing, context);
+        self.navigate(&response, panel, &drawn.drawing, shown.moment, context);
         let marked = marks::marked(shown.automaton, context.state.document.caret(), self.pressed);
         let painter = ui.painter_at(panel);
         DisplayPainter::new(&painter, panel, self.view.placement(panel), context.tokens)
@@ -76,6 +81,7 @@ impl Canvas {
         response: &egui::Response,
         panel: Rect,
         drawing: &AutomatonDrawing,
+        moment: &Moment,
         context: &Context<'_>,
     ) {
         self.view.pan(response.drag_delta());
@@ -92,12 +98,14 @@ impl Canvas {
             Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
             Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
             Some(ViewAction::ZoomReset) => self.view.reset_zoom(),
-            Some(ViewAction::Fit | ViewAction::FitSelection) => {
-                self.view.fit(panel, with_legend(drawing.bounds));
-            }
+            Some(ViewAction::Fit) => self.view.show(panel, with_legend(drawing.bounds), LARGEST_WHOLE),
+            Some(ViewAction::FitSelection) => self.view.keep_fitted(),
         }
         if self.view.is_fitted() {
-            self.view.fit(panel, with_legend(drawing.bounds));
+            // A step leads to where its marks are.
+            let marked = drawing.locations.iter().filter(|shape| moment.marking.contains(shape.id));
+            let marked = marked.map(|shape| shape.rect).reduce(display::Rect::union);
+            self.view.fit_legibly(panel, with_legend(drawing.bounds), marked, LEAST_ZOOM);
         }
     }
 

@@ -92,6 +92,36 @@ impl View {
         self.is_fitted = true;
     }
 
+    /// Shows all of `bounds` where that is no smaller than `least`; otherwise, at that size, what is around `part`, or the
+    /// beginning of what of it does not fit. Keeps doing so until the user moves the view.
+    pub(crate) fn fit_legibly(
+        &mut self,
+        panel: Rect,
+        bounds: display::Rect,
+        part: Option<display::Rect>,
+        least: f64,
+    ) {
+        self.fit(panel, bounds);
+        if self.zoom >= least {
+            return;
+        }
+        self.zoom = least;
+        let room = panel.shrink(FIT_MARGIN).size();
+        let part = part.unwrap_or(bounds);
+        let along = |room: f32, (first, last): (f64, f64), (part_first, part_last): (f64, f64)| {
+            let half = f64::from(room) / 2.0 / least;
+            if last - first <= 2.0 * half {
+                return (first + last) / 2.0;
+            }
+            let middle = ((part_first + part_last) / 2.0).min(part_first + half);
+            middle.clamp(first + half, last - half)
+        };
+        self.center = Point::new(
+            along(room.x, (bounds.min.x, bounds.max.x), (part.min.x, part.max.x)),
+            along(room.y, (bounds.min.y, bounds.max.y), (part.min.y, part.max.y)),
+        );
+    }
+
     /// From the next frame on shows all of the drawing.
     pub(crate) fn keep_fitted(&mut self) {
         self.is_fitted = true;
@@ -126,6 +156,22 @@ mod tests {
     use super::*;
 
     const PANEL: Rect = Rect::from_min_max(pos2(100.0, 50.0), pos2(900.0, 450.0));
+
+    #[test]
+    fn what_would_be_too_small_to_read_is_shown_around_its_part() {
+        let mut view = View::default();
+        let bounds = display::Rect::new(0.0, 0.0, 4000.0, 200.0);
+        view.fit_legibly(PANEL, bounds, None, 0.5);
+        assert!(view.is_fitted() && (view.zoom() - 0.5).abs() < 1e-9);
+        // From the beginning on, the whole height in the middle.
+        assert!((view.placement(PANEL).point.x - 792.0).abs() < 1e-6, "{:?}", view.placement(PANEL));
+        assert!((view.placement(PANEL).point.y - 100.0).abs() < 1e-6);
+        let part = display::Rect::new(3900.0, 0.0, 3950.0, 40.0);
+        view.fit_legibly(PANEL, bounds, Some(part), 0.5);
+        assert!((view.placement(PANEL).point.x - (4000.0 - 792.0)).abs() < 1e-6, "to the end and no further");
+        view.fit_legibly(PANEL, bounds, Some(part), 0.1);
+        assert!(view.zoom() < 0.5, "what can be read is shown whole");
+    }
 
     #[test]
     fn what_is_under_the_pointer_stays_there_while_zooming() {
