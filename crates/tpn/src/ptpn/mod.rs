@@ -31,7 +31,7 @@ pub enum PtpnError {
         /// The event, constraint or episode.
         place: String,
     },
-    /// Guards of more than 1_000 ways.
+    /// Guards of more than 1,000 ways.
     #[error("{place} has a guard of too many ways")]
     TooManyTerms {
         /// The event, constraint or episode.
