@@ -22,6 +22,9 @@ fn the_published_page_opens_and_plans_when_its_server_is_gone() -> Result<()> {
     tab.wait_until_ready()?;
     tab.wait_until("navigator.serviceWorker.ready.then(() => true)")?;
 
+    tab.go_to(&format!("{url}elsewhere"))?;
+    assert_eq!(tab.evaluate("typeof enroute")?, "undefined", "another path is its server's to answer");
+
     drop(server);
     tab.wait_until(&format!("fetch('{url}not-kept').then(() => false, () => true)"))?;
     tab.go_to(&format!("{url}?again#mission=enroute"))?;
