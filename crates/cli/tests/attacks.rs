@@ -174,7 +174,7 @@ fn a_report_of_hundreds_of_intervals_that_exclude_each_other_can_be_read() {
     let page = std::fs::read_to_string(&report).unwrap_or_else(|_| panic!("{output:?}"));
     assert!(page.contains("Threats and orderings") && page.contains("V399"));
     // 79,800 pairs are in order: the drawing has a curve for each step, and the table what one reads.
-    assert!(page.len() < 2_000_000, "{}", page.len());
+    assert!(page.len() < 2_500_000, "{}", page.len());
 }
 
 #[test]

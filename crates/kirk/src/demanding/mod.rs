@@ -364,8 +364,16 @@ impl<'a> Searching<'a> {
                 return Ok((Status::Limit, plans));
             };
             let Attempt { mut problem, mut solver, .. } = attempt;
-            let is_small = problem.order_all_pairs(&mut solver, &mut Growth::new(&mut || false));
-            is_small.map_err(|_| Unplannable::Links)?;
+            let (termination, stats) = (&mut *self.termination, self.stats);
+            let mut stop = || termination.should_stop(&stats);
+            match problem.order_all_pairs(&mut solver, &mut Growth::new(&mut stop)) {
+                Ok(()) => {}
+                Err(Unencoded::Stopped) => {
+                    self.record = solver.record.take();
+                    return Ok((Status::Limit, plans));
+                }
+                Err(_) => return Err(Unplannable::Links),
+            }
             solver.record_choice_points(&problem);
             loop {
                 match self.next_plan((&mut problem, &mut solver), &Vec::new(), None)? {

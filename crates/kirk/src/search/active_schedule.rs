@@ -51,8 +51,9 @@ impl Engine<'_> {
         }
         let Some(mut shop) = self.shop()? else { return Ok(Ordered::NotTried) };
         if let Some(times) = given {
-            shop.place_by(times);
-            return Ok(if self.order_neighbours(&shop)? { Ordered::All } else { Ordered::NotTried });
+            // What only touches must be forced to, which depends on what is ordered before it.
+            let is_ordered = shop.is_schedule(times) && self.order_neighbours(&shop)?;
+            return Ok(if is_ordered { Ordered::All } else { Ordered::NotTried });
         }
         let is_of_orders = self.model.decisions.is_empty() && self.leaf.asks.is_empty();
         if self.order_by(&mut shop, &[Rule::Textual])? {
@@ -336,15 +337,30 @@ impl Shop {
         Some(())
     }
 
-    /// Takes these times for a schedule.
-    fn place_by(&mut self, times: Vec<i64>) {
+    /// Takes these times for a schedule. `false` if they leave less than the gap between some pair.
+    fn is_schedule(&mut self, times: Vec<i64>) -> bool {
         self.times = times;
-        let mut tasks: Vec<usize> = (0..self.tasks.first.len() - 1).collect();
-        tasks.sort_by_key(|&task| self.start(task));
-        self.place_of.resize(tasks.len(), UNPLACED);
-        for (place, task) in (0..).zip(tasks) {
-            self.place_of[task] = place;
+        let ranks = self.ranks();
+        (0..self.intervals.len()).all(|interval| {
+            let end = self.times[self.intervals[interval].1];
+            let rivals = self.rivals.row(interval).iter().map(|&rival| rival as usize);
+            let mut later = rivals.filter(|&rival| ranks[rival] > ranks[interval]);
+            later.all(|rival| self.times[self.intervals[rival].0].checked_sub(end) >= Some(self.gap))
+        })
+    }
+
+    /// Which interval comes first in the schedule; instants at one time as they are written.
+    fn ranks(&self) -> Vec<u32> {
+        let mut order: Vec<usize> = (0..self.intervals.len()).collect();
+        order.sort_by_key(|&interval| {
+            let (start, end) = self.intervals[interval];
+            (self.times[start], self.times[end])
+        });
+        let mut ranks = vec![0; order.len()];
+        for (rank, interval) in (0..).zip(order) {
+            ranks[interval] = rank;
         }
+        ranks
     }
 
     /// The pairs, in textual order, from whose orders in the schedule found last those of all others follow.
@@ -352,16 +368,14 @@ impl Shop {
     /// Of two rivals that come after an interval and exclude each other, the later one comes after the earlier one. Few
     /// rivals are asked for that: an order too many is harmless.
     fn neighbours(&self, conditions: &Conditions, pairs: &[(LabelId, LabelId)]) -> Vec<u32> {
+        let ranks = self.ranks();
         let mut neighbours = Vec::new();
         let (mut later, mut next) = (Vec::new(), Vec::new());
         for interval in 0..self.intervals.len() {
-            let place = self.place_of[self.task_of[interval] as usize];
             let rivals = self.rivals.row(interval).iter().map(|&rival| rival as usize);
             later.clear();
-            later.extend(rivals.filter(|&rival| self.place_of[self.task_of[rival] as usize] > place));
-            later.sort_unstable_by_key(|&rival| {
-                (self.times[self.intervals[rival].0], self.place_of[self.task_of[rival] as usize], rival)
-            });
+            later.extend(rivals.filter(|&rival| ranks[rival] > ranks[interval]));
+            later.sort_unstable_by_key(|&rival| ranks[rival]);
             next.clear();
             for &rival in &later {
                 let start = self.times[self.intervals[rival].0];
