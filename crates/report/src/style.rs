@@ -55,6 +55,9 @@ figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
 .listing .unknown { color: #b84300; text-decoration: underline wavy; }
 @page { margin: 16mm 15mm 18mm; }
 @media print {
+  .criterion { min-width: 8em; }
+  td { min-width: 4.2em; }
+  th, td { padding-right: .5em; }
   :root { font-size: 9.5pt; -webkit-print-color-adjust: exact; print-color-adjust: exact; }
   body { max-width: none; margin: 0; padding: 0; }
   a { color: inherit; }
