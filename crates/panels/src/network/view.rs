@@ -111,9 +111,9 @@ impl View {
         let along = |room: f32, (first, last): (f64, f64), (part_first, part_last): (f64, f64)| {
             let half = f64::from(room) / 2.0 / least;
             if last - first <= 2.0 * half {
-                return (first + last) / 2.0;
+                return f64::midpoint(first, last);
             }
-            let middle = ((part_first + part_last) / 2.0).min(part_first + half);
+            let middle = f64::midpoint(part_first, part_last).min(part_first + half);
             middle.clamp(first + half, last - half)
         };
         self.center = Point::new(
