@@ -62,7 +62,10 @@ impl Engine<'_> {
         if !is_of_orders && num_pairs <= MAX_PAIRS_OF_CHOICE {
             return Ok(Ordered::NotTried);
         }
-        Ok(if self.order_by(&mut shop, &RULES)? { Ordered::All } else { Ordered::None })
+        if self.order_by(&mut shop, &RULES)? {
+            return Ok(Ordered::All);
+        }
+        Ok(if is_of_orders { Ordered::None } else { Ordered::NotTried })
     }
 
     /// Takes back the orders chosen so far and chooses those of an active schedule, if one is found. `false` if there is
