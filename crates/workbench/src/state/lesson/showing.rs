@@ -14,8 +14,8 @@ use crate::state::{AppState, Pins, Selection, Status, ToastKind};
 use crate::workspace::Workspace;
 
 /// The panels whose view begins anew at each stop.
-const VIEWS: [PanelKind; 5] =
-    [PanelKind::Network, PanelKind::Timeline, PanelKind::Terrain, PanelKind::Distances, PanelKind::Automaton];
+const VIEWS: [PanelKind; 4] =
+    [PanelKind::Network, PanelKind::Timeline, PanelKind::Terrain, PanelKind::Distances];
 
 /// Lets planning search as a lesson wants it, and record that.
 pub(super) fn set_search(state: &mut AppState, search: LessonSearch) {
@@ -113,8 +113,10 @@ impl AppState {
             let is_near = show.near.contains(&panel);
             self.request_view(panel, if is_near { ViewAction::FitSelection } else { ViewAction::Fit });
         }
-        // The whole of a large tree cannot be read: it is shown around the step.
-        self.request_view(PanelKind::Search, ViewAction::FitSelection);
+        // The whole of a large tree or automaton cannot be read: it is shown around the step.
+        for panel in [PanelKind::Search, PanelKind::Automaton] {
+            self.request_view(panel, ViewAction::FitSelection);
+        }
         self.active_panel = PanelKind::Lesson;
     }
 
