@@ -291,13 +291,18 @@ fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read() {
             app.settle();
             let place = format!("{}, stop {}", lesson.name, stop + 1);
             let nodes = app.harness.root().children_recursive();
-            let drawn: Vec<egui::Rect> = nodes
-                .filter(|node| {
-                    node.accesskit_node().label().is_some_and(|it| it.ends_with(" in the network"))
-                })
-                .map(|node| node.rect())
+            let labels: Vec<(String, egui::Rect)> =
+                nodes.filter_map(|node| Some((node.accesskit_node().label()?, node.rect()))).collect();
+            let with = |is_such: fn(&str) -> bool| {
+                labels.iter().filter(move |(label, _)| is_such(label)).map(|&(_, rect)| rect).collect()
+            };
+            let drawn: Vec<egui::Rect> = with(|label| label.ends_with(" in the network"));
+            let automata: Vec<egui::Rect> = with(|label| label.starts_with("Automaton. "));
+            let marked: Vec<&str> = labels
+                .iter()
+                .filter_map(|(label, _)| Some(label.strip_suffix(", marked")?.split_once(": ")?.1))
                 .collect();
-            // Of a network that is larger than its panel, what the stop is about has to be there.
+            // Of a network or an automaton that is larger than its panel, what the stop is about has to be there.
             let json = app.json();
             let selected = json["selection"]["name"].as_str().unwrap_or("nothing");
             let selected = selected.split('#').next().unwrap_or(selected);
@@ -305,7 +310,9 @@ fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read() {
                 app.harness.get_by_role_and_label(Role::TextInput, "Mission name").rect().bottom();
             for (text, clip) in cut_off(&app).into_iter().filter(|(_, clip)| clip.bottom() > bar_bottom) {
                 let is_of_network = drawn.iter().any(|node| clip.contains(node.center()));
-                if !is_of_network || text.contains(selected) {
+                let is_of_automaton = automata.iter().any(|panel| panel.expand(1.0).contains_rect(clip));
+                let is_marked = marked.iter().any(|label| text.contains(label));
+                if (!is_of_network || text.contains(selected)) && (!is_of_automaton || is_marked) {
                     cut.push(format!("{place}: {text}"));
                 }
             }

@@ -1,12 +1,11 @@
 //! The automaton on screen: pan, zoom, point at things, press them to select their text.
 
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
-use hca::{Automaton, CompositeKind, LocationKind};
+use hca::{Automaton, CompositeKind, LocationId, LocationKind};
 use layout::{AutomatonDrawing, AutomatonItem};
 use text_editing::TextCommand;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
-use workbench::state::automaton::Moment;
 
 use super::{Drawn, Shown, legend, log, marks};
 use crate::Context;
@@ -53,7 +52,7 @@ impl Canvas {
             log::marked_text(shown.automaton, shown.moment)
         );
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-        self.navigate(&response, panel, &drawn.drawing, shown.moment, context);
+        self.navigate(&response, panel, &drawn.drawing, shown, context);
         let marked = marks::marked(shown.automaton, context.state.document.caret(), self.pressed);
         let painter = ui.painter_at(panel);
         DisplayPainter::new(&painter, panel, self.view.placement(panel), context.tokens)
@@ -81,7 +80,7 @@ impl Canvas {
         response: &egui::Response,
         panel: Rect,
         drawing: &AutomatonDrawing,
-        moment: &Moment,
+        shown: Shown<'_>,
         context: &Context<'_>,
     ) {
         self.view.pan(response.drag_delta());
@@ -102,10 +101,8 @@ impl Canvas {
             Some(ViewAction::FitSelection) => self.view.keep_fitted(),
         }
         if self.view.is_fitted() {
-            // A step leads to where its marks are.
-            let marked = drawing.locations.iter().filter(|shape| moment.marking.contains(shape.id));
-            let marked = marked.map(|shape| shape.rect).reduce(display::Rect::union);
-            self.view.fit_legibly(panel, with_legend(drawing.bounds), marked, LEAST_ZOOM);
+            let part = part_that_matters(shown, drawing, panel.size());
+            self.view.fit_legibly(panel, with_legend(drawing.bounds), part, LEAST_ZOOM);
         }
     }
 
@@ -163,6 +160,26 @@ impl Canvas {
         }
         pressed
     }
+}
+
+/// Where the marks of a step are; where those have no room together, what is asserted there.
+fn part_that_matters(
+    shown: Shown<'_>,
+    drawing: &AutomatonDrawing,
+    room: egui::Vec2,
+) -> Option<display::Rect> {
+    let around = |is_such: &dyn Fn(LocationId) -> bool| {
+        let shapes = drawing.locations.iter().filter(|shape| is_such(shape.id));
+        shapes.map(|shape| shape.rect).reduce(display::Rect::union)
+    };
+    let is_marked = |id: LocationId| shown.moment.marking.contains(id);
+    let asserts = |id: LocationId| {
+        shown.automaton.location(id).is_some_and(|location| location.kind == LocationKind::Assert)
+    };
+    let marks = around(&is_marked)?;
+    let fits =
+        marks.width() * LEAST_ZOOM <= f64::from(room.x) && marks.height() * LEAST_ZOOM <= f64::from(room.y);
+    if fits { Some(marks) } else { around(&|id| is_marked(id) && asserts(id)).or(Some(marks)) }
 }
 
 /// The legend stands below the drawing.
