@@ -21,7 +21,8 @@ pub fn attach_label(label: &[u8], image: &[u8]) -> Result<Vec<u8>, FormatError> 
     if FileFormat::detect(label) == Some(FileFormat::RosMap) {
         return ros_map::join(label, image);
     }
-    let start = Label::parse(label).image_start(false)?;
+    // Beyond the file's end there is nothing, however far beyond: then it is too short.
+    let start = Label::parse(label).image_start(false)?.min(image.len() as u64);
     let text = String::from_utf8_lossy(label);
     let is_pointer = |line: &&str| {
         line.split_once('=').is_some_and(|(keyword, _)| keyword.trim().eq_ignore_ascii_case("^IMAGE"))
