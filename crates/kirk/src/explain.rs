@@ -13,10 +13,10 @@ use crate::model::{INFINITE, Model};
 use crate::options::{Stats, Termination, Unlimited};
 use crate::record::RecordedFailure;
 use crate::search::{Choices, Engine, Gaps, Halt, Setup, UNBOUNDED_BELOW};
-use crate::solver::{self, Answer};
+use crate::solver::{self, Answer, Problem};
 use crate::trace::{Constraint, CycleMember};
 use crate::unplannable::Unplannable;
-use crate::{answer, demanding, whole, wording};
+use crate::{demanding, whole, wording};
 
 /// Explaining stops adding reasons after this many.
 const MAX_REASONS: u64 = 64;
@@ -48,6 +48,11 @@ impl<'t> Effort<'t> {
         }
     }
 
+    /// Whether there is nothing left to spend.
+    pub(crate) const fn is_exhausted(&self) -> bool {
+        self.searches == 0 || self.conflicts == 0
+    }
+
     pub(crate) fn spend(&mut self) -> bool {
         self.searches = self.searches.saturating_sub(1);
         self.searches > 0
@@ -61,15 +66,36 @@ impl<'t> Effort<'t> {
         self.searches == 0 || stats.expanded >= self.expansions
     }
 
-    /// What the solver says of a part of a problem, unless that takes too long.
-    pub(crate) fn solve(&mut self, model: &Model, gaps: Gaps, part: solver::Part<'_>) -> Option<Answer> {
-        let mut stats = Stats::default();
-        let mut is_spent =
-            |stats: &Stats| self.termination.should_stop(stats) || stats.conflicts >= self.conflicts;
-        let (answer, _) = answer::solve(model, gaps, part, &mut stats, &mut is_spent).ok()?;
-        self.conflicts = self.conflicts.saturating_sub(stats.conflicts);
-        (answer != Answer::Stopped).then_some(answer)
+    /// What the solver says of a part of a problem, unless that takes too long; with what a refutation rests on, if that
+    /// is wanted and known.
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model,
+        gaps: Gaps,
+        part: solver::Part<'_>,
+    ) -> Option<(Answer, Option<Vec<Member>>)> {
+        let mut is_stopped = false;
+        let mut is_spent = |stats: &Stats| {
+            is_stopped |= self.termination.should_stop(stats);
+            is_stopped || stats.conflicts >= self.conflicts
+        };
+        let told = Problem::new(model, gaps, part, &mut || is_spent(&Stats::default()));
+        let (mut problem, mut solver) = told.ok()?;
+        let answer = solver.solve(&mut problem, &mut is_spent);
+        self.conflicts = self.conflicts.saturating_sub(solver.stats.conflicts);
+        if is_stopped {
+            self.searches = 0;
+        }
+        (answer != Answer::Stopped).then(|| (answer, problem.core(&solver)))
     }
+}
+
+/// What the solver makes of a part.
+pub(crate) enum Refuted {
+    /// It has a plan.
+    No,
+    /// With what that rests on, if it is known.
+    By(Option<Vec<Member>>),
 }
 
 /// Whether `members` alone make every completion of `choices` fail: the definition of a conflict. Bounds that are not
@@ -308,6 +334,11 @@ impl Part {
     /// Whether the solver proves that the part has no plan, or finds one; `None` if that takes too long, or if gaps
     /// alone decide.
     pub(crate) fn is_refuted(&self, effort: &mut Effort<'_>) -> Option<bool> {
+        Some(matches!(self.refute(effort, false)?, Refuted::By(_)))
+    }
+
+    /// The same, with what the proof rests on if that is wanted.
+    pub(crate) fn refute(&self, effort: &mut Effort<'_>, wants_core: bool) -> Option<Refuted> {
         if !self.model.has_contexts || !effort.spend() {
             return None;
         }
@@ -316,13 +347,15 @@ impl Part {
             alternatives: Some(&self.assumed),
             active_uses: Some(&self.active_uses),
             ignores_nature: self.ignores_nature,
+            wants_core,
         };
         match effort.solve(&self.model, Gaps::Trusted, part)? {
-            Answer::Solved => return Some(false),
-            Answer::Unsolvable if self.model.gap == 0 => return Some(true),
+            (Answer::Solved, _) => return Some(Refuted::No),
+            (Answer::Unsolvable, core) if self.model.gap == 0 => return Some(Refuted::By(core)),
             _ => {}
         }
-        (effort.solve(&self.model, Gaps::Ignored, part)? == Answer::Unsolvable).then_some(true)
+        let (answer, core) = effort.solve(&self.model, Gaps::Ignored, part)?;
+        (answer == Answer::Unsolvable).then_some(Refuted::By(core))
     }
 
     /// A contradiction among the bounds of the part, if there is one to show.

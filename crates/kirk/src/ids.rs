@@ -54,6 +54,10 @@ ids! {
     EventId;
     /// A reason that was noted on the solver's trail.
     NoteId;
+    /// A negative cycle of the solver's difference constraints.
+    CycleId;
+    /// What a conclusion of the solver was drawn from.
+    DerivationId;
     /// A state of a best-first search.
     StateId;
 }

@@ -193,7 +193,9 @@ impl Trial<'_> {
         if halt == Halt::Stopped
             && effort.searches > 0
             && model.has_contexts
-            && effort.solve(model, Gaps::Trusted, Part::default()) == Some(Answer::Solved)
+            && effort
+                .solve(model, Gaps::Trusted, Part::default())
+                .is_some_and(|(answer, _)| answer == Answer::Solved)
         {
             halt = Halt::Solution;
         }

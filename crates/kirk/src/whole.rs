@@ -1,13 +1,13 @@
 //! One reason why a mission has no plan whatever is chosen, where there are too many failures to list one after the other:
 //! all its bounds and conditions, less those that the solver needs for no proof.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::program::LabelMode;
 use stn::{Inconsistency, Stn};
 use tpn::{Choice, LabelId, Network, ResourceId, UseId, VariableId};
 
-use crate::explain::{Effort, Part, spans};
+use crate::explain::{Effort, Part, Refuted, spans};
 use crate::failure::{FailureKind, Member, Reason};
 use crate::model::{Context, INFINITE, Model, node};
 use crate::search::UNBOUNDED_BELOW;
@@ -24,34 +24,26 @@ pub(crate) fn reason(
     choices: &[Choice],
     effort: &mut Effort<'_>,
 ) -> Option<Reason> {
-    let mut search = Shrinking { model, part: Part::new(model, choices), members: Vec::new(), effort };
-    search.members = members(model);
-    for &member in &search.members {
-        search.part.set(model, member, true);
-    }
-    if search.part.is_refuted(search.effort) != Some(true) {
-        return None;
-    }
-    for group in by_subject(network) {
-        search.leave_out(&group);
-    }
-    let mut size = search.members.len().div_ceil(2);
-    let mut is_minimal = true;
-    while size > 0 {
-        // The last members first: what comes late in the text is told only if it matters.
-        let mut end = search.members.len();
-        while end > 0 {
-            let start = end.saturating_sub(size);
-            let chunk = search.members[start..end].to_vec();
-            let left_out = search.leave_out(&chunk);
-            is_minimal &= size > 1 || left_out.is_some();
-            end = start;
+    let all = members(model);
+    let part = Part::new(model, choices);
+    let mut search =
+        Shrinking { model, part, members: Vec::new(), proven: all.clone(), wants_core: true, effort };
+    search.keep(&all);
+    let Refuted::By(core) = search.part.refute(search.effort, true)? else { return None };
+    let mut is_minimal = core.is_some_and(|core| search.shrink_core(&core));
+    if !is_minimal && !search.effort.is_exhausted() {
+        search.wants_core = false;
+        search.keep(&all);
+        for group in by_subject(network) {
+            search.leave_out(&group);
         }
-        size = if size == 1 { 0 } else { size.div_ceil(2) };
+        is_minimal = search.shrink(2);
     }
-    if search.members.len() > MAX_MEMBERS {
+    let proven = search.proven.clone();
+    if proven.len() > MAX_MEMBERS {
         return None;
     }
+    search.keep(&proven);
     let choices: Vec<Choice> = choices.iter().copied().filter(|&choice| !search.leave_open(choice)).collect();
     search.part.ignores_nature = true;
     let is_natures = model.has_uncertainty && search.part.is_refuted(search.effort) == Some(false);
@@ -75,22 +67,79 @@ struct Shrinking<'a, 't> {
     model: &'a Model,
     part: Part,
     members: Vec<Member>,
+    /// The last members that were proven to be a contradiction themselves.
+    proven: Vec<Member>,
+    /// Whether what a proof does not need is left out, too.
+    wants_core: bool,
     effort: &'a mut Effort<'t>,
 }
 
 impl Shrinking<'_, '_> {
-    /// Leaves members out if what remains is a contradiction still. Whether it did; `None` if nobody knows.
-    fn leave_out(&mut self, chunk: &[Member]) -> Option<bool> {
-        for &member in chunk {
+    /// Shrinks a core, which is a reason already but need not be a minimal one. Whether it is minimal then.
+    fn shrink_core(&mut self, core: &[Member]) -> bool {
+        self.keep(core);
+        if self.is_refuted() != Some(true) {
+            return false;
+        }
+        let is_minimal = self.shrink(16);
+        // What was left out on the way was needed for none of the proofs found; this one is of what is left.
+        self.wants_core = false;
+        self.is_refuted() == Some(true) && is_minimal
+    }
+
+    /// Leaves out what is not needed, at first so many parts of the members at a time. Whether what stays is minimal.
+    fn shrink(&mut self, parts: usize) -> bool {
+        let mut size = self.members.len().div_ceil(parts);
+        let mut is_minimal = true;
+        while size > 0 && !self.effort.is_exhausted() {
+            // The last members first: what comes late in the text is told only if it matters.
+            let mut end = self.members.len();
+            while end > 0 && !self.effort.is_exhausted() {
+                let start = end.saturating_sub(size);
+                let chunk = self.members[start..end].to_vec();
+                let left_out = self.leave_out(&chunk);
+                is_minimal &= size > 1 || left_out.is_some();
+                // More than the chunk may be gone.
+                end = start.min(self.members.len());
+            }
+            size = if size == 1 { 0 } else { size.div_ceil(2) };
+        }
+        is_minimal && size == 0
+    }
+
+    /// Takes only these members.
+    fn keep(&mut self, members: &[Member]) {
+        for &member in &self.members {
             self.part.set(self.model, member, false);
         }
-        let is_refuted = self.part.is_refuted(self.effort);
-        if is_refuted == Some(true) {
-            self.members.retain(|member| !chunk.contains(member));
-        } else {
-            for &member in chunk.iter().filter(|member| self.members.contains(member)) {
-                self.part.set(self.model, member, true);
-            }
+        for &member in members {
+            self.part.set(self.model, member, true);
+        }
+        self.members = members.to_vec();
+    }
+
+    /// Whether the members are a contradiction; if so, only those stay that the proof needs. `None` if nobody knows.
+    fn is_refuted(&mut self) -> Option<bool> {
+        let Refuted::By(core) = self.part.refute(self.effort, self.wants_core)? else { return Some(false) };
+        self.proven.clone_from(&self.members);
+        if let Some(core) = core {
+            let core: BTreeSet<Member> = core.into_iter().collect();
+            let needed =
+                self.members.iter().copied().filter(|member| core.contains(member)).collect::<Vec<_>>();
+            self.keep(&needed);
+        }
+        Some(true)
+    }
+
+    /// Leaves members out if what remains is a contradiction still. Whether it did; `None` if nobody knows.
+    fn leave_out(&mut self, chunk: &[Member]) -> Option<bool> {
+        let before = self.members.clone();
+        let chunk: BTreeSet<Member> = chunk.iter().copied().collect();
+        let others: Vec<Member> = before.iter().copied().filter(|member| !chunk.contains(member)).collect();
+        self.keep(&others);
+        let is_refuted = self.is_refuted();
+        if is_refuted != Some(true) {
+            self.keep(&before);
         }
         is_refuted
     }
@@ -189,5 +238,92 @@ fn kind(network: &Network, members: &[Member]) -> FailureKind {
         [] => FailureKind::Temporal,
         [LabelMode::Ask] => FailureKind::OpenCondition,
         _ => FailureKind::Threat,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tpn::compile::{Top, compile};
+    use tpn::families::{chain, long_requirements, nested, open_shop, pigeonholes, symmetric};
+    use tpn::generate::{Recipe, Tightness, mission};
+
+    use super::*;
+    use crate::options::Unlimited;
+
+    /// What a refutation rests on is a contradiction by itself.
+    #[test]
+    fn cores_are_contradictions() {
+        let mut texts = vec![pigeonholes(5, 1), pigeonholes(12, 1), symmetric(6, 3, 1), chain(30, false)];
+        for seed in 0..60 {
+            texts.push(nested(20 + seed as usize * 3, 60, seed));
+            texts.push(long_requirements(4, 3, seed, 70));
+            texts.push(open_shop(2 + seed as usize % 3, 90 + seed as i64 % 10, seed));
+            texts.push(mission(Recipe { nodes: 60, tightness: Tightness::Infeasible, seed }));
+            let count = 3 + seed as usize % 5;
+            texts.push(lasting(count, seed as usize));
+            texts.push(sharing(count, seed as usize));
+        }
+        let (mut cores, mut unnamed, mut plans) = (0, 0, 0);
+        for text in &texts {
+            let (network, diagnostics) = compile(&rmpl::parse(text).program(), &Top::Scenario(None));
+            let network = network.unwrap_or_else(|| panic!("does not compile: {diagnostics:?}\n{text}"));
+            let model = Model::new(&network, None).expect("times fit");
+            let mut unlimited = Unlimited;
+            let mut effort = Effort::for_size(model.num_nodes, &mut unlimited);
+            let mut part = Part::new(&model, &[]);
+            for member in members(&model) {
+                part.set(&model, member, true);
+            }
+            let core = match part.refute(&mut effort, true) {
+                Some(Refuted::By(Some(core))) => core,
+                Some(Refuted::By(None)) => {
+                    unnamed += 1;
+                    continue;
+                }
+                _ => {
+                    plans += 1;
+                    continue;
+                }
+            };
+            cores += 1;
+            let mut rest = Part::new(&model, &[]);
+            for &member in &core {
+                rest.set(&model, member, true);
+            }
+            assert_eq!(rest.is_refuted(&mut effort), Some(true), "{core:?}\n{text}");
+        }
+        assert!(cores > 200 && unnamed < 10, "{cores} cores, {unnamed} without a name, {plans} plans");
+    }
+
+    /// Changes of one state, one after the other, in a horizon that is too short for all of them.
+    fn lasting(count: usize, seed: usize) -> String {
+        let changes = (0..count).map(|at| {
+            format!("primitive Turn{at}()[{0},{0}] sets ARM=v{1};", 2 + (at * 7 + seed) % 5, at % 3)
+        });
+        let asks = (0..count).map(|at| format!("primitive Dig{at}()[3,3] requires ARM=v{};", at % 3));
+        let calls = (0..count).map(|at| format!("{{ delay; Turn{at}(); delay; Dig{at}(); delay }}"));
+        format!(
+            "state ARM : {{v0, v1, v2}} = v0; {} {} scenario S[0,{}] = {{ {} }}",
+            changes.collect::<String>(),
+            asks.collect::<String>(),
+            count * 4,
+            calls.collect::<Vec<_>>().join(", ")
+        )
+    }
+
+    /// Activities that share a resource for two and a tank, in a horizon that is too short for all of them.
+    fn sharing(count: usize, seed: usize) -> String {
+        let activities = (0..count).map(|at| {
+            let (length, amount) = (2 + (at * 5 + seed) % 6, 1 + (at + seed) % 2);
+            format!("primitive Use{at}()[{length},{length}] uses R {amount} consumes T 1;")
+        });
+        let calls = (0..count).map(|at| format!("{{ delay; Use{at}(); delay }}"));
+        format!(
+            "resource R capacity 2; resource T 0 .. 9 = {}; {} scenario S[0,{}] = {{ {} }}",
+            2 + seed % 6,
+            activities.collect::<String>(),
+            count * 2,
+            calls.collect::<Vec<_>>().join(", ")
+        )
     }
 }

@@ -7,6 +7,7 @@ use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Side};
 use super::queue::PropagationQueue;
+use super::refutation::Premise;
 use super::trail::{Cause, Conflict, Trail};
 use crate::ids::{CommonBoundId, EventId};
 
@@ -17,6 +18,8 @@ pub(crate) struct Way {
     pub(crate) weight: i64,
     /// Whether the alternative is taken.
     pub(crate) when: Literal,
+    /// What the bound comes from.
+    pub(super) premise: Premise,
 }
 
 #[derive(Clone, Debug)]
@@ -29,13 +32,28 @@ struct Common {
 pub(crate) struct Alternatives {
     commons: TiVec<CommonBoundId, Common>,
     pub(super) queue: PropagationQueue<CommonBoundId>,
+    /// How often the present propagation has moved what each bounds.
+    moves: TiVec<CommonBoundId, u32>,
+    moved: Vec<CommonBoundId>,
 }
+
+/// After so many moves in one propagation a relaxation waits for the next one: what is contradictory only together with it
+/// would let bounds creep for as long as their range allows, where a decision shows it at once.
+const MAX_MOVES: u32 = 16;
 
 impl Alternatives {
     /// Adds that `to` is bounded by at least one of `ways`, of which one is taken wherever `to` exists.
     pub(crate) fn add(&mut self, to: Side, ways: Vec<Way>) {
         self.queue.add(ways.iter().flat_map(|way| [way.from, (!way.when).side]));
         self.commons.push(Common { to, ways });
+        self.moves.push(0);
+    }
+
+    /// Begins a propagation.
+    pub(super) fn begin(&mut self) {
+        for id in self.moved.drain(..) {
+            self.moves[id] = 0;
+        }
     }
 
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), Conflict> {
@@ -45,11 +63,21 @@ impl Alternatives {
             let most = left.map(|way| trail.bound(way.from) + way.weight).max();
             if let Some(most) = most
                 && most < trail.bound(*to)
+                && self.moves[id] < MAX_MOVES
             {
+                if self.moves[id] == 0 {
+                    self.moved.push(id);
+                }
+                self.moves[id] += 1;
                 trail.set(Literal::new(*to, most), Cause::Alternatives(id))?;
             }
         }
         Ok(())
+    }
+
+    /// What a relaxation goes by.
+    pub(super) fn premises(&self, id: CommonBoundId) -> impl Iterator<Item = Premise> + '_ {
+        self.commons[id].ways.iter().map(|way| way.premise)
     }
 
     pub(crate) fn explain(

@@ -57,6 +57,7 @@ impl Solver {
             let mut reason = std::mem::take(&mut analysis.reason);
             reason.clear();
             self.explain(literal, event, &mut reason);
+            self.conclude_by(event, &reason);
             for &literal in &reason {
                 self.meet(literal, level, &mut analysis);
             }
@@ -110,7 +111,7 @@ impl Solver {
         }
         let mut reason = Vec::new();
         self.explain(literal, event, &mut reason);
-        reason.iter().all(|&part| {
+        let is_implied = reason.iter().all(|&part| {
             let known = analysis.lower.binary_search_by_key(&part.side, |known| known.side);
             // What came later may rest on this one.
             let is_known = known.is_ok_and(|position| {
@@ -118,7 +119,11 @@ impl Solver {
                 known.implies(part) && self.trail.implying_event(known) < Some(event)
             });
             is_known || self.level_of(part) == 0
-        })
+        });
+        if is_implied {
+            self.conclude_by(event, &reason);
+        }
+        is_implied
     }
 
     /// Why a literal holds whose event is given: other literals that hold and imply it.

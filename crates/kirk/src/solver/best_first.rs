@@ -195,12 +195,12 @@ impl Solver {
 
     /// Propagates, and learns from the conflict where there is one.
     fn settle(&mut self, problem: &Problem<'_>) -> bool {
-        let conflict = match self.propagate() {
-            Ok(()) if !self.is_contradictory => {
+        let conflict = match self.propagate(&mut |_| false) {
+            Ok(_) if !self.is_contradictory => {
                 self.record_implied();
                 return true;
             }
-            Ok(()) => return false,
+            Ok(_) => return false,
             Err(conflict) => conflict,
         };
         self.record_failure(problem, &conflict);

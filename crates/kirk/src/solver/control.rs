@@ -15,6 +15,7 @@ use typed_index_collections::TiVec;
 use super::Solver;
 use super::encode::Problem;
 use super::literal::{Literal, Variable};
+use super::refutation::Premise;
 use super::resources::{Task, ids};
 use crate::antichain::heaviest_antichain;
 use crate::demands::ModelSupply;
@@ -59,6 +60,7 @@ impl Problem<'_> {
         solver.stats.nogoods += 1;
         solver.record_refusal(&reason, |choices| Event::Uncontrollable { choices });
         solver.retract(0);
+        solver.tell_from_premises([Premise::Unknown]);
         solver.at_least_one(reason.into_iter().map(|literal| !literal));
         Some(true)
     }
@@ -293,6 +295,7 @@ impl Problem<'_> {
                     solver.retract(0);
                     if is_known {
                         // An order that would mend it holds, and events at one time undo it.
+                        solver.tell_from_premises([Premise::Unknown]);
                         solver.at_least_one(held.into_iter().map(|literal| !literal));
                     } else {
                         self.resolve_level(solver, &used, &counted, &late);

@@ -9,6 +9,7 @@ use typed_index_collections::TiVec;
 use super::encode::Interval;
 use super::literal::{Literal, Side};
 use super::queue::PropagationQueue;
+use super::refutation::Premise;
 use super::trail::{Conflict, Trail};
 use crate::ids::CumulativeId;
 
@@ -19,6 +20,8 @@ const MAX_TASKS: usize = 4_000;
 struct Shared {
     capacity: i64,
     tasks: Vec<(Interval, i64)>,
+    /// What says so.
+    premise: Premise,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -92,7 +95,7 @@ impl Task {
 
 impl Cumulatives {
     /// Adds tasks with what each takes; together never more than `capacity`.
-    pub(super) fn add(&mut self, capacity: i64, tasks: Vec<(Interval, i64)>) {
+    pub(super) fn add(&mut self, capacity: i64, tasks: Vec<(Interval, i64)>, premise: Premise) {
         if tasks.len() < 2 || tasks.len() > MAX_TASKS {
             return;
         }
@@ -101,13 +104,14 @@ impl Cumulatives {
             times.into_iter().flatten().chain([task.presence.side])
         };
         self.queue.add(tasks.iter().flat_map(sides));
-        self.all.push(Shared { capacity, tasks });
+        self.all.push(Shared { capacity, tasks, premise });
     }
 
     /// Looks at one resource that waits. `false` if none does.
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<bool, Conflict> {
         let Some(id) = self.queue.pop() else { return Ok(false) };
-        let Shared { capacity, tasks } = &self.all[id];
+        let Shared { capacity, tasks, premise } = &self.all[id];
+        trail.premise = *premise;
         for is_forward in [true, false] {
             self.present.clear();
             let present = tasks.iter().filter(|(task, _)| trail.holds(task.presence));

@@ -16,8 +16,9 @@ use std::collections::BinaryHeap;
 use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Side, Variable};
+use super::refutation::Premise;
 use super::trail::{self, Cause, Conflict, Trail};
-use crate::ids::{DifferenceId, EventId};
+use crate::ids::{CycleId, DifferenceId, EventId};
 
 /// `to ≤ from + weight`, as a step from side to side. The literal implies that both ends exist, or it always holds and
 /// the existence of the target implies that of the source.
@@ -49,6 +50,9 @@ pub(crate) struct Differences {
     moved: Vec<Side>,
     /// Bounds to carry on, with how far they have moved.
     pending: BinaryHeap<(i64, Reverse<EventId>)>,
+    /// Whether the constraints of each negative cycle are kept.
+    pub(super) keeps_cycles: bool,
+    cycles: TiVec<CycleId, Vec<DifferenceId>>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -117,6 +121,11 @@ impl Differences {
                 || !trail.holds(trail.presence(to.variable()))
                 || value(to) <= value(from) + weight
         })
+    }
+
+    /// The constraints of a negative cycle that was kept.
+    pub(super) fn cycle(&self, id: CycleId) -> &[DifferenceId] {
+        &self.cycles[id]
     }
 
     /// How much room the constraints that wait for a literal leave: the least of them all.
@@ -217,19 +226,23 @@ impl Differences {
     }
 
     /// The literals of a cycle that the last moves of a bound went along.
-    fn negative_cycle(&self, trail: &Trail, event: EventId) -> Option<Conflict> {
+    fn negative_cycle(&mut self, trail: &mut Trail, event: EventId) -> Option<Conflict> {
         let start = trail.events[event].side;
         let (mut at, mut most) = (event, trail.events[event].most);
-        let mut reason = Vec::new();
+        let (mut reason, mut cycle) = (Vec::new(), Vec::new());
         for _ in 0..self.steps.len() {
             let Cause::Difference(id) = trail.events[at].cause else { return None };
             let Difference { from, weight, when, .. } = self.all[id];
             if when != Literal::TRUE {
                 reason.push(when);
             }
+            cycle.extend(self.keeps_cycles.then_some(id));
             most -= weight;
             at = trail.implying_event(Literal::new(from, most))?;
             if from == start {
+                if self.keeps_cycles {
+                    trail.premise = Premise::Cycle(self.cycles.push_and_get_key(cycle));
+                }
                 return Some(reason);
             }
         }

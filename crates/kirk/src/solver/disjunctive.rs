@@ -9,6 +9,7 @@ use typed_index_collections::TiVec;
 use super::encode::{Interval, Problem};
 use super::literal::{Literal, Side};
 use super::queue::PropagationQueue;
+use super::refutation::Premise;
 use super::trail::{Conflict, Trail};
 use crate::ids::ExclusionId;
 
@@ -22,6 +23,8 @@ struct Exclusion {
     tasks: Vec<Interval>,
     /// The least time between one and the next.
     gap: i64,
+    /// What says so.
+    premise: Premise,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -47,7 +50,7 @@ struct Task {
 
 impl Disjunctives {
     /// Finds sets among the labels of one variable that must be kept apart, `gap` between each two.
-    pub(crate) fn add(&mut self, problem: &Problem<'_>, labels: &[LabelId]) {
+    pub(crate) fn add(&mut self, problem: &Problem<'_>, labels: &[LabelId], premise: Premise) {
         let mut is_covered = vec![false; labels.len()];
         for (first, &seed) in labels.iter().enumerate() {
             if is_covered[first] || labels.len() > MAX_TASKS {
@@ -71,16 +74,16 @@ impl Disjunctives {
             if members.len() > 2 {
                 let gap = if is_gap_due { problem.least_gap() } else { 0 };
                 let tasks = members.iter().map(|&label| problem.intervals[label]).collect();
-                self.add_set(Exclusion { tasks, gap });
+                self.add_set(Exclusion { tasks, gap, premise });
             }
         }
     }
 
     /// Adds a set of intervals of which no two overlap.
-    pub(crate) fn add_tasks(&mut self, mut tasks: Vec<Interval>) {
+    pub(crate) fn add_tasks(&mut self, mut tasks: Vec<Interval>, premise: Premise) {
         tasks.retain(|task| task.duration > 0);
         if tasks.len() > 2 && tasks.len() <= MAX_TASKS {
-            self.add_set(Exclusion { tasks, gap: 0 });
+            self.add_set(Exclusion { tasks, gap: 0, premise });
         }
     }
 
@@ -94,6 +97,7 @@ impl Disjunctives {
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<bool, Conflict> {
         let Some(id) = self.queue.pop() else { return Ok(false) };
         let set = &self.sets[id];
+        trail.premise = set.premise;
         for is_forward in [true, false] {
             self.present.clear();
             for task in set.tasks.iter().filter(|task| trail.holds(task.presence)) {

@@ -3,20 +3,22 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use stn::PointId;
-use tpn::{CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, VariableId};
+use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, VariableId};
 use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
 use super::growth::{Growth, LINK, Unencoded};
 use super::lasting::Sides;
 use super::literal::{Literal, Side, Variable};
+use super::refutation::Premise;
 use super::resources::Shares;
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
+use crate::failure::Member;
 use crate::model::{Alternatives, Context, INFINITE, Model, ModelArc, node};
 use crate::partial_order::Solution;
 use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
 use crate::structure::Relation;
-use crate::trace::TreeChoice;
+use crate::trace::{Constraint, TreeChoice};
 
 /// A labelled interval.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +41,8 @@ pub(crate) struct Part<'a> {
     pub(crate) active_uses: Option<&'a [bool]>,
     /// Whether durations that nature chooses are chosen like all others.
     pub(crate) ignores_nature: bool,
+    /// Whether it is to be known what a refutation rests on.
+    pub(crate) wants_core: bool,
 }
 
 /// How a planning problem is told to the solver.
@@ -77,8 +81,15 @@ impl<'m> Problem<'m> {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(Self, Solver), Unencoded> {
         let mut growth = Growth::new(stop);
-        let reach = reach(model)?;
+        let mut reach = reach(model)?;
+        if part.wants_core {
+            // That nothing precedes the start has its reason.
+            reach.0 = -reach.1;
+        }
         let mut solver = Solver::new();
+        if part.wants_core {
+            solver.keep_derivations();
+        }
         let alternatives = add_alternatives(model, &mut solver);
         let mut problem = Self {
             model,
@@ -103,9 +114,7 @@ impl<'m> Problem<'m> {
         problem.add_arcs(&mut solver);
         problem.add_intervals(&mut solver, part);
         problem.sweep(&mut solver);
-        if !solver.is_contradictory && solver.propagate().is_err() {
-            solver.is_contradictory = true;
-        }
+        solver.propagate_at_root(growth.stop)?;
         if !solver.is_contradictory {
             problem.add_links(&mut solver, part, &mut growth)?;
             problem.add_lasting(&mut solver, part, &mut growth)?;
@@ -314,7 +323,7 @@ impl<'m> Problem<'m> {
         // By common event: how each alternative bounds it.
         let mut ways: BTreeMap<(Side, DecisionId), Vec<(u32, Way)>> = BTreeMap::new();
         for &constraint in &model.constraints {
-            self.add_constraint(solver, &model.arcs[constraint]);
+            self.add_constraint(solver, constraint);
         }
         for (id, arc) in model.arcs.iter_enumerated() {
             if model.constraints.binary_search(&id).is_ok() {
@@ -323,6 +332,7 @@ impl<'m> Problem<'m> {
             let (from, to) = (self.times[arc.from], self.times[arc.to]);
             if from == to {
                 if arc.lower > 0 {
+                    solver.tell_from([Member::Bound(Constraint::Lower(id))]);
                     solver.assert(!self.presence(arc.context));
                 }
                 continue;
@@ -330,21 +340,24 @@ impl<'m> Problem<'m> {
             let taken = self.presence(arc.context);
             let when = |node: NodeId| if self.contexts[node] == arc.context { Literal::TRUE } else { taken };
             let (when_from, when_to) = (when(arc.from), when(arc.to));
-            let mut bounds = |from: Variable, to: Variable, weight: i64, when: [Literal; 2]| {
-                solver.difference(from, to, weight, when);
-                let sides = [(from.upper(), to.upper()), (to.lower(), from.lower())];
-                for ((from, to), when) in sides.into_iter().zip(when) {
-                    if let Some(choice) = arc.context.filter(|_| when != Literal::TRUE) {
-                        let ways = ways.entry((to, choice.decision)).or_default();
-                        ways.push((choice.alternative, Way { from, weight, when }));
+            let mut bounds =
+                |bound: Constraint, (from, to): (Variable, Variable), weight: i64, when: [Literal; 2]| {
+                    let premise = Premise::Member(Member::Bound(bound));
+                    solver.tell_from_premises([premise]);
+                    solver.difference(from, to, weight, when);
+                    let sides = [(from.upper(), to.upper()), (to.lower(), from.lower())];
+                    for ((from, to), when) in sides.into_iter().zip(when) {
+                        if let Some(choice) = arc.context.filter(|_| when != Literal::TRUE) {
+                            let ways = ways.entry((to, choice.decision)).or_default();
+                            ways.push((choice.alternative, Way { from, weight, when, premise }));
+                        }
                     }
-                }
-            };
+                };
             if arc.upper != INFINITE {
-                bounds(from, to, arc.upper, [when_to, when_from]);
+                bounds(Constraint::Upper(id), (from, to), arc.upper, [when_to, when_from]);
             }
             if arc.lower != UNBOUNDED_BELOW {
-                bounds(to, from, -arc.lower, [when_from, when_to]);
+                bounds(Constraint::Lower(id), (to, from), -arc.lower, [when_from, when_to]);
             }
         }
         for ((to, decision), mut ways) in ways {
@@ -356,6 +369,7 @@ impl<'m> Problem<'m> {
             }
         }
         let Some(structure) = &model.structure else { return };
+        solver.tell_from_premises([Premise::Unknown]);
         for decision in model.decisions.keys() {
             let (from, to, lower, upper) = structure.initial_bounds(decision);
             let (from, to) = (self.times[from], self.times[to]);
@@ -370,8 +384,9 @@ impl<'m> Problem<'m> {
     }
 
     /// A bound between threads: each of its events is bounded by the other one where that exists.
-    fn add_constraint(&self, solver: &mut Solver, arc: &ModelArc) {
+    fn add_constraint(&self, solver: &mut Solver, id: ArcId) {
         let model = self.model;
+        let arc = &model.arcs[id];
         if !model.are_compatible(arc.context, arc.other_context) {
             return;
         }
@@ -379,6 +394,7 @@ impl<'m> Problem<'m> {
         let (when_from, when_to) = (self.presence(arc.context), self.presence(arc.other_context));
         if from == to {
             if arc.lower > 0 {
+                solver.tell_from([Member::Bound(Constraint::Lower(id))]);
                 solver.at_least_one([!when_from, !when_to]);
             }
             return;
@@ -391,6 +407,7 @@ impl<'m> Problem<'m> {
             (false, false) => {
                 let both = solver.boolean();
                 solver.resize();
+                solver.tell_structure();
                 solver.imply(both, when_from);
                 solver.imply(both, when_to);
                 solver.at_least_one([!when_from, !when_to, both]);
@@ -400,9 +417,11 @@ impl<'m> Problem<'m> {
         let of_to = if to_has_from { Literal::TRUE } else { both };
         let of_from = if from_has_to { Literal::TRUE } else { both };
         if arc.upper != INFINITE {
+            solver.tell_from([Member::Bound(Constraint::Upper(id))]);
             solver.difference(from, to, arc.upper, [of_to, of_from]);
         }
         if arc.lower != UNBOUNDED_BELOW {
+            solver.tell_from([Member::Bound(Constraint::Lower(id))]);
             solver.difference(to, from, -arc.lower, [of_from, of_to]);
         }
     }
@@ -432,6 +451,7 @@ impl<'m> Problem<'m> {
         }
         for &(left, right) in &conditions.self_conflicting {
             if is_active(left) && is_active(right) {
+                solver.tell_from([left, right].map(Member::Condition));
                 solver.assert(!self.intervals[left].presence);
             }
         }
@@ -439,10 +459,11 @@ impl<'m> Problem<'m> {
 
     /// Bounds along the arcs, each node after those before it.
     fn sweep(&self, solver: &mut Solver) {
-        let Solver { differences, trail, is_contradictory, .. } = solver;
+        solver.tell_structure();
         let mut carry = |side| {
-            if !*is_contradictory && differences.carry_on(trail, side).is_err() {
-                *is_contradictory = true;
+            let Solver { differences, trail, is_contradictory, .. } = solver;
+            if !*is_contradictory && let Err(conflict) = differences.carry_on(trail, side) {
+                solver.refute(&conflict);
             }
         };
         let time = |point: &PointId| self.times[node(*point)];
@@ -463,6 +484,7 @@ impl<'m> Problem<'m> {
             if !conditions.labels[ask].is_ask || !is_active || solver.trail.fails(asked.presence) {
                 continue;
             }
+            solver.tell_from([Member::Condition(ask)]);
             let arc_of = |label: LabelId| conditions.labels[label].arc;
             // It always serves, where plans need not be told apart.
             let own = conditions.supporters(ask).find(|&tell| arc_of(tell) == arc_of(ask));
@@ -511,6 +533,9 @@ impl<'m> Problem<'m> {
     fn can_carry(&self, solver: &Solver, ask: LabelId, tell: LabelId) -> bool {
         let (asked, teller) = (self.intervals[ask], self.intervals[tell]);
         let arc = |label: LabelId| &self.model.arcs[self.model.conditions.labels[label].arc];
+        if solver.takes_nothing_for_granted() {
+            return self.can_be_together(ask, tell);
+        }
         !solver.trail.fails(teller.presence)
             && self.can_be_together(ask, tell)
             && asked.duration <= arc(tell).upper

@@ -26,7 +26,7 @@ const STEPS: usize = 1 << 16;
 pub(crate) struct Growth<'s> {
     size: usize,
     steps: usize,
-    stop: &'s mut dyn FnMut() -> bool,
+    pub(super) stop: &'s mut dyn FnMut() -> bool,
 }
 
 impl<'s> Growth<'s> {

@@ -8,12 +8,14 @@ use std::collections::BTreeMap;
 
 use tpn::{CausalLink, LabelId, Ordering};
 
-use super::encode::{Part, Problem};
+use super::encode::{Interval, Part, Problem};
 use super::growth::{CLAUSE, Growth, LINK, ORDER, Unencoded};
 use super::literal::Literal;
+use super::refutation::Premise;
 use super::tours::MAX_MOVEMENTS;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::LastingVariable;
+use crate::failure::Member;
 use crate::structure::Relation;
 use crate::trace::{Departing, Event, TreeChoice};
 
@@ -58,7 +60,9 @@ impl Problem<'_> {
         let mut changing: Vec<Vec<LabelId>> = Vec::with_capacity(model.demands.variables.len());
         let mut requirements: Vec<(LabelId, usize)> = Vec::new();
         for (index, variable) in model.demands.variables.iter().enumerate() {
-            let exists = |label: &LabelId| !solver.trail.fails(self.intervals[*label].presence);
+            let exists = |label: &LabelId| {
+                solver.takes_nothing_for_granted() || !solver.trail.fails(self.intervals[*label].presence)
+            };
             changing.push(variable.changes.iter().copied().filter(is_active).filter(exists).collect());
             let asks = variable.asks.iter().copied().filter(is_active).filter(exists);
             requirements.extend(asks.map(|ask| (ask, index)));
@@ -84,6 +88,9 @@ impl Problem<'_> {
             growth.look_at(ORDER)?;
             self.add_sides(solver, left, right);
         }
+        for changes in &changing {
+            self.exclude_effects(solver, changes);
+        }
         self.add_threats(solver, &requirements, &changing, growth)?;
         for (variable, changes) in model.demands.variables.iter().zip(&changing) {
             // Between movements that do not count the vehicle is somewhere else.
@@ -92,6 +99,16 @@ impl Problem<'_> {
             }
         }
         Ok(())
+    }
+
+    /// While an effect changes a variable nothing else may (SPEC 10.2, rule 2): of one variable no two overlap.
+    fn exclude_effects(&self, solver: &mut Solver, changes: &[LabelId]) {
+        let labels = &self.model.conditions.labels;
+        let effects = changes.iter().copied().filter(|&change| labels[change].is_changing);
+        let tasks: Vec<Interval> = effects.map(|effect| self.intervals[effect]).collect();
+        if let Some(&first) = changes.first() {
+            solver.disjunctives.add_tasks(tasks, Premise::Variable(labels[first].variable));
+        }
     }
 
     /// A movement takes at least as long as it does from where the one right before it ends (SPEC 10.3).
@@ -103,6 +120,8 @@ impl Problem<'_> {
         growth: &mut Growth<'_>,
     ) -> Result<(), Unencoded> {
         let model = self.model;
+        let premises = || changes.iter().map(|&change| Premise::Member(Member::Condition(change)));
+        solver.tell_from_premises(premises());
         let mut durations = vec![vec![None; changes.len()]; changes.len() + 1];
         for (column, &movement) in changes.iter().enumerate() {
             let Some(departures) = model.demands.departures.get(&movement) else { continue };
@@ -115,7 +134,11 @@ impl Problem<'_> {
                 }
                 let is_initial = Some(before) == variable.initial;
                 let order = if is_initial { Some(Literal::TRUE) } else { self.before(before, movement) };
-                let Some(order) = order.filter(|&order| !solver.trail.fails(order)) else { continue };
+                let Some(order) =
+                    order.filter(|&order| solver.takes_nothing_for_granted() || !solver.trail.fails(order))
+                else {
+                    continue;
+                };
                 growth.add(LINK + CLAUSE * changes.len())?;
                 let last = solver.boolean();
                 solver.resize();
@@ -153,8 +176,10 @@ impl Problem<'_> {
             solver.at_least_one(found);
         }
         if self.are_movements_in_any_order(changes) {
+            // Its durations are those of all of them.
+            let premise = Premise::Unknown;
             let movements = changes.iter().map(|&movement| self.intervals[movement]).collect();
-            let quickest = solver.tours.add(movements, &durations);
+            let quickest = solver.tours.add(movements, &durations, premise);
             for (position, &first) in quickest.iter().enumerate() {
                 for &then in &quickest[position + 1..] {
                     self.prefer_before(solver, changes[first], changes[then]);
@@ -206,6 +231,7 @@ impl Problem<'_> {
         growth: &mut Growth<'_>,
     ) -> Result<(), Unencoded> {
         let asked = self.intervals[ask];
+        solver.tell_from([Member::Condition(ask)]);
         // Nothing that is nested before what breaks the requirement can carry it.
         let breaks = |change: LabelId| self.model.conditions.breaks(change, ask);
         let possible = self.undominated(ask, &variable.changes, breaks);
@@ -253,9 +279,15 @@ impl Problem<'_> {
         self.model.conditions.gives(change, ask)
             // Nothing rests on its own effect.
             && labels[change].arc != labels[ask].arc
-            && !solver.trail.fails(given.presence)
             && self.can_be_together(ask, change)
             && !comes_too_late
+            && (solver.takes_nothing_for_granted() || self.fit_windows(solver, ask, change))
+    }
+
+    /// Whether windows let a requirement rest on a change.
+    fn fit_windows(&self, solver: &Solver, ask: LabelId, change: LabelId) -> bool {
+        let (asked, given) = (self.intervals[ask], self.intervals[change]);
+        !solver.trail.fails(given.presence)
             && solver.trail.least(self.ready[change]) <= solver.trail.most(asked.start)
     }
 
@@ -269,9 +301,10 @@ impl Problem<'_> {
     /// A choice point of the orders of two changes that exclude each other.
     fn add_sides(&mut self, solver: &mut Solver, left: LabelId, right: LabelId) {
         let (one, other) = (self.intervals[left], self.intervals[right]);
+        solver.tell_from([left, right].map(Member::Condition));
         let left_first = solver.boolean();
         let presences = [one.presence, other.presence];
-        let is_certain = presences.iter().all(|&presence| solver.trail.holds(presence));
+        let is_certain = solver.are_certain(&presences);
         let right_first = if is_certain { !left_first } else { solver.boolean() };
         solver.resize();
         if !is_certain {
@@ -349,6 +382,7 @@ impl Problem<'_> {
                     continue;
                 }
                 let threatening = self.intervals[threat];
+                solver.tell_from([ask, threat].map(Member::Condition));
                 let mut is_over: Option<Literal> = None;
                 for &(change, link) in &options {
                     if change == threat || !self.can_be_together(change, threat) {
@@ -450,6 +484,7 @@ impl Problem<'_> {
         let Some(circle) = circle(&next) else { return false };
         solver.record_refusal(&circle, |orders| Event::Circle { orders });
         solver.retract(0);
+        solver.tell_from_premises([Premise::Unknown]);
         solver.at_least_one(circle.into_iter().map(|order| !order));
         true
     }

@@ -7,7 +7,9 @@ use tpn::{LabelId, VariableId};
 use super::encode::Problem;
 use super::growth::{Growth, ORDER, Unencoded};
 use super::literal::Literal;
+use super::refutation::Premise;
 use super::{ChoicePoint, ChoicePointKind, Solver};
+use crate::failure::Member;
 use crate::trace::Event;
 
 /// Of a variable with more pairs, only those in each other's way are added.
@@ -47,7 +49,10 @@ impl Solver {
         }
         self.check_differences(first);
         for variable in exclusive {
-            self.disjunctives.add(problem, &problem.labels_by_variable[variable]);
+            let exists = |label: &LabelId| !self.trail.fails(problem.intervals[*label].presence);
+            let labels: Vec<LabelId> =
+                problem.labels_by_variable[variable].iter().copied().filter(exists).collect();
+            self.disjunctives.add(problem, &labels, Premise::Variable(variable));
         }
         true
     }
@@ -155,11 +160,12 @@ impl Solver {
 
     fn add_pair(&mut self, problem: &mut Problem<'_>, left: LabelId, right: LabelId) {
         problem.known_pairs.insert((left, right));
+        self.tell_from([left, right].map(Member::Condition));
         let (one, other) = (problem.intervals[left], problem.intervals[right]);
         let when = [one.presence, other.presence];
         let left_first = self.boolean();
         // Where both exist in any case, the second order is the first one's opposite.
-        let is_certain = when.iter().all(|&when| self.trail.holds(when));
+        let is_certain = self.are_certain(&when);
         let right_first = if is_certain { !left_first } else { self.boolean() };
         self.resize();
         if !is_certain {

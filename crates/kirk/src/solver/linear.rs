@@ -5,6 +5,7 @@ use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Variable};
 use super::queue::PropagationQueue;
+use super::refutation::Premise;
 use super::trail::{Conflict, Trail};
 use crate::ids::LinearId;
 
@@ -43,6 +44,7 @@ impl Linears {
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), Conflict> {
         while let Some(id) = self.queue.pop() {
             let Linear { terms, most } = &self.all[id];
+            trail.premise = Premise::Unknown;
             let least: i128 = terms.iter().map(|&term| least(trail, term)).sum();
             let room = i128::from(*most) - least;
             if room < 0 {

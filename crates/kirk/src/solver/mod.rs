@@ -35,6 +35,7 @@ mod linear;
 mod literal;
 mod queue;
 mod record;
+mod refutation;
 mod relaxation;
 mod resources;
 mod simplex;
@@ -57,6 +58,7 @@ use disjunctive::Disjunctives;
 use linear::Linears;
 use literal::{Literal, Side, Variable};
 use record::Origin;
+use refutation::Derivations;
 use resources::Sharing;
 use tours::Tours;
 use trail::{Conflict, Trail};
@@ -67,6 +69,7 @@ pub(crate) use goals::GoalSums;
 pub(crate) use growth::{Growth, Unencoded};
 pub(crate) use lasting::Kept;
 pub(crate) use record::Record;
+pub(crate) use refutation::Premise;
 
 /// How a search came to an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,6 +128,10 @@ pub(crate) struct Solver {
     activity: Activity,
     /// How many events have been propagated.
     head: usize,
+    /// What propagation has done since it last looked whether to stop.
+    steps: u32,
+    /// Whether a propagation was stopped before its end.
+    is_interrupted: bool,
     analysis: Analysis,
     is_contradictory: bool,
     conflicts_until_restart: u64,
@@ -136,9 +143,24 @@ pub(crate) struct Solver {
     pub(crate) stats: Stats,
     /// What is told of the search, if anybody wants to know.
     pub(crate) record: Option<Box<Record>>,
+    /// What was derived from what, if anybody wants to know.
+    derivations: Option<Box<Derivations>>,
     /// What the last conflict came from.
     origin: Origin,
 }
+
+/// Whether propagation came to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Propagated {
+    Wholly,
+    /// It was stopped; what it leaves out is looked at next time.
+    InPart,
+}
+
+/// Steps of propagation between two looks at whether to stop.
+const STEPS_BETWEEN_LOOKS: u32 = 1 << 13;
+/// What a look at a set of tasks counts as.
+const STEPS_OF_SETS: u32 = 1 << 6;
 
 /// Conflicts in the unit of the restart sequence.
 const RESTART_UNIT: u64 = 64;
@@ -161,6 +183,8 @@ impl Solver {
             reached: TiVec::new(),
             activity: Activity::new(),
             head: 0,
+            steps: 0,
+            is_interrupted: false,
             analysis: Analysis::default(),
             is_contradictory: false,
             conflicts_until_restart: RESTART_UNIT,
@@ -169,6 +193,7 @@ impl Solver {
             is_in_textual_order: false,
             stats: Stats::default(),
             record: None,
+            derivations: None,
             origin: Origin::Other,
         };
         solver.resize();
@@ -207,35 +232,55 @@ impl Solver {
         self.implied[left.side].push(right.side);
         self.implied[(!right).side].push((!left).side);
         if self.trail.holds(left) {
-            self.assert(right);
+            self.assert_since(right, &[left]);
         } else if self.trail.fails(right) {
-            self.assert(!left);
+            self.assert_since(!left, &[!right]);
         }
     }
 
     /// Makes a literal hold whatever is decided. At the root.
     fn assert(&mut self, literal: Literal) {
-        if self.trail.set(literal, trail::Cause::Decision).is_err() {
-            self.is_contradictory = true;
+        self.assert_since(literal, &[]);
+    }
+
+    /// The same where that follows from others.
+    fn assert_since(&mut self, literal: Literal, others: &[Literal]) {
+        let event = self.trail.events.next_key();
+        let set = self.trail.set(literal, trail::Cause::Decision);
+        self.told_unit(event, others);
+        if let Err(conflict) = set {
+            self.refute(&conflict);
         }
+    }
+
+    /// There is no solution, for these literals hold and cannot, by what is being told. At the root.
+    fn refute(&mut self, conflict: &[Literal]) {
+        self.is_contradictory = true;
+        self.told_refutation(conflict);
     }
 
     /// At least one literal holds. At the root.
     fn at_least_one(&mut self, literals: impl IntoIterator<Item = Literal>) {
-        let mut open: Vec<Literal> = Vec::new();
+        let (mut open, mut held): (Vec<Literal>, Vec<Literal>) = (Vec::new(), Vec::new());
         for literal in literals {
             if self.trail.holds(literal) {
                 return;
             }
-            if !self.trail.fails(literal) && !open.contains(&literal) {
+            if self.trail.fails(literal) {
+                held.push(!literal);
+            } else if !open.contains(&literal) {
                 open.push(literal);
             }
         }
         match open.as_slice() {
-            [] => self.is_contradictory = true,
-            &[only] => self.assert(only),
+            [] => self.refute(&held),
+            &[only] => self.assert_since(only, &held),
             _ => {
-                self.clauses.add(open, None);
+                if self.takes_nothing_for_granted() {
+                    open.extend(held.into_iter().map(|literal| !literal));
+                }
+                let clause = self.clauses.add(open, None);
+                self.told_clause(clause);
             }
         }
     }
@@ -273,13 +318,14 @@ impl Solver {
         let [forward, backward] = when;
         self.differences.add(Difference { from: from.upper(), to: to.upper(), weight, when: forward });
         self.differences.add(Difference { from: to.lower(), to: from.lower(), weight, when: backward });
+        self.told_difference();
     }
 
     /// Carries on the present bounds along what has been added since `first`. At the root.
     fn check_differences(&mut self, first: usize) {
         for id in self.differences.since(first) {
-            if self.differences.check(&mut self.trail, id).is_err() {
-                self.is_contradictory = true;
+            if let Err(conflict) = self.differences.check(&mut self.trail, id) {
+                self.refute(&conflict);
                 return;
             }
         }
@@ -297,7 +343,12 @@ impl Solver {
                 self.record_exhausted();
                 return Answer::Unsolvable;
             }
-            if let Err(conflict) = self.propagate() {
+            let propagated = self.propagate(stop);
+            if propagated == Ok(Propagated::InPart) {
+                self.retract(0);
+                return Answer::Stopped;
+            }
+            if let Err(conflict) = propagated {
                 self.record_failure(problem, &conflict);
                 self.stats.conflicts += 1;
                 self.conflicts_until_restart = self.conflicts_until_restart.saturating_sub(1);
@@ -339,14 +390,51 @@ impl Solver {
         }
     }
 
-    fn propagate(&mut self) -> Result<(), Conflict> {
+    /// Propagates what follows without decisions, unless that is known already to fail.
+    fn propagate_at_root(&mut self, stop: &mut dyn FnMut() -> bool) -> Result<(), Unencoded> {
+        if self.is_contradictory {
+            return Ok(());
+        }
+        match self.propagate(&mut |_| stop()) {
+            Ok(Propagated::Wholly) => {}
+            Ok(Propagated::InPart) => return Err(Unencoded::Stopped),
+            Err(conflict) => self.is_contradictory = !self.learn(&conflict),
+        }
+        Ok(())
+    }
+
+    /// Whether to stop, by a look at that from time to time; so many steps were made since the last one.
+    fn is_stopped_after(&mut self, steps: u32, stop: &mut dyn FnMut(&Stats) -> bool) -> bool {
+        self.steps += steps;
+        if self.steps < STEPS_BETWEEN_LOOKS {
+            return false;
+        }
+        self.steps = 0;
+        self.is_interrupted = stop(&self.stats);
+        self.is_interrupted
+    }
+
+    fn propagate(&mut self, stop: &mut dyn FnMut(&Stats) -> bool) -> Result<Propagated, Conflict> {
+        if std::mem::take(&mut self.is_interrupted) {
+            self.head = 0;
+            self.alternatives.queue.push_all();
+            self.disjunctives.queue.push_all();
+            self.cumulatives.queue.push_all();
+            self.linears.queue.push_all();
+            self.tours.queue.push_all();
+        }
         self.differences.begin();
+        self.alternatives.begin();
         self.origin = Origin::Other;
         loop {
+            self.trail.premise = Premise::Structure;
             while self.head < self.trail.events.len() {
                 let event = EventId::from(self.head);
                 self.head += 1;
                 let side = self.trail.events[event].side;
+                if self.is_stopped_after(1, stop) {
+                    return Ok(Propagated::InPart);
+                }
                 self.clauses.propagate(&mut self.trail, event)?;
                 for position in 0..self.implied[side].len() {
                     let implied = self.implied[side][position];
@@ -381,7 +469,10 @@ impl Solver {
                 || self.cumulatives.propagate(&mut self.trail)?
                 || self.tours.propagate(&mut self.trail)?;
             if !has_looked {
-                return Ok(());
+                return Ok(Propagated::Wholly);
+            }
+            if self.is_stopped_after(STEPS_OF_SETS, stop) {
+                return Ok(Propagated::InPart);
             }
         }
     }
@@ -403,23 +494,30 @@ impl Solver {
 
     /// Learns from a conflict and goes back. `false` if there is no solution.
     fn learn(&mut self, conflict: &[Literal]) -> bool {
+        self.begin_derivation(conflict);
         let conflict = &self.before_crossing(conflict);
+        self.conclude_from(conflict);
         let highest = conflict.iter().map(|&literal| self.level_of(literal)).max().unwrap_or(0);
         if highest < self.trail.level() {
             self.retract(highest);
         }
-        let Some(learned) = self.analyze(conflict) else { return false };
+        let Some(learned) = self.analyze(conflict) else {
+            self.concluded_refutation();
+            return false;
+        };
         self.stats.backtracks += 1;
         self.stats.jumped_over += u64::from(self.trail.level() - learned.level - 1);
         self.record_learned(&learned.clause, learned.level);
         self.retract(learned.level);
         let decisive = learned.clause[0];
-        let cause = if learned.clause.len() == 1 {
-            trail::Cause::Decision
+        let (cause, clause) = if learned.clause.len() == 1 {
+            (trail::Cause::Decision, None)
         } else {
             self.stats.nogoods += 1;
-            trail::Cause::Clause(self.clauses.add(learned.clause, Some(learned.num_levels)))
+            let clause = self.clauses.add(learned.clause, Some(learned.num_levels));
+            (trail::Cause::Clause(clause), Some(clause))
         };
+        self.concluded(clause, self.trail.events.next_key());
         self.activity.decay();
         self.clauses.decay();
         // What contradicts it below is found by the next propagation's conflict.
@@ -443,6 +541,7 @@ impl Solver {
         }
         let mut reason: Conflict = conflict.iter().copied().filter(|&literal| literal != last).collect();
         self.explain(last, event, &mut reason);
+        self.conclude_by(event, &reason);
         self.trail.undo_last();
         self.head = self.head.min(self.trail.events.len());
         if let Some(record) = &mut self.record {
@@ -455,7 +554,7 @@ impl Solver {
         self.restarts += 1;
         self.conflicts_until_restart = RESTART_UNIT * luby(self.restarts);
         self.retract(0);
-        if self.clauses.num_learned() > self.max_learned {
+        if self.clauses.num_learned() > self.max_learned && !self.takes_nothing_for_granted() {
             self.clauses.forget_half();
             self.max_learned += self.max_learned / 10;
         }

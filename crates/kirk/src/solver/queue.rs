@@ -55,6 +55,13 @@ where
         }
     }
 
+    /// Lets all constraints wait.
+    pub(crate) fn push_all(&mut self) {
+        for id in (0..self.is_waiting.len()).map(Id::from) {
+            self.push(id);
+        }
+    }
+
     /// Drops what waits: the events that it waits for are being taken back.
     pub(crate) fn forget(&mut self) {
         for id in self.waiting.drain(..) {

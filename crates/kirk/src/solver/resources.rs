@@ -11,9 +11,11 @@ use tpn::{UseId, UseOrdering};
 
 use super::encode::{Interval, Part, Problem};
 use super::literal::{Literal, Variable};
+use super::refutation::Premise;
 use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::ModelSupply;
+use crate::failure::Member;
 use crate::trace::{Event, TreeChoice};
 
 /// Of larger sets of uses that exclude each other, only those in each other's way are ordered.
@@ -93,7 +95,10 @@ impl Problem<'_> {
                 };
                 Task { id: used.id, interval, change: used.change, amount: used.amount, is_active }
             });
-            let tasks: Vec<Task> = tasks.filter(|task| !solver.trail.fails(task.interval.presence)).collect();
+            let exists = |task: &Task| {
+                solver.takes_nothing_for_granted() || !solver.trail.fails(task.interval.presence)
+            };
+            let tasks: Vec<Task> = tasks.filter(exists).collect();
             self.shares.all.push(Shared {
                 supply: resource.supply,
                 tasks,
@@ -180,12 +185,13 @@ impl Problem<'_> {
             return;
         };
         let shared = tasks.iter().filter(|task| task.is_active && task.interval.duration > 0);
-        solver.cumulatives.add(capacity, shared.map(|task| (task.interval, task.amount)).collect());
+        let premise = Premise::Resource(index);
+        solver.cumulatives.add(capacity, shared.map(|task| (task.interval, task.amount)).collect(), premise);
         // More than half each.
         let large: Vec<Task> =
             tasks.into_iter().filter(|task| task.is_active && task.amount > capacity - task.amount).collect();
         if large.len() > 2 {
-            solver.disjunctives.add_tasks(large.iter().map(|task| task.interval).collect());
+            solver.disjunctives.add_tasks(large.iter().map(|task| task.interval).collect(), premise);
         }
         if large.len() * large.len() / 2 > MAX_PAIRS {
             self.shares.all[index].is_crowded = true;
@@ -214,6 +220,7 @@ impl Problem<'_> {
                 }
             }
         }
+        from_uses(solver, tasks);
         add_resolvers(solver, options, tasks);
     }
 
@@ -225,6 +232,7 @@ impl Problem<'_> {
                 options.push(self.use_order(solver, first, then, (first.moment(), then.moment())));
             }
         }
+        from_uses(solver, early);
         add_resolvers(solver, options, early);
     }
 
@@ -245,6 +253,7 @@ impl Problem<'_> {
             .map(|(first, then)| self.use_order(solver, first, then, (first.moment(), then.moment())))
             .collect();
         let present: Vec<Task> = counted.iter().chain([used]).copied().collect();
+        from_uses(solver, &present);
         add_resolvers(solver, options, &present);
     }
 
@@ -268,6 +277,8 @@ impl Problem<'_> {
         }
         let order = solver.boolean();
         solver.resize();
+        // What the literal means; that it must hold is said elsewhere.
+        solver.tell_structure();
         solver.imply(order, first.interval.presence);
         solver.imply(order, then.interval.presence);
         let differences = solver.differences.len();
@@ -276,6 +287,11 @@ impl Problem<'_> {
         self.shares.orders.insert((first.id, then.id), order);
         order
     }
+}
+
+/// What is told next comes from these uses.
+fn from_uses(solver: &mut Solver, tasks: &[Task]) {
+    solver.tell_from(tasks.iter().map(|task| Member::Use(task.id)));
 }
 
 /// One of these orders holds where all the tasks are present.

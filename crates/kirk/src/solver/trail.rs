@@ -3,6 +3,7 @@
 use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Side, Variable};
+use super::refutation::Premise;
 use crate::ids::{ClauseId, CommonBoundId, DifferenceId, EventId, NoteId};
 
 /// Why a bound holds. What else it rests on is found out only if somebody asks.
@@ -51,12 +52,15 @@ pub(crate) struct Trail {
     /// The number of events, and of noted reasons, where each level begins.
     levels: Vec<(u32, u32)>,
     noted: TiVec<NoteId, Note>,
+    /// What the theory that propagates at the moment goes by.
+    pub(super) premise: Premise,
 }
 
 #[derive(Clone, Debug)]
 struct Note {
     reason: Box<[Literal]>,
     is_of_goal: bool,
+    premise: Premise,
 }
 
 impl Trail {
@@ -122,18 +126,23 @@ impl Trail {
 
     /// Keeps a reason for [`Cause::Noted`] until the present level is left.
     pub(crate) fn note(&mut self, reason: Vec<Literal>) -> Cause {
-        let note = Note { reason: reason.into_boxed_slice(), is_of_goal: false };
+        let note = Note { reason: reason.into_boxed_slice(), is_of_goal: false, premise: self.premise };
         Cause::Noted(self.noted.push_and_get_key(note))
     }
 
     /// The same for what follows from a limit on a goal.
     pub(crate) fn note_of_goal(&mut self, reason: Vec<Literal>) -> Cause {
-        let note = Note { reason: reason.into_boxed_slice(), is_of_goal: true };
+        let note = Note { reason: reason.into_boxed_slice(), is_of_goal: true, premise: self.premise };
         Cause::Noted(self.noted.push_and_get_key(note))
     }
 
     pub(crate) fn noted(&self, note: NoteId) -> &[Literal] {
         &self.noted[note].reason
+    }
+
+    /// What a reason goes by, beside its literals.
+    pub(super) fn premise_of(&self, note: NoteId) -> Premise {
+        self.noted[note].premise
     }
 
     /// Whether a reason is a limit on a goal.

@@ -132,7 +132,12 @@ impl Structure {
             let common = blocks.fold(first, |common, block| self.common_ancestor(common?, block?));
             let Some(common) = common else { continue };
             let block = &self.blocks[common];
-            if block.has_choices || block.enclosed.is_some() || block.is_inside_enclosed {
+            // How long the whole mission may take is up to the search, which orders it only once.
+            if self.is_whole(common)
+                || block.has_choices
+                || block.enclosed.is_some()
+                || block.is_inside_enclosed
+            {
                 continue;
             }
             let Some(inside) = self.blocks_inside(common) else { continue };
@@ -148,6 +153,17 @@ impl Structure {
                 self.blocks[id].is_inside_enclosed = true;
             }
         }
+    }
+
+    /// Whether a block is all there is, but for bounds around it.
+    fn is_whole(&self, mut id: BlockId) -> bool {
+        while let Some(parent) = self.blocks[id].parent {
+            if self.children(parent).len() > 1 {
+                return false;
+            }
+            id = parent;
+        }
+        true
     }
 
     /// The blocks inside another; `None` if there are many.
