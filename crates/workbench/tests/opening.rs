@@ -118,7 +118,7 @@ fn documents_that_are_no_mission_open_nothing_and_say_what_is_read() {
     }
 }
 
-/// Two events, a choice of nobody, and a reward.
+/// An activity between two events, whose duration is nature's.
 const PTPN: &str = r#"<?xml version="1.0" ?>
 <tpns xmlns="http://mers.csail.mit.edu/tpn"><tpn><id>survey</id><name>survey</name>
 <start-event>s</start-event><end-event>e</end-event>

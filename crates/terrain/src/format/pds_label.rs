@@ -49,8 +49,8 @@ impl Label {
                 continue;
             };
             let keyword = line[..equals].trim().to_ascii_uppercase();
-            let value;
-            (value, rest) = values.first(&rest[equals + 1..]);
+            let (value, after) = values.first(&rest[equals + 1..]);
+            rest = after;
             match keyword.as_str() {
                 "OBJECT" => objects.push(value.trim_matches('"').to_ascii_uppercase()),
                 // A group only puts together what belongs to the object around it.

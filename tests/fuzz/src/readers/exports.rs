@@ -128,7 +128,7 @@ fn well_formed(xml: &str) {
 
 /// A table after RFC 4180: as many cells in each line as there are columns.
 fn is_table(table: &str) {
-    let (mut cells, mut is_quoted, mut letters) = (1, false, table.chars().peekable());
+    let (mut cells, mut is_quoted, mut letters) = (1, false, table.chars());
     while let Some(letter) = letters.next() {
         match letter {
             '"' => is_quoted = !is_quoted,
