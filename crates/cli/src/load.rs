@@ -8,8 +8,8 @@ use exact::{Bound, Time};
 use mission::{Goal, Problem};
 use rmpl::diagnostics::network;
 use rmpl::program::Program;
+use tpn::Network;
 use tpn::interchange::Source;
-use tpn::{Network, plandev, ptpn};
 
 use crate::input::{read_mission, read_text};
 
@@ -91,21 +91,9 @@ impl Target {
     }
 }
 
-/// What a file holds that another tool wrote: one of the notations of networks, or a plan of `PlanDev`.
-pub fn read_source(text: &str) -> anyhow::Result<Source> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    if ptpn::is_ptpn(text) {
-        return Ok(Source::PlanSchema(Box::new(ptpn::read(text)?)));
-    }
-    match serde_json::from_str(text) {
-        Ok(file) if plandev::is_plan(&file) => Ok(Source::PlanSchema(Box::new(plandev::read(&file)?))),
-        _ => Ok(Source::read(text)?),
-    }
-}
-
 /// The network that a file holds, and what is to be said of the file.
 pub fn read_network(name: &str, source: &str) -> anyhow::Result<(Network, Vec<Problem>)> {
-    let read = read_source(source).with_context(|| format!("cannot read {name}"))?;
+    let read = Source::read(source).with_context(|| format!("cannot read {name}"))?;
     let not_honoured = read.not_honoured();
     let told = (!not_honoured.is_empty()).then(|| network::not_honoured(&not_honoured));
     let problems = Problem::all(told.as_slice(), source);
@@ -115,7 +103,7 @@ pub fn read_network(name: &str, source: &str) -> anyhow::Result<(Network, Vec<Pr
 /// Whether a file holds a network rather than a mission text.
 pub fn is_network(name: &str, source: &str) -> bool {
     let is_named_so = [".json", ".edn", ".tpn", ".ptpn", ".xml"].iter().any(|ending| name.ends_with(ending));
-    is_named_so || (name == "-" && (tpn::interchange::is_network_text(source) || ptpn::is_ptpn(source)))
+    is_named_so || (name == "-" && tpn::interchange::is_network_text(source))
 }
 
 fn parse_bounds(text: &str) -> anyhow::Result<(Time, Bound)> {

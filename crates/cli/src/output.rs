@@ -1,6 +1,7 @@
 //! How every command answers: exit status, JSON documents with diagnostics, and text for people (DESIGN 4.2).
 
-use std::io::Write as _;
+use std::borrow::Cow;
+use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use clap::ValueEnum;
@@ -107,21 +108,24 @@ pub fn print_text(text: &str) -> anyhow::Result<()> {
 pub fn legible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for word in text.split_inclusive([' ', '\n']) {
-        let word: String = (word.chars())
-            .map(|letter| match letter {
-                '\n' | '\t' => letter,
-                '\0'..='\u{1f}' => char::from_u32(0x2400 + u32::from(letter)).unwrap_or(letter),
-                _ if commands_terminal(letter) => char::REPLACEMENT_CHARACTER,
-                _ => letter,
-            })
-            .collect();
-        shown.push_str(&without_middle(&word, MAX_WORD_CHARS));
+        shown.push_str(&without_middle(&harmless(word), MAX_WORD_CHARS));
     }
     shown
 }
 
+/// Text in which what would command a terminal is a sign.
+fn harmless(text: &str) -> String {
+    let sign = |letter: char| match letter {
+        '\n' | '\t' => letter,
+        '\0'..='\u{1f}' => char::from_u32(0x2400 + u32::from(letter)).unwrap_or(letter),
+        _ if commands_terminal(letter) => char::REPLACEMENT_CHARACTER,
+        _ => letter,
+    };
+    text.chars().map(sign).collect()
+}
+
 /// A text of at most so many characters, without its middle where it has more.
-fn without_middle(text: &str, most: usize) -> std::borrow::Cow<'_, str> {
+fn without_middle(text: &str, most: usize) -> Cow<'_, str> {
     if text.len() <= most || text.chars().count() <= most {
         return text.into();
     }
@@ -140,7 +144,11 @@ pub fn column<'name>(names: impl Iterator<Item = &'name str>) -> Vec<String> {
 /// Prints what a program reads, or a file's own text, on standard output; a reader that has gone away ends the output
 /// quietly.
 pub fn print_verbatim(text: &str) -> anyhow::Result<()> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
+    let mut out = std::io::stdout().lock();
+    // A file gets every byte; a terminal would do what some of them say.
+    let shown =
+        if out.is_terminal() { harmless(&text.replace("\r\n", "\n")).into() } else { Cow::Borrowed(text) };
+    match out.write_all(shown.as_bytes()) {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         result => Ok(result?),
     }

@@ -167,3 +167,40 @@ fn a_network_becomes_a_mission_with_the_same_windows_or_says_why_not() {
     let output = enroute(&["tpn", text(&file), "--as", "rmpl", "--format", "json"]);
     assert_eq!((&told(&output)["rmpl"], output.status.code()), (&json!(null), Some(1)));
 }
+
+#[test]
+fn variables_for_bounds_stand_at_their_default_and_other_files_of_the_tool_are_refused_by_name() {
+    let variable = json!({ "type": "lvar", "name": "dig-bounds", "default": [4, 7] });
+    let file =
+        written("variable.tpn.json", &network(|file| file["c2"]["value"] = variable.clone()).to_string());
+    let plan = told(&enroute(&["plan", text(&file), "--format", "json"]));
+    assert_eq!(plan["plans"][0]["windows"]["Dig#1.end"], json!([6, 12]), "{plan}");
+    assert!(plan["diagnostics"].to_string().contains("bounds that are a variable"), "{plan}");
+    let open = json!({ "type": "lvar", "name": "dig-bounds" });
+    let file = written("open.tpn.json", &network(|file| file["c2"]["value"] = open.clone()).to_string());
+    let plan = told(&enroute(&["plan", text(&file), "--format", "json"]));
+    assert_eq!(plan["plans"][0]["windows"]["Dig#1.end"], json!([2, 100]), "{plan}");
+    for (name, content, said) in [
+        (
+            "day.htn.json",
+            r#"{"a": {"type": "htn-network"}, "b": {"type": "edge"}}"#,
+            "hierarchical task network",
+        ),
+        ("day.merged.edn", "[{:plans/plans [:a] :plan/by-plid {}}]", "plans merged by plan-schema"),
+    ] {
+        let refused = enroute(&["plan", text(&written(name, content))]);
+        assert_eq!(refused.status.code(), Some(2), "{name}");
+        assert!(String::from_utf8_lossy(&refused.stderr).contains(said), "{name}: {refused:?}");
+    }
+}
+
+#[test]
+fn a_network_that_was_written_here_says_of_what_is_nature_s_only_that() {
+    let mission = "primitive A()[1,2]; scenario S[0,20] = { A(); B() contingent [2,3]; delay[1,1] }";
+    let file = written("nature.rmpl", mission);
+    let out = enroute(&["tpn", text(&file), "--as", "plan-schema"]);
+    let again = written("nature.tpn.json", &String::from_utf8(out.stdout).expect("text"));
+    let check = told(&enroute(&["check", text(&again), "--format", "json"]));
+    let said = check["diagnostics"].to_string();
+    assert!(said.contains("a duration that is not controllable\""), "{said}");
+}

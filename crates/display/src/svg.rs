@@ -279,8 +279,8 @@ fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // Control characters have no place in XML, not even escaped.
-            _ if character.is_control() => out.push(' '),
+            // Control characters and two others have no place in XML, not even escaped.
+            _ if character.is_control() || matches!(character, '\u{fffe}' | '\u{ffff}') => out.push(' '),
             _ => out.push(character),
         }
     }

@@ -119,6 +119,11 @@ impl Bound {
     pub fn readable(self) -> String {
         self.finite().map_or_else(|| self.to_string(), Time::readable)
     }
+
+    /// For programs that know no fractions, as [`Time::nearest_decimal`]; infinity is `inf`.
+    pub fn nearest_decimal(self) -> String {
+        self.finite().map_or_else(|| self.to_string(), Time::nearest_decimal)
+    }
 }
 
 impl From<Time> for Bound {

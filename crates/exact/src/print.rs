@@ -25,11 +25,22 @@ impl Rational {
         if let Some(exact) = exact.filter(is_short) {
             return exact;
         }
+        format!("≈ {}", self.nearest(3))
+    }
+
+    /// For programs that know no fractions: exact where nine decimals are enough, otherwise the nearest number that has so many.
+    pub fn nearest_decimal(self) -> String {
+        self.nearest(9)
+    }
+
+    /// The nearest number with so many decimals, without zeros at its end.
+    fn nearest(self, digits: u8) -> String {
         let (numerator, denominator) = self.wide();
-        // To the nearest: half a thousandth is added before rounding down.
-        let thousandths = (2000 * numerator + denominator).div_euclid(2 * denominator);
-        let digits = fixed_point(thousandths, 3);
-        format!("≈ {}", digits.trim_end_matches('0').trim_end_matches('.'))
+        let scale = 2 * 10_i128.pow(u32::from(digits));
+        // To the nearest: half of the last place is added before rounding down.
+        let scaled = (scale * numerator + denominator).div_euclid(2 * denominator);
+        let text = fixed_point(scaled, usize::from(digits));
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
     }
 }
 
@@ -81,6 +92,18 @@ mod tests {
         assert_eq!(readable(13_895_905, 100_000).as_deref(), Some("≈ 138.959"));
         assert_eq!(readable(29_999_999, 10_000_000).as_deref(), Some("≈ 3"));
         assert_eq!(readable(7, 1).as_deref(), Some("7"));
+    }
+
+    #[test]
+    fn programs_without_fractions_read_the_nearest_decimal() {
+        let nearest = |numerator, denominator| Some(Time::new(numerator, denominator)?.nearest_decimal());
+        assert_eq!(nearest(1, 3).as_deref(), Some("0.333333333"));
+        assert_eq!(nearest(-2, 3).as_deref(), Some("-0.666666667"));
+        assert_eq!(nearest(1000, 1).as_deref(), Some("1000"));
+        assert_eq!(nearest(1, 1_000_000_000).as_deref(), Some("0.000000001"));
+        assert_eq!(nearest(1, 1 << 40).as_deref(), Some("0"));
+        assert_eq!(nearest(-1, i64::MAX).as_deref(), Some("0"));
+        assert_eq!(nearest(i64::MIN, 1).as_deref(), Some("-9223372036854775808"));
     }
 
     #[test]

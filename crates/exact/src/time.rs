@@ -135,6 +135,11 @@ impl Time {
         self.0.readable()
     }
 
+    /// For programs that know no fractions: exact where nine decimals are enough, otherwise the nearest such number.
+    pub fn nearest_decimal(self) -> String {
+        self.0.nearest_decimal()
+    }
+
     /// As an exact decimal, if it is one.
     pub fn decimal(self) -> Option<String> {
         self.0.decimal()

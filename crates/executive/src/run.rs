@@ -346,14 +346,13 @@ impl Run<'_> {
     fn deciders(&self, node: NodeId) -> Vec<Decider> {
         let arcs = self.stage.natures.get(&node).filter(|_| self.is_natures(node));
         let natures = arcs.into_iter().flatten().map(|&arc| Decider::Nature(arc));
-        let events = self.stage.network.nodes[node.index()].events.iter();
-        let own = events.filter(|event| {
+        let own = self.stage.events(node).filter(|event| {
             // When nature ends it was said above; what is asserted may still be withdrawn.
-            let occurrence = self.stage.occurrence(**event);
+            let occurrence = self.stage.occurrence(*event);
             let is_end = event.end == EventEnd::End && occurrence.kind != OccurrenceKind::Assertion;
             !(is_end && arcs.zip(occurrence.arc).is_some_and(|(arcs, arc)| arcs.contains(&arc)))
         });
-        natures.chain(own.map(|&event| Decider::Event(event))).collect()
+        natures.chain(own.map(Decider::Event)).collect()
     }
 
     fn decision(&self, decider: &Decider, planned: Time) -> Result<Option<ByWorld>, Overflow> {
@@ -497,8 +496,7 @@ impl Run<'_> {
 
     fn too_early(&self, node: NodeId, time: Time, earliest: Time) -> String {
         let (name, time, earliest) = (self.stage.name(node), shown(time), shown(earliest));
-        let events = &self.stage.network.nodes[node.index()].events;
-        let withdrawn = events.iter().find_map(|&event| {
+        let withdrawn = self.stage.events(node).find_map(|event| {
             let occurrence = self.stage.occurrence(event);
             let is_end = occurrence.kind == OccurrenceKind::Assertion && event.end == EventEnd::End;
             is_end.then_some(&occurrence.name)
@@ -613,7 +611,8 @@ impl Run<'_> {
             }
         }
         self.stage.times[node.index()] = Some(self.now);
-        for event in self.stage.network.nodes[node.index()].events.clone() {
+        let events: Vec<EventRef> = self.stage.events(node).collect();
+        for event in events {
             let name = self.stage.network.event_name(event).into();
             self.write(Happening::Executed { name });
             self.begin(event)?;

@@ -104,8 +104,17 @@ impl Stage {
         &self.network.occurrences[event.occurrence.index()]
     }
 
+    /// What begins or ends with a node, of all that the plan selects.
+    pub(crate) fn events(&self, node: NodeId) -> impl Iterator<Item = EventRef> {
+        let events = self.network.nodes[node.index()].events.iter().copied();
+        events.filter(|&event| self.plan.has_event(&self.network, event))
+    }
+
     pub(crate) fn name(&self, node: NodeId) -> String {
-        tpn::plan_json::node_name(&self.network, node)
+        match self.events(node).next() {
+            Some(event) => self.network.event_name(event),
+            None => tpn::plan_json::node_name(&self.network, node),
+        }
     }
 
     /// Enters what happened before this plan was made. Fails for a plan that does not keep it, with the node.

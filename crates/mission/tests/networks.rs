@@ -10,6 +10,7 @@ struct Answers {
     snapshot: Option<Arc<Snapshot>>,
     review: Option<Arc<Review>>,
     execution: Option<Arc<Execution>>,
+    tally: Option<mission::Tally>,
 }
 
 impl CoreHost for Answers {
@@ -26,6 +27,7 @@ impl CoreHost for Answers {
             Response::Snapshot(snapshot) => self.snapshot = Some(snapshot),
             Response::Review { review, .. } => self.review = Some(review),
             Response::Execution(execution) => self.execution = Some(execution),
+            Response::Sampled { tally, .. } => self.tally = Some(tally),
             _ => {}
         }
     }
@@ -121,4 +123,26 @@ fn what_cannot_be_read_says_where_and_is_no_list_of_mistakes_in_rmpl() {
     assert_eq!(codes(&snapshot.problems), ["E-NETWORK"]);
     let edn = include_str!("../../../tests/fuzz/corpus/networks/network.tpn.edn");
     assert!(shown(&mut core, 3, edn).plan().is_some());
+}
+
+#[test]
+fn what_alternatives_that_were_not_taken_would_have_brought_holds_up_no_run() {
+    // Both activities end at one node; nature may draw a duration for either.
+    let both = CHOICE.replace(r#""delay-activity", "end-node""#, r#""activity", "name": "Rest", "end-node""#);
+    let settings =
+        mission::RobustnessSettings { runs: 20, seed: 3, uncertainty: mission::Uncertainty::default() };
+    let mut core = Core::default();
+    let snapshot = shown(&mut core, 1, &both);
+    let (network, plan) = (snapshot.network.as_ref().expect("a network"), snapshot.plan().expect("a plan"));
+    let windows = tpn::plan_json::plan_to_json(network, plan)["windows"].to_string();
+    assert!(windows.contains("Drive") && !windows.contains("Rest"), "{windows}");
+    let mut answers = Answers::default();
+    core.handle(Request::Sample { update: update(1, &both), settings, from: 0 }, &mut answers);
+    let tally = answers.tally.take().expect("runs");
+    assert_eq!((tally.runs, tally.succeeded), (20, 20), "{tally:?}");
+    let script = r#"{"disturbances": [{"kind": "duration", "activity": "Rest#1", "duration": 8}]}"#;
+    let script = serde_json::from_str(script).expect("a script");
+    core.handle(Request::Execute { update: update(1, &both), script }, &mut answers);
+    let run = format!("{:?}", answers.execution.expect("a run"));
+    assert!(run.contains("Finished") && run.contains("Drive") && !run.contains("Rest#1.end"), "{run}");
 }

@@ -19,13 +19,16 @@ pub struct Calendar {
 
 impl Calendar {
     /// Reads an ISO 8601 date, `2004-01-25`, or date with time, `2004-01-25T05:05:00Z`; without an offset it is UTC.
-    /// `None` if it is neither.
+    /// `None` if it is neither, or before the year 0, which dates of four digits cannot say.
     pub fn new(epoch: &str, unit: TimeUnit) -> Option<Self> {
         let in_utc = || {
             let local: civil::DateTime = epoch.parse().ok()?;
             Some(local.to_zoned(TimeZone::UTC).ok()?.timestamp())
         };
         let epoch = epoch.parse::<Timestamp>().ok().or_else(in_utc)?;
+        if epoch.to_zoned(TimeZone::UTC).year() < 0 {
+            return None;
+        }
         Some(Self { epoch, unit })
     }
 

@@ -12,7 +12,7 @@ pub(crate) fn escaped(text: &str) -> String {
             '\'' => out.push_str("&#39;"),
             '\n' | '\t' => out.push(character),
             // Control characters have no place in a document, not even escaped.
-            _ if character.is_control() => out.push(' '),
+            _ if character.is_control() || matches!(character, '\u{fffe}' | '\u{ffff}') => out.push(' '),
             _ => out.push(character),
         }
     }

@@ -74,8 +74,9 @@ pub const CSV_COLUMNS: [&str; 16] = [
     "content_hash",
 ];
 
-/// The schedule as comma-separated values after RFC 4180, with a line of headings; times are exact, in mission units,
-/// as decimals or fractions, and `inf` where nothing bounds them. `None` without a plan.
+/// The schedule as comma-separated values after RFC 4180, with a line of headings; times are decimals in mission units, to the
+/// nearest of nine places, and `inf` where nothing bounds them: spreadsheets take a fraction for a date. A text that they would
+/// take for a formula is behind an apostrophe. `None` without a plan.
 pub fn csv(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
     let (network, rows) = rows(snapshot, about)?;
     let mut out = CSV_COLUMNS.join(",");
@@ -84,16 +85,16 @@ pub fn csv(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
         let occurrence = &network.occurrences[row.occurrence.index()];
         let arguments: Vec<&str> = occurrence.arguments.iter().map(smol_str::SmolStr::as_str).collect();
         let cells = [
-            occurrence.name.to_string(),
+            csv_text(&occurrence.name),
             kind_name(occurrence.kind).to_owned(),
-            occurrence.activity.to_string(),
-            arguments.join(" "),
-            row.start.earliest.to_string(),
-            row.start.latest.to_string(),
-            row.end.earliest.to_string(),
-            row.end.latest.to_string(),
-            slack(row.start).to_string(),
-            slack(row.end).to_string(),
+            csv_text(&occurrence.activity),
+            csv_text(&arguments.join(" ")),
+            row.start.earliest.nearest_decimal(),
+            row.start.latest.nearest_decimal(),
+            row.end.earliest.nearest_decimal(),
+            row.end.latest.nearest_decimal(),
+            slack(row.start).nearest_decimal(),
+            slack(row.end).nearest_decimal(),
             unit(snapshot).to_owned(),
             about.utc(row.start.earliest),
             about.utc(row.end.earliest),
@@ -264,6 +265,12 @@ const fn open_mct_group(occurrence: &Occurrence) -> (&'static str, &'static str,
     }
 }
 
+/// A text that no spreadsheet takes for a formula, whatever its file says.
+fn csv_text(text: &str) -> String {
+    let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']);
+    if is_formula { format!("'{text}") } else { text.to_owned() }
+}
+
 fn csv_cell(text: &str) -> String {
     if text.contains([',', '"', '\r', '\n']) {
         format!("\"{}\"", text.replace('"', "\"\""))
@@ -272,9 +279,18 @@ fn csv_cell(text: &str) -> String {
     }
 }
 
-/// A text value: backslashes, commas, semicolons and line ends are escaped.
+/// A text value: backslashes, commas, semicolons and line ends are escaped. Other control characters have no place in one.
 fn calendar_text(text: &str) -> String {
-    text.replace('\\', "\\\\").replace(';', "\\;").replace(',', "\\,").replace('\n', "\\n")
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '\\' | ';' | ',' => out.extend(['\\', letter]),
+            '\n' => out.push_str("\\n"),
+            _ if letter.is_control() => out.push(' '),
+            _ => out.push(letter),
+        }
+    }
+    out
 }
 
 /// Lines are at most 75 bytes; what is longer goes on after a line end and a space, between characters.

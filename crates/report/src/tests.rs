@@ -219,6 +219,45 @@ fn the_table_is_read_back_with_its_times() {
     assert!(text.ends_with("\r\n") && !text.replace("\r\n", "").contains('\n'));
 }
 
+/// A network of another tool: times of thirds, and names that a spreadsheet would run, a calendar cannot have, and XML neither.
+const HOSTILE_NETWORK: &str = r#"{"network-id": "net",
+    "net": {"tpn-type": "network", "begin-node": "s", "end-node": "e"},
+    "s": {"tpn-type": "state", "activities": ["a"]}, "m": {"tpn-type": "state", "activities": ["b"]},
+    "e": {"tpn-type": "state", "activities": []},
+    "a": {"tpn-type": "activity", "name": "=HYPERLINK(\"x\")", "end-node": "m", "constraints": ["c"]},
+    "b": {"tpn-type": "activity", "name": "bell\u0007 \r\nEND:VCALENDAR \uffff <script>", "end-node": "e"},
+    "c": {"tpn-type": "temporal-constraint", "value": ["1/3", "2/3"], "end-node": "m"}}"#;
+
+#[test]
+fn spreadsheets_read_decimals_and_run_no_name() {
+    let text = export::csv(&planned(HOSTILE_NETWORK).snapshot, &about(None)).expect("a plan");
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let rows: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>().expect("rows");
+    let row = rows.iter().find(|row| row[0].contains("HYPERLINK")).expect("the activity");
+    assert!(row[0].starts_with("'=HYPERLINK") && row[2].starts_with("'="), "{row:?}");
+    let times: Vec<&str> = row.iter().skip(4).take(6).collect();
+    assert_eq!(times, ["0", "0", "0.333333333", "0.666666667", "0", "0.333333333"], "{text}");
+}
+
+#[test]
+fn names_break_neither_calendars_nor_drawings_nor_reports() {
+    let planned = planned(HOSTILE_NETWORK);
+    let text = export::icalendar(&planned.snapshot, &about(Some(&calendar()))).expect("a plan");
+    assert!(text.split("\r\n").all(|line| !line.contains(char::is_control)), "{text:?}");
+    assert_eq!(text.matches("\r\nEND:VCALENDAR").count(), 1, "{text}");
+    assert_eq!(calendar_events(&text).len(), 2);
+    let page = html(&Document {
+        name: "net.tpn.json",
+        snapshot: &planned.snapshot,
+        review: &planned.review,
+        record: None,
+        robustness: None,
+        seed: 0,
+        ground: None,
+    });
+    assert!(!page.contains("<script") && !page.contains('\u{ffff}') && !page.contains('\u{7}'));
+}
+
 #[test]
 fn the_open_mct_plan_has_its_groups_and_milliseconds() {
     let plan = export::open_mct(&planned(SCENARIO).snapshot, &about(Some(&calendar()))).expect("a plan");
@@ -294,6 +333,7 @@ fn a_start_of_the_mission_is_a_date_with_or_without_a_time() {
     assert_eq!(at("2004-01-25T05:05").as_deref(), Some("2004-01-25T05:05:00Z"));
     assert_eq!(at("2004-01-25T05:05:00+02:00").as_deref(), Some("2004-01-25T03:05:00Z"));
     assert_eq!([at("tomorrow"), at("2004-13-01"), at("")], [None, None, None]);
+    assert_eq!(at("-000044-03-15"), None, "no calendar of four digits has it");
 }
 
 /// A page with this record.

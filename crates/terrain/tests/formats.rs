@@ -302,6 +302,41 @@ fn scaling_factor_offset_and_unit_of_a_label_make_metres() {
 }
 
 #[test]
+fn what_other_objects_and_texts_of_a_label_say_is_not_of_the_image() {
+    let table = "OBJECT = TABLE\r\nOBJECT = COLUMN\r\nOFFSET = 1000\r\nSCALING_FACTOR = 7\r\nMISSING_CONSTANT = 3\r\n\
+        END_OBJECT = COLUMN\r\nEND_OBJECT\r\n";
+    let text = "DESCRIPTION = \"Heights. In older editions\r\n  OFFSET = 1000\r\n  MISSING_CONSTANT = 3\r\nheld.\"\r\n";
+    let comment = "/* OFFSET = 1000 */\r\nNOTE = 5 /* and\r\n";
+    let list = "SOURCE_PRODUCT_ID = {\"A\",\r\n \"OFFSET = 1000\"}\r\nSCALING_FACTOR =\r\n  1.0\r\n";
+    for lines in [table, text, comment, list, "OBJECT = IMAGE\r\nOFFSET = 0\r\nEND_OBJECT\r\nOFFSET = 1000"] {
+        assert_eq!(read(&pds_with(lines)).unwrap().samples, [3.0, 40.0], "{lines}");
+    }
+    // A text that is never closed hides nothing.
+    assert_eq!(read(&pds_with("NOTE = \"not closed\r\nOFFSET = 1")).unwrap().samples, [4.0, 41.0]);
+    // Groups, and files around the image, speak of it.
+    let group = "GROUP = BAND\r\nOFFSET = 1\r\nEND_GROUP = BAND\r\n";
+    assert_eq!(read(&pds_with(group)).unwrap().samples, [4.0, 41.0]);
+    // A label of its own with such objects has its image, too.
+    let whole = pds_with(table);
+    let label = String::from_utf8_lossy(&whole[..512]).replace("^IMAGE = 2", "^IMAGE =\r\n  \"A.IMG\"");
+    assert_eq!(image_of_label(label.as_bytes()).as_deref(), Some("A.IMG"));
+    let joined = attach_label(label.as_bytes(), &whole[512..]).unwrap();
+    assert_eq!(read(&joined).unwrap().samples, [3.0, 40.0]);
+}
+
+#[test]
+fn special_values_are_no_heights_and_records_have_a_length() {
+    for keyword in ["CORE_NULL", "INVALID_CONSTANT", "CORE_LOW_REPR_SATURATION", "HIGH_INSTR_SATURATION"] {
+        let lines = format!("MISSING_CONSTANT = -32768\r\n{keyword} = 16#0028#");
+        let samples = read(&pds_with(&lines)).unwrap().samples;
+        assert!(samples[0] == 3.0 && samples[1].is_nan(), "{keyword}: {samples:?}");
+    }
+    let unknown = String::from_utf8(pds_with("").clone()).unwrap().replace("RECORD_BYTES", "RECORD_COUNT");
+    let message = read(unknown.as_bytes()).unwrap_err().to_string();
+    assert!(message.contains("RECORD_BYTES does not say"), "{message}");
+}
+
+#[test]
 fn the_cells_of_a_label_have_the_size_that_its_units_say() {
     for (lines, expected) in [
         ("MAP_SCALE = 0.25", 250.0),

@@ -5,6 +5,8 @@ use serde_json::Value;
 use crate::network::Network;
 use crate::network_json::{NetworkError, network_from_json};
 use crate::plan_schema::{Document, PlanSchemaError};
+use crate::plandev::{self, PlanDevError};
+use crate::ptpn::{self, PtpnError, is_ptpn};
 
 /// Why a file is no network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -12,13 +14,22 @@ pub enum ReadError {
     /// It is an `enroute-tpn/1` document, but not a well-formed one.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// It is XML, but no pTPN that can be read.
+    #[error(transparent)]
+    Ptpn(#[from] PtpnError),
+    /// It is a plan of `PlanDev` that cannot be read.
+    #[error(transparent)]
+    PlanDev(#[from] PlanDevError),
     /// It is no plan-schema file either.
     #[error(transparent)]
     PlanSchema(#[from] PlanSchemaError),
 }
 
-/// Whether a text is to be read as a network: it begins with a map of JSON or EDN, as no mission in RMPL does.
+/// Whether a text is to be read as a network: it begins with a map of JSON or EDN or as a pTPN, as no mission in RMPL does.
 pub fn is_network_text(text: &str) -> bool {
+    if is_ptpn(text) {
+        return true;
+    }
     let mut rest = text.strip_prefix('\u{feff}').unwrap_or(text).trim_start();
     // Comments of EDN.
     while let Some(comment) = rest.strip_prefix(';') {
@@ -31,7 +42,15 @@ pub fn is_network_text(text: &str) -> bool {
 /// Whether the text of a file is that of a network, and not of another document in JSON.
 pub fn is_network_file(text: &str) -> bool {
     let is_ours = || text.contains("\"nodes\"") && text.contains("\"arcs\"") && text.contains("enroute-tpn/");
-    is_network_text(text) && (["network-id", "tpn-type"].iter().any(|key| text.contains(key)) || is_ours())
+    let is_theirs = || ["network-id", "tpn-type"].iter().any(|key| text.contains(key));
+    is_network_text(text) && (is_ptpn(text) || is_theirs() || is_ours() || is_plandev_text(text))
+}
+
+/// Whether the text of a file is a plan of `PlanDev`.
+pub fn is_plandev_text(text: &str) -> bool {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    text.contains("\"activities\"")
+        && serde_json::from_str(text).is_ok_and(|file: Value| plandev::is_plan(&file))
 }
 
 /// A network as it was written.
@@ -39,19 +58,24 @@ pub fn is_network_file(text: &str) -> bool {
 pub enum Source {
     /// Our own JSON (DESIGN 4.2).
     Enroute(Box<Network>),
-    /// Another tool's (DESIGN 4.4).
+    /// Another tool's (DESIGN 4.4), as plan-schema says it.
     PlanSchema(Box<Document>),
 }
 
 impl Source {
-    /// Reads `text`: `enroute-tpn/1` JSON, or plan-schema in JSON or EDN.
+    /// Reads `text`: `enroute-tpn/1` JSON, plan-schema in JSON or EDN, a pTPN, or a plan of `PlanDev`.
     pub fn read(text: &str) -> Result<Self, ReadError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        if let Ok(value) = serde_json::from_str::<Value>(text)
-            && value.get("nodes").is_some()
-            && value.get("arcs").is_some()
-        {
-            return Ok(Self::Enroute(Box::new(network_from_json(&value)?)));
+        if is_ptpn(text) {
+            return Ok(Self::PlanSchema(Box::new(ptpn::read(text)?)));
+        }
+        if let Ok(value) = serde_json::from_str::<Value>(text) {
+            if value.get("nodes").is_some() && value.get("arcs").is_some() {
+                return Ok(Self::Enroute(Box::new(network_from_json(&value)?)));
+            }
+            if plandev::is_plan(&value) {
+                return Ok(Self::PlanSchema(Box::new(plandev::read(&value)?)));
+            }
         }
         Ok(Self::PlanSchema(Box::new(Document::parse(text)?)))
     }
@@ -86,7 +110,10 @@ mod tests {
         for text in ["", "{", "{ A(); B() }", "scenario S { }", "[1]", "// {\"a\": 1}", ";"] {
             assert!(!is_network_text(text), "{text}");
         }
+        assert!(is_network_text("<?xml version=\"1.0\"?>\n<tpns/>") && !is_network_text("<svg/>"));
         assert!(is_network_file("{:network-id :a}"));
+        assert!(is_network_file("\u{feff}{ \"activities\": [], \"model_id\": 1 }"));
+        assert!(!is_network_file("{ \"activities\": [], \"format\": \"enroute-schedule/1\" }"));
         assert!(!is_network_file("{\"format\": \"enroute-review/1\"}"));
     }
 }

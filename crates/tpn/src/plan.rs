@@ -5,7 +5,7 @@
 use exact::{Bound, Rational, Time};
 use serde::{Deserialize, Serialize};
 
-use crate::network::{ArcId, DecisionId, Extent, LabelId, Network, NodeId, Supply, UseId};
+use crate::network::{ArcId, DecisionId, EventRef, Extent, LabelId, Network, NodeId, Supply, UseId};
 
 /// A plan of a [`crate::Network`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,6 +61,14 @@ impl Plan {
             self.orderings_added.iter().map(|ordering| self.ordering_precedence(network, ordering, &natures));
         let uses = self.uses_ordered.iter().map(|ordering| ordering.precedence(network));
         links.chain(orderings).chain(uses).collect()
+    }
+
+    /// Whether an event is of something that the plan selects. Alternatives of foreign networks may end at one node, which has
+    /// the ends of all of them.
+    pub fn has_event(&self, network: &Network, event: EventRef) -> bool {
+        let is_selected = |node: NodeId| self.selected_nodes.get(node.index()) == Some(&true);
+        let occurrence = network.occurrences.get(event.occurrence.index());
+        occurrence.is_some_and(|occurrence| is_selected(occurrence.start) && is_selected(occurrence.end))
     }
 
     /// Whether nature chooses some duration of the plan, and the mission asks to withstand that.

@@ -41,6 +41,7 @@ pub fn plan_to_json(network: &Network, plan: &Plan) -> Value {
     let windows: Map<String, Value> = (network.nodes.iter().zip(&plan.windows))
         .filter_map(|(node, window)| Some((node, (*window)?)))
         .flat_map(|(node, window)| node.events.iter().map(move |&event| (event, window)))
+        .filter(|&(event, _)| plan.has_event(network, event))
         .map(|(event, window)| (network.event_name(event), json!([window.earliest, window.latest])))
         .collect();
     let mut document = json!({

@@ -4,12 +4,15 @@
 //! How long an activity takes is decided by the mission model, which the file does not have: it may take any time,
 //! unless [`DURATION`] says how long. Tags, presets and the arguments of the simulation are not planned with.
 
+mod interval;
+
 use std::collections::BTreeMap;
 
-use exact::{Rational, Time};
+use exact::Time;
 use serde_json::{Map, Value, json};
 
 use crate::plan_schema::{Document, PlanSchemaError};
+use interval::{minutes_of, moment_of};
 
 /// What an activity's `metadata` may say, and plans that are written for `PlanDev` do: how long it takes, as an interval.
 pub const DURATION: &str = "enroute_duration";
@@ -35,6 +38,11 @@ pub enum PlanDevError {
         /// What stands there.
         text: String,
     },
+    /// A moment that is none.
+    #[error(
+        "the plan: `{0}` is not a moment such as `2030-01-01T00:00:00+00:00` or `2030-001T00:00:00`, or it lies too far"
+    )]
+    Moment(String),
     /// A directive is anchored to one that is not there.
     #[error("{place} is anchored to {anchor}, which the plan does not have")]
     Anchor {
@@ -63,7 +71,11 @@ pub fn is_plan(file: &Value) -> bool {
 /// The network of a plan, with times in minutes, the unit of networks that do not name one.
 pub fn read(file: &Value) -> Result<Document, PlanDevError> {
     let plan = "the plan";
-    let duration = interval(plan, file.get("duration"), "`duration`")?;
+    let duration = match (file.get("duration"), file.get("start_time"), file.get("end_time")) {
+        // As Aerie's command line writes plans.
+        (None | Some(Value::Null), Some(start), Some(end)) => between(start, end)?,
+        (duration, ..) => interval(plan, duration, "`duration`")?,
+    };
     let activities = file.get("activities").and_then(Value::as_array);
     let activities = activities.ok_or_else(|| missing(plan, "list of `activities`"))?;
     let mut directives: BTreeMap<i64, &Value> = BTreeMap::new();
@@ -189,73 +201,18 @@ fn missing(place: &str, member: &'static str) -> PlanDevError {
     PlanDevError::Missing { place: place.to_owned(), member }
 }
 
-/// An interval as `PostgreSQL` writes it, in minutes.
 fn interval(place: &str, value: Option<&Value>, member: &'static str) -> Result<Time, PlanDevError> {
     let text = value.and_then(Value::as_str).ok_or_else(|| missing(place, member))?;
     let wrong = || PlanDevError::Interval { place: place.to_owned(), text: text.to_owned() };
-    parse_interval(text).ok_or_else(wrong)
+    minutes_of(text).ok_or_else(wrong)
 }
 
-/// `1 day -02:30:00.5`: the units of days are signed by themselves.
-fn parse_interval(text: &str) -> Option<Time> {
-    let minutes = |number: &str, each: Rational| Time::from_units(number.parse().ok()?).checked_mul(each);
-    let mut sum = Time::ZERO;
-    let mut words = text.split_whitespace().peekable();
-    words.peek()?;
-    while let Some(word) = words.next() {
-        let (is_negative, digits) = match word.strip_prefix('-') {
-            Some(digits) => (true, digits),
-            None => (false, word.strip_prefix('+').unwrap_or(word)),
-        };
-        if !digits.starts_with(|first: char| first.is_ascii_digit()) {
-            return None;
-        }
-        let length = match digits.split(':').collect::<Vec<_>>().as_slice() {
-            [hours, rest @ ..] if !rest.is_empty() && rest.len() <= 2 => {
-                let parts = [(*hours, Rational::new(60, 1)), (rest[0], Rational::new(1, 1))];
-                let seconds = rest.get(1).map(|&seconds| (seconds, Rational::new(1, 60)));
-                let parts = parts.into_iter().chain(seconds).map(|(number, each)| minutes(number, each?));
-                Time::checked_sum(parts.collect::<Option<Vec<Time>>>()?)?
-            }
-            _ => match words.next()? {
-                "day" | "days" => minutes(digits, Rational::new(24 * 60, 1)?)?,
-                _ => return None,
-            },
-        };
-        sum = if is_negative { sum.checked_sub(length)? } else { sum.checked_add(length)? };
-    }
-    Some(sum)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn intervals_of_postgres_are_read_exactly_or_not_at_all() {
-        for (text, numerator, denominator) in [
-            ("24:00:00", 24 * 60, 1),
-            ("1 day 02:30:00", 26 * 60 + 30, 1),
-            ("-1 days +00:00:30", -(24 * 60 * 2 - 1), 2),
-            ("-00:00:00.000001", -1, 60_000_000),
-            ("2 days", 2 * 24 * 60, 1),
-            ("0:05", 5, 1),
-        ] {
-            assert_eq!(parse_interval(text), Time::new(numerator, denominator), "{text}");
-        }
-        for text in [
-            "",
-            "1y",
-            "1 mon",
-            "1 year 2 days",
-            "5",
-            "::",
-            "1:2:3:4",
-            "--1:00",
-            "P1D",
-            "99999999999999999999:00:00",
-        ] {
-            assert_eq!(parse_interval(text), None, "{text}");
-        }
-    }
+/// The minutes from one moment to a later one.
+fn between(start: &Value, end: &Value) -> Result<Time, PlanDevError> {
+    let moment = |value: &Value| {
+        let wrong = || PlanDevError::Moment(value.as_str().map_or_else(|| value.to_string(), str::to_owned));
+        value.as_str().and_then(moment_of).ok_or_else(wrong)
+    };
+    let duration = moment(end)?.checked_sub(moment(start)?).filter(|duration| !duration.is_negative());
+    duration.ok_or_else(|| PlanDevError::Moment(end.to_string()))
 }

@@ -118,19 +118,113 @@ fn documents_that_are_no_mission_open_nothing_and_say_what_is_read() {
     }
 }
 
+/// An activity between two events, whose duration is nature's.
+const PTPN: &str = r#"<?xml version="1.0" ?>
+<tpns xmlns="http://mers.csail.mit.edu/tpn"><tpn><id>survey</id><name>survey</name>
+<start-event>s</start-event><end-event>e</end-event>
+<events><event><id>s</id><name>s</name></event><event><id>e</id><name>e</name></event></events>
+<episodes><episode><id>fly</id><name>fly</name><to-event>e</to-event><from-event>s</from-event>
+<duration><set-bounded-uncertain-duration><lower-bound>2</lower-bound><upper-bound>5</upper-bound></set-bounded-uncertain-duration></duration>
+<dispatch>(fly ridge)</dispatch></episode></episodes></tpn></tpns>"#;
+
 #[test]
-fn a_ptpn_is_refused_by_its_name() {
+fn a_ptpn_opens_as_a_mission_and_is_written_as_it_was() {
+    for name in ["survey.tpn", "survey.xml", "survey.ptpn"] {
+        let mut app = started();
+        open(&mut app, name, PTPN.as_bytes());
+        let state = app.json();
+        assert_eq!((&state["mission"], &state["status"]), (&json!("survey"), &json!("plan")), "{state}");
+        assert!(state["diagnostics"].to_string().contains("duration that is not controllable"), "{state}");
+        for command in ["file.save", "file.networkPtpn"] {
+            app.dispatch(command, &json!(null));
+            let saved = app.world.saved.borrow().last().cloned();
+            assert_eq!(saved, Some(("survey.tpn".to_owned(), PTPN.as_bytes().to_vec())), "{command}");
+        }
+        app.dispatch("file.toRmpl", &json!(null));
+        assert!(text_of(&app).contains("[2,5]"), "{}", text_of(&app));
+        assert_eq!(app.json()["status"], "plan");
+    }
+    // What is no pTPN, or no sound one, is said.
     let mut app = started();
     let before = text_of(&app);
-    for name in ["survey.tpn", "survey.xml"] {
-        open(
-            &mut app,
-            name,
-            b"<?xml version=\"1.0\" ?>\n<tpns xmlns=\"http://mers.csail.mit.edu/tpn\"><tpn/></tpns>",
+    open(&mut app, "drawing.xml", b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
+    assert!(app.json()["toasts"].to_string().contains("drawing.xml is not opened"));
+    assert_eq!(text_of(&app), before);
+    open(&mut app, "broken.tpn", PTPN.replace("<to-event>e", "<to-event>x").as_bytes());
+    let state = app.json();
+    assert_eq!(state["status"], "broken", "{state}");
+    assert!(state["diagnostics"].to_string().contains("`x`"), "{state}");
+}
+
+#[test]
+fn a_plan_of_plandev_opens_as_a_mission_and_goes_back() {
+    let directive = |id: i64, kind: &str, offset: &str, anchor: serde_json::Value| {
+        json!({ "anchor_id": anchor, "anchored_to_start": false, "arguments": { "angle": 3 }, "id": id,
+            "metadata": {}, "name": kind, "start_offset": offset, "tags": [], "type": kind })
+    };
+    let mut first = directive(1, "Slew", "00:30:00", json!(null));
+    first["anchored_to_start"] = json!(true);
+    first["metadata"] = json!({ "enroute_duration": "00:10:00" });
+    let plan = json!({ "activities": [first, directive(2, "Image", "00:05:00", json!(1))], "duration": "02:00:00",
+        "id": 1, "model_id": 1, "name": "Night", "simulation_arguments": {},
+        "start_time": "2024-08-02T00:00:00+00:00", "tags": [], "version": "2" });
+    let mut app = started();
+    open(&mut app, "night.json", plan.to_string().as_bytes());
+    let state = app.json();
+    assert_eq!((&state["mission"], &state["status"]), (&json!("night"), &json!("plan")), "{state}");
+    app.dispatch("export.schedule", &json!({ "as": "plandev", "epoch": "2024-08-02" }));
+    let (name, bytes) = app.world.saved.borrow().last().cloned().expect("it was saved");
+    assert_eq!(name, "night.plandev.json");
+    let written: serde_json::Value = serde_json::from_slice(&bytes).expect("JSON");
+    let starts: Vec<_> = written["activities"].as_array().expect("activities").iter().collect();
+    let of = |kind: &str| starts.iter().find(|it| it["type"] == kind).expect(kind)["start_offset"].clone();
+    assert_eq!([of("Slew"), of("Image")], ["00:30:00", "00:45:00"], "{written}");
+    assert_eq!(starts[0]["arguments"], json!({ "angle": 3 }));
+    let mut again = started();
+    open(&mut again, &name, &bytes);
+    assert_eq!((&again.json()["mission"], &again.json()["status"]), (&json!("night"), &json!("plan")));
+}
+
+#[test]
+fn a_mission_is_written_as_networks_that_open_again() {
+    let mut app = started();
+    let mission = "primitive Drive()[2,5]; primitive Dig()[1,3];\nscenario S[0,9] = { Drive(); choose { Dig(), delay[2,2] } }\n";
+    open(&mut app, "day.rmpl", mission.as_bytes());
+    for (command, name) in [("file.networkPlanSchema", "day.tpn.json"), ("file.networkPtpn", "day.tpn")] {
+        app.dispatch(command, &json!(null));
+        let (saved, bytes) = app.world.saved.borrow().last().cloned().expect("it was saved");
+        assert_eq!(saved, name);
+        let mut other = started();
+        open(&mut other, name, &bytes);
+        assert_eq!(other.json()["status"], "plan", "{}", other.json()["diagnostics"]);
+    }
+}
+
+#[test]
+fn files_of_other_formats_are_refused_by_their_name_and_maps_are_known_by_what_they_hold() {
+    let mut app = started();
+    let before = text_of(&app);
+    for (name, bytes, said) in [
+        (
+            "dem.xml",
+            &b"<?xml version=\"1.0\"?>\n<Product_Observational xmlns=\"http://pds.nasa.gov/pds4/pds/v1\"/>"[..],
+            "PDS4 label",
+        ),
+        ("dem.cub", b"Object = IsisCube\n  Object = Core\n", "ISIS cube"),
+        ("dem.nc", b"CDF\x01\xff\xfe\x00", "NetCDF file"),
+        ("noise.bin", b"\xff\xfe\x80\x81", "ESRI ASCII grid, MovingAI or ROS"),
+        ("notes.doc", b"Dear all, [", "pTPN in XML"),
+    ] {
+        open(&mut app, name, bytes);
+        let toasts = app.json()["toasts"].to_string();
+        assert!(
+            toasts.contains(&format!("{name} is not opened")) && toasts.contains(said),
+            "{name}: {toasts}"
         );
-        assert!(app.json()["toasts"].to_string().contains(&format!("{name} is not opened: it is a pTPN")));
     }
     assert_eq!(text_of(&app), before);
+    open(&mut app, "ground.grd", b"P5 2 1 255\n\x00\xff");
+    assert_eq!(app.json()["library"]["missions"][0]["maps"], json!(["ground.grd"]));
 }
 
 #[test]

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 use crate::mutation::{Random, mutated};
 use crate::readers::Reader;
 
-/// Inputs that led to something new, besides the seeds, that are mutated further.
-const MAX_POOL: usize = 4_000;
+/// Inputs that led to something new, besides the seeds, that are mutated further: of those that were read, and of others.
+const MAX_POOL: usize = 2_000;
 
 /// An input that made a reader panic.
 #[derive(Clone, Debug)]
@@ -41,17 +41,23 @@ pub struct Tally {
 pub fn attack(reader: &Reader, executions: u64, seed: u64, watch: &mut dyn FnMut(&[u8])) -> Tally {
     let mut tally = Tally::default();
     let mut seen = BTreeSet::new();
-    let mut pool: Vec<Vec<u8>> = reader.broken().into_iter().chain(reader.seeds()).collect();
-    let given = pool.len();
+    let given: Vec<Vec<u8>> = reader.broken().into_iter().chain(reader.seeds()).collect();
+    // Of what led to something new, what was read and what was refused.
+    let mut found: [Vec<Vec<u8>>; 2] = [Vec::new(), Vec::new()];
     let mut random = Random::new(seed);
     let begun = Instant::now();
-    while tally.executions < executions.max(given as u64) {
-        let known = pool.get(tally.executions as usize).filter(|_| tally.executions < given as u64).cloned();
+    while tally.executions < executions.max(given.len() as u64) {
+        let known = given.get(tally.executions as usize).cloned();
         let is_known = known.is_some();
         let input = known.unwrap_or_else(|| {
-            // What is given is known to be read.
-            let known = if random.below(2) == 0 { &pool[..given] } else { &pool[..] };
-            let mut input = mutated(&mut random, known, reader.words);
+            // What is given is known to be read, and what is refused leads seldom further than to other refusals.
+            let pool = match random.below(8) {
+                0..4 => &given,
+                4..7 => &found[0],
+                _ => &found[1],
+            };
+            let pool = if pool.is_empty() { &given } else { pool };
+            let mut input = mutated(&mut random, pool, reader.words, reader.keeps_form);
             if random.below(2) == 0 {
                 (reader.mend)(&mut input);
             }
@@ -69,7 +75,8 @@ pub fn attack(reader: &Reader, executions: u64, seed: u64, watch: &mut dyn FnMut
             Ok(outcome) => {
                 tally.read += u64::from(outcome.is_read);
                 let is_new = seen.insert(outcome.signature);
-                if is_new && !is_known && pool.len() < given + MAX_POOL {
+                let pool = &mut found[usize::from(!outcome.is_read)];
+                if is_new && !is_known && pool.len() < MAX_POOL {
                     pool.push(input);
                 }
             }

@@ -19,7 +19,7 @@ use fuzz::readers::{READERS, Reader, by_name};
 #[derive(Parser)]
 #[command(name = "cargo xtask fuzz", bin_name = "cargo xtask fuzz")]
 struct Arguments {
-    /// How many inputs each reader gets.
+    /// How many inputs each reader gets; those that plan or run what they read get a part of it.
     #[arg(long, default_value_t = 10_000)]
     executions: u64,
     /// Only these readers; all without it.
@@ -84,7 +84,8 @@ fn run(reader: &Reader, arguments: &Arguments, folder: &Path) -> Result<[u64; 2]
     forget_peak_memory();
     let hook = take_hook();
     set_hook(Box::new(|_| {}));
-    let tally = attack(reader, arguments.executions, arguments.seed, &mut |input| {
+    let executions = arguments.executions.div_ceil(reader.cost);
+    let tally = attack(reader, executions, arguments.seed, &mut |input| {
         let written = file.seek(SeekFrom::Start(0)).and_then(|_| file.write_all(input));
         if let Err(reason) = written.and_then(|()| file.set_len(input.len() as u64)) {
             failed = Err(reason);

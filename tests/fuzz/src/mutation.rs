@@ -26,7 +26,7 @@ impl Random {
 pub const MAX_BYTES: usize = 1 << 14;
 
 /// Signs of every notation, numbers at the ends of their ranges, and texts that cannot be shown.
-const PIECES: [&[u8]; 44] = [
+const PIECES: [&[u8]; 46] = [
     b"{",
     b"}",
     b"[",
@@ -71,12 +71,26 @@ const PIECES: [&[u8]; 44] = [
     b"\xe2\x80\xae",
     b"\xe2\x88\x9e",
     b"\x1b",
+    b"\xef\xbf\xbf",
+    b"<script>alert(1)</script>",
 ];
 
-/// One of the inputs, changed in a few places. `words` are signs of the reader's own notation.
-pub fn mutated(random: &mut Random, pool: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
+/// One of the inputs, changed in a few places. `words` are signs of the reader's own notation; of `of_ten` changes in ten none
+/// breaks a word or leaves a bracket without its other.
+pub fn mutated(random: &mut Random, pool: &[Vec<u8>], words: &[&str], of_ten: usize) -> Vec<u8> {
     let Some(begun) = pool.get(random.below(pool.len())) else { return Vec::new() };
     let mut bytes = begun.clone();
+    // What keeps its brackets and words whole is more often read, and so goes deeper.
+    if random.below(10) < of_ten {
+        for _ in 0..=random.below(3) {
+            match random.below(3) {
+                0 => word(random, &mut bytes, pool),
+                _ => group(random, &mut bytes, pool),
+            }
+        }
+        bytes.truncate(MAX_BYTES);
+        return bytes;
+    }
     // Most often a single change, which leaves the rest as it was.
     let most = if random.below(2) == 0 { 1 } else { 5 };
     for _ in 0..=random.below(most) {
@@ -172,4 +186,81 @@ fn number(random: &mut Random, bytes: &mut Vec<u8>) {
         _ => random.below(1000).to_string(),
     };
     bytes.splice(start..end, other.into_bytes());
+}
+
+/// A word or number becomes another one of the same text or of another input.
+fn word(random: &mut Random, bytes: &mut Vec<u8>, pool: &[Vec<u8>]) {
+    let own = words_of(bytes);
+    let other = &pool[random.below(pool.len())];
+    let (from, theirs) =
+        if random.below(3) == 0 { (other.clone(), words_of(other)) } else { (bytes.clone(), own.clone()) };
+    let (Some(at), Some(word)) = (own.get(random.below(own.len())), theirs.get(random.below(theirs.len())))
+    else {
+        return;
+    };
+    bytes.splice(at.clone(), from[word.clone()].iter().copied());
+}
+
+fn words_of(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
+    let is_of_word = |byte: &u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-' | b'.');
+    let mut words = Vec::new();
+    let mut at = 0;
+    while at < bytes.len() {
+        let length = bytes[at..].iter().take_while(|byte| is_of_word(byte)).count();
+        if length > 0 {
+            words.push(at..at + length);
+        }
+        at += length + 1;
+    }
+    words
+}
+
+/// What stands between brackets, with them: taken out, doubled, exchanged for another one, or put around itself.
+fn group(random: &mut Random, bytes: &mut Vec<u8>, pool: &[Vec<u8>]) {
+    let own = groups_of(bytes);
+    let Some(at) = own.get(random.below(own.len())).cloned() else { return };
+    let copied = bytes[at.clone()].to_vec();
+    match random.below(6) {
+        0 => {
+            bytes.drain(at);
+        }
+        1 => {
+            bytes.splice(at.start..at.start, copied.into_iter().chain(*b" "));
+        }
+        2 | 3 => {
+            let other = &pool[random.below(pool.len())];
+            let theirs = groups_of(other);
+            let alike: Vec<_> = theirs.iter().filter(|range| other[range.start] == copied[0]).collect();
+            let Some(taken) = alike.get(random.below(alike.len())) else { return };
+            let range = if random.below(2) == 0 { at } else { at.end..at.end };
+            bytes.splice(range, other[(*taken).clone()].iter().copied());
+        }
+        4 => {
+            let Some(other) = own.get(random.below(own.len())) else { return };
+            let replacement = bytes[other.clone()].to_vec();
+            bytes.splice(at, replacement);
+        }
+        _ => {
+            // Its inside goes where it stood.
+            bytes.splice(at, copied[1..copied.len() - 1].iter().copied());
+        }
+    }
+}
+
+/// Where brackets open and close in turn. What is in quotes counts as anything else: inputs need not be sound.
+fn groups_of(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
+    let mut open: Vec<usize> = Vec::new();
+    let mut groups = Vec::new();
+    for (at, byte) in bytes.iter().enumerate() {
+        match byte {
+            b'(' | b'[' | b'{' => open.push(at),
+            b')' | b']' | b'}' => {
+                if let Some(start) = open.pop() {
+                    groups.push(start..at + 1);
+                }
+            }
+            _ => {}
+        }
+    }
+    groups
 }

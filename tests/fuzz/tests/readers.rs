@@ -44,6 +44,7 @@ macro_rules! each {
 each! {
     missions "missions",
     missions_planned "missions-planned",
+    exports "exports",
     rules "rules",
     control_programs "control-programs",
     control_runs "control-runs",

@@ -9,7 +9,6 @@ use serde_json::{Value, json};
 use tpn::interchange::Source;
 
 use crate::input::read_text;
-use crate::load::read_source;
 use crate::output::{Format, YES, document, exit, print_json, print_text, print_verbatim};
 
 /// Reads a network that another tool wrote, and prints it as `enroute tpn` would; or places and obstacles in `GeoJSON`, and
@@ -52,7 +51,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         !args.metres && args.origin.is_none() && args.radius.is_none(),
         "{name} is no GeoJSON, which --origin, --radius and --metres are for"
     );
-    let source = read_source(&text).with_context(|| format!("cannot read {}", args.file.display()))?;
+    let source = Source::read(&text).with_context(|| format!("cannot read {}", args.file.display()))?;
     let not_planned = match &source {
         Source::Enroute(_) => Vec::new(),
         Source::PlanSchema(document) => document.not_planned.clone(),

@@ -456,7 +456,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     let mut rows: Vec<(Time, Bound, String)> = Vec::new();
     for (node, window) in network.nodes.iter().zip(&plan.windows) {
         let Some(window) = window else { continue };
-        for &event in &node.events {
+        for &event in node.events.iter().filter(|&&event| plan.has_event(network, event)) {
             rows.push((window.earliest, window.latest, network.event_name(event)));
         }
     }

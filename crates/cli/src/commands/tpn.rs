@@ -9,7 +9,7 @@ use tpn::Network;
 use tpn::interchange::Source;
 
 use crate::diagnostics::print_problems;
-use crate::load::{Loaded, Target, read_source};
+use crate::load::{Loaded, Target};
 use crate::output::{
     Format, NO, WRONG, YES, document, exit, print_error, print_json, print_text, print_verbatim,
 };
@@ -87,7 +87,7 @@ fn report_errors(notation: Notation, format: Format, loaded: &Loaded) -> anyhow:
 fn plan_schema(loaded: &Loaded, network: &Network) -> anyhow::Result<serde_json::Value> {
     if loaded.program.is_none()
         && let Source::PlanSchema(read) =
-            read_source(&loaded.source).with_context(|| format!("cannot read {}", loaded.name))?
+            Source::read(&loaded.source).with_context(|| format!("cannot read {}", loaded.name))?
     {
         return Ok(read.to_json());
     }
@@ -98,7 +98,7 @@ fn plan_schema(loaded: &Loaded, network: &Network) -> anyhow::Result<serde_json:
 fn print_rmpl(loaded: &Loaded, network: &Network, format: Format) -> anyhow::Result<ExitCode> {
     let (mut nodes, mut arcs, mut remarks) = (Vec::new(), Vec::new(), Vec::new());
     if loaded.program.is_none()
-        && let Ok(Source::PlanSchema(read)) = read_source(&loaded.source)
+        && let Ok(Source::PlanSchema(read)) = Source::read(&loaded.source)
     {
         remarks.extend(read.not_honoured().iter().map(|said| format!("Not honoured: {said}.")));
         (nodes, arcs) = (read.node_uids, read.arc_uids);

@@ -223,7 +223,9 @@ impl Record {
         let Value::Array(entries) = value["entries"].take() else { return Err(lacks("entries")) };
         let mut known = BTreeSet::new();
         for (index, mut entry) in entries.into_iter().enumerate() {
-            let said = Entry::read(entry["said"].take()).map_err(damaged)?;
+            // An index would make a member of what is no object, or panic.
+            let said = entry.get_mut("said").map(Value::take).unwrap_or_default();
+            let said = Entry::read(said).map_err(damaged)?;
             record.check(&said, entry["digest"].as_str().unwrap_or_default(), &known).map_err(|why| {
                 RecordError::Broken(format!("entry {} ({}, {}) {why}", index + 1, said.by, said.time))
             })?;

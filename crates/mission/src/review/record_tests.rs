@@ -85,6 +85,12 @@ fn altered(change: impl FnOnce(&mut Value)) -> Result<Record, RecordError> {
 #[test]
 fn whatever_is_altered_is_said_with_its_entry() {
     assert!(altered(|_| {}).is_ok());
+    for entry in [json!([]), json!(4), json!("said"), json!(null), json!({})] {
+        assert!(
+            matches!(altered(|it| it["entries"][0] = entry.clone()), Err(RecordError::Damaged(_))),
+            "{entry}"
+        );
+    }
     let says = |found: Result<Record, RecordError>, words: &str| match found {
         Err(RecordError::Broken(why)) => assert!(why.contains(words), "{why}"),
         other => panic!("{words}: {other:?}"),

@@ -114,6 +114,10 @@ fn variable_in(node: SyntaxNode<'_>) -> Option<Name> {
     let Some(dotted) = node.child(SyntaxKind::Dotted) else { return names(node).next() };
     let mut parts = names(dotted);
     let (owner, part) = (parts.next()?, parts.next()?);
+    // What stands between them has been reported, and is part of no name.
+    if owner.span.end + 1 != part.span.start {
+        return None;
+    }
     let text = SmolStr::from_iter([owner.text.as_str(), ".", part.text.as_str()]);
     Some(Name { text, span: owner.span.cover(part.span) })
 }

@@ -127,6 +127,11 @@ fn read_names(
     let mut by_name = BTreeMap::new();
     for &(line, content) in section {
         for name in content.split_whitespace() {
+            // The other layout is XML, which has no way to write these.
+            if let Some(letter) = name.chars().find(|&it| it < ' ' || matches!(it, '\u{fffe}' | '\u{ffff}')) {
+                let message = format!("a name cannot have the character {}", letter.escape_unicode());
+                return Err(ParseError::new(line, message));
+            }
             if by_name.insert(name.to_owned(), PointId(names.len() as u32)).is_some() {
                 return Err(ParseError::new(line, format!("{name} is named twice")));
             }

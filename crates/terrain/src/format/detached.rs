@@ -1,7 +1,7 @@
 //! Files that describe an image which is a file of its own, PDS3 labels and the YAML of ROS maps: which image one names,
 //! and both as one file.
 
-use super::pds::Label;
+use super::pds_label::Label;
 use super::{FileFormat, FormatError, ros_map};
 
 /// The name of the file in which the image of a detached label, or of a ROS map, is; `None` if the file is neither.
@@ -29,8 +29,16 @@ pub fn attach_label(label: &[u8], image: &[u8]) -> Result<Vec<u8>, FormatError> 
     };
     let lines = text.lines().take_while(|line| line.trim() != "END").filter(|line| !is_pointer(line));
     let lines: Vec<&str> = lines.collect();
-    // The place has as many digits whatever it is, so that it does not move itself.
-    let written = |place: u64| format!("{}\r\n^IMAGE = {place:020} <BYTES>\r\nEND\r\n", lines.join("\r\n"));
+    // Behind the first line it stands in no object. The place has as many digits whatever it is, so that it does not move itself.
+    let first = lines.iter().position(|line| !line.trim().is_empty()).map_or(0, |first| first + 1);
+    let (before, after) = lines.split_at(first);
+    let written = |place: u64| {
+        format!(
+            "{}\r\n^IMAGE = {place:020} <BYTES>\r\n{}\r\nEND\r\n",
+            before.join("\r\n"),
+            after.join("\r\n")
+        )
+    };
     let length = written(0).len() as u64;
     let mut whole = written(length + start + 1).into_bytes();
     whole.extend_from_slice(image);

@@ -29,7 +29,7 @@ const BEGINNINGS: [(&[u8], &str, &str); 17] = [
 ];
 
 /// Why a file of a known format that is not read is refused; `None` for all others.
-pub(super) fn refusal(bytes: &[u8]) -> Option<FormatError> {
+pub fn refusal(bytes: &[u8]) -> Option<FormatError> {
     let start = &bytes[..bytes.len().min(REACH)];
     let text = start.trim_ascii_start();
     let unsupported = |format, advice: &str| FormatError::Unsupported { format, problem: advice.to_owned() };

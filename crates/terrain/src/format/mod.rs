@@ -8,6 +8,7 @@ mod detached;
 mod foreign;
 mod moving_ai;
 mod pds;
+mod pds_label;
 mod png;
 mod pnm;
 mod ros_map;
@@ -19,6 +20,7 @@ use crate::frame::GridFrame;
 use crate::heightfield::Terrain;
 
 pub use detached::{attach_label, image_of_label};
+pub use foreign::refusal;
 pub use pds::{RawLayout, SampleType};
 
 /// The most cells that a map may have: 33 million, or 5800 × 5800.

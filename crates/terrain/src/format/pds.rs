@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::pds_label::{Label, is_absent};
 use super::{FormatError, ImportOptions, Meaning, Raster, checked_cell_count};
 
 const FORMAT: &str = "PDS3 image";
@@ -135,12 +136,12 @@ impl RawLayout {
 
 /// Reads an image by the caller's layout, the caller's label, or the label at its beginning.
 pub(super) fn read(bytes: &[u8], options: &ImportOptions) -> Result<Raster, FormatError> {
-    let layout = match (&options.raw, &options.label) {
-        (Some(layout), _) => *layout,
+    let (layout, holes) = match (&options.raw, &options.label) {
+        (Some(layout), _) => (*layout, Vec::new()),
         (None, Some(label)) => read_label(label, false)?,
         (None, None) => read_label(bytes, true)?,
     };
-    read_samples(bytes, &layout)
+    read_samples(bytes, &layout, &holes)
 }
 
 /// Reads an image without a label as what such files of elevations mostly are: a whole planet, twice as wide as high,
@@ -154,10 +155,11 @@ pub(super) fn read_without_label(bytes: &[u8]) -> Result<Raster, FormatError> {
     checked_cell_count(2 * height, height)?;
     let mut layout = RawLayout::new(2 * height as u32, height as u32, SampleType::I16BigEndian);
     layout.cell_size_m = Some(std::f64::consts::PI * MARS_RADIUS_M / height as f64);
-    read_samples(bytes, &layout)
+    read_samples(bytes, &layout, &[])
 }
 
-fn read_samples(bytes: &[u8], layout: &RawLayout) -> Result<Raster, FormatError> {
+/// `holes` are values that mean "no data", beside that of the layout.
+fn read_samples(bytes: &[u8], layout: &RawLayout, holes: &[f64]) -> Result<Raster, FormatError> {
     let count = checked_cell_count(u64::from(layout.width), u64::from(layout.height))?;
     let size = layout.sample_type.bytes();
     let data = usize::try_from(layout.start_byte).ok().and_then(|start| bytes.get(start..));
@@ -172,12 +174,13 @@ fn read_samples(bytes: &[u8], layout: &RawLayout) -> Result<Raster, FormatError>
     };
     // What stands for no data in single precision is often written with other digits than it has.
     let is_single = matches!(layout.sample_type, SampleType::F32BigEndian | SampleType::F32LittleEndian);
-    let no_data = layout.no_data.map(|hole| if is_single { f64::from(hole as f32) } else { hole });
+    let stored = |hole: f64| if is_single { f64::from(hole as f32) } else { hole };
+    let holes: Vec<f64> = layout.no_data.iter().chain(holes).map(|&hole| stored(hole)).collect();
     let samples = data
         .chunks_exact(size)
         .map(|sample| {
             let value = layout.sample_type.value(sample);
-            if Some(value) == no_data {
+            if holes.contains(&value) {
                 f32::NAN
             } else {
                 (value * layout.scaling_factor + layout.offset_m) as f32
@@ -196,7 +199,7 @@ fn read_samples(bytes: &[u8], layout: &RawLayout) -> Result<Raster, FormatError>
 }
 
 /// Reads a label; `attached` says whether the samples are in the same file.
-fn read_label(bytes: &[u8], attached: bool) -> Result<RawLayout, FormatError> {
+fn read_label(bytes: &[u8], attached: bool) -> Result<(RawLayout, Vec<f64>), FormatError> {
     let label = Label::parse(bytes);
     let size = |keyword: &str| match label.number(keyword) {
         Some(number) if number >= 0.0 && number.fract() == 0.0 && number < 4e9 => Ok(number as u32),
@@ -222,17 +225,39 @@ fn read_label(bytes: &[u8], attached: bool) -> Result<RawLayout, FormatError> {
     };
     label.refuse_what_is_not_rows_from_the_top()?;
     let unit_m = label.unit_m()?;
-    Ok(RawLayout {
+    let mut holes = Vec::new();
+    for keyword in HOLES {
+        holes.extend(constant(keyword)?);
+    }
+    let layout = RawLayout {
         width,
         height,
         sample_type,
         start_byte: label.image_start(attached)?,
         scaling_factor: unit_m * factor("SCALING_FACTOR")?.unwrap_or(1.0),
         offset_m: unit_m * factor("OFFSET")?.unwrap_or(0.0),
-        no_data: constant("MISSING_CONSTANT")?.or(constant("CORE_NULL")?),
+        no_data: constant("MISSING_CONSTANT")?,
         cell_size_m: label.cell_size_m()?,
-    })
+    };
+    Ok((layout, holes))
 }
+
+/// Further values that are no heights: those of the data dictionary, and the special pixels of ISIS, which stand far below (or
+/// above) all ground.
+const HOLES: [&str; 12] = [
+    "CORE_NULL",
+    "INVALID_CONSTANT",
+    "UNKNOWN_CONSTANT",
+    "NOT_APPLICABLE_CONSTANT",
+    "CORE_LOW_REPR_SATURATION",
+    "CORE_LOW_INSTR_SATURATION",
+    "CORE_HIGH_REPR_SATURATION",
+    "CORE_HIGH_INSTR_SATURATION",
+    "LOW_REPR_SATURATION",
+    "LOW_INSTR_SATURATION",
+    "HIGH_REPR_SATURATION",
+    "HIGH_INSTR_SATURATION",
+];
 
 fn malformed(problem: String) -> FormatError {
     FormatError::Malformed { format: FORMAT, problem }
@@ -242,40 +267,7 @@ fn unsupported(problem: String) -> FormatError {
     FormatError::Unsupported { format: FORMAT, problem }
 }
 
-/// Whether a keyword stands in a label without a value.
-fn is_absent(written: &str) -> bool {
-    ["N/A", "UNK", "NONE"].iter().any(|word| written.trim_matches('"').eq_ignore_ascii_case(word))
-}
-
-/// The keywords of a label and their values as written.
-pub(super) struct Label {
-    entries: Vec<(String, String)>,
-}
-
 impl Label {
-    pub(super) fn parse(bytes: &[u8]) -> Self {
-        const MAX_LABEL_BYTES: usize = 1 << 20;
-        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(MAX_LABEL_BYTES)]);
-        let entries = text
-            .lines()
-            .map(str::trim)
-            .take_while(|line| *line != "END")
-            .filter_map(|line| line.split_once('='))
-            .map(|(keyword, value)| (keyword.trim().to_ascii_uppercase(), value.trim().to_owned()))
-            .collect();
-        Self { entries }
-    }
-
-    pub(super) fn value(&self, keyword: &str) -> Option<&str> {
-        self.entries.iter().find(|(word, _)| word == keyword).map(|(_, value)| value.as_str())
-    }
-
-    /// The number at the beginning of a value; what follows is its unit.
-    fn number(&self, keyword: &str) -> Option<f64> {
-        let value = self.value(keyword)?.trim_matches('"').trim_start();
-        value.split(|letter: char| letter.is_ascii_whitespace() || letter == '<').next()?.parse().ok()
-    }
-
     /// The byte at which the samples begin: `^IMAGE` counts records, or bytes when it says so, from 1.
     pub(super) fn image_start(&self, attached: bool) -> Result<u64, FormatError> {
         let Some(pointer) = self.value("^IMAGE") else {
@@ -297,8 +289,17 @@ impl Label {
             }
             return Ok(0);
         };
-        let unit = if in_bytes { 1.0 } else { self.number("RECORD_BYTES").unwrap_or(1.0) };
-        Ok(place.saturating_sub(1).saturating_mul(unit as u64))
+        let records = place.saturating_sub(1);
+        if in_bytes || records == 0 {
+            return Ok(records);
+        }
+        let record_bytes = self.number("RECORD_BYTES").filter(|bytes| *bytes >= 1.0 && bytes.fract() == 0.0);
+        let record_bytes = record_bytes.ok_or_else(|| {
+            malformed(format!(
+                "^IMAGE is {pointer}, in records, and RECORD_BYTES does not say how long they are"
+            ))
+        })?;
+        Ok(records.saturating_mul(record_bytes as u64))
     }
 
     /// A word of the label in capitals, without quotes; `None` if it has no value.

@@ -75,6 +75,10 @@ impl Document {
         };
         match value {
             Value::Object(objects) => Self::of_objects(objects),
+            Value::Array(_) if text.contains("plan/by-plid") => Err(PlanSchemaError::Shape(
+                "these are plans merged by plan-schema; the plan network that one was made of is read, mostly called `.tpn.edn`"
+                    .to_owned(),
+            )),
             _ => Err(PlanSchemaError::Shape("the file is not a map of objects".to_owned())),
         }
     }
@@ -151,6 +155,9 @@ fn said_in_vain(object: &Value) -> Vec<String> {
         && object.get("controllable") == Some(&Value::Bool(false))
     {
         said.push("a duration that is not controllable".to_owned());
+    }
+    if read::is_variable(object.get("value")) {
+        said.push("bounds that are a variable, which is taken at its default".to_owned());
     }
     if holds("guard") || holds("guards") {
         said.push("a guard".to_owned());

@@ -109,8 +109,17 @@ impl<'file> Reader<'file> {
             return Ok(uid.to_owned());
         }
         let named = self.objects.iter().find(|(_, object)| kind(object) == "network");
-        let missing =
-            || PlanSchemaError::Shape("the file has no `network-id` and no network object".to_owned());
+        let is_hierarchical = |object: &Value| {
+            object.get("type").and_then(Value::as_str).is_some_and(|kind| kind.starts_with("htn-"))
+        };
+        let missing = || {
+            let problem = if self.objects.values().any(is_hierarchical) {
+                "this is a hierarchical task network (HTN), whose plan network is another file, mostly called `.tpn.json`"
+            } else {
+                "the file has no `network-id` and no network object"
+            };
+            PlanSchemaError::Shape(problem.to_owned())
+        };
         named.map(|(uid, _)| uid.clone()).ok_or_else(missing)
     }
 
@@ -354,8 +363,10 @@ impl<'file> Reader<'file> {
         }
         let error =
             |problem: &str| PlanSchemaError::Bounds { uid: uid.to_owned(), problem: problem.to_owned() };
-        // What is left out is what bounds anything.
-        let (lower, upper) = match object.get("value") {
+        // What is left out bounds nothing, and a variable for bounds stands at its default.
+        let value = object.get("value");
+        let value = if is_variable(value) { value.and_then(|value| value.get("default")) } else { value };
+        let (lower, upper) = match value {
             None | Some(Value::Null) => (&Value::Null, &Value::Null),
             Some(Value::Array(sides)) if sides.is_empty() => (&Value::Null, &Value::Null),
             Some(Value::Array(sides)) => match sides.as_slice() {
@@ -503,6 +514,11 @@ fn link(network: &mut Network) {
             (None, true) => Role::Structural,
         };
     }
+}
+
+/// Whether bounds are a variable (`lvar`) of Pamela.
+pub(super) fn is_variable(value: Option<&Value>) -> bool {
+    value.and_then(|value| value.get("type")).and_then(Value::as_str) == Some("lvar")
 }
 
 pub(super) fn kind(object: &Value) -> &str {

@@ -110,14 +110,14 @@ impl Writer<'_> {
                 object["name"] = occurrence.activity.as_str().into();
                 object["command"] = occurrence.activity.as_str().into();
                 object["args"] = json!(occurrence.arguments);
-                object["controllable"] = false.into();
+                object["controllable"] = (!arc.is_contingent).into();
                 object["cost"] = 0.into();
                 object["reward"] = 0.into();
             }
             (ArcKind::Delay, _) => {
                 object["tpn-type"] = "delay-activity".into();
                 object["name"] = "Delay".into();
-                object["controllable"] = false.into();
+                object["controllable"] = (!arc.is_contingent).into();
             }
             _ => object["tpn-type"] = "null-activity".into(),
         }

@@ -230,7 +230,8 @@ fn escaped(text: &str) -> String {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
-            it if it.is_control() => out.push(' '),
+            // What XML cannot have, not even escaped.
+            it if it.is_control() || matches!(it, '\u{fffe}' | '\u{ffff}') => out.push(' '),
             it => out.push(it),
         }
     }

@@ -21,6 +21,7 @@ use crate::state::files::FileCommand;
 use crate::state::lesson::LessonCommand;
 use crate::state::manual::ManualCommand;
 use crate::state::missions::LibraryCommand;
+use crate::state::networks::NetworkForm;
 use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
@@ -176,6 +177,8 @@ pub enum Command {
     DismissToast(usize),
     /// Puts text on the clipboard.
     Copy(String),
+    /// Writes the network for another tool.
+    WriteNetwork(NetworkForm),
     /// Saves the drawing of the network.
     SaveNetwork(PictureFormat),
     /// Lets the user save a file.

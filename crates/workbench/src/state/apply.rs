@@ -246,6 +246,7 @@ impl AppState {
             Command::Notify(kind, text) => self.toasts.add(kind, text),
             Command::DismissToast(index) => self.toasts.dismiss(index),
             Command::Copy(text) => self.effects.push(Effect::Copy(text)),
+            Command::WriteNetwork(form) => self.write_network(form),
             Command::SaveNetwork(format) => {
                 self.panel_effects.push(PanelEffect::SaveDrawing(format));
                 self.show_panel(PanelKind::Network);

@@ -17,6 +17,8 @@ pub enum ScheduleForm {
     OpenMct,
     /// A calendar.
     Icalendar,
+    /// A plan for `PlanDev` (Aerie).
+    PlanDev,
 }
 
 impl ScheduleForm {
@@ -27,6 +29,7 @@ impl ScheduleForm {
             Self::Json => "JSON schedule",
             Self::OpenMct => "Open MCT plan",
             Self::Icalendar => "iCalendar",
+            Self::PlanDev => "PlanDev plan",
         }
     }
 
@@ -37,17 +40,19 @@ impl ScheduleForm {
             Self::Json => "json",
             Self::OpenMct => "open-mct",
             Self::Icalendar => "icalendar",
+            Self::PlanDev => "plandev",
         }
     }
 
     /// The form of this name.
     pub fn by_name(name: &str) -> Option<Self> {
-        [Self::Csv, Self::Json, Self::OpenMct, Self::Icalendar].into_iter().find(|form| form.name() == name)
+        let all = [Self::Csv, Self::Json, Self::OpenMct, Self::Icalendar, Self::PlanDev];
+        all.into_iter().find(|form| form.name() == name)
     }
 
     /// Whether its times are dates, so that it must be known when the mission starts.
     pub const fn needs_epoch(self) -> bool {
-        matches!(self, Self::OpenMct | Self::Icalendar)
+        matches!(self, Self::OpenMct | Self::Icalendar | Self::PlanDev)
     }
 
     const fn ending(self) -> &'static str {
@@ -56,6 +61,7 @@ impl ScheduleForm {
             Self::Json => "schedule.json",
             Self::OpenMct => "open-mct.json",
             Self::Icalendar => "ics",
+            Self::PlanDev => "plandev.json",
         }
     }
 }
@@ -132,6 +138,7 @@ impl AppState {
             ScheduleForm::Json => written(export::json(snapshot, &about).ok_or_else(beyond)?),
             ScheduleForm::OpenMct => written(export::open_mct(snapshot, &about).ok_or_else(beyond)?),
             ScheduleForm::Icalendar => export::icalendar(snapshot, &about).ok_or_else(beyond),
+            ScheduleForm::PlanDev => written(report::plandev::plandev(snapshot, &about).ok_or_else(beyond)?),
         }
     }
 }

@@ -8,6 +8,7 @@ use rmpl::{Edit, Span};
 use smol_str::SmolStr;
 
 use crate::library::MAIN_TEXT;
+use crate::state::networks::network_ending;
 use crate::state::{AppState, ToastKind};
 use text_editing::Caret;
 
@@ -120,11 +121,8 @@ impl AppState {
 
     /// The text with all its files, each as a file of its own.
     pub(super) fn files_to_save(&self) -> Vec<(String, Vec<u8>)> {
-        let extension = match self.language.is_network() {
-            true if self.document.text().contains(":network-id") => ".tpn.edn",
-            true => ".tpn.json",
-            false => EXTENSION,
-        };
+        let is_network = self.language.is_network();
+        let extension = if is_network { network_ending(self.document.text()) } else { EXTENSION };
         let named = |(index, (name, text)): (usize, (&str, &str))| {
             let name = if index == 0 { format!("{}{extension}", self.mission) } else { name.to_owned() };
             (name, text.as_bytes().to_vec())

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use mission::{Request, Snapshot};
 use smol_str::SmolStr;
-use terrain::format::{FileFormat, attach_label, image_of_label};
+use terrain::format::{FileFormat, attach_label, image_of_label, refusal};
 use tpn::interchange::is_network_file;
 
 use crate::Dialog;
@@ -288,9 +288,9 @@ impl AppState {
 
     /// Opens a file as a mission of its own, whatever is open; nothing is opened that does not read as one.
     pub(super) fn open_mission_file(&mut self, name: &str, bytes: Vec<u8>) {
-        let Ok(text) = String::from_utf8(bytes) else {
-            self.toasts.add(ToastKind::Failed, format!("{name} is not a text file"));
-            return;
+        let text = match String::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(error) => return self.open_what_is_no_mission(name, error.into_bytes()),
         };
         let refuse = |state: &mut Self, reason: &str| {
             let text = format!("{name} is not opened: {reason}. What is open stays as it is");
@@ -306,21 +306,27 @@ impl AppState {
                     refuse(self, &reason);
                 }
             }
-            Err(MissionError::NoMission) if tpn::ptpn::is_ptpn(&text) => {
-                refuse(
-                    self,
-                    "it is a pTPN, which `enroute tpn FILE --as plan-schema` makes a network that is read here",
-                );
-            }
             Err(MissionError::NoMission) if is_network_file(&text) || reads_as_mission(name, &text) => {
                 let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-                let stem = stem.strip_suffix(".tpn").unwrap_or(stem);
+                let stem =
+                    stem.strip_suffix(".tpn").or_else(|| stem.strip_suffix(".plandev")).unwrap_or(stem);
                 let id = self.library.add(stem, MissionKind::File, &text, self.frame.unix_millis);
                 self.open_mission(&id);
             }
-            Err(MissionError::NoMission) => refuse(self, NO_MISSION),
+            Err(MissionError::NoMission) => self.open_what_is_no_mission(name, text.into_bytes()),
             Err(error) => refuse(self, &error.to_string()),
         }
+    }
+
+    /// A file that is neither mission nor network: a map under another ending, or something that is refused, by its name where
+    /// that is known.
+    fn open_what_is_no_mission(&mut self, name: &str, bytes: Vec<u8>) {
+        if FileFormat::detect(&bytes).is_some() {
+            return self.open_map_file(name, bytes);
+        }
+        let reason = refusal(&bytes).map_or_else(|| NO_MISSION.to_owned(), |reason| reason.to_string());
+        let text = format!("{name} is not opened: {reason}. What is open stays as it is");
+        self.toasts.add(ToastKind::Failed, text);
     }
 
     /// Opens what one file held as a mission of its own.
@@ -468,14 +474,16 @@ fn picture(shown: &Snapshot) -> Option<Vec<[u16; 3]>> {
 }
 
 /// Why a file is not opened as a mission, and what is read.
-const NO_MISSION: &str = "it does not read as a mission in RMPL, as a network (plan-schema or Enroute, JSON or EDN), as a control \
-                          program or as a whole mission (.enroute)";
+const NO_MISSION: &str = "it does not read as a mission in RMPL, as a network (plan-schema or Enroute in JSON or EDN, pTPN in XML), \
+                          as a plan of PlanDev, as a control program or as a whole mission (.enroute), and it is no map (PNG, PGM, TIFF, PDS3, ESRI \
+                          ASCII grid, MovingAI or ROS). Places (.geojson), lessons (.md), plans, runs and reviews (.json) are read by \
+                          the endings of their names";
 
 /// Whether a file is a mission: its name says so, or it reads as one.
 fn reads_as_mission(name: &str, text: &str) -> bool {
     let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
     let says_so = FileKind::Mission.extensions().contains(&extension.as_str())
-        && !["txt", WHOLE_EXTENSION, "json", "edn"].contains(&extension.as_str());
+        && !["txt", WHOLE_EXTENSION, "json", "edn", "tpn", "ptpn", "xml"].contains(&extension.as_str());
     let reads = || {
         let has_error = |all: &[rmpl::Diagnostic]| all.iter().any(|it| it.severity == rmpl::Severity::Error);
         if rmpl::control::is_control_text(text) {

@@ -16,7 +16,7 @@ pub mod language;
 pub mod lesson;
 pub mod manual;
 pub mod missions;
-mod networks;
+pub mod networks;
 pub mod no_plan;
 pub mod pins;
 pub mod placing;

@@ -335,16 +335,24 @@ impl Tab {
 
     /// Drops a file on the page, as a user would from a folder.
     pub fn drop_file(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        self.drop_files(&[(name, bytes)])
+    }
+
+    /// Drops files on the page together, in one event.
+    pub fn drop_files(&self, files: &[(&str, &[u8])]) -> Result<()> {
+        let files: Vec<Value> =
+            files.iter().map(|(name, bytes)| json!([name, BASE64.encode(bytes)])).collect();
         self.evaluate(&format!(
             "(() => {{
-                const bytes = Uint8Array.from(atob('{}'), (letter) => letter.charCodeAt(0));
                 const transfer = new DataTransfer();
-                transfer.items.add(new File([bytes], {}));
+                for (const [name, text] of {}) {{
+                    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+                    transfer.items.add(new File([bytes], name));
+                }}
                 const options = {{ bubbles: true, cancelable: true, dataTransfer: transfer }};
                 document.getElementById('canvas').dispatchEvent(new DragEvent('drop', options));
             }})()",
-            BASE64.encode(bytes),
-            json!(name),
+            json!(files),
         ))?;
         Ok(())
     }

@@ -24,6 +24,8 @@ pub(super) const ARCHIVES: Reader = Reader {
     mend: nothing,
     exercise: archives,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn archives(input: &[u8]) -> Outcome {

@@ -1,40 +1,50 @@
 //! Control programs and models.
 
-use executive::model_based::{Options, Run, StepInput};
+use executive::model_based::{Knowledge, Options, Run, StepInput};
+use plant::{ComponentId, Model, VariableId};
 
-use super::{NOTHING, Outcome, Reader, magnitude, nothing, read, refused, text_of};
+use super::{Outcome, Reader, magnitude, nothing, read, refused, text_of};
+use crate::mutation::Random;
 
 const WORDS: &[&str] = &[
-    "(DEFCLASS ",
-    "(DEFINE ",
-    "(DEFINSTANCE ",
-    "(MODES ",
+    "(DEFCLASS C ()",
+    "(DEFINSTANCE I C INIT On)",
+    "(MODE On true)",
+    "(COMMAND cmd {none go})",
+    "(VAR v {a b} OBSERVABLE SHOWS a)",
+    "(PORT bus Bus)",
     "(PARALLEL ",
     "(SEQUENCE ",
-    "(WHEN ",
-    "(UNLESS ",
+    "(WHEN-DONEXT ",
+    "(WHENEVER-DONEXT ",
+    "(UNLESS-THENNEXT ",
     "(DO-WATCHING ",
     "(ALWAYS ",
     "(IF-THENNEXT ",
-    "(TRANSITION ",
-    "(AND ",
-    "(OR ",
+    "(IF-THENNEXT-ELSENEXT ",
+    "(TRANSITION On Off (cmd = go))",
+    "(FAULT On Off 0.5)",
+    " AND ",
+    " OR ",
     "(NOT ",
-    "Failed",
-    "*",
-    "0.5",
+    "~(A = On)",
+    "true",
+    "false",
+    "1/3",
     "INIT",
-    "(CHOOSE ",
+    "Again ():: ",
 ];
 
 /// Parsed, written in form, compiled, bound.
 pub(super) const CONTROL: Reader = Reader {
     name: "control-programs",
-    seeds: &["tests/conformance/*.rmpl", "assets/programs/*.rmpl"],
+    seeds: &["tests/conformance/*.rmpl", "assets/programs/*.rmpl", "tests/fuzz/corpus/control-runs/*"],
     words: WORDS,
     mend: nothing,
     exercise: control,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn control(input: &[u8]) -> Outcome {
@@ -60,7 +70,8 @@ fn control(input: &[u8]) -> Outcome {
     read(&format!("{kind} {codes} {}", magnitude(parsed.file.definitions.len())))
 }
 
-/// What is read is run with what its plant does most likely, for a few steps.
+/// What is read is run for some steps, each with what its plant does by chance and, as the text decides, with components
+/// that break and observations that come otherwise. Each run can be replayed from its log, and taken back.
 pub(super) const RUN: Reader = Reader {
     name: "control-runs",
     seeds: &["assets/programs/*.rmpl"],
@@ -68,17 +79,64 @@ pub(super) const RUN: Reader = Reader {
     mend: nothing,
     exercise: run,
     tested: 300,
+    keeps_form: 8,
+    cost: 4,
 };
 
-fn run(input: &[u8]) -> Outcome {
-    let (control, _) = mission::read_control(&text_of(input), None);
-    let mission::Control::Bound(system) = control else { return NOTHING };
-    let mut run = Run::new(&system, Options { seed: Some(1), ..Options::default() });
-    while !run.is_done() && run.records().len() < 6 {
-        if let Err(reason) = run.step(&StepInput::default()) {
-            return refused(&reason.to_string());
+/// Steps of a run.
+const MAX_STEPS: usize = 12;
+
+/// What comes from outside in a step.
+fn outside(random: &mut Random, model: &Model) -> StepInput {
+    let mut input = StepInput::default();
+    let at = random.below(model.components.len());
+    if random.below(4) == 0
+        && let Some(component) = model.components.get(at)
+        && !component.modes.is_empty()
+    {
+        input.injected.insert(ComponentId(at as u32), random.below(component.modes.len()) as u8);
+    }
+    if random.below(4) == 0 {
+        let at = random.below(model.variables.len());
+        if let Some(variable) = model.variables.get(at).filter(|variable| !variable.values.is_empty()) {
+            input.observed.insert(VariableId(at as u32), random.below(variable.values.len()) as u8);
         }
     }
-    assert!(Run::replay(&system, Options { seed: Some(1), ..Options::default() }, &run.log()).is_ok());
-    read(&String::from(magnitude(run.records().len())))
+    input
+}
+
+fn run(input: &[u8]) -> Outcome {
+    let (control, found) = mission::read_control(&text_of(input), None);
+    let mission::Control::Bound(system) = control else {
+        let codes: String = found.iter().map(|found| found.code.to_string()).collect();
+        return refused(&codes);
+    };
+    let mut random =
+        Random::new(input.iter().fold(1, |sum: u64, &byte| sum.wrapping_mul(31) + u64::from(byte)));
+    let knowledge = if random.below(2) == 0 { Knowledge::MostLikely } else { Knowledge::CommonTo(2) };
+    let options = Options { seed: Some(1), knowledge, estimation: None };
+    let mut run = Run::new(&system, options);
+    let mut led = String::new();
+    while !run.is_done() && run.records().len() < MAX_STEPS {
+        match run.step(&outside(&mut random, &system.model)) {
+            Ok(record) => {
+                let marked = magnitude(record.trace.marked.len());
+                let commanded = record.commands.0.iter().filter(|&&command| command > 0).count();
+                let said =
+                    [record.is_unexplained, !record.failed.is_empty(), !record.unachievable.is_empty()];
+                let said: String = said.map(|it| if it { 'y' } else { 'n' }).iter().collect();
+                led += &format!("{marked}{}{said} ", magnitude(commanded));
+            }
+            Err(reason) => return refused(&format!("{led}{reason}")),
+        }
+    }
+    let again = Run::replay(&system, options, &run.log()).expect("a log can be replayed");
+    assert_eq!(again.records(), run.records(), "a log replays its run");
+    let log = run.log();
+    while run.step_back() {}
+    for input in &log {
+        run.step(input).expect("what was taken back can be stepped again");
+    }
+    assert_eq!(again.records(), run.records(), "taken back and stepped again");
+    read(&led)
 }

@@ -35,6 +35,8 @@ pub(super) const PLACES: Reader = Reader {
     mend: nothing,
     exercise: places,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn places(input: &[u8]) -> Outcome {
@@ -58,6 +60,8 @@ pub(super) const OBSERVATIONS: Reader = Reader {
     mend: nothing,
     exercise: observations,
     tested: 2000,
+    keeps_form: 3,
+    cost: 1,
 };
 
 static PLAN: LazyLock<Plan> = LazyLock::new(|| {
@@ -101,6 +105,8 @@ pub(super) const DISTURBANCES: Reader = Reader {
     mend: nothing,
     exercise: disturbances,
     tested: 2000,
+    keeps_form: 3,
+    cost: 1,
 };
 
 static PROGRAMS: LazyLock<Programs> = LazyLock::new(|| {
@@ -128,6 +134,8 @@ pub(super) const UNCERTAINTY: Reader = Reader {
     mend: nothing,
     exercise: uncertainty,
     tested: 2000,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn uncertainty(input: &[u8]) -> Outcome {
@@ -154,6 +162,8 @@ pub(super) const REVIEWS: Reader = Reader {
     mend: nothing,
     exercise: reviews,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn reviews(input: &[u8]) -> Outcome {
@@ -186,6 +196,8 @@ pub(super) const FLIGHT_RULES: Reader = Reader {
     mend: nothing,
     exercise: flight_rules,
     tested: 2000,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn flight_rules(input: &[u8]) -> Outcome {

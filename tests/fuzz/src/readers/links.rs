@@ -30,6 +30,8 @@ pub(super) const LINKS: Reader = Reader {
     mend: nothing,
     exercise: links,
     tested: 400,
+    keeps_form: 3,
+    cost: 1,
 };
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";

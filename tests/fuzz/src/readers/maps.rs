@@ -33,7 +33,16 @@ const fn format(
     seeds: &'static [&'static str],
     words: &'static [&'static str],
 ) -> Reader {
-    Reader { name, seeds, words, mend: nothing, exercise: by_its_beginning, tested: 2000 }
+    Reader {
+        name,
+        seeds,
+        words,
+        mend: nothing,
+        exercise: by_its_beginning,
+        tested: 2000,
+        keeps_form: 1,
+        cost: 1,
+    }
 }
 
 /// Portable Network Graphics.
@@ -142,6 +151,8 @@ pub(super) const DETACHED: Reader = Reader {
     mend: nothing,
     exercise: detached,
     tested: 2000,
+    keeps_form: 1,
+    cost: 1,
 };
 
 fn detached(input: &[u8]) -> Outcome {

@@ -2,18 +2,23 @@
 
 use std::sync::{Arc, LazyLock};
 
+use executive::Script;
 use mission::review::flight_rule;
-use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Update};
+use mission::snapshot::Stage;
+use mission::{
+    Core, CoreHost, Goal, Request, Response, RobustnessSettings, SearchKind, Snapshot, Uncertainty, Update,
+};
 use rmpl::editor::{self, Evaluation};
 use rmpl::program::Program;
 use rmpl::syntax::SyntaxNode;
 use rmpl::{Edit, Span, format, parse};
 use tpn::Network;
+use verify::{Rule, Violation};
 
 use super::{NOTHING, Outcome, Reader, magnitude, nothing, read, refused, text_of};
 use crate::mutation::Random;
 
-const WORDS: &[&str] = &[
+pub(super) const WORDS: &[&str] = &[
     "{",
     "}",
     "||",
@@ -61,6 +66,8 @@ pub(super) const TEXTS: Reader = Reader {
     mend: nothing,
     exercise: texts,
     tested: 2500,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn texts(input: &[u8]) -> Outcome {
@@ -113,7 +120,8 @@ fn texts(input: &[u8]) -> Outcome {
     read(&format!("{} {}", magnitude(before.activities.len()), codes.concat()))
 }
 
-/// The same texts with all that the page does with one: compiled, planned, paths found, checked, within bounds.
+/// The same texts with all that the page does with one: compiled, planned, paths found, checked, executed with what
+/// disturbs them and many times by chance, within bounds. Plans that are given hold against the checker.
 pub(super) const PLANNED: Reader = Reader {
     name: "missions-planned",
     seeds: &["assets/missions/*.rmpl", "tests/conformance/t*.rmpl", "tests/conformance/*.rmpl"],
@@ -121,12 +129,20 @@ pub(super) const PLANNED: Reader = Reader {
     mend: nothing,
     exercise: planned,
     tested: 200,
+    keeps_form: 8,
+    cost: 100,
 };
 
 /// Asks the core to stop after it has looked so often whether it should.
-struct Bounded {
+pub(super) struct Bounded {
     looks_left: u32,
     answered: Vec<Response>,
+}
+
+impl Bounded {
+    pub(super) fn new(looks_left: u32) -> Self {
+        Self { looks_left, answered: Vec::new() }
+    }
 }
 
 impl CoreHost for Bounded {
@@ -144,30 +160,80 @@ impl CoreHost for Bounded {
     }
 }
 
-fn planned(input: &[u8]) -> Outcome {
-    let mut host = Bounded { looks_left: 300, answered: Vec::new() };
-    let update = Update {
+/// The text as the page asks for it.
+pub(super) fn update_of(text: &str) -> Update {
+    Update {
         revision: 1,
-        source: text_of(input).into(),
+        source: text.into(),
         goal: Goal::Default,
         search: SearchKind::default(),
         seed: 1,
         trace: false,
-    };
-    Core::default().handle(Request::Update(update), &mut host);
-    let last = host.answered.iter().rev().find_map(|answer| match answer {
-        Response::Snapshot(snapshot) => Some(snapshot),
+    }
+}
+
+/// What was answered last of a text.
+pub(super) fn last_snapshot(host: &Bounded) -> Option<Arc<Snapshot>> {
+    host.answered.iter().rev().find_map(|answer| match answer {
+        Response::Snapshot(snapshot) => Some(Arc::clone(snapshot)),
         _ => None,
-    });
-    let Some(last) = last else { return NOTHING };
+    })
+}
+
+fn planned(input: &[u8]) -> Outcome {
+    let text = &*text_of(input);
+    let mut random =
+        Random::new(input.iter().fold(1, |sum: u64, &byte| sum.wrapping_mul(31) + u64::from(byte)));
+    let search = SearchKind::ALL[random.below(SearchKind::ALL.len())];
+    let update = Update { search, trace: random.below(4) == 0, ..update_of(text) };
+    let mut core = Core::default();
+    let mut host = Bounded::new(300);
+    core.handle(Request::Update(update.clone()), &mut host);
+    let Some(last) = last_snapshot(&host) else { return NOTHING };
     let mut codes: Vec<String> = last.problems.iter().map(|problem| problem.code.to_string()).collect();
     codes.sort_unstable();
     codes.dedup();
     let verdict = last.planning.as_ref().and_then(|planning| planning.verdict.as_ref());
     let kind =
         format!("{:?} {} {:?}", last.stage, last.plan().is_some(), verdict.map(|it| it.violations.len()));
-    let what = kind + &codes.concat();
-    if last.plan().is_some() { read(&what) } else { refused(&what) }
+    let mut what = kind + &codes.concat();
+    if last.plan().is_none() {
+        return refused(&what);
+    }
+    if last.stage == Stage::Complete {
+        assert!(verdict.is_some_and(|it| it.valid || it.violations.iter().all(is_beyond)), "{verdict:?}");
+        what += &executed(&mut core, update, &mut random);
+    }
+    read(&what)
+}
+
+/// Whether the checker could not check, which is said.
+fn is_beyond(violation: &Violation) -> bool {
+    violation.rule == Rule::Form
+}
+
+/// Executes the plan that the core keeps, once as a script says and a few times by chance.
+fn executed(core: &mut Core, update: Update, random: &mut Random) -> String {
+    let mut led = String::new();
+    let script = Script { disturbances: Vec::new(), adversary: random.below(2) == 0 };
+    let settings =
+        RobustnessSettings { runs: 3, seed: random.below(1000) as u64, uncertainty: Uncertainty::default() };
+    for request in
+        [Request::Execute { update: update.clone(), script }, Request::Sample { update, settings, from: 0 }]
+    {
+        let mut host = Bounded::new(600);
+        core.handle(request, &mut host);
+        for answer in &host.answered {
+            match answer {
+                Response::Execution(execution) => {
+                    led += &format!("{:?} {} ", execution.ending, magnitude(execution.log.len()))
+                }
+                Response::Sampled { tally, .. } => led += &format!("{} ", tally.succeeded),
+                _ => {}
+            }
+        }
+    }
+    led
 }
 
 /// Rules of reviews in the mission's own language.
@@ -191,6 +257,8 @@ pub(super) const RULES: Reader = Reader {
     mend: nothing,
     exercise: rules,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 static MISSION: LazyLock<(Program, Network)> = LazyLock::new(|| {

@@ -3,6 +3,7 @@
 mod archives;
 mod control;
 mod documents;
+mod exports;
 mod links;
 mod maps;
 mod missions;
@@ -30,12 +31,17 @@ pub struct Reader {
     pub exercise: fn(&[u8]) -> Outcome,
     /// How many inputs a test gives it.
     pub tested: u64,
+    /// Of ten mutations, how many keep brackets and words whole.
+    pub keeps_form: usize,
+    /// A long run gives it one input where others get so many, for it takes as many times as long.
+    pub cost: u64,
 }
 
 /// All readers.
 pub const READERS: &[Reader] = &[
     missions::TEXTS,
     missions::PLANNED,
+    exports::EXPORTS,
     missions::RULES,
     control::CONTROL,
     control::RUN,

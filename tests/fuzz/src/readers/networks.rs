@@ -31,10 +31,16 @@ pub(super) const NETWORKS: Reader = Reader {
         "\"n3\"",
         "[0 10]",
         "[0, \"Infinity\"]",
+        "\"anchor_id\": 2",
+        "\"start_offset\": \"1 day 00:00:01\"",
+        "\"end_time\": \"2024-060T00:00:00+01:00\"",
+        "PT1H",
     ],
     mend: nothing,
     exercise: networks,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 /// pTPN: read, and written again.
@@ -60,6 +66,8 @@ pub(super) const PTPN: Reader = Reader {
     mend: nothing,
     exercise: ptpn,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn ptpn(input: &[u8]) -> Outcome {
@@ -116,6 +124,8 @@ pub(super) const UNCERTAIN: Reader = Reader {
     mend: nothing,
     exercise: uncertain,
     tested: 4000,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn uncertain(input: &[u8]) -> Outcome {
@@ -148,6 +158,8 @@ pub(super) const PLANS: Reader = Reader {
     mend: nothing,
     exercise: plans,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 /// A mission with links.

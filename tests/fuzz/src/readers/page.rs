@@ -30,6 +30,8 @@ pub(super) const LESSONS: Reader = Reader {
     mend: nothing,
     exercise: lessons,
     tested: 1200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn lessons(input: &[u8]) -> Outcome {
@@ -56,6 +58,8 @@ pub(super) const SETTINGS: Reader = Reader {
     mend: nothing,
     exercise: settings,
     tested: 2000,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn settings(input: &[u8]) -> Outcome {
@@ -85,12 +89,17 @@ pub(super) const FILES: Reader = Reader {
         ".img\n",
         ".txt\n",
         ".JSON\n",
+        ".tpn\n",
+        ".xml\n",
+        "\"start_offset\": \"-1 day, 23:00:00\"",
         "../",
         "PDS_VERSION_ID = PDS3\n",
     ],
     mend: nothing,
     exercise: dropped,
     tested: 400,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn dropped(input: &[u8]) -> Outcome {
@@ -122,6 +131,8 @@ pub(super) const COMMANDS: Reader = Reader {
     mend: nothing,
     exercise: commands,
     tested: 200,
+    keeps_form: 3,
+    cost: 1,
 };
 
 fn commands(input: &[u8]) -> Outcome {

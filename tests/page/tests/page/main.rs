@@ -16,6 +16,7 @@ mod editing;
 mod execution;
 mod failure;
 mod firefox;
+mod foreign_maps;
 mod keeping;
 mod language;
 mod lesson;

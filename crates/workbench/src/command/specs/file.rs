@@ -13,6 +13,7 @@ use crate::mission_file;
 use crate::state::AppState;
 use crate::state::files::FileCommand;
 use crate::state::missions::LibraryCommand;
+use crate::state::networks::NetworkForm;
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
@@ -104,6 +105,23 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain("file.networkPng", "Save the network as PNG…", Group::File, &[], Scope::Everywhere, |_| {
             Command::SaveNetwork(PictureFormat::Png)
+        }),
+        with_network,
+    ),
+    when(
+        plain(
+            "file.networkPlanSchema",
+            "Save the network as plan-schema",
+            Group::File,
+            &[],
+            Scope::Everywhere,
+            |_| Command::WriteNetwork(NetworkForm::PlanSchema),
+        ),
+        with_network,
+    ),
+    when(
+        plain("file.networkPtpn", "Save the network as pTPN", Group::File, &[], Scope::Everywhere, |_| {
+            Command::WriteNetwork(NetworkForm::Ptpn)
         }),
         with_network,
     ),

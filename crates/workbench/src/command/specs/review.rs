@@ -60,6 +60,12 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_plan,
     ),
     when(
+        plain("export.planDev", "Export to PlanDev…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::PlanDev)
+        }),
+        with_plan,
+    ),
+    when(
         plain("compare.pin", "Compare from now on", Group::Review, &[], Scope::Everywhere, |_| {
             Command::Compare(CompareCommand::Pin)
         }),
@@ -138,8 +144,9 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     }),
     called("export.schedule", "Export the schedule", Group::Review, |_, arguments| {
         let name = text_argument(arguments, "as")?;
-        let form = ScheduleForm::by_name(name)
-            .ok_or_else(|| "\"as\" is \"csv\", \"json\", \"open-mct\" or \"icalendar\"".to_owned())?;
+        let form = ScheduleForm::by_name(name).ok_or_else(|| {
+            "\"as\" is \"csv\", \"json\", \"open-mct\", \"icalendar\" or \"plandev\"".to_owned()
+        })?;
         let epoch = arguments.get("epoch").and_then(Value::as_str).unwrap_or_default().to_owned();
         Ok(Command::WriteSchedule { form, epoch })
     }),
