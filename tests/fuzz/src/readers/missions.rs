@@ -226,7 +226,7 @@ fn executed(core: &mut Core, update: Update, random: &mut Random) -> String {
         for answer in &host.answered {
             match answer {
                 Response::Execution(execution) => {
-                    led += &format!("{:?} {} ", execution.ending, magnitude(execution.log.len()))
+                    led += &format!("{:?} {} ", execution.ending, magnitude(execution.log.len()));
                 }
                 Response::Sampled { tally, .. } => led += &format!("{} ", tally.succeeded),
                 _ => {}
