@@ -6,7 +6,7 @@ use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 use workbench::command::Command;
-use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::host::{FileKind, Remote as _};
 use workbench::lesson::COURSE;
 use workbench::state::lesson::LessonCommand;
 
@@ -127,13 +127,7 @@ fn the_view_of_a_lesson_does_not_leak_into_the_next_one() {
 fn a_file_becomes_the_lesson_and_its_mistakes_are_told_by_line() {
     let mut app = opened("", [1280.0, 800.0]);
     let text = "# Mine\n\n```rmpl\nprimitive A()[1,2];\nscenario S[0,9] = { A() }\n```\n\nIt ends at {{end}}, and {{ends}}.\n";
-    let event = HostEvent::FileOpened {
-        kind: FileKind::of_name("mine.md"),
-        name: "mine.md".to_owned(),
-        bytes: text.as_bytes().to_vec(),
-        token: None,
-    };
-    app.world.news.borrow_mut().push_back(event);
+    app.world.open_file(FileKind::of_name("mine.md"), "mine.md", text.as_bytes());
     app.settle();
     assert_eq!(lesson(&app)["title"], "Mine");
     assert_eq!(app.json()["status"], "plan");

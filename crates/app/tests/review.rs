@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 use workbench::PanelKind;
 use workbench::command::Command;
-use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::host::{FileKind, Remote as _};
 use workbench::state::compare::CompareCommand;
 use workbench::state::search::SearchCommand;
 
@@ -391,22 +391,12 @@ fn what_was_said_goes_into_a_file_and_comes_back_from_it() {
 
     let mut other = reviewing();
     assert_eq!(review(&other)["signed"], Value::Null);
-    other.world.news.borrow_mut().push_back(HostEvent::FileOpened {
-        kind: FileKind::Json,
-        name: name.clone(),
-        bytes: bytes.clone(),
-        token: None,
-    });
+    other.world.open_file(FileKind::Json, &name, &bytes);
     other.settle();
     assert_eq!(review(&other)["signed"], review(&app)["signed"]);
     assert_eq!(review(&other)["comments"], review(&app)["comments"]);
     // Once more adds nothing.
-    other.world.news.borrow_mut().push_back(HostEvent::FileOpened {
-        kind: FileKind::Json,
-        name,
-        bytes,
-        token: None,
-    });
+    other.world.open_file(FileKind::Json, &name, &bytes);
     other.settle();
     assert_eq!(review(&other)["comments"].as_array().map(Vec::len), Some(1));
 }
@@ -545,6 +535,15 @@ fn the_last_approval_can_be_compared_with_the_present_text() {
     app.settle();
     assert_eq!(app.json()["compare"]["with"], "approved by Ada on 2026-01-02");
     assert!(has(&app, "condition Tell(PATH1=OK)#1 moved"));
+    // The edit itself is there, and not only what came of it.
+    app.harness.state_mut().dispatch("view.panel", &json!("compare")).expect("a panel");
+    app.settle();
+    let is_line = |sign: &str, bounds: &str| {
+        app.harness
+            .query_by(|node| node.label().is_some_and(|it| it.starts_with(sign) && it.contains(bounds)))
+            .is_some()
+    };
+    assert!(is_line("− ", "PATH1=OK [450,450]") && is_line("+ ", "PATH1=OK [460,460]"));
 }
 
 #[test]
@@ -552,12 +551,7 @@ fn a_saved_plan_and_another_mission_can_be_compared_with() {
     let mut app = reviewing();
     let plan = app.json()["plan"].to_string();
     let open = |app: &mut App, name: &str, text: &str| {
-        app.world.news.borrow_mut().push_back(HostEvent::FileOpened {
-            kind: FileKind::Comparison,
-            name: name.to_owned(),
-            bytes: text.as_bytes().to_vec(),
-            token: None,
-        });
+        app.world.open_file(FileKind::Comparison, name, text.as_bytes());
         app.settle();
     };
     open(&mut app, "saved.json", &plan);

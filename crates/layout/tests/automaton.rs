@@ -22,11 +22,13 @@ fn inside(inner: Rect, outer: Rect) -> bool {
 }
 
 /// Programs with every form, nested.
-const PROGRAMS: [&str; 4] = [
+const PROGRAMS: [&str; 5] = [
     ORBIT,
     "P ()::(SEQUENCE (A = on) (PARALLEL (B = off) (ALWAYS (C = on))) (WHENEVER-DONEXT (A = on) (B = on)))",
     "P ()::(IF-THENNEXT-ELSENEXT (A = on) (SEQUENCE (B = on) (C = on)) (UNLESS-THENNEXT (B = on) (A = off)))",
     "P ()::(DO-WATCHING (A = failed) (SEQUENCE (WHEN-DONEXT (A = on) (DO-WATCHING (B = on) (ALWAYS (C = on)))) (D = on)))",
+    // A title longer than what is in its box, and a box within a box with nothing between them.
+    "P ()::(SEQUENCE (DO-WATCHING (door = open) (ALWAYS (lamp = on))) (DO-WATCHING (B = on) (DO-WATCHING ~(A = on) (C = on))))",
 ];
 
 #[test]
@@ -78,6 +80,33 @@ fn texts_and_locations_do_not_overlap() {
             assert!(drawing.locations[at + 1..].iter().all(|other| !other.rect.overlaps(location.rect)));
         }
     }
+}
+
+#[test]
+fn what_was_preempted_is_told_where_nothing_else_is_written() {
+    let mut notes = 0;
+    for program in PROGRAMS {
+        let automaton = compiled(program);
+        let drawing = drawn(&automaton);
+        let watching = drawing.composites.iter().filter(|it| it.is_watching).map(|it| it.id);
+        let preempted: Vec<_> = watching.collect();
+        let state = AutomatonState { preempted: &preempted, ..AutomatonState::default() };
+        let list = automaton_list(&drawing, &automaton, &state);
+        let (told, others): (Vec<_>, Vec<_>) =
+            list.texts().iter().partition(|text| text.text.contains("preempted"));
+        assert_eq!(told.len(), preempted.len());
+        for (at, note) in told.iter().enumerate() {
+            assert!(inside(note.rect, drawing.bounds), "{:?} is cut off in {program}", note.rect);
+            for other in told[at + 1..].iter().chain(&others) {
+                assert!(!note.rect.overlaps(other.rect), "it lies over {} in {program}", other.text);
+            }
+            for location in &drawing.locations {
+                assert!(!note.rect.overlaps(location.rect), "it lies over {location:?} in {program}");
+            }
+        }
+        notes += told.len();
+    }
+    assert!(notes >= 7, "{notes}");
 }
 
 #[test]

@@ -489,6 +489,16 @@ fn a_network_over_another_plan_has_words_beside_what_is_new_or_moved_and_crosses
     let mut words: Vec<String> = list.texts().iter().map(|text| text.text.to_string()).collect();
     words.sort();
     assert_eq!(words, ["C#1", "No longer in the plan", "end was 2–32", "new", "was 2–32"]);
+    // What is said along arcs lies over no name, no bound and no circle, and over nothing else that is said.
+    let said: Vec<_> = list.texts().iter().filter(|it| it.text.contains("was") || it.text == "new").collect();
+    for (at, words) in said.iter().enumerate() {
+        let name = drawing.texts.iter().find(|it| it.rect.overlaps(words.rect));
+        assert!(name.is_none(), "{} lies over {name:?}", words.text);
+        assert!(!said[at + 1..].iter().any(|it| it.rect.overlaps(words.rect)), "{}", words.text);
+        let circle =
+            |it: &layout::NodeShape| display::Rect { min: it.center, max: it.center }.expanded(it.radius);
+        assert!(!drawing.nodes.iter().any(|it| circle(it).overlaps(words.rect)), "{}", words.text);
+    }
     // Told apart without colour: what has moved is dashed, what is new is not.
     let dashed = |item: &&display::Item| item.stroke.is_some_and(|it| it.dash == display::Dash::Dashed);
     let paths: Vec<_> = list.items().iter().filter(|item| matches!(item.shape, Shape::Path { .. })).collect();

@@ -34,6 +34,18 @@ pub struct Uncertainty {
     pub adversary: bool,
 }
 
+impl Uncertainty {
+    /// Whether runs can differ from the plan at all: with nothing named, and everything else as the plan wants it, each
+    /// run is the plan itself. Components can fail only where the mission `runs_programs`.
+    pub fn leaves_something_to_chance(&self, runs_programs: bool) -> bool {
+        let is_named = !self.durations.is_empty() || !self.late.is_empty() || !self.withdrawn.is_empty();
+        let is_driven = self.traverses == Traverses::Driven;
+        // What nature chooses it chooses against the plan.
+        let fails = runs_programs && self.faults == Faults::ByChance;
+        is_named || is_driven || fails || self.adversary || self.others == Others::Uniform
+    }
+}
+
 /// Where the durations of traverses come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

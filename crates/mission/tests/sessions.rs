@@ -5,6 +5,7 @@ use std::sync::Arc;
 use exact::Time;
 use executive::{Disturbance, Script};
 use mission::control_run::{Input, Moment};
+use mission::review::{Review, plan_hash};
 use mission::wire::{Reader, Writer};
 use mission::{
     ContentKey, ControlProgram, ControlRun, ControlStanding, Core, CoreHost, Execution, Goal, GrowthStanding,
@@ -18,6 +19,8 @@ struct Collected {
     standings: Vec<ControlStanding>,
     growths: Vec<GrowthStanding>,
     executions: Vec<Arc<Execution>>,
+    /// Reviews, each with how many snapshots had been answered before it.
+    reviews: Vec<(Arc<Review>, usize)>,
     /// Looks until the job is superseded.
     patience: Option<u32>,
     /// Milliseconds between two looks.
@@ -48,6 +51,7 @@ impl CoreHost for Collected {
             Response::ControlRun(standing) => self.standings.push(*standing),
             Response::PathGrowth(standing) => self.growths.push(*standing),
             Response::Execution(run) => self.executions.push(run),
+            Response::Review { review, .. } => self.reviews.push((review, self.snapshots.len())),
             _ => {}
         }
     }
@@ -469,4 +473,33 @@ fn better_plans_are_shown_until_none_is_left_and_the_last_is_the_one_planned_at_
     core.handle(Request::Update(update(1, &source)), &mut hasty);
     assert_eq!(hasty.snapshots.last().map(|it| it.stage), Some(Stage::Improving));
     assert_eq!(content(&planned(&mut core, 2, &source)), content(&at_once));
+}
+
+#[test]
+fn the_plan_that_is_reviewed_is_the_one_that_was_answered_last() {
+    let source = wishes(26);
+    let review = |core: &mut Core| {
+        let mut host = Collected::default();
+        core.handle(Request::Review { update: update(1, &source), rules: Vec::new() }, &mut host);
+        let [(review, before)] = &host.reviews[..] else { panic!("one review") };
+        assert_eq!(*before, host.snapshots.len(), "the plan comes before its review");
+        (Arc::clone(review), host.snapshots.pop())
+    };
+    let mut core = Core::default();
+    let whole = planned(&mut core, 1, &source);
+    let (of_whole, told) = review(&mut core);
+    assert_eq!((of_whole.plan_hash.clone(), told), (plan_hash(&whole), None), "it is known already");
+    // Stopped while it looks for a better plan: what is drawn then is not what a review works out.
+    let stopped = (1..14).find_map(|patience| {
+        let mut hasty = Collected { pace: 40.0, patience: Some(patience * 500), ..Collected::default() };
+        let mut core = Core::default();
+        core.handle(Request::Update(update(1, &source)), &mut hasty);
+        let drawn = hasty.snapshots.pop().filter(|it| it.stage == Stage::Improving)?;
+        (plan_hash(&drawn) != plan_hash(&whole)).then_some((core, drawn))
+    });
+    let (mut core, drawn) = stopped.expect("some first plan is not the best");
+    let (reviewed, told) = review(&mut core);
+    assert_ne!(reviewed.plan_hash, plan_hash(&drawn));
+    let told = told.expect("its plan is answered as well");
+    assert_eq!((told.stage, plan_hash(&told)), (Stage::Complete, reviewed.plan_hash.clone()));
 }

@@ -1,6 +1,7 @@
 //! Says that there is nothing to show, and why.
 
-use egui::{Frame, Label, Margin, RichText, Ui};
+use egui::text::LayoutJob;
+use egui::{Align, Frame, Label, Margin, RichText, TextStyle, Ui};
 use text_editing::EditKind;
 use theme::icon::{self, Icon};
 use theme::space;
@@ -13,7 +14,13 @@ use crate::Context;
 /// A quiet sentence in the middle of a panel.
 pub fn show_empty(ui: &mut Ui, context: &Context<'_>, text: &str) {
     ui.centered_and_justified(|ui| {
-        ui.label(RichText::new(text).color(context.tokens.text_muted));
+        // A label of its own accord would stretch its lines from edge to edge.
+        let width = (ui.available_width() - 2.0 * space::L).max(1.0);
+        let font = TextStyle::Body.resolve(ui.style());
+        let mut job = LayoutJob::simple(text.to_owned(), font, context.tokens.text_muted, width);
+        job.halign = Align::Center;
+        let galley = ui.painter().layout_job(job);
+        ui.label(galley);
     });
 }
 

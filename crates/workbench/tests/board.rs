@@ -8,8 +8,7 @@ use mission::review::Record;
 use serde_json::{Value, json};
 use support::App;
 use workbench::command::Command;
-use workbench::host::{FileKind, HostEvent, Remote as _};
-use workbench::state::chance::ChanceCommand;
+use workbench::host::{FileKind, Remote as _};
 use workbench::state::review::ReviewCommand;
 
 /// The open mission, reviewed, before a board of two roles.
@@ -48,8 +47,7 @@ fn last_act(app: &App) -> (String, String) {
 /// The report as it is written now: how it says that the plan stands, and where the board signs.
 fn report(app: &mut App) -> (String, String) {
     app.run(Command::WriteReport);
-    let page =
-        String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
+    let page = app.world.saved_text();
     let part = |from: &str, to: &str| {
         let rest = page.split_once(from).unwrap_or_else(|| panic!("no {from}")).1;
         rest.split(to).next().unwrap_or_default().to_owned()
@@ -136,8 +134,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     // The approved plan lies under the present one, on the timeline and in the report.
     assert!(app.session.state().approved_times().is_some());
     app.run(Command::WriteReport);
-    let page =
-        String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
+    let page = app.world.saved_text();
     for part in [
         "Timeline of the plan over the approved one",
         "approved: from ",
@@ -176,8 +173,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     // Another run finds all of it, and the report has it.
     let told = app.json()["review"]["history"].clone();
     app.run(Command::WriteReport);
-    let page =
-        String::from_utf8(app.world.saved.borrow().last().expect("a report").1.clone()).expect("a text");
+    let page = app.world.saved_text();
     for part in ["History of the review", "taken back by Grace", "Since the last approval", "Mind the slope."]
     {
         assert!(page.contains(part), "{part}");
@@ -189,14 +185,112 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     assert_eq!(again.json()["review"]["history"], told);
 }
 
+/// What a board's history tells, row by row, as `docs/reviews.md` shows it.
+struct Told {
+    app: App,
+    known: usize,
+    rows: Vec<String>,
+}
+
+impl Told {
+    /// Half an hour later something is done; what that adds to the history becomes rows with the status after it.
+    fn then(&mut self, act: impl FnOnce(&mut App)) {
+        self.app.world.now_secs.set(self.app.world.now_secs.get() + 1800.0);
+        act(&mut self.app);
+        let review = self.app.json()["review"].clone();
+        let entries = review["history"].as_array().expect("a list").clone();
+        let text = |entry: &Value, member: &str| entry[member].as_str().unwrap_or_default().to_owned();
+        let new = &entries[self.known..];
+        self.known = entries.len();
+        let content = text(&review, "hash")[..6].to_owned();
+        let status = text(&review, "planStatus").replace('-', " ");
+        let Some(first) = new.first() else {
+            self.rows.push(format!("| | | *the text is edited* | `{content}` | {status} |"));
+            return;
+        };
+        let words = match text(first, "text") {
+            _ if new.len() > 1 => format!(", {} lines", new.len()),
+            words if words.is_empty() => String::new(),
+            words => format!(": “{words}”"),
+        };
+        let time = text(first, "time")[11..16].to_owned();
+        let (by, act) = (text(first, "by"), text(first, "act"));
+        let role = match text(first, "role") {
+            role if role.is_empty() => role,
+            role => format!(" ({role})"),
+        };
+        assert!(
+            new.iter().all(|entry| text(entry, "hash").starts_with(&content)),
+            "each says what it is about"
+        );
+        self.rows.push(format!("| {time} | {by}{role} | {act}{words} | `{content}` | {status} |"));
+    }
+}
+
+#[test]
+fn the_manual_shows_a_board_s_history_from_draft_to_approval_over_one_edit() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    let mut told = Told { app, known: 0, rows: Vec::new() };
+    let by = |name: &str, role: &str| json!({ "name": name, "role": role });
+    let (ada, grace) = (by("Ada", "Science"), by("Grace", "Mobility"));
+    told.then(|app| {
+        app.session.state_mut().settings.reviewer = "Chris".to_owned();
+        app.session.state_mut().settings.reviewer_role = "Chair".to_owned();
+        let board = json!([{ "role": "Science", "approvals": 1 }, { "role": "Mobility", "approvals": 1 }]);
+        app.dispatch("review.rules", &json!({ "board": board }));
+    });
+    told.then(|app| {
+        let words = "Why so long?";
+        let about = json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": words });
+        app.dispatch("review.comment", &about);
+    });
+    told.then(|app| {
+        let id = app.json()["review"]["comments"][0]["id"].clone();
+        let words = "It waits for light.";
+        app.dispatch(
+            "review.resolve",
+            &json!({ "name": "Grace", "role": "Mobility", "id": id, "text": words }),
+        );
+    });
+    told.then(|app| app.acknowledge_all("Ada"));
+    told.then(|app| app.dispatch("review.approve", &ada));
+    told.then(|app| {
+        let words = "Mind the slope.";
+        app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility", "text": words }));
+    });
+    told.then(|app| edit(app, "PATH1=OK [450,450]", "PATH1=OK [460,460]"));
+    told.then(|app| app.acknowledge_all("Ada"));
+    told.then(|app| app.dispatch("review.approve", &ada));
+    told.then(|app| app.dispatch("review.approve", &grace));
+    let statuses: Vec<&str> =
+        told.rows.iter().filter_map(|row| row.trim_matches(['|', ' ']).rsplit(" | ").next()).collect();
+    assert_eq!(
+        statuses,
+        [
+            "draft",
+            "in review",
+            "in review",
+            "in review",
+            "in review",
+            "approved with comments",
+            "lapsed",
+            "lapsed",
+            "in review",
+            "approved",
+        ]
+    );
+    let manual = include_str!("../../../docs/reviews.md");
+    let table = told.rows.join("\n");
+    assert!(manual.contains(&table), "docs/reviews.md does not show this:\n{table}");
+    // What is shown there is what can be checked: the record, saved and read again.
+    let record = told.app.session.state().review.record();
+    let read = Record::from_json(&record.to_json()).expect("it is intact");
+    assert_eq!((read.entries().len(), &read), (told.known, record));
+}
+
 fn open_json(app: &mut App, text: &str) {
-    let file = HostEvent::FileOpened {
-        kind: FileKind::Json,
-        name: "board.review.json".into(),
-        bytes: text.as_bytes().to_vec(),
-        token: None,
-    };
-    app.world.news.borrow_mut().push_back(file);
+    app.world.open_file(FileKind::Json, "board.review.json", text.as_bytes());
     app.settle();
 }
 
@@ -224,6 +318,29 @@ fn a_history_that_was_altered_is_refused_and_nothing_of_it_is_added() {
     let said = last_toast(&app);
     assert!(said.contains("altered") && said.contains("entry 2 (Ada"), "{said}");
     open_json(&mut app, &author.session.state().review.record().to_json());
+    assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
+}
+
+#[test]
+fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    let theirs = author.session.state().review.record().to_json();
+    let mut app = support::start();
+    app.run(Command::OpenExample("both-paths".into()));
+    app.run(Command::Review(ReviewCommand::Run));
+    let rules = app.session.state().review.record().rules().clone();
+    open_json(&mut app, &theirs);
+    let said = last_toast(&app);
+    assert!(said.contains("the review of “enroute”") && said.contains("Nothing of it was added"), "{said}");
+    assert_eq!(app.json()["review"]["history"], json!([]));
+    assert_eq!(*app.session.state().review.record().rules(), rules, "its flight rules, neither");
+    assert_eq!(status(&app), "draft");
+    // Under another name, with the very text that it is about, it belongs there.
+    let mut renamed: Value = serde_json::from_str(&theirs).expect("JSON");
+    renamed["mission"] = json!("Drive to the target");
+    let mut app = support::start();
+    open_json(&mut app, &renamed.to_string());
     assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
 }
 
@@ -272,8 +389,7 @@ fn a_whole_mission_with_an_altered_history_opens_and_says_so() {
     let mut author = before_the_board();
     author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
     author.dispatch("file.saveAs", &json!(null));
-    let saved = author.world.saved.borrow().last().expect("a file").1.clone();
-    let text = String::from_utf8(saved).expect("a text").replace("Why so long?", "Fine as it is.");
+    let text = author.world.saved_text().replace("Why so long?", "Fine as it is.");
     let mut app = support::start();
     open_json(&mut app, &text);
     assert!(app.json()["review"]["aside"].as_str().is_some_and(|why| why.contains("altered")));
@@ -285,15 +401,7 @@ fn a_whole_mission_with_an_altered_history_opens_and_says_so() {
 fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
     let mut app = support::start();
     app.run(Command::Review(ReviewCommand::Run));
-    let settings = app.session.state().chance.settings.clone();
-    let settings = mission::RobustnessSettings { runs: 20, seed: 5, ..settings };
-    app.run(Command::Chance(ChanceCommand::Set(Box::new(settings))));
-    app.run(Command::Chance(ChanceCommand::Start));
-    for _ in 0..20 {
-        app.settle();
-    }
-    let made = app.json()["robustness"].clone();
-    assert_eq!(made["runs"], 20, "{made}");
+    app.sample(20, 5);
     let kept = app.session.state().review.record().to_json();
     let record = Record::from_json(&kept).expect("a record");
     let hash = app.json()["review"]["hash"].as_str().expect("a hash").to_owned();
@@ -306,8 +414,7 @@ fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
     again.run(Command::Review(ReviewCommand::Run));
     assert_eq!(again.json()["robustness"]["runs"], 20);
     again.run(Command::WriteReport);
-    let saved = again.world.saved.borrow();
-    let page = String::from_utf8(saved.last().expect("a report").1.clone()).expect("a text");
+    let page = again.world.saved_text();
     assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
 }
 
@@ -320,8 +427,7 @@ fn schedules_say_how_the_plan_stands_and_what_is_pinned() {
     assert_eq!(status(&app), "approved");
     app.dispatch("plan.pin", &json!({ "event": "Group-Wait#1.end", "time": 450 }));
     app.dispatch("export.schedule", &json!({ "as": "json", "epoch": "2004-01-25T05:05:00Z" }));
-    let bytes = app.world.saved.borrow().last().expect("a file").1.clone();
-    let schedule: Value = serde_json::from_slice(&bytes).expect("JSON");
+    let schedule: Value = serde_json::from_str(&app.world.saved_text()).expect("JSON");
     assert_eq!(schedule["plan_status"], "approved");
     assert_eq!(schedule["content_hash"], app.json()["review"]["hash"]);
     assert_eq!(schedule["pinned"][0]["time"], 450);

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 use support::App;
 use workbench::command::{Command, EditorCommand};
 use workbench::host::{FileKind, HostEvent, Remote as _};
-use workbench::state::chance::ChanceCommand;
 use workbench::state::no_plan::NO_PLAN;
 use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
@@ -127,6 +126,37 @@ fn a_review_that_comes_after_another_mission_was_opened_is_dropped() {
     assert_eq!(app.json()["review"]["hash"], Value::Null);
 }
 
+#[test]
+fn a_review_and_an_approval_of_another_plan_of_the_same_text_are_not_shown_as_those_of_the_plan_that_is_drawn()
+ {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada" }));
+    let told =
+        |app: &App| (app.json()["review"]["stale"].clone(), app.json()["review"]["planStatus"].clone());
+    assert_eq!(told(&app), (json!(false), json!("approved")));
+    let exported = |app: &mut App| {
+        app.dispatch("export.schedule", &json!({ "as": "json" }));
+        serde_json::from_str::<Value>(&app.world.saved_text()).expect("JSON")["plan_status"].clone()
+    };
+    assert_eq!(exported(&mut app), "approved");
+    // The core answers with another plan of the very same text, as where planning was stopped: without its orderings.
+    let shown = app.session.state().shown().expect("a plan").clone();
+    let mut other = (*shown).clone();
+    let mut planning = other.planning.as_deref().expect("it is planned").clone();
+    let window = planning.outcome.plans[0].windows.iter_mut().flatten().last().expect("an event");
+    window.earliest = window.earliest.checked_add(exact::Time::ONE).expect("it fits");
+    other.planning = Some(planning.into());
+    app.world.news.borrow_mut().push_back(HostEvent::Answer(Response::Snapshot(other.into())));
+    app.settle();
+    assert_eq!(told(&app), (json!(true), json!("lapsed")));
+    assert_eq!(exported(&mut app), "lapsed");
+    app.world.news.borrow_mut().push_back(HostEvent::Answer(Response::Snapshot(shown)));
+    app.settle();
+    assert_eq!(told(&app), (json!(false), json!("approved")), "the plan that was approved again");
+}
+
 /// The lines of a section of the review.
 fn lines(app: &App, section: &str) -> Vec<Value> {
     let items = app.json()["review"]["items"].as_array().expect("a list").clone();
@@ -138,15 +168,8 @@ fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
     let mut app = support::start();
     app.run(Command::Review(ReviewCommand::Run));
     assert_eq!(lines(&app, "robustness"), Vec::<Value>::new());
-    let settings = app.session.state().chance.settings.clone();
-    let settings = mission::RobustnessSettings { runs: 20, seed: 5, ..settings };
-    app.run(Command::Chance(ChanceCommand::Set(Box::new(settings))));
-    app.run(Command::Chance(ChanceCommand::Start));
-    for _ in 0..20 {
-        app.settle();
-    }
+    app.sample(20, 5);
     let made = app.json()["robustness"].clone();
-    assert_eq!(made["runs"], 20, "{made}");
     let line = lines(&app, "robustness");
     let [line] = line.as_slice() else { panic!("one line: {line:?}") };
     let text = line["text"].as_str().expect("words");
@@ -162,8 +185,7 @@ fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
     // The report has it.
     app.world.saved.borrow_mut().clear();
     app.run(Command::WriteReport);
-    let saved = app.world.saved.borrow();
-    let page = String::from_utf8(saved.last().expect("a report").1.clone()).expect("a text");
+    let page = app.world.saved_text();
     assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
 }
 
@@ -192,11 +214,9 @@ fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
     again.settle();
     assert_eq!(again.json()["review"]["rules"]["slope_deg"], 2.5);
     again.run(Command::Review(ReviewCommand::SaveRules));
-    let saved = again.world.saved.borrow().last().expect("a file").1.clone();
+    let saved = again.world.saved_text();
     again.dispatch("review.rules", &json!({ "slope_deg": 15 }));
-    let file =
-        HostEvent::FileOpened { kind: FileKind::Json, name: "rules.json".into(), bytes: saved, token: None };
-    again.world.news.borrow_mut().push_back(file);
+    again.world.open_file(FileKind::Json, "rules.json", saved.as_bytes());
     again.settle();
     assert_eq!(again.json()["review"]["rules"]["slope_deg"], 2.5);
 }

@@ -4,15 +4,20 @@
 use hca::{Automaton, Composite, CompositeId, CompositeKind, Element, LocationId, TransitionId};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::{AutomatonDrawing, AutomatonItem, AutomatonText, CompositeShape, LocationShape, TransitionShape};
+use super::{
+    AutomatonDrawing, AutomatonItem, AutomatonText, CompositeShape, LocationShape, NOTE_SIZE, PREEMPTED,
+    TransitionShape,
+};
 use crate::layered::level_curve;
 use crate::metrics::{GUTTER, MARGIN, TEXT_LIFT, TEXT_PAD, TextRole};
 use crate::text::{cut_to_width, text_width};
 use display::list::ARROW_LENGTH;
-use display::{Measure, Piece, Point, Rect};
+use display::{Measure, Piece, Point, Rect, approximate_text_width, text_width_at};
 
 /// Inside the box of a composite.
 const PADDING: f64 = 12.0;
+/// Below the padding of a composite that can be preempted: half of the note on its border, whose other half is outside.
+const NOTE_ROOM: f64 = 4.0;
 /// Between children.
 const GAP: f64 = 14.0;
 /// Between the children of a sequence, where an arrow goes.
@@ -111,7 +116,8 @@ impl<'a> Arranger<'a> {
         let composite = self.composite(id);
         let is_box = self.titles[id.0 as usize].is_some() || composite.kind == CompositeKind::Program;
         let title = if self.titles[id.0 as usize].is_some() { TextRole::Quiet.line_height() } else { 0.0 };
-        if is_box { (PADDING, PADDING + title, PADDING) } else { (0.0, 0.0, 0.0) }
+        let note = if composite.maintenance.is_some() { NOTE_ROOM } else { 0.0 };
+        if is_box { (PADDING, PADDING + title, PADDING + note) } else { (0.0, 0.0, 0.0) }
     }
 
     fn element_size(&self, element: Element) -> Size {
@@ -144,8 +150,11 @@ impl<'a> Arranger<'a> {
         };
         let (side, above, below) = self.frame(id);
         let title = self.titles[id.0 as usize].as_ref().map_or(0.0, |title| title.width);
+        let is_watching = self.composite(id).maintenance.is_some();
+        let note =
+            if is_watching { text_width_at(PREEMPTED, NOTE_SIZE, &approximate_text_width) } else { 0.0 };
         Size {
-            width: (inner.width.max(title) + 2.0 * side).ceil(),
+            width: (inner.width.max(title).max(note) + 2.0 * side).ceil(),
             height: (inner.height + above + below).ceil(),
             axis: (inner.axis + above).floor(),
         }

@@ -13,6 +13,12 @@ use smol_str::SmolStr;
 
 use crate::metrics::TextRole;
 
+/// What is said of a composite that was preempted, on its lower border.
+pub(crate) const PREEMPTED: &str = "✗ preempted in the last step";
+
+/// How large that is written.
+pub(crate) const NOTE_SIZE: f64 = 11.0;
+
 /// An automaton as shapes. Composites are in the order of their ids: outer ones first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct AutomatonDrawing {

@@ -3,13 +3,14 @@
 //! What is marked has a dot and a heavier border besides its colour. Non-entailment is a bar over what is not entailed.
 
 use display::{
-    Anchor, ColorRole, Dash, DisplayList, Fit, Group, PathEnd, Piece, Point, Rect, Stroke, TargetKind, Text,
+    Anchor, ColorRole, Dash, DisplayList, Fit, Group, PathEnd, Piece, Rect, Stroke, TargetKind, Text,
     approximate_text_width, text_width_at,
 };
 use hca::{Automaton, CompositeId, CompositeKind, LocationKind, Marking, TransitionId};
 
 use crate::automaton::{
-    AutomatonDrawing, AutomatonItem, AutomatonText, CompositeShape, LocationShape, TransitionShape,
+    AutomatonDrawing, AutomatonItem, AutomatonText, CompositeShape, LocationShape, NOTE_SIZE, PREEMPTED,
+    TransitionShape,
 };
 use crate::metrics::TextRole;
 
@@ -32,8 +33,8 @@ const CORNERS: (f64, f64) = (7.0, 5.0);
 const INSET: f64 = 3.0;
 /// Size of the name on a location's border, and of its dot.
 const TAG: (f64, f64) = (9.5, 5.0);
-/// Size of notes.
-const NOTE: f64 = 11.0;
+/// From the right end of a composite's lower border to the note on it.
+const NOTE_INSET: f64 = 10.0;
 
 /// The display list of an automaton. Linear in the drawing.
 pub fn automaton_list(
@@ -95,10 +96,14 @@ impl Builder<'_> {
         if self.state.preempted.contains(&shape.id) {
             let stroke = Stroke::solid(ColorRole::Threat, 1.5);
             list.rectangle(shape.rect.expanded(2.5), CORNERS.0 + 1.0, None, Some(stroke));
-            let corner = Point::new(shape.rect.max.x - 6.0, shape.rect.min.y + 3.0);
-            let rect = Rect::new(shape.rect.min.x, corner.y, corner.x, corner.y + NOTE + 2.0);
-            let text = Text::new("✗ preempted in the last step", NOTE, rect);
-            list.write(text.anchored(Anchor::End, Fit::Overflow).colored(ColorRole::Threat));
+            // On the lower border: at the upper one stands the title.
+            let width = text_width_at(PREEMPTED, NOTE_SIZE, &approximate_text_width).ceil();
+            let (right, half) = (shape.rect.max.x - NOTE_INSET, NOTE_SIZE / 2.0);
+            let border = shape.rect.max.y;
+            let rect = Rect::new(right - width, border - half, right, border + half);
+            let text = Text::new(PREEMPTED, NOTE_SIZE, rect).colored(ColorRole::Threat);
+            let text = text.anchored(Anchor::End, Fit::Overflow);
+            list.write(Text { plate: Some(ColorRole::Surface.into()), ..text });
         }
     }
 
@@ -150,7 +155,9 @@ impl Builder<'_> {
         let right = shape.rect.max.x - 8.0;
         let half = size / 2.0;
         let rect = Rect::new(right - width, shape.rect.max.y - half, right, shape.rect.max.y + half);
-        let text = Text::new(name, size, rect).colored(ColorRole::TextMuted);
+        // Never cut: its width is an estimate, and letters can be a little wider.
+        let text = Text::new(name, size, rect).anchored(Anchor::End, Fit::Overflow);
+        let text = text.colored(ColorRole::TextMuted);
         list.write(Text { plate: Some(ColorRole::Surface.into()), ..text })
             .stands_for(TargetKind::Location, shape.id.0);
     }

@@ -1,6 +1,8 @@
 //! Another plan of the same mission, such as the one that was approved, laid over the drawing of a network: an outline
 //! around what it does not have, dashes and a word along what it did at other times, and crossed names for what is gone.
 
+use std::collections::BTreeMap;
+
 use display::{
     Anchor, ColorRole, Dash, Detail, DisplayList, Fit, Group, Measure, PathEnd, Point, Rect, Stroke, Text,
     Weight, text_width_at,
@@ -63,7 +65,7 @@ fn times(occurrence: &Occurrence, plan: &Plan) -> Option<[[f64; 2]; 2]> {
     Some([window(occurrence.start)?, window(occurrence.end)?]).filter(|_| is_selected)
 }
 
-/// The changes as a list over that of the network. Linear in the network.
+/// The changes as a list over that of the network. Takes time by what is near each of them, and for sorting.
 pub fn changes_list(
     drawing: &NetworkDrawing,
     (network, plan): (&Network, &Plan),
@@ -71,9 +73,10 @@ pub fn changes_list(
     measure: &dyn Measure,
 ) -> DisplayList {
     let gone = places_of_gone(drawing.bounds, &changes.gone, measure);
-    let frame = gone.iter().fold(drawing.bounds, |frame, place| frame.union(place.expanded(WORDS.2)));
-    let mut list = DisplayList::new(frame);
     let arcs = arcs_of(network, &changes.changes);
+    let words = words(drawing, (network, plan), &arcs, measure);
+    let places = gone.iter().map(|place| place.expanded(WORDS.2)).chain(words.iter().map(|it| it.place));
+    let mut list = DisplayList::new(places.fold(drawing.bounds, Rect::union));
     list.begin(Group { layer: LAYERS[0], ..Group::default() });
     for (arc, change) in &arcs {
         let stroke = match change {
@@ -86,11 +89,47 @@ pub fn changes_list(
     }
     boxes(drawing, network, &arcs, &mut list);
     list.begin(Group { layer: LAYERS[1], ..Group::default() });
-    for (arc, change) in &arcs {
+    for Words { text, place, color, weight, title, room } in words {
+        let text = Text::new(text, WORDS.0, place).anchored(Anchor::Middle, Fit::Overflow).colored(color);
+        let plate = Some(ColorRole::Surface.into());
+        list.write(Text { weight, plate, legible: Some(room), ..text }).at(Detail::from(FAR_ZOOM));
+        list.entitle(title);
+    }
+    add_gone(&gone, &changes.gone, &mut list);
+    list
+}
+
+/// What is said along an arc.
+struct Words {
+    text: String,
+    place: Rect,
+    color: ColorRole,
+    weight: Weight,
+    title: &'static str,
+    /// How wide the arc is.
+    room: f64,
+}
+
+/// What is said of each arc, on its line or as near to it as nothing else is written.
+fn words(
+    drawing: &NetworkDrawing,
+    (network, plan): (&Network, &Plan),
+    arcs: &[(ArcId, BarChange)],
+    measure: &dyn Measure,
+) -> Vec<Words> {
+    let circle =
+        |node: &crate::drawing::NodeShape| Rect { min: node.center, max: node.center }.expanded(node.radius);
+    let mut taken: Vec<Rect> =
+        drawing.texts.iter().map(|text| text.rect).chain(drawing.nodes.iter().map(circle)).collect();
+    taken.sort_by(|one, other| one.min.y.total_cmp(&other.min.y));
+    let lines = level_parts(drawing);
+    let mut words = Vec::new();
+    // What has been written, by rows that are higher than words.
+    let mut written: BTreeMap<i64, Vec<Rect>> = BTreeMap::new();
+    let row = |y: f64| (y / (2.0 * WORDS.1)).floor() as i64;
+    for (arc, change) in arcs {
         let Some(shape) = drawing.arc(*arc) else { continue };
-        let middle = shape.bounds.center();
-        let on_line = Point::new(middle.x, height_at_middle(drawing, shape));
-        let (words, color, weight, title) = match change {
+        let (text, color, weight, title) = match change {
             BarChange::New => {
                 ("new".to_owned(), ColorRole::Accent, Weight::Strong, "not in the approved plan")
             }
@@ -99,22 +138,57 @@ pub fn changes_list(
                 (words, ColorRole::Text, Weight::Regular, title)
             }
         };
-        let half = text_width_at(&words, WORDS.0, measure) / 2.0 + WORDS.2;
-        let place = Rect::new(
-            on_line.x - half,
-            on_line.y - WORDS.1 / 2.0,
-            on_line.x + half,
-            on_line.y + WORDS.1 / 2.0,
-        );
-        let text = Text::new(words, WORDS.0, place).anchored(Anchor::Middle, Fit::Overflow).colored(color);
-        let plate = Some(ColorRole::Surface.into());
-        let legible = Some(shape.bounds.width());
-        list.write(Text { weight, plate, legible, ..text }).at(Detail::from(FAR_ZOOM));
-        list.entitle(title);
+        // As high as its letters, so that it fits between two lines.
+        let (half, height) = (text_width_at(&text, WORDS.0, measure) / 2.0 + WORDS.2, WORDS.0 + 1.0);
+        let (middle, line) = (shape.bounds.center().x, height_at_middle(drawing, shape));
+        let at = |off: f64| {
+            let top = line + off - height / 2.0;
+            Rect::new(middle - half, top, middle + half, top + height)
+        };
+        // Texts and circles are lower than the steps that are tried together.
+        let (from, to) = (line - 2.0 * MOST_OFF, line + 2.0 * MOST_OFF);
+        let near = taken.partition_point(|it| it.min.y < from)..taken.partition_point(|it| it.min.y < to);
+        let near_lines =
+            lines.partition_point(|(_, it)| it.min.y < from)..lines.partition_point(|(_, it)| it.min.y < to);
+        let is_free = |place: &Rect| {
+            let (first, last) = (row(place.min.y), row(place.max.y));
+            !taken[near.clone()].iter().any(|it| it.overlaps(*place))
+                && !written.range(first - 1..=last).any(|(_, all)| all.iter().any(|it| it.overlaps(*place)))
+        };
+        // Over another arc it would be taken for what is said of that one.
+        let is_apart = |place: &Rect| {
+            is_free(place)
+                && !lines[near_lines.clone()].iter().any(|(id, it)| id != arc && it.overlaps(*place))
+        };
+        let steps = (1..).map(|step| f64::from(step) * STEP_OFF).take_while(|off| *off <= MOST_OFF);
+        let offs = std::iter::once(0.0).chain(steps.flat_map(|off| [off, -off]));
+        let places: Vec<Rect> = offs.map(at).collect();
+        let place = places.iter().copied().find(is_apart);
+        let place = place.or_else(|| places.into_iter().find(is_free)).unwrap_or_else(|| at(0.0));
+        written.entry(row(place.min.y)).or_default().push(place);
+        words.push(Words { text, place, color, weight, title, room: shape.bounds.width() });
     }
-    add_gone(&gone, &changes.gone, &mut list);
-    list
+    words
 }
+
+/// The parts of arcs that are level or nearly so, from top to bottom; what rises steeply is passed soon.
+fn level_parts(drawing: &NetworkDrawing) -> Vec<(ArcId, Rect)> {
+    let mut parts = Vec::new();
+    for shape in &drawing.arcs {
+        let points = display::geometry::flatten(shape.start, drawing.pieces(shape));
+        let rects = points.windows(2).map(|pair| {
+            let (from, to) = (pair[0], pair[1]);
+            Rect::new(from.x.min(to.x), from.y.min(to.y), from.x.max(to.x), from.y.max(to.y)).expanded(1.0)
+        });
+        parts.extend(rects.filter(|rect| rect.height() < WORDS.1).map(|rect| (shape.id, rect)));
+    }
+    parts.sort_by(|(_, one), (_, other)| one.min.y.total_cmp(&other.min.y));
+    parts
+}
+
+/// How far from its arc a word is written at most, and in which steps a free place is looked for.
+const MOST_OFF: f64 = 72.0;
+const STEP_OFF: f64 = 2.0;
 
 /// When what an arc stands for can start in the plan.
 fn starts_of(network: &Network, plan: &Plan, arc: ArcId) -> Option<[f64; 2]> {

@@ -108,9 +108,14 @@ impl Core {
 
     /// The plan is kept from the update before, so this takes only the time of the review itself.
     fn review(&mut self, update: &Update, rules: &[MissionRule], host: &mut dyn CoreHost) {
+        let told = self.last.as_ref().and_then(planned::Last::final_plan);
         let mut quiet = Quiet { host, passes_maps: true, last: None };
         self.update(update, &mut quiet);
         let Some(snapshot) = quiet.last else { return };
+        // Where planning had been stopped, the plan that is reviewed is another one than was told.
+        if self.last.as_ref().and_then(planned::Last::final_plan) != told {
+            host.answer(Response::Snapshot(Arc::clone(&snapshot)));
+        }
         let mut stop = || host.is_superseded();
         let mut review = review::review(&snapshot, &update.goal, update.seed, &mut stop);
         review.findings = review::flight_rule::evaluate(&snapshot, rules, &mut stop);

@@ -33,6 +33,13 @@ pub(super) struct Last {
     pub(super) executions: Executions,
 }
 
+impl Last {
+    /// The plan, by its key, once no better one is looked for.
+    pub(super) fn final_plan(&self) -> Option<ContentKey> {
+        self.is_final.then_some(self.shown.planning.key)
+    }
+}
+
 /// What is shown of a plan.
 #[derive(Clone)]
 pub(super) struct Shown {

@@ -218,10 +218,25 @@ fn subject(text: &str) -> &str {
     text.split([':', '[']).next().unwrap_or(text)
 }
 
+/// Whether the checker objects to something that a line is about.
+fn blames(review: &Review, line: &super::Line) -> bool {
+    let mut objections =
+        review.plan.iter().filter(|it| it.text.starts_with("the independent checker objects"));
+    // A line about all of something is about whatever is wrong with it.
+    objections.any(|objection| {
+        line.names.is_empty()
+            || line.names.iter().any(|name| {
+                objection.text.contains(name.as_str())
+                    || objection.names.iter().any(|it| it.contains(name.as_str()))
+            })
+    })
+}
+
 #[test]
 fn every_line_that_passed_has_a_case_that_makes_it_fail() {
     let mut listing = String::new();
     let mut untouched = Vec::new();
+    let by_checker = [Section::CausalLinks, Section::Conflicts, Section::States, Section::Resources];
     for (name, source, own) in MISSIONS {
         let rules = own.iter().enumerate().map(|(at, rule)| MissionRule {
             name: format!("R{at}"),
@@ -242,11 +257,15 @@ fn every_line_that_passed_has_a_case_that_makes_it_fail() {
                         .iter()
                         .any(|it| it.status > Status::Passed && subject(&it.text) == subject(&line.text))
                 };
-                // A change of what the line names says more than one of anything else.
+                // A change of what the line names says more than one of anything else, and what is wrong then has to be
+                // about that: a plan that is not valid turns every line red that rests on the checker.
                 let names_it = |(case, _): &&(String, Review)| {
                     line.names.iter().any(|name| case.contains(name.as_str()))
                 };
-                let mut red = cases.iter().filter(|(_, review)| is_red(review));
+                let is_right = |(case, review): &&(String, Review)| {
+                    !case.starts_with("plan: ") || !by_checker.contains(&section) || blames(review, line)
+                };
+                let mut red = cases.iter().filter(|(_, review)| is_red(review)).filter(is_right);
                 let first = red.clone().next();
                 let case = match line.status {
                     Status::Information => continue,

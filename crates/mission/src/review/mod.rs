@@ -70,6 +70,8 @@ pub struct Review {
     pub traverses: Vec<TraverseReview>,
     /// Vehicles that come too near each other.
     pub separation_violations: Vec<Line>,
+    /// Whether activities of the mission run control programs, whose components can fail by chance.
+    pub runs_programs: bool,
     /// What runs with chance came to, if any were made.
     pub robustness: Option<Line>,
     /// What was found of the rules of the mission, by what they say: see [`flight_rule::evaluate`].

@@ -6,6 +6,7 @@ use exact::{Rational, Time};
 
 use super::tests::{LASTING, MISSION, SCENARIO, refused, reviewed, reviewed_with, snapshot};
 use super::{FlightRules, Line, MissionRule, Review, Section, Status, SuccessRate, review};
+use crate::robustness::Others;
 use crate::snapshot::{SeparationViolation, Snapshot};
 use crate::{Goal, Planning, Robustness, RobustnessSettings, Tally, Uncertainty};
 
@@ -110,6 +111,14 @@ fn states_and_reserves() {
     let empty = LASTING.replace("= 60", "= 50");
     assert_eq!(battery(&reviewed(&empty)), Status::Attention, "it comes down to its least level");
     let mut rules = FlightRules::default();
+    // A name that the mission does not have: the rule was held against nothing.
+    rules.reserves.insert("Batery".into(), Rational::from_integer(10));
+    let misspelled = ruled(reviewed(LASTING), &rules);
+    assert_eq!(battery(&misspelled), Status::Passed);
+    let text = "Batery: a reserve of it is asked for, and the plan has no resource of this name";
+    assert_eq!(line(&misspelled, Section::MissionRules, "Batery").text, text);
+    assert_eq!(misspelled.status, Status::Attention);
+    rules.reserves.clear();
     rules.reserves.insert("Battery".into(), Rational::from_integer(10));
     assert_eq!(battery(&ruled(reviewed(LASTING), &rules)), Status::Passed);
     rules.reserves.insert("Battery".into(), Rational::from_integer(11));
@@ -134,6 +143,13 @@ fn durations_that_the_plan_narrows() {
     // Starting later than declared is the plan's own choice.
     let long = reviewed("primitive A()[5,10]; scenario S[8,20] = { A() }");
     assert_eq!(worst(&long, Section::Durations), Status::Information, "{:?}", long.durations);
+    // Where no end is declared none is taken away, and the plan has one all the same.
+    let endless = reviewed("primitive A()[5,inf]; scenario S[0,20] = { A() }");
+    assert_eq!(
+        texts(&endless, Section::Durations),
+        ["A#1 is declared to take 5 or any time longer, and the plan holds only if it takes 5 to 20 min"]
+    );
+    assert_eq!(worst(&endless, Section::Durations), Status::Information);
     // The paper's mission: 405 to 486 minutes, of which the closing path leaves 450.
     let enroute = reviewed(MISSION);
     let drive = line(&enroute, Section::Durations, "Group-Traverse-Path#1");
@@ -235,6 +251,35 @@ fn the_share_of_runs_that_reach_the_end() {
     let lenient = FlightRules { success_rate: Some(rate), ..rules.clone() };
     assert_eq!(worst(&judged(54, 100, &lenient), Section::Robustness), Status::Passed);
     assert_eq!(judged(0, 0, &rules).robustness, None, "no runs, no line");
+}
+
+#[test]
+fn runs_that_say_little_have_not_passed() {
+    let judged = |settings: RobustnessSettings, tally: Tally| {
+        let mut review = reviewed(OPEN);
+        review.judge(&FlightRules::default(), Some(&Robustness { settings, tally }));
+        let line = review.robustness.expect("a line");
+        (line.status, line.text)
+    };
+    let settings = |runs: u64, others: Others| {
+        let uncertainty = Uncertainty { others, ..Uncertainty::default() };
+        RobustnessSettings { runs, seed: 3, uncertainty }
+    };
+    let all_of = |runs: u64| {
+        judged(settings(runs, Others::Uniform), Tally { runs, succeeded: runs, ..Tally::default() })
+    };
+    // Wilson's interval of n out of n begins at n / (n + 1.96²): 72 % of 10, 84 % of 20.
+    assert_eq!([1, 10].map(|runs| all_of(runs).0), [Status::Attention; 2], "that could be luck");
+    assert_eq!([20, 100].map(|runs| all_of(runs).0), [Status::Passed; 2]);
+    // Nothing but the plan itself was run.
+    let tally = Tally { runs: 100, succeeded: 100, succeeded_by_replanning: 0, ..Tally::default() };
+    let (status, text) = judged(settings(100, Others::Planned), tally.clone());
+    assert_eq!(status, Status::Attention, "{text}");
+    assert!(text.ends_with("; nothing was left to chance in them"), "{text}");
+    // A run that went on by another plan says nothing for this one.
+    let tally = Tally { succeeded_by_replanning: 12, ..tally };
+    let (_, text) = judged(settings(100, Others::Uniform), tally);
+    assert!(text.ends_with(", 12 of them by another plan"), "{text}");
 }
 
 #[test]

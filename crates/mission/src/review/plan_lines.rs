@@ -235,7 +235,7 @@ impl<'input> PlanLines<'input> {
     /// The activities of which the plan can use only a part of what is declared.
     pub(super) fn durations(&mut self) -> Vec<Line> {
         let network = self.network;
-        let declared: Vec<(&tpn::Occurrence, Time, Time)> = network
+        let declared: Vec<(&tpn::Occurrence, Time, Bound)> = network
             .occurrences
             .iter()
             .filter(|occurrence| occurrence.kind == OccurrenceKind::Primitive)
@@ -245,28 +245,32 @@ impl<'input> PlanLines<'input> {
                 let is_selected = self.plan.selected_arcs.get(id.index()) == Some(&true);
                 // Of what nature chooses a plan has to leave everything.
                 let is_own = is_selected && !network.is_uncertain(id);
-                is_own.then_some((occurrence, arc.lower, arc.upper.finite()?))
+                is_own.then_some((occurrence, arc.lower, arc.upper))
             })
             .collect();
         let pairs: Vec<(NodeId, NodeId)> = declared.iter().map(|(it, ..)| (it.start, it.end)).collect();
         let used = self.distances.between(&pairs);
         let line =
-            |(&(occurrence, lower, upper), used): (&(&tpn::Occurrence, Time, Time), &Option<TimeRange>)| {
+            |(&(occurrence, lower, upper), used): (&(&tpn::Occurrence, Time, Bound), &Option<TimeRange>)| {
                 let used = (*used)?;
-                let (is_later, is_earlier) = (used.least > lower, used.greatest < Bound::Finite(upper));
+                let (is_later, is_earlier) = (used.least > lower, used.greatest < upper);
                 if !is_later && !is_earlier {
                     return None;
                 }
                 let name = occurrence.name.to_string();
+                let declared = match upper {
+                    Bound::Finite(upper) => format!("[{},{}]", lower.readable(), upper.readable()),
+                    Bound::Infinite => format!("{} or any time longer", lower.readable()),
+                };
                 let text = format!(
-                    "{name} is declared to take [{},{}], and the plan holds only if it takes {}",
-                    lower.readable(),
-                    upper.readable(),
+                    "{name} is declared to take {declared}, and the plan holds only if it takes {}",
                     self.range_text(used)
                 );
                 let nodes = vec![occurrence.start, occurrence.end];
-                // Whoever is early can wait; whoever is late breaks the plan.
-                let status = if is_earlier { Status::Attention } else { Status::Information };
+                // Whoever is early can wait; whoever is late breaks the plan. Where no end was declared, nobody promised
+                // one that is taken away.
+                let is_cut = is_earlier && upper != Bound::Infinite;
+                let status = if is_cut { Status::Attention } else { Status::Information };
                 Some(self.places.line(status, text, occurrence.span, vec![name], nodes))
             };
         declared.iter().zip(&used).filter_map(line).collect()

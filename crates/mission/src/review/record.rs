@@ -25,7 +25,8 @@ pub struct Record {
     heads: BTreeSet<String>,
     /// What approvals are about, by its digest.
     subjects: BTreeMap<String, Sealed<Subject>>,
-    /// What runs with chance came to, the latest content last. Anybody can make them again, so they are not sealed.
+    /// What runs with chance came to, the latest content last. Anybody can make them again; in the document each has its
+    /// digest, so that figures that were altered are noticed.
     pub runs: Vec<Runs>,
 }
 
@@ -183,7 +184,7 @@ impl Record {
             "entries": entries.collect::<Vec<Value>>(),
             "heads": self.heads,
             "subjects": subjects,
-            "runs": self.runs,
+            "runs": self.runs.iter().map(sealed_runs).collect::<Vec<Value>>(),
         });
         let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
         text.push('\n');
@@ -203,11 +204,22 @@ impl Record {
             }
             _ => return Err(RecordError::Format { found: value["format"].to_string() }),
         }
-        let mut record = Self {
-            mission: value["mission"].as_str().unwrap_or_default().to_owned(),
-            runs: serde_json::from_value(value["runs"].take()).map_err(damaged)?,
-            ..Self::default()
-        };
+        let mut record =
+            Self { mission: value["mission"].as_str().unwrap_or_default().to_owned(), ..Self::default() };
+        let Value::Array(runs) = value["runs"].take() else { return Err(lacks("runs")) };
+        for mut runs in runs {
+            // Those that a version without digests kept cannot be told from others, and are made again.
+            let Some(digest) = runs.as_object_mut().and_then(|members| members.remove("digest")) else {
+                continue;
+            };
+            let runs = Sealed::<Runs>::read(runs).map_err(damaged)?;
+            if digest != runs.digest() {
+                let what =
+                    format!("the runs of content {} are not those that were made", short(&runs.content_hash));
+                return Err(RecordError::Broken(what));
+            }
+            record.runs.push((*runs).clone());
+        }
         if record.runs.iter().any(|runs| runs.tally.succeeded > runs.tally.runs) {
             return Err(RecordError::Damaged("more runs reached the end than were made".to_owned()));
         }
@@ -310,6 +322,14 @@ fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
     }
     let mut entries: Vec<Option<Entry>> = entries.into_iter().map(Some).collect();
     order.into_iter().filter_map(|index| entries[index].take()).collect()
+}
+
+/// Runs as they are written, with their digest.
+fn sealed_runs(runs: &Runs) -> Value {
+    let sealed = Sealed::new(runs.clone());
+    let mut raw = sealed.raw().clone();
+    raw["digest"] = sealed.digest().into();
+    raw
 }
 
 fn lacks(member: &str) -> RecordError {

@@ -134,10 +134,18 @@ fn other_documents_and_later_versions_are_refused_as_what_they_are() {
     {
         assert!(matches!(read(damaged), Err(RecordError::Damaged(_))), "{damaged}");
     }
-    assert!(matches!(
-        altered(|it| it["runs"][0]["tally"]["succeeded"] = json!(21)),
-        Err(RecordError::Damaged(_))
-    ));
+}
+
+#[test]
+fn runs_that_were_altered_are_refused_and_those_without_a_digest_are_made_again() {
+    let why = altered(|it| it["runs"][0]["tally"]["succeeded"] = json!(20)).expect_err("it is altered");
+    assert!(matches!(&why, RecordError::Broken(why) if why.contains("runs of content c1")), "{why}");
+    let bare = altered(|it| {
+        it["runs"][0].as_object_mut().expect("members").remove("digest");
+        it["runs"][0]["tally"]["succeeded"] = json!(20);
+    });
+    let bare = bare.expect("the history is as it was");
+    assert_eq!((bare.runs_of("c1"), bare.entries().len()), (None, 7));
 }
 
 #[test]

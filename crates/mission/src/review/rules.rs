@@ -282,10 +282,12 @@ impl Review {
                 Some("a plan can use a duration as the mission declares it (the mission)".to_owned());
         }
         self.mission_rules = rules.rules.iter().map(|rule| rule.line(&self.findings)).collect();
+        self.mission_rules.extend(self.reserves_of_nothing(rules));
         self.judge_margins(rules, &unit);
         self.judge_resources(rules);
         self.judge_traverses(rules);
-        self.robustness = robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it));
+        self.robustness =
+            robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it, self.runs_programs));
         let worst =
             Section::ALL.iter().flat_map(|&section| self.lines(section)).map(|line| line.status).max();
         self.status = worst.unwrap_or(Status::Passed).max(Status::Passed);
@@ -323,6 +325,21 @@ impl Review {
             let is_kept = resource.spare.is_positive() && resource.spare >= reserve;
             resource.line.judge(is_kept, &criterion, source);
         }
+    }
+
+    /// A reserve that names no resource of the plan was held against nothing, and is not taken for kept.
+    fn reserves_of_nothing(&self, rules: &FlightRules) -> Vec<Line> {
+        let is_here = |name: &str| self.resources.iter().any(|resource| resource.name == name);
+        let missing = rules.reserves.iter().filter(|(name, _)| self.is_planned() && !is_here(name));
+        let line = |(name, reserve): (&SmolStr, &Rational)| {
+            let text =
+                format!("{name}: a reserve of it is asked for, and the plan has no resource of this name");
+            let mut line = Line::new(Status::Attention, text);
+            let wanted = at_least(&reserve.readable(), reserve.is_positive(), "");
+            line.criterion = Some(format!("reserve {wanted} (flight rules of this mission)"));
+            line
+        };
+        missing.map(line).collect()
     }
 
     fn judge_traverses(&mut self, rules: &FlightRules) {
@@ -368,7 +385,7 @@ impl Review {
 }
 
 /// What runs with chance came to, held against the rule.
-fn success(rules: &FlightRules, found: &Robustness) -> Line {
+fn success(rules: &FlightRules, found: &Robustness, runs_programs: bool) -> Line {
     let (tally, settings) = (&found.tally, &found.settings);
     let (low, high) = tally.interval();
     let rate = tally.probability();
@@ -377,24 +394,36 @@ fn success(rules: &FlightRules, found: &Robustness) -> Line {
     } else {
         format!("only {} of {} runs", tally.runs, settings.runs)
     };
-    let text = format!(
+    let mut text = format!(
         "{} of {made} with chance reached the end (seed {}; 95 % confidence: {} to {})",
         percent(rate),
         settings.seed,
         percent(low),
         percent(high)
     );
-    let checked = if found.is_complete() { Status::Passed } else { Status::Attention };
+    // The plan that is reviewed did not hold in these.
+    match tally.succeeded_by_replanning {
+        0 => {}
+        1 => text.push_str(", one of them by another plan"),
+        several => text.push_str(&format!(", {several} of them by another plan")),
+    }
+    let is_by_chance = settings.uncertainty.leaves_something_to_chance(runs_programs);
+    if !is_by_chance {
+        text.push_str("; nothing was left to chance in them");
+    }
+    let checked = if found.is_complete() && is_by_chance { Status::Passed } else { Status::Attention };
     let mut line = Line::new(checked, text);
     if let Some(wanted) = rules.success_rate {
         let source = FlightRules::source(|it| it.success_rate == rules.success_rate);
         let status = match rate {
             _ if rate < wanted.least => Status::Failed,
             _ if rate < wanted.wanted => Status::Attention,
+            // Few runs that all went well could be luck.
+            _ if low < wanted.least => Status::Attention,
             _ => Status::Passed,
         };
         let criterion = format!(
-            "success rate at least {}, below {} it has failed",
+            "success rate at least {}, below {} it has failed, and enough runs to be confident of the latter",
             percent(wanted.wanted),
             percent(wanted.least)
         );

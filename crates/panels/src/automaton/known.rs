@@ -10,7 +10,9 @@ use crate::Context;
 
 /// Shows one choice per variable.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, automaton: &Automaton, commands: &mut CommandSender) {
-    title(ui, context, "What is known at the end of this step", "the text has no plant to estimate it from");
+    title(ui, context, "What is known at the end of this step", "");
+    let note = RichText::new("The text has no plant to estimate it from.").small();
+    ui.label(note.color(context.tokens.text_muted));
     let input = context.state.automaton.next_input();
     Grid::new("automaton-known").num_columns(2).show(ui, |ui| {
         for (variable, id) in automaton.variables.iter().zip(0..) {

@@ -9,12 +9,14 @@ use std::sync::Arc;
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
 use mission::Snapshot;
 use mission::compare::{Change, Comparison, Side, compare};
+use mission::review::since::{TextChange, text_changes};
 use theme::icon::Icon;
 use theme::{Tokens, space, strong};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::compare::CompareCommand;
 
+use crate::review::changes;
 use crate::{Context, Panel};
 
 /// The comparison.
@@ -30,6 +32,8 @@ struct Made {
     before: Arc<Side>,
     after: Arc<Snapshot>,
     comparison: Comparison,
+    /// What was edited, where the text of the former plan is known.
+    text: Vec<TextChange>,
 }
 
 impl Panel for ComparePanel {
@@ -46,7 +50,7 @@ impl Panel for ComparePanel {
                     }
                     return;
                 };
-                self.compare(before, after);
+                self.compare(before, context.state.compare.text(), after);
                 let Some(made) = &self.made else { return };
                 legend(ui, context, before);
                 if !before.is_planned || after.plan().is_none() {
@@ -54,6 +58,7 @@ impl Panel for ComparePanel {
                     ui.label(RichText::new(format!("{which} has no plan.")).color(context.tokens.warning));
                 }
                 summary(ui, context, &made.comparison);
+                changes::text(ui, context, &made.text, "and more lines");
                 ui.checkbox(&mut self.only_differences, "Only what differs");
                 timeline::show(ui, context, &made.comparison, self.only_differences, commands);
                 if !made.comparison.paths.is_empty() {
@@ -67,14 +72,15 @@ impl Panel for ComparePanel {
 
 impl ComparePanel {
     /// Compares, unless the same two plans were compared last.
-    fn compare(&mut self, before: &Arc<Side>, after: &Arc<Snapshot>) {
+    fn compare(&mut self, before: &Arc<Side>, text: Option<&Arc<str>>, after: &Arc<Snapshot>) {
         let is_known = self
             .made
             .as_ref()
             .is_some_and(|made| Arc::ptr_eq(&made.before, before) && Arc::ptr_eq(&made.after, after));
         if !is_known {
             let comparison = compare(before, &Side::of_snapshot("the open mission", after));
-            self.made = Some(Made { before: Arc::clone(before), after: Arc::clone(after), comparison });
+            let text = text.map_or_else(Vec::new, |text| text_changes(text, &after.source));
+            self.made = Some(Made { before: Arc::clone(before), after: Arc::clone(after), comparison, text });
         }
     }
 }

@@ -148,15 +148,15 @@ impl DistanceGraph {
 }
 
 /// A bound of the network.
-struct Between {
-    from: NodeId,
-    to: NodeId,
+pub(super) struct Between {
+    pub(super) from: NodeId,
+    pub(super) to: NodeId,
     weight: Time,
     constraint: Constraint,
 }
 
 /// Every bound of what is selected: `to − from ≤ weight`.
-fn bounds(selected: &Selected<'_>) -> Vec<Between> {
+pub(super) fn bounds(selected: &Selected<'_>) -> Vec<Between> {
     let network = selected.network;
     let mut all = Vec::new();
     for &id in selected.arcs {

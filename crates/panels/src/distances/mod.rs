@@ -5,6 +5,7 @@ mod arrange;
 mod graph;
 mod matrix;
 mod paint;
+mod part;
 
 use std::sync::Arc;
 
@@ -36,14 +37,18 @@ struct Drawn {
     plan: *const Plan,
     /// Keeps the plan of a step in its place, so that no other can take it.
     _step: Option<Arc<Plan>>,
+    /// What is selected, where that decides which part is drawn.
+    seeds: Vec<NodeId>,
     graph: DistanceGraph,
+    /// What is said of a part.
+    note: Option<String>,
     arranged: Arranged,
 }
 
-/// Larger graphs are not drawn: nobody could read them.
-const MAX_VERTICES: usize = 60;
-/// Nor are graphs of more events made, to find how many vertices they would have.
-const MAX_EVENTS: usize = 2_000;
+/// Smaller than this no name could be read.
+const LEAST_ZOOM: f64 = 0.78;
+/// A few vertices are not drawn larger than this.
+const LARGEST_WHOLE: f64 = 1.5;
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
 
@@ -68,13 +73,11 @@ impl Panel for DistancesPanel {
         }
         self.follow(context, snapshot, network, plan, &selected, cycle);
         let Some(drawn) = &self.drawn else { return };
-        if drawn.graph.vertices.is_empty() {
-            let text = format!(
-                "The graph has too many events to be read: {} are selected, and it shows up to {MAX_VERTICES} points in time.",
-                selected.0.len()
-            );
-            show_empty(ui, context, &text);
-            return;
+        if let Some(note) = &drawn.note {
+            ui.horizontal_wrapped(|ui| {
+                ui.add_space(space::M);
+                ui.label(RichText::new(note.as_str()).small().color(context.tokens.text_muted));
+            });
         }
         self.show_graph(ui, context, network, commands);
     }
@@ -113,12 +116,7 @@ impl DistancesPanel {
                     };
                     ui.label(RichText::new(text).small().color(tokens.text_muted));
                 } else {
-                    let total = exact::Time::checked_sum(cycle.iter().map(|member| member.weight));
-                    let weights: Vec<String> =
-                        cycle.iter().map(|member| workbench::time_text::time(member.weight)).collect();
-                    let total = total.map_or_else(|| "…".to_owned(), workbench::time_text::time);
-                    let text =
-                        format!("✗ Negative cycle: {} = {total}", weights.join(" + ").replace("+ -", "− "));
+                    let text = format!("✗ {}", sum_of(cycle));
                     let names: Vec<String> = cycle
                         .iter()
                         .map(|member| workbench::state::selection::node_name(network, member.from))
@@ -140,25 +138,35 @@ impl DistancesPanel {
         selected: &(Vec<NodeId>, Vec<ArcId>),
         cycle: &[CycleMember],
     ) {
-        let is_current = self
-            .drawn
-            .as_ref()
-            .is_some_and(|drawn| drawn.snapshot.shows_same(snapshot) && std::ptr::eq(drawn.plan, plan));
+        let seeds = seeds(&context.state.selection, network);
+        let is_current = self.drawn.as_ref().is_some_and(|drawn| {
+            drawn.snapshot.shows_same(snapshot)
+                && std::ptr::eq(drawn.plan, plan)
+                && (drawn.note.is_none() || !cycle.is_empty() || drawn.seeds == seeds)
+        });
         if is_current {
             return;
         }
         let (nodes, arcs) = selected;
-        let mut graph = DistanceGraph::default();
-        if nodes.len() <= MAX_EVENTS {
-            graph = DistanceGraph::new(&Selected { network, nodes, arcs, plan, cycle });
-        }
-        if graph.vertices.len() > MAX_VERTICES {
-            graph = DistanceGraph::default();
+        let part::Shown { graph, left_out, stretch } =
+            part::shown(&Selected { network, nodes, arcs, plan, cycle }, &seeds);
+        let what = match (cycle.is_empty(), seeds.is_empty()) {
+            (false, _) => "The part around the contradiction",
+            (true, false) => "The part around what is selected",
+            (true, true) => "The part around the beginning; select an event to see what is around it",
+        };
+        let note = (left_out > 0).then(|| match stretch {
+            1 => format!("{what}: {left_out} events are not drawn."),
+            _ => format!("{what}: each edge stands for up to {stretch} bounds after each other."),
+        });
+        if !cycle.is_empty() {
+            self.view.keep_fitted();
         }
         let widths: Vec<f64> = graph.vertices.iter().map(paint::width).collect();
         let arranged = arrange(&graph, &widths);
         let step = context.step().map(|view| Arc::clone(&view.plan));
-        self.drawn = Some(Drawn { snapshot: Arc::clone(snapshot), plan, _step: step, graph, arranged });
+        let snapshot = Arc::clone(snapshot);
+        self.drawn = Some(Drawn { snapshot, plan, _step: step, seeds, graph, note, arranged });
     }
 
     fn show_graph(
@@ -180,7 +188,7 @@ impl DistancesPanel {
             WidgetInfo::labeled(Role::Image, true, name)
         });
         let action = context.view_action(PanelKind::Distances);
-        move_view(&mut self.view, ui, panel, &response, action, &drawn.arranged);
+        move_view(&mut self.view, ui, panel, &response, action, drawn);
         let focus = context.focus().unwrap_or_default();
         let painter = ui.painter_at(panel);
         let scene = paint::Scene {
@@ -219,8 +227,9 @@ fn move_view(
     panel: Rect,
     response: &egui::Response,
     action: Option<ViewAction>,
-    arranged: &Arranged,
+    drawn: &Drawn,
 ) {
+    let bounds = drawn.arranged.bounds;
     if response.dragged() {
         view.pan(response.drag_delta());
     }
@@ -236,9 +245,53 @@ fn move_view(
         Some(ViewAction::ZoomIn) => view.zoom_at(panel, panel.center(), KEY_ZOOM),
         Some(ViewAction::ZoomOut) => view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
         Some(ViewAction::ZoomReset) => view.reset_zoom(),
-        Some(ViewAction::Fit | ViewAction::FitSelection) => view.fit(panel, arranged.bounds),
+        Some(ViewAction::Fit) => view.show(panel, bounds, LARGEST_WHOLE),
+        Some(ViewAction::FitSelection) => view.keep_fitted(),
     }
     if view.is_fitted() {
-        view.fit(panel, arranged.bounds);
+        view.fit_legibly(panel, bounds, part_that_matters(drawn), LEAST_ZOOM);
     }
+}
+
+/// Where the contradiction is, or what is selected.
+fn part_that_matters(drawn: &Drawn) -> Option<display::Rect> {
+    let Drawn { graph, arranged, seeds, .. } = drawn;
+    let edges = graph.edges.iter().filter(|edge| edge.is_in_cycle);
+    let mut vertices: Vec<usize> = edges.flat_map(|edge| [edge.from, edge.to]).collect();
+    if vertices.is_empty() {
+        let is_selected = |vertex: &graph::Vertex| vertex.nodes.iter().any(|node| seeds.contains(node));
+        vertices = (0..graph.vertices.len()).filter(|&at| is_selected(&graph.vertices[at])).collect();
+    }
+    let places = vertices.iter().filter_map(|&vertex| arranged.places.get(vertex));
+    let areas = places.map(|&place| display::Rect { min: place, max: place }.expanded(40.0));
+    areas.reduce(display::Rect::union)
+}
+
+/// A contradiction of more bounds is told by its two sides: all that has to pass, and all that may.
+const MOST_WEIGHTS: usize = 12;
+
+/// The weights of a contradiction, and what they come to.
+fn sum_of(cycle: &[CycleMember]) -> String {
+    let words = |sum: Option<exact::Time>| sum.map_or_else(|| "…".to_owned(), workbench::time_text::time);
+    let total = words(exact::Time::checked_sum(cycle.iter().map(|member| member.weight)));
+    if cycle.len() <= MOST_WEIGHTS {
+        let weights: Vec<String> =
+            cycle.iter().map(|member| workbench::time_text::time(member.weight)).collect();
+        return format!("Negative cycle: {} = {total}", weights.join(" + ").replace("+ -", "− "));
+    }
+    let side = |is_negative: bool| {
+        let weights = cycle.iter().map(|member| member.weight);
+        exact::Time::checked_sum(weights.filter(move |weight| weight.is_negative() == is_negative))
+    };
+    let needed = side(true).and_then(exact::Time::checked_neg);
+    format!("Negative cycle of {} bounds: {} − {} = {total}", cycle.len(), words(side(false)), words(needed))
+}
+
+/// The events of what is selected.
+fn seeds(selection: &Selection, network: &Network) -> Vec<NodeId> {
+    if let Selection::Node(node) = selection {
+        return vec![*node];
+    }
+    let occurrence = selection.occurrence(network).and_then(|id| network.occurrences.get(id.index()));
+    occurrence.map_or_else(Vec::new, |occurrence| vec![occurrence.start, occurrence.end])
 }

@@ -69,7 +69,7 @@ impl Changes {
             return;
         }
         indented(ui, |ui| {
-            text(ui, context, &since.text);
+            text(ui, context, &since.text, "and more: the report has them all");
             plan(ui, context, since, commands);
             let lines: Vec<String> = since
                 .lines
@@ -104,7 +104,8 @@ fn note(since: &Since) -> String {
     words.join(", ")
 }
 
-fn text(ui: &mut Ui, context: &Context<'_>, changes: &[TextChange]) {
+/// The places at which two texts differ; `more` says where the others are, of many.
+pub(crate) fn text(ui: &mut Ui, context: &Context<'_>, changes: &[TextChange], more: &str) {
     if changes.is_empty() {
         return;
     }
@@ -126,7 +127,7 @@ fn text(ui: &mut Ui, context: &Context<'_>, changes: &[TextChange]) {
         }
     }
     if left == 0 {
-        row::quiet_word(ui, "and more: the report has them all");
+        row::quiet_word(ui, more);
     }
 }
 

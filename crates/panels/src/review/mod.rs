@@ -2,7 +2,7 @@
 //!
 //! Each line leads to its place in all other panels. A state is always a sign and a word, never a colour alone.
 
-mod changes;
+pub(crate) mod changes;
 mod events;
 mod history;
 mod lines;

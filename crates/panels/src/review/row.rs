@@ -148,9 +148,10 @@ pub(super) fn quiet_word(ui: &mut Ui, text: &str) {
 
 /// A sentence that is no line of the checklist.
 pub(super) fn quiet(ui: &mut Ui, context: &Context<'_>, text: &str) {
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         ui.add_space(INDENT);
-        ui.label(egui::RichText::new(text).color(context.tokens.text_muted));
+        // All of its lines begin at the indentation.
+        ui.vertical(|ui| ui.label(egui::RichText::new(text).color(context.tokens.text_muted)));
     });
 }
 

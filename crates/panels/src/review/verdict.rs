@@ -56,6 +56,9 @@ pub(super) fn show(
                 let text = if context.state.status() == state::Status::Broken {
                     "The text has errors: this review is of the text before. Nothing below is about what is \
                      written now."
+                } else if context.state.review.hash() == Some(review.content_hash.as_str()) {
+                    "This review is of another plan of the same text than the one that is drawn. Review again to \
+                     see how that one stands."
                 } else {
                     "The text, the map or the seed has changed since this review. Undoing the change makes it \
                      current again."

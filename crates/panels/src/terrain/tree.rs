@@ -65,15 +65,16 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
             send(GrowthCommand::GoTo(shown.total()));
         }
         let mut samples = shown.samples();
-        ui.spacing_mut().slider_width = (ui.available_width() - 24.0).clamp(60.0, 180.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - 48.0).clamp(60.0, 180.0);
         let slider = egui::Slider::new(&mut samples, 0..=shown.total()).show_value(false);
         if ui.add(slider).accessible_name("Samples").changed() {
             send(GrowthCommand::GoTo(samples));
         }
-        ui.add(egui::Label::new(RichText::new(shown.words()).color(tokens.text_muted)).extend());
+        // Before the words, which may have no room in this row: alone in the next one nobody would know what it closes.
         if icon::button(ui, tokens, Icon::Close, "Hide the search tree").clicked() {
             send(GrowthCommand::Close);
         }
+        ui.add(egui::Label::new(RichText::new(shown.words()).color(tokens.text_muted)).extend());
     });
     if shown.is_race() {
         race(ui, context, shown, commands);

@@ -33,9 +33,10 @@ pub struct Ask {
 pub enum Answer {
     /// One of several.
     Choice(Vec<Choice>),
-    /// A number; what differs from it by no more than the second one counts too.
+    /// A number, with or without a unit; what differs from it by no more than the second one counts too.
     Number(Expression, Rational),
-    /// A name or a word; capitals make no difference.
+    /// A name or a word, or several with commas between them. Capitals, spaces, quotation marks and the order of several
+    /// make no difference.
     Word(Expression),
     /// Something to do; it is done when this holds.
     Task(Expression),
@@ -67,16 +68,14 @@ impl Answer {
             Self::Choice(choices) => choices.get(given.parse::<usize>().ok()?)?.is_right.holds(state),
             Self::Number(expression, within) => {
                 let right = expression.number(state)?;
-                let Ok(given) = given.trim().replace(',', ".").parse::<Rational>() else {
-                    return Some(false);
-                };
+                let Some(given) = number_in(given) else { return Some(false) };
                 let off = given.checked_sub(right)?;
                 let off = if off.is_negative() { off.checked_neg()? } else { off };
                 Some(off <= *within)
             }
             Self::Word(expression) => {
                 let right = expression.value(state)?.to_string();
-                Some(right.eq_ignore_ascii_case(given.trim()))
+                Some(words_in(&right) == words_in(given))
             }
             Self::Task(expression) => expression.holds(state),
         }
@@ -93,6 +92,63 @@ impl Answer {
             Self::Word(expression) => expression.value(state).map(|value| value.to_string()),
             Self::Task(_) => None,
         }
+    }
+}
+
+/// Numbers that people write as words.
+const NUMBERS: [&str; 13] = [
+    "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+];
+
+/// The number that somebody gave: `20`, `2,5`, `−3 min`, `80 %`, `two`. Behind it may stand a unit, and nothing else.
+fn number_in(given: &str) -> Option<Rational> {
+    let given = given.trim().trim_end_matches('.').replace('−', "-").replace(',', ".").to_lowercase();
+    if let Some(number) = NUMBERS.iter().position(|word| *word == given) {
+        return Some(Rational::from_integer(number as i64));
+    }
+    let end = given.find(|it: char| !it.is_ascii_digit() && !".-+/ ".contains(it)).unwrap_or(given.len());
+    let (number, unit) = given.split_at(end);
+    let is_unit = unit.chars().all(|it| it.is_alphabetic() || "%° ".contains(it));
+    number.trim().parse().ok().filter(|_| is_unit)
+}
+
+/// What somebody said, however it is spelled: `(x = a)` is `x=a`, and `b, a` is `a, b`.
+fn words_in(given: &str) -> Vec<String> {
+    let plain: String = given.to_lowercase().chars().filter(|it| !"`\"“”„'’".contains(*it)).collect();
+    let plain = plain.trim().trim_end_matches('.');
+    let mut words = Vec::new();
+    let (mut depth, mut word) = (0, String::new());
+    for letter in plain.chars() {
+        depth += match letter {
+            '(' | '[' => 1,
+            ')' | ']' => -1,
+            _ => 0,
+        };
+        // Within parentheses a comma belongs to a name.
+        if letter == ',' && depth <= 0 {
+            words.push(std::mem::take(&mut word));
+        } else {
+            word.push(letter);
+        }
+    }
+    words.push(word);
+    let mut words: Vec<String> = words.iter().map(|word| spelled(word)).collect();
+    words.sort_unstable();
+    words
+}
+
+/// A name without the spaces that make no difference, and without parentheses around all of it.
+fn spelled(word: &str) -> String {
+    let mut out = String::with_capacity(word.len());
+    let is_part_of_word = |it: char| it.is_alphanumeric() || it == '_' || it == '-';
+    for part in word.split_whitespace() {
+        let meets = out.ends_with(is_part_of_word) && part.starts_with(is_part_of_word);
+        out.push_str(if meets { " " } else { "" });
+        out.push_str(part);
+    }
+    match out.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')) {
+        Some(inside) if !inside.contains(['(', ')']) => inside.to_owned(),
+        _ => out,
     }
 }
 

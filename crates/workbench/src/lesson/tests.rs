@@ -169,6 +169,45 @@ fn answers_are_judged() {
     let word = Answer::Word(Expression::read("\"Deploy#1\"").expect("a word"));
     assert_eq!(word.is_right(" deploy#1 ", &state), Some(true));
     assert_eq!(word.is_right("Stow#1", &state), Some(false));
+    // Right in other words, and wrong in words that look like it.
+    let minutes = Answer::Number(Expression::read("20").expect("a number"), Rational::ZERO);
+    for given in ["20", " 20 min", "20 minutes.", "20,0", "+20", "40/2", "20 %", "20min"] {
+        assert_eq!(minutes.is_right(given, &state), Some(true), "{given}");
+    }
+    for given in
+        ["", "2", "-20", "−20", "20 to 30", "20-30", "20 30", "min", "about 20", "200", "20,5", "two"]
+    {
+        assert_eq!(minutes.is_right(given, &state), Some(false), "{given}");
+    }
+    let two = Answer::Number(Expression::read("2").expect("a number"), Rational::ZERO);
+    assert_eq!(
+        ["two", "Two", "twelve"].map(|it| two.is_right(it, &state)),
+        [Some(true), Some(true), Some(false)]
+    );
+    let marks = Answer::Word(Expression::read("\"assert x=a, when s=on\"").expect("words"));
+    for given in [
+        "assert x=a, when s=on",
+        "when s = on, assert x = a",
+        "`assert x=a`,`when s=on`",
+        "Assert X=A , when s=on.",
+    ] {
+        assert_eq!(marks.is_right(given, &state), Some(true), "{given}");
+    }
+    for given in ["assert x=a", "assert x=b, when s=on", "assertx=a, when s=on", "assert x=a when s=on", ""] {
+        assert_eq!(marks.is_right(given, &state), Some(false), "{given}");
+    }
+    let goal = Answer::Word(Expression::read("\"lamp=on\"").expect("a word"));
+    for (given, is_right) in
+        [("(lamp = on)", true), ("“lamp=on”", true), ("lamp", false), ("lamp=off", false)]
+    {
+        assert_eq!(goal.is_right(given, &state), Some(is_right), "{given}");
+    }
+    let tell = Answer::Word(Expression::read("\"Tell(PATH1=OK)#1\"").expect("a word"));
+    for (given, is_right) in
+        [("tell (PATH1 = OK) #1", true), ("Tell(PATH1=OK)", false), ("Tell(PATH1=OK)#2", false)]
+    {
+        assert_eq!(tell.is_right(given, &state), Some(is_right), "{given}");
+    }
     assert_eq!(number.right_now(&state).as_deref(), Some("2.5"));
 }
 

@@ -27,6 +27,8 @@ pub enum CompareCommand {
 #[derive(Clone, Debug, Default)]
 pub struct CompareState {
     reference: Option<Arc<Side>>,
+    /// The text of the plan to compare with; a plan in a file has none.
+    text: Option<Arc<str>>,
     /// The name of a text that is being worked out, under its token.
     waiting: Option<(u64, String)>,
     last_token: u64,
@@ -36,6 +38,11 @@ impl CompareState {
     /// The plan to compare with.
     pub fn reference(&self) -> Option<&Arc<Side>> {
         self.reference.as_ref()
+    }
+
+    /// The text of the plan to compare with, if it is known.
+    pub fn text(&self) -> Option<&Arc<str>> {
+        self.text.as_ref()
     }
 
     /// The name of the text that is being worked out to compare with.
@@ -54,7 +61,9 @@ impl AppState {
             CompareCommand::Pin => {
                 let Some(shown) = self.shown().filter(|shown| shown.plan().is_some()) else { return };
                 let name = format!("pinned revision {}", shown.revision);
-                self.compare.reference = Some(Arc::new(Side::of_snapshot(&name, shown)));
+                let (side, text) = (Side::of_snapshot(&name, shown), Arc::clone(&shown.source));
+                self.compare.reference = Some(Arc::new(side));
+                self.compare.text = Some(text);
                 self.compare.waiting = None;
             }
             CompareCommand::WithApproved => match self.review.record().last_approval() {
@@ -70,6 +79,7 @@ impl AppState {
             }
             CompareCommand::Clear => {
                 self.compare.reference = None;
+                self.compare.text = None;
                 self.compare.waiting = None;
             }
         }
@@ -103,6 +113,7 @@ impl AppState {
         match Side::of_json(name, &document) {
             Ok(side) => {
                 self.compare.reference = Some(Arc::new(side));
+                self.compare.text = None;
                 self.compare.waiting = None;
             }
             Err(reason) => self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
@@ -128,6 +139,7 @@ impl AppState {
     pub(super) fn take_evaluated(&mut self, token: u64, snapshot: &Snapshot) {
         if let Some((_, name)) = self.compare.waiting.take_if(|(waiting, _)| *waiting == token) {
             self.compare.reference = Some(Arc::new(Side::of_snapshot(&name, snapshot)));
+            self.compare.text = Some(Arc::clone(&snapshot.source));
         }
     }
 }

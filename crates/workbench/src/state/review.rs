@@ -11,8 +11,8 @@ use std::sync::Arc;
 use layout::timeline::before::Before;
 use layout::timeline::rule::RuleTrack;
 use mission::review::record::Act;
-use mission::review::{FlightRules, Record, Review, content_hash};
-use mission::{Request, Robustness, SearchKind, Stage, Update};
+use mission::review::{FlightRules, Record, Review, content_hash, plan_hash};
+use mission::{Request, Robustness, SearchKind, Snapshot, Stage, Update};
 use smol_str::SmolStr;
 
 use crate::state::{AppState, Effect, PlanSettings, ToastKind};
@@ -87,6 +87,8 @@ pub struct ReviewState {
     set_aside: BTreeMap<SmolStr, Record>,
     /// What the present content is called.
     current: Option<Current>,
+    /// The hash of the plan that is drawn, with the answer that it is of; only while somebody has to know it.
+    plan: Option<(Arc<Snapshot>, String)>,
     /// Whether the report is to be written as soon as there is a review for it.
     pub(super) wants_report: bool,
 }
@@ -113,11 +115,15 @@ struct Current {
 const MAX_DONE: usize = 6;
 
 impl ReviewState {
-    /// The review to show, and whether it is stale: that of the present content if there is one, otherwise the latest.
+    /// The review to show, and whether it is stale: that of the present content and the plan that is drawn if there is
+    /// one, otherwise the latest.
     pub fn shown(&self, search: SearchKind) -> Option<(&Arc<Review>, bool)> {
         let hash = self.hash();
-        let current =
-            self.done.iter().find(|it| Some(it.review.content_hash.as_str()) == hash && it.search == search);
+        let current = self.done.iter().find(|it| {
+            Some(it.review.content_hash.as_str()) == hash
+                && it.search == search
+                && self.plan_hash().is_none_or(|plan_hash| it.review.plan_hash == plan_hash)
+        });
         match current {
             Some(done) => Some((&done.review, false)),
             None => self.done.first().map(|done| (&done.review, true)),
@@ -127,6 +133,19 @@ impl ReviewState {
     /// The hash of the present content, once it is known.
     pub fn hash(&self) -> Option<&str> {
         self.current.as_ref().map(|current| current.hash.as_str())
+    }
+
+    /// The hash of the plan that is drawn, where the present content has been reviewed or approved.
+    fn plan_hash(&self) -> Option<&str> {
+        self.plan.as_ref().map(|(_, hash)| hash.as_str())
+    }
+
+    /// Whether it matters which plan the present content has.
+    fn asks_for_plan(&self) -> bool {
+        let Some(hash) = self.hash() else { return false };
+        let mut entries = self.record.entries().iter();
+        self.done.iter().any(|done| done.review.content_hash == hash)
+            || entries.any(|entry| matches!(entry.act, Act::Approve { .. }) && entry.content_hash == hash)
     }
 
     /// Whether a review is being made.
@@ -312,6 +331,14 @@ impl AppState {
     /// Adds what a file has.
     pub(super) fn import_record(&mut self, name: &str, text: &str) {
         match Record::from_json(text) {
+            Ok(record) if !self.is_of_open_mission(&record) => {
+                // What is added to a history stays in it for good.
+                let words = format!(
+                    "{name}: this is the review of “{}”, and nothing in it is about the text that is open. Nothing of it was added",
+                    record.mission
+                );
+                self.toasts.add(ToastKind::Failed, words);
+            }
             Ok(record) => {
                 let count = self.review.record.merge(record);
                 self.learn_runs();
@@ -323,6 +350,19 @@ impl AppState {
                 self.toasts.add(ToastKind::Failed, format!("{name}: {reason}. Nothing of it was added"));
             }
         }
+    }
+
+    /// Whether a record is about the open mission: by its name, or, where that was changed, by the present content or by
+    /// what both histories have.
+    fn is_of_open_mission(&self, record: &Record) -> bool {
+        let hash = self.review.hash();
+        let is_present = |content: &str| hash.is_some_and(|hash| hash == content);
+        record.mission.is_empty()
+            || record.mission == self.mission
+            || record.entries().iter().any(|entry| {
+                is_present(&entry.content_hash) || self.review.record.entry(entry.digest()).is_some()
+            })
+            || record.runs.iter().any(|runs| is_present(&runs.content_hash))
     }
 
     fn keep_review(&mut self) {
@@ -396,12 +436,27 @@ impl AppState {
             (it.revision, it.answered) == (revision, answered) && it.settings == self.settings.plan
         });
         if is_known {
+            self.follow_plan();
             self.evaluate_rules();
             return;
         }
         let settings = self.settings.plan.clone();
         let hash = content_hash(self.document.text(), latest.map.as_ref(), &settings.goal, settings.seed);
         self.review.current = Some(Current { revision, answered, settings, hash });
+        self.follow_plan();
+    }
+
+    /// Follows which plan is drawn: one content has another plan by another search, or where planning was stopped.
+    fn follow_plan(&mut self) {
+        let revision = self.document.revision();
+        let drawn = self.snapshots.latest().filter(|it| it.revision == revision && it.plan().is_some());
+        let Some(drawn) = drawn.filter(|_| self.review.asks_for_plan()) else {
+            self.review.plan = None;
+            return;
+        };
+        if self.review.plan.as_ref().is_none_or(|(known, _)| !Arc::ptr_eq(known, drawn)) {
+            self.review.plan = Some((Arc::clone(drawn), plan_hash(drawn)));
+        }
     }
 
     /// Asks for the rules of the mission that the present review has not been held against.

@@ -77,6 +77,23 @@ pub struct TestHost {
 }
 
 impl World {
+    /// The user chose this file, or dropped it.
+    pub fn open_file(&self, kind: FileKind, name: &str, bytes: &[u8]) {
+        let bytes = bytes.to_vec();
+        self.news.borrow_mut().push_back(HostEvent::FileOpened {
+            kind,
+            name: name.into(),
+            bytes,
+            token: None,
+        });
+    }
+
+    /// What was saved last, which is a text.
+    pub fn saved_text(&self) -> String {
+        let saved = self.saved.borrow();
+        String::from_utf8(saved.last().expect("something was saved").1.clone()).expect("a text")
+    }
+
     /// A slow shelf does everything that it was asked for.
     pub fn let_shelf_answer(&self) {
         self.shelf_does.set(Shelf::Works);

@@ -9,6 +9,7 @@ use serde_json::Value;
 use workbench::Session;
 use workbench::command::Command;
 use workbench::host::Remote as _;
+use workbench::state::chance::ChanceCommand;
 
 pub use host::{TestHost, World};
 
@@ -58,6 +59,18 @@ impl App {
     pub fn dispatch(&mut self, command: &str, arguments: &Value) {
         self.session.dispatch(command, arguments).expect("the command can be used");
         self.settle();
+    }
+
+    /// Makes so many runs with chance.
+    pub fn sample(&mut self, runs: u64, seed: u64) {
+        let settings = self.session.state().chance.settings.clone();
+        let settings = mission::RobustnessSettings { runs, seed, ..settings };
+        self.run(Command::Chance(ChanceCommand::Set(Box::new(settings))));
+        self.run(Command::Chance(ChanceCommand::Start));
+        for _ in 0..runs {
+            self.settle();
+        }
+        assert_eq!(self.json()["robustness"]["runs"], runs);
     }
 
     /// Acknowledges every line for attention of the review, one by one.

@@ -15,7 +15,7 @@ impl AppState {
         let review = self.current_review().map(AsRef::as_ref);
         let present = Present {
             content_hash: self.review.hash()?,
-            plan_hash: review.map(|review| review.plan_hash.as_str()),
+            plan_hash: review.map(|review| review.plan_hash.as_str()).or(self.review.plan_hash()),
             rules: self.review.record.rules(),
             review,
         };
