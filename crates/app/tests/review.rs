@@ -538,11 +538,9 @@ fn the_last_approval_can_be_compared_with_the_present_text() {
     // The edit itself is there, and not only what came of it.
     app.harness.state_mut().dispatch("view.panel", &json!("compare")).expect("a panel");
     app.settle();
-    let is_line = |sign: &str, bounds: &str| {
-        app.harness
-            .query_by(|node| node.label().is_some_and(|it| it.starts_with(sign) && it.contains(bounds)))
-            .is_some()
-    };
+    let texts = painted(&app);
+    let is_line =
+        |sign: &str, bounds: &str| texts.iter().any(|text| text.starts_with(sign) && text.contains(bounds));
     assert!(is_line("− ", "PATH1=OK [450,450]") && is_line("+ ", "PATH1=OK [460,460]"));
 }
 
