@@ -12,6 +12,7 @@ mod elimination;
 mod execution;
 mod heap;
 mod network;
+mod pairs;
 mod propagation;
 mod unfolding;
 
@@ -19,4 +20,5 @@ pub use dispatch::{DispatchEdge, Dispatchable, RigidComponent, dispatchable, rig
 pub use distance::{DistanceMatrix, INFINITE};
 pub use execution::{Execution, ExecutionWindows, execution_windows};
 pub use network::{Checkpoint, CycleEdge, Inconsistency, Overflow, PointId, Stn, Tag, Window};
+pub use pairs::PairDistances;
 pub use unfolding::{Refusal, Unfolding};

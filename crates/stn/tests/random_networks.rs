@@ -1,8 +1,8 @@
 //! Random networks with insertions and undos, against all pairs by Floyd and Warshall.
 
 use stn::{
-    Execution, ExecutionWindows, INFINITE, Inconsistency, Overflow, PointId, Stn, dispatchable,
-    execution_windows, rigid_components,
+    Execution, ExecutionWindows, INFINITE, Inconsistency, Overflow, PairDistances, PointId, Stn,
+    dispatchable, execution_windows, rigid_components,
 };
 
 /// Splitmix64: a seeded generator that is the same everywhere.
@@ -59,6 +59,7 @@ fn point(index: usize) -> PointId {
 fn assert_distances(stn: &mut Stn, points: usize, edges: &EdgeList, seed: u64) {
     let expected = floyd_warshall(points, edges).expect("consistent");
     let matrix = stn.all_pairs().expect("small numbers");
+    let pairs = PairDistances::new(stn).expect("small numbers");
     let order: Vec<PointId> = (0..points).map(point).collect();
     let (mut from_origin, mut to_origin) = (Vec::new(), Vec::new());
     stn.sweep_distances(point(0), &order, &mut from_origin, &mut to_origin).expect("small numbers");
@@ -66,6 +67,8 @@ fn assert_distances(stn: &mut Stn, points: usize, edges: &EdgeList, seed: u64) {
         for to in 0..points {
             let expected = expected[from][to].unwrap_or(INFINITE);
             assert_eq!(matrix.get(point(from), point(to)), expected, "seed {seed}, {from} to {to}");
+            let pair = pairs.between(point(from), point(to)).expect("small numbers");
+            assert_eq!(pair, Some(expected), "seed {seed}, the pair {from} to {to}");
         }
         assert_eq!(from_origin[from], expected[0][from].unwrap_or(INFINITE), "seed {seed}, sweep to {from}");
         assert_eq!(to_origin[from], expected[from][0].unwrap_or(INFINITE), "seed {seed}, sweep from {from}");

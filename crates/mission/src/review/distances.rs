@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use exact::Bound;
 use executive::PlanNetwork;
-use stn::INFINITE;
+use stn::{INFINITE, PairDistances};
 use tpn::{Network, NodeId, Plan};
 
 use super::TimeRange;
@@ -12,6 +12,8 @@ use super::TimeRange;
 /// The distances of one plan.
 pub(crate) struct Distances {
     network: PlanNetwork,
+    /// `None` where times do not fit.
+    pairs: Option<PairDistances>,
 }
 
 impl Distances {
@@ -24,19 +26,34 @@ impl Distances {
         let mut plan = plan.clone();
         let mut is_needed = tpn::precedence::needed(&pairs).into_iter();
         plan.orderings_added.retain(|_| is_needed.next().unwrap_or(true));
-        PlanNetwork::new(network, &plan).ok().map(|network| Self { network })
+        let network = PlanNetwork::new(network, &plan).ok()?;
+        let pairs = PairDistances::new(&network.stn).ok();
+        Some(Self { network, pairs })
+    }
+
+    /// How far it is from the second of two events to the first, and from the first to the second.
+    fn on_the_tree(&self, from: NodeId, to: NodeId) -> Option<(i64, i64)> {
+        let pairs = self.pairs.as_ref()?;
+        let (from, to) = (self.network.point(from)?, self.network.point(to)?);
+        let distance = |from, to| pairs.between(from, to).ok().flatten();
+        Some((distance(to, from)?, distance(from, to)?))
     }
 
     /// For each pair, how much later the second event is than the first; `None` if nothing bounds it from below.
     ///
-    /// Takes one search of the plan's constraints for each different event, however many pairs share it.
+    /// Found on the elimination tree of the plan's constraints; where that leaves something out, by one search of the
+    /// constraints for each different event, however many pairs share it.
     pub(crate) fn between(&mut self, pairs: &[(NodeId, NodeId)]) -> Vec<Option<TimeRange>> {
         let mut wanted: BTreeMap<NodeId, Vec<(NodeId, usize, bool)>> = BTreeMap::new();
+        let mut found = vec![(INFINITE, INFINITE); pairs.len()];
         for (index, &(from, to)) in pairs.iter().enumerate() {
+            if let Some(known) = self.on_the_tree(from, to) {
+                found[index] = known;
+                continue;
+            }
             wanted.entry(from).or_default().push((to, index, true));
             wanted.entry(to).or_default().push((from, index, false));
         }
-        let mut found = vec![(INFINITE, INFINITE); pairs.len()];
         let mut row = Vec::new();
         for (source, targets) in wanted {
             let Some(source) = self.network.point(source) else { continue };
