@@ -122,7 +122,10 @@ impl Session {
         self.do_effects();
         // What stops the work is offered without another reason for a frame.
         let waits = self.state.status() == Status::Working && !self.state.is_long_at_work();
-        [is_replaced.then_some(0.1), waits.then_some(0.2), advanced.next_secs, toast_secs]
+        // How long it has taken is told by the second.
+        let counts = self.state.is_long_at_work() || self.state.is_improving();
+        let work_secs = [waits.then_some(0.2), counts.then_some(1.0)].into_iter().flatten().next();
+        [is_replaced.then_some(0.1), work_secs, advanced.next_secs, toast_secs]
             .into_iter()
             .flatten()
             .reduce(f64::min)

@@ -228,4 +228,8 @@ fn work_that_takes_long_can_be_stopped_on_screen() {
     app.world.now_secs.set(app.world.now_secs.get() + 1.0);
     app.step();
     assert!(app.session.state().is_long_at_work());
+    assert_eq!(app.session.state().secs_at_work(), 1, "how long it has taken is told");
+    app.world.now_secs.set(app.world.now_secs.get() + 6.0);
+    app.step();
+    assert_eq!(app.session.state().secs_at_work(), 7);
 }

@@ -63,11 +63,12 @@ impl Panel for PlanPanel {
 /// While the planner works, what stops it; after it was stopped, what that means and what starts it again.
 fn work(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
+    let secs = context.state.secs_at_work();
     let (icon, color, text, name, hint, command) = match context.state.status() {
         Status::Working if context.state.is_long_at_work() => (
             Icon::Working,
             tokens.info,
-            "Planning…",
+            if secs > 0 { format!("Planning for {secs} s…") } else { "Planning…".to_owned() },
             "Stop",
             "Leaves undecided what is not known yet",
             Command::StopWork,
@@ -75,7 +76,7 @@ fn work(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         Status::Plan if context.state.is_improving() => (
             Icon::Working,
             tokens.info,
-            "This is the best plan so far. A better one is looked for…",
+            format!("This is the best plan so far, after {secs} s. A better one is looked for…"),
             "Stop",
             "Keeps this plan",
             Command::StopWork,
@@ -83,7 +84,7 @@ fn work(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         Status::Undecided => (
             Icon::Warning,
             tokens.warning,
-            "Planning was stopped: whether this text has a plan is not decided.",
+            "Planning was stopped: whether this text has a plan is not decided.".to_owned(),
             "Plan again",
             "Works the text out once more",
             Command::PlanAgain,

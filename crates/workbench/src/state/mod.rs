@@ -261,6 +261,13 @@ impl AppState {
         self.status() == Status::Working && self.frame.now_secs - self.frame.asked_secs > LONG_SECS
     }
 
+    /// For how many whole seconds the present text has been worked out, while it is.
+    pub fn secs_at_work(&self) -> u64 {
+        let is_at_work = self.status() == Status::Working || self.is_improving();
+        let secs = if is_at_work { self.frame.now_secs - self.frame.asked_secs } else { 0.0 };
+        secs.max(0.0) as u64
+    }
+
     /// Whether the present text has a plan, and a better one is looked for.
     pub fn is_improving(&self) -> bool {
         self.snapshots.is_improving(self.document.revision())
