@@ -22,6 +22,9 @@ use crate::trace::{Departing, Event, TreeChoice};
 /// Pairs of so few movements as a tour may have.
 const MAX_PAIRS: usize = MAX_MOVEMENTS * MAX_MOVEMENTS;
 
+/// So many effects on one variable are told to exclude each other as a set.
+const MANY_EFFECTS: usize = 5;
+
 /// What the solver knows of variables that keep their values.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sides {
@@ -101,12 +104,13 @@ impl Problem<'_> {
         Ok(())
     }
 
-    /// While an effect changes a variable nothing else may (SPEC 10.2, rule 2): of one variable no two overlap.
+    /// While an effect changes a variable nothing else may (SPEC 10.2, rule 2): of one variable no two overlap. Of few, their
+    /// orders are soon gone through, and say more of a failure.
     fn exclude_effects(&self, solver: &mut Solver, changes: &[LabelId]) {
         let labels = &self.model.conditions.labels;
         let effects = changes.iter().copied().filter(|&change| labels[change].is_changing);
         let tasks: Vec<Interval> = effects.map(|effect| self.intervals[effect]).collect();
-        if let Some(&first) = changes.first() {
+        if let Some(&first) = changes.first().filter(|_| tasks.len() >= MANY_EFFECTS) {
             solver.disjunctives.add_tasks(tasks, Premise::Variable(labels[first].variable));
         }
     }

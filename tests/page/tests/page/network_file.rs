@@ -83,7 +83,7 @@ fn ptpns_and_plans_of_plandev_are_dropped_drawn_planned_reported_and_exported() 
          URL.createObjectURL = (blob) => { blob.text().then((text) => saved.push(text)); return 'blob:none'; }",
     )?;
     for (file, text, name, activity) in
-        [("survey.tpn", PTPN, "survey", "fly#1"), ("night.json", PLANDEV, "night", "Image#1")]
+        [("survey.tpn", PTPN, "survey", "(fly ridge)#1"), ("night.json", PLANDEV, "night", "Image#1")]
     {
         page.tab.drop_file(file, text.as_bytes())?;
         page.wait_for(&format!("state.mission === '{name}' && state.status === 'plan'"))?;
