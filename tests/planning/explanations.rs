@@ -7,11 +7,12 @@ use std::sync::Arc;
 
 use acceptance::mission::compile;
 use acceptance::missions::missions;
-use kirk::{Event, ExpansionLimit, Options, Search};
+use exact::Time;
+use kirk::{Constraint, CycleMember, Event, ExpansionLimit, Options, Search};
 use mission::review::{Fate, review};
 use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
 use rmpl::program::LabelMode;
-use tpn::{ArcId, LabelId, Network, Top};
+use tpn::{ArcId, ArcKind, LabelId, Network, Top};
 use workbench::state::search::wording;
 
 /// Random missions of each kind.
@@ -20,7 +21,7 @@ const MISSIONS: u64 = 150;
 /// Words that say nothing of what a mission has.
 const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learned Look No Nothing Of Propagate Search The \
     This Together Try Whatever a after again all allow allows alone and another any arcs as at back be before besides \
-    block both bounded but can cannot choice choices choose chooses chosen come comes conflict contain contradiction do \
+    block blocks both bounded but can cannot choice choices choose chooses chosen come comes conflict contain contradiction delays do \
     duration durations each end ends event events failed failure first fit follows for found from go greatest has have \
     here if in inf instead is it its keeps kept last lasts learned least leave leaves left let long mission more most \
     move moves much must need needs neither never no node none not nothing of on once one ones only order ordering other \
@@ -35,7 +36,7 @@ const TELLING: [(&str, Has); 9] = [
     ("Ask asserts causal link required requires", |it| it.labels.iter().any(|it| it.mode == LabelMode::Ask)),
     ("Set Tell hold holds set", |it| !it.labels.is_empty()),
     ("apart way", |it| has_conflict(it, |_| true)),
-    ("between conflicting gap intervals touch", |it| has_conflict(it, |label| !it.is_lasting(label))),
+    ("between conflicting gap gaps intervals touch", |it| has_conflict(it, |label| !it.is_lasting(label))),
     ("above below drawn enough filled give helps level use", |it| !it.uses.is_empty()),
     ("gives", |it| !it.labels.is_empty() || !it.uses.is_empty()),
     ("controllable nature took", |it| (0..it.arcs.len()).any(|arc| it.is_uncertain(ArcId::from_index(arc)))),
@@ -61,6 +62,65 @@ fn adds_up(sentence: &str) -> bool {
         }
         _ => true,
     }
+}
+
+/// How many bounds a sentence says to need time: `MODE=A (2 times), 2 delays and a gap of 1` are five. Nothing if it does
+/// not name them all, or says what needs time in other words.
+fn told_needs(sentence: &str) -> Option<usize> {
+    let (before, _) = sentence.split_once(" at least ")?;
+    let names = before.strip_suffix(" need").or(before.strip_suffix(" needs"))?;
+    let names = names.rsplit(": ").next()?;
+    let is_named =
+        !["keeping them apart", "coming one after the other", "their order in the program"].contains(&names);
+    let (first, last) = names.rsplit_once(" and ").unwrap_or((names, ""));
+    let parts = first.split(", ").chain((!last.is_empty()).then_some(last));
+    let count = |part: &str| match part.strip_suffix(" times)").and_then(|it| it.rsplit('(').next()) {
+        Some(times) => times.parse().ok(),
+        None => match part.split(' ').next().and_then(|it| it.parse().ok()) {
+            Some(_) if part.ends_with("others") => None,
+            Some(number) => Some(number),
+            None => (part != "one other").then_some(1),
+        },
+    };
+    is_named.then(|| parts.map(count).sum()).flatten()
+}
+
+/// The bounds of a negative cycle that need time and that an author has written, or that keep two apart.
+fn needs(network: &Network, cycle: &[CycleMember]) -> usize {
+    let is_written = |arc: ArcId| {
+        use ArcKind::{Choice, Fork, Glue, Join, Merge, Point};
+        !matches!(network.arcs[arc.index()].kind, Glue | Fork | Join | Choice | Merge | Point)
+    };
+    let needs = cycle.iter().filter(|member| match member.constraint {
+        Constraint::Lower(arc) => member.weight != Time::ZERO && is_written(arc),
+        Constraint::Order(_) | Constraint::Departure(_) => member.weight != Time::ZERO,
+        Constraint::Upper(_) | Constraint::Link(_) | Constraint::UseOrder(_) => false,
+    });
+    needs.count()
+}
+
+#[test]
+fn whoever_adds_up_what_a_failure_names_has_left_out_nothing() {
+    let (mut wrong, mut told, mut several) = (Vec::new(), 0, 0);
+    for (name, text) in missions(MISSIONS) {
+        let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
+        let options =
+            Options { search: Search::Chronological, trace_events: Some(20_000), ..Options::default() };
+        let outcome = kirk::plan(&network, &options, &mut ExpansionLimit(2_000));
+        let Some(trace) = &outcome.trace else { continue };
+        for entry in &trace.events {
+            let Event::Inconsistent { cycle } = &entry.event else { continue };
+            let sentence = wording::event(&network, trace, &entry.event);
+            let Some(named) = told_needs(&sentence) else { continue };
+            told += 1;
+            several += usize::from(sentence.contains("gaps of") || sentence.contains(" times)"));
+            if named != needs(&network, cycle) {
+                wrong.push(format!("{name}: {sentence} ({} need time)", needs(&network, cycle)));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(told > 1_000 && several > 100, "{told} failures, {several} with several of one name");
 }
 
 /// What a sentence says that is not of the mission.

@@ -37,8 +37,48 @@ pub fn contradiction(network: &Network, cycle: &[CycleMember]) -> Option<String>
 enum Need {
     /// The least duration of an arc.
     Arc(ArcId),
+    /// The way from where something sets out.
+    Way,
     /// The gap between conflicting intervals.
     Gap,
+}
+
+/// What is told of a bound, and how many bounds are told so: a reader who adds up finds all that a sum is made of.
+struct Counted<K> {
+    kind: K,
+    name: String,
+    count: usize,
+}
+
+impl<K> Counted<K> {
+    /// The name, in the plural if it stands for several: `the delay`, `2 delays`, `MODE=A (2 times)`.
+    fn text(&self) -> String {
+        let Self { name, count, .. } = self;
+        if *count == 1 {
+            return name.clone();
+        }
+        match name.as_str() {
+            "the delay" => format!("{count} delays"),
+            "the bounded block" => format!("{count} bounded blocks"),
+            name => match name.strip_prefix("a gap of ") {
+                Some(length) => format!("{count} gaps of {length}"),
+                None => format!("{name} ({count} times)"),
+            },
+        }
+    }
+}
+
+/// One more bound of a name.
+fn count<K>(all: &mut Vec<Counted<K>>, kind: K, name: String) {
+    match all.iter_mut().find(|known| known.name == name) {
+        Some(known) => known.count += 1,
+        None => all.push(Counted { kind, name, count: 1 }),
+    }
+}
+
+/// How many bounds were told.
+fn counted<K>(all: &[Counted<K>]) -> usize {
+    all.iter().map(|known| known.count).sum()
 }
 
 impl Told<'_> {
@@ -256,8 +296,8 @@ impl Told<'_> {
     /// What needs more time than something else leaves it.
     fn bounds(&self) -> Option<String> {
         // In textual order, whatever way round the cycle goes.
-        let mut needs: Vec<(Need, String)> = Vec::new();
-        let mut allows: Vec<(String, &'static str)> = Vec::new();
+        let mut needs: Vec<Counted<Need>> = Vec::new();
+        let mut allows: Vec<Counted<&'static str>> = Vec::new();
         // What would have to wait.
         let mut waiting: Option<LabelId> = None;
         let (mut needed, mut allowed) = (Some(Time::ZERO), Some(Time::ZERO));
@@ -266,39 +306,37 @@ impl Told<'_> {
                 Constraint::Lower(arc) => {
                     needed = needed.and_then(|needed| needed.checked_sub(member.weight));
                     if is_telling(self.network, member) {
-                        push_new(
-                            &mut needs,
-                            Need::Arc(arc),
-                            arc_name(self.network, &self.network.arcs[arc.index()]),
-                        );
+                        let name = arc_name(self.network, &self.network.arcs[arc.index()]);
+                        count(&mut needs, Need::Arc(arc), name);
                     }
                 }
                 Constraint::Upper(arc) => {
                     allowed = allowed.and_then(|allowed| allowed.checked_add(member.weight));
                     let arc = &self.network.arcs[arc.index()];
                     if is_telling(self.network, member) {
-                        let name = arc_name(self.network, arc);
-                        if !allows.iter().any(|(known, _)| *known == name) {
-                            allows.push((name, allowing_verb(self.network, arc)));
-                        }
+                        count(&mut allows, allowing_verb(self.network, arc), arc_name(self.network, arc));
                     }
                 }
                 Constraint::Order(order) => {
                     waiting = Some(order.then);
                     needed = needed.and_then(|needed| needed.checked_sub(member.weight));
                     if member.weight != Time::ZERO {
-                        push_new(
-                            &mut needs,
-                            Need::Gap,
-                            format!("a gap of {}", shown(member.weight.checked_neg())),
-                        );
+                        let gap = format!("a gap of {}", shown(member.weight.checked_neg()));
+                        count(&mut needs, Need::Gap, gap);
                     }
                 }
                 Constraint::Link(link) => {
                     waiting = waiting.or(Some(link.ask));
                     allowed = allowed.and_then(|allowed| allowed.checked_add(member.weight));
                 }
-                Constraint::UseOrder(_) | Constraint::Departure(_) => {
+                Constraint::Departure(way) => {
+                    needed = needed.and_then(|needed| needed.checked_sub(member.weight));
+                    if member.weight != Time::ZERO {
+                        let name = format!("the way of {}", interval_name(self.network, way.movement));
+                        count(&mut needs, Need::Way, name);
+                    }
+                }
+                Constraint::UseOrder(_) => {
                     needed = needed.and_then(|needed| needed.checked_sub(member.weight));
                 }
             }
@@ -306,10 +344,10 @@ impl Told<'_> {
         if self.cycle.is_empty() {
             return None;
         }
-        needs.sort();
-        let needs: Vec<String> = needs.into_iter().map(|(_, name)| name).collect();
-        let verb = if needs.len() > 1 { "need" } else { "needs" };
-        let needs = if needs.is_empty() { self.unnamed_need() } else { joined(&needs) };
+        needs.sort_by_key(|need| need.kind);
+        let verb = if counted(&needs) > 1 { "need" } else { "needs" };
+        let names: Vec<String> = needs.iter().map(Counted::text).collect();
+        let needs = if needs.is_empty() { self.unnamed_need() } else { joined(&names) };
         let (needed, allowed) = (shown(needed), shown(allowed));
         Some(match allows.as_slice() {
             [] => match waiting {
@@ -319,9 +357,11 @@ impl Told<'_> {
                 }
                 None => format!("{needs} {verb} at least {needed}, but the program leaves no time for it"),
             },
-            [(name, allows)] => format!("{needs} {verb} at least {needed}, but {name} {allows} {allowed}"),
+            [only] if only.count == 1 => {
+                format!("{needs} {verb} at least {needed}, but {} {} {allowed}", only.name, only.kind)
+            }
             _ => {
-                let names: Vec<String> = allows.into_iter().map(|(name, _)| name).collect();
+                let names: Vec<String> = allows.iter().map(Counted::text).collect();
                 format!(
                     "{needs} {verb} at least {needed}, but {} together allow only {allowed}",
                     joined(&names)
@@ -462,12 +502,6 @@ fn allowing_verb(network: &Network, arc: &Arc) -> &'static str {
         Some(OccurrenceKind::Primitive | OccurrenceKind::Activity) => "takes at most",
         Some(OccurrenceKind::Delay) => "lasts at most",
         Some(OccurrenceKind::Scenario | OccurrenceKind::Scope) | None => "allows only",
-    }
-}
-
-fn push_new(names: &mut Vec<(Need, String)>, need: Need, name: String) {
-    if !names.iter().any(|(_, known)| *known == name) {
-        names.push((need, name));
     }
 }
 

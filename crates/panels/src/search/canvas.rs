@@ -132,6 +132,22 @@ const LEAST_SIGN: f32 = 7.0;
 const LEAST_LABEL: f32 = 16.0;
 /// With less room than this, a label that does not fit is replaced instead of cut.
 const LEAST_CUT: f32 = 56.0;
+/// Between a label and what comes before it.
+const LABEL_GAP: f32 = 6.0;
+
+/// Where the label of a state stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Left,
+    Right,
+}
+
+impl Side {
+    /// At the right if it fits there; else where there is more room, left and right of the state.
+    fn of(width: f32, [left, right]: [f32; 2]) -> Self {
+        if width > right && left > right { Self::Left } else { Self::Right }
+    }
+}
 
 impl View {
     /// Zooms, shows everything, or what matters at the step.
@@ -424,6 +440,8 @@ impl Scene<'_> {
 
     fn states(&self, states: &[TreeNodeId]) {
         let radius = radius(self.view.cell);
+        // How far a label may reach to the left: past no sign and no label before it.
+        let mut free = self.rect.left() + 4.0;
         for (place, &id) in states.iter().enumerate() {
             let Some(center) = self.at(id).filter(|at| self.rect.expand(RADIUS * 2.0).contains(*at)) else {
                 continue;
@@ -435,11 +453,13 @@ impl Scene<'_> {
                 self.painter.circle_filled(center, radius + 4.0, self.context.tokens.hover);
             }
             self.sign(id, center, radius);
+            let mut end = center.x + radius;
             if self.view.cell.x >= LEAST_SIGN && self.view.cell.y >= 16.0 {
                 let next = states.get(place + 1).and_then(|&next| self.at(next));
                 let right = next.map_or(self.rect.right() - 4.0, |next| next.x - radius - 3.0);
-                self.label(id, center, radius, right);
+                end = self.label(id, center, radius, [free, right]).unwrap_or(end).max(end);
             }
+            free = end + LABEL_GAP;
         }
     }
 
@@ -511,17 +531,42 @@ impl Scene<'_> {
         self.painter.rect_stroke(ring, radius, stroke, StrokeKind::Middle);
     }
 
-    /// A label beside a state, cut to the room before `right`, or none where there is no room.
-    fn label(&self, id: TreeNodeId, center: Pos2, radius: f32, right: f32) {
+    /// A label beside a state, cut to the room there: at its right up to `limits[1]`, or at its left down to `limits[0]`
+    /// where it is cut less. Answers how far it reaches to the right, or nothing where there is no room.
+    fn label(&self, id: TreeNodeId, center: Pos2, radius: f32, limits: [f32; 2]) -> Option<f32> {
         let tokens = self.context.tokens;
         let is_ringed = self.tree.at_step().contains(&Some(id));
-        let left = center.x + if is_ringed { radius * 1.5 + 5.0 } else { radius + 3.0 };
-        let room = right - left;
+        let aside = if is_ringed { radius * 1.5 + 5.0 } else { radius + 3.0 };
+        let is_on_path = self.path.binary_search(&id).is_ok();
+        let color = if is_on_path { tokens.text } else { tokens.text_muted };
+        let mut text = self.label_text(id);
+        let width = self.one_line(&text, color, f32::INFINITY).size().x;
+        let rooms = [center.x - aside - limits[0], limits[1] - center.x - aside];
+        // The arrow of a jump leaves at the left.
+        let jumps = self.tree.jump.is_some() && is_ringed;
+        let side = if jumps { Side::Right } else { Side::of(width, rooms) };
+        let room = rooms[side as usize];
         if room < LEAST_LABEL {
-            return;
+            return None;
         }
-        let choice = self.tree.trace.tree[id as usize].choice;
-        let mut text = short_label(self.tree.network, choice);
+        if width > room && room < LEAST_CUT {
+            // A few letters say less than which alternative it is, or how many are folded.
+            let below = self.is_folded(id).then(|| format!("+{}", self.tree.index.below[id as usize]));
+            text = below.or_else(|| shortest_label(self.tree.trace.tree[id as usize].choice))?;
+        }
+        let galley = self.one_line(&text, color, room);
+        let (align, x) = match side {
+            Side::Left => (Align2::RIGHT_CENTER, center.x - aside),
+            Side::Right => (Align2::LEFT_CENTER, center.x + aside),
+        };
+        let at = align.anchor_size(pos2(x, center.y), galley.size());
+        self.painter.galley(at.min, galley, color);
+        Some(at.right())
+    }
+
+    /// All that the label of a state says.
+    fn label_text(&self, id: TreeNodeId) -> String {
+        let mut text = short_label(self.tree.network, self.tree.trace.tree[id as usize].choice);
         if let Some(bound) = self.bound(id) {
             text = format!("{text} · {bound}");
         }
@@ -531,17 +576,7 @@ impl Scene<'_> {
         if self.is_folded(id) {
             text = format!("{text} +{}", self.tree.index.below[id as usize]);
         }
-        let is_on_path = self.path.binary_search(&id).is_ok();
-        let color = if is_on_path { tokens.text } else { tokens.text_muted };
-        let mut galley = self.one_line(&text, color, room);
-        if galley.elided && room < LEAST_CUT {
-            // A few letters say less than which alternative it is, or how many are folded.
-            let below = self.is_folded(id).then(|| format!("+{}", self.tree.index.below[id as usize]));
-            let Some(text) = below.or_else(|| shortest_label(choice)) else { return };
-            galley = self.one_line(&text, color, room);
-        }
-        let at = Align2::LEFT_CENTER.anchor_size(pos2(left, center.y), galley.size());
-        self.painter.galley(at.min, galley, color);
+        text
     }
 
     /// What the goals may become in a state, where the search goes by that.
@@ -572,6 +607,17 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
         let owner = label.and_then(|label| network.occurrences.get(label.owner?.index()));
         owner.map_or_else(|| network.label_name(id), |owner| owner.name.to_string())
     };
+    // A statement that is nothing but a condition is called by that, if that tells the two apart.
+    let stated = |id: tpn::LabelId| {
+        let label = network.labels.get(id.index())?;
+        let owner = network.occurrences.get(label.owner?.index())?;
+        (owner.kind == tpn::OccurrenceKind::Assertion).then(|| label.text.to_string())
+    };
+    let ordered = |order: tpn::Ordering| {
+        let labels = [order.first, order.then];
+        let short = labels.map(|id| stated(id).unwrap_or_else(|| owner(id)));
+        if short[0] == short[1] { labels.map(owner) } else { short }
+    };
     let user = |id: tpn::UseId| {
         let used = network.uses.get(id.index());
         let owner = used.and_then(|used| network.occurrences.get(used.owner?.index()));
@@ -583,7 +629,7 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
             format!("{}={alternative}", Network::decision_name(decision))
         }
         Some(TreeChoice::Link(link)) => format!("← {}", owner(link.tell)),
-        Some(TreeChoice::Order(order)) => format!("{} ≺ {}", owner(order.first), owner(order.then)),
+        Some(TreeChoice::Order(order)) => ordered(order).join(" ≺ "),
         Some(TreeChoice::NoLink { ask }) => format!("{} ← nothing", condition(ask)),
         Some(TreeChoice::UseOrder(order)) => format!("{} ≺ {}", user(order.first), user(order.then)),
         Some(TreeChoice::Start { used, by }) => format!("{} by {by}", user(used)),
@@ -603,6 +649,13 @@ fn shortest_label(choice: Option<TreeChoice>) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_label_stands_at_the_left_where_it_would_be_cut_at_the_right() {
+        assert_eq!(Side::of(60.0, [200.0, 60.0]), Side::Right, "it fits");
+        assert_eq!(Side::of(61.0, [200.0, 60.0]), Side::Left, "it is cut beside its sibling");
+        assert_eq!(Side::of(61.0, [40.0, 60.0]), Side::Right, "less room at the left");
+    }
 
     #[test]
     fn a_stop_of_a_lesson_takes_back_how_the_tree_was_zoomed_and_moved() {
