@@ -1,4 +1,4 @@
-//! Every sentence of the key steps of lessons 1 to 8, by both searches, listed in `key_sentences.txt`, and each held
+//! Every sentence of the key steps of lessons 1 to 8, by both searches, listed in `docs/key-sentences.md`, and each held
 //! against what the search did: against the network, the choices behind it, and the list of all plans.
 
 mod support;
@@ -14,6 +14,15 @@ use workbench::lesson::COURSE;
 use workbench::state::lesson::LessonCommand;
 use workbench::state::search::focus::is_key;
 use workbench::state::search::wording;
+
+/// What comes before the sentences.
+const LISTING: &str = "\
+# The key steps of lessons 1 to 8
+
+What the page says at each key step of the first eight lessons, by both searches, in the order in which it is first said. A test writes
+this list, and holds each sentence against the network, the choices behind it, the step's record and the list of all plans
+(`crates/workbench/tests/key_sentences.rs`).
+";
 
 /// A search with what it was made of.
 struct Told<'a> {
@@ -188,9 +197,14 @@ impl Told<'_> {
     }
 }
 
+/// The heading of a lesson.
+fn title_of(text: &str) -> &str {
+    text.lines().find_map(|line| line.strip_prefix("# ")).expect("a lesson has a title")
+}
+
 #[test]
 fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
-    let mut listing = String::new();
+    let mut listing = LISTING.to_owned();
     let mut lies = Vec::new();
     let mut kinds = BTreeSet::new();
     let lessons = COURSE.iter().flat_map(|chapter| chapter.lessons).take(8);
@@ -198,19 +212,21 @@ fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
     for (number, lesson) in lessons.enumerate() {
         app.run(Command::Lesson(LessonCommand::Open(lesson.name.into(), 0)));
         app.settle();
+        listing.push_str(&format!("\n## {}. {}\n", number + 1, title_of(lesson.text)));
         let program = rmpl::parse(app.session.state().document.text()).program();
         let (network, problems) = compile(&program, &Top::Scenario(None));
         let network = network.unwrap_or_else(|| panic!("{}: {problems:?}", lesson.name));
         let all = Options { all: true, max_plans: 10_000, ..Options::default() };
         let plans = kirk::plan(&network, &all, &mut Unlimited).plans;
-        for (search, title) in
-            [(Search::Chronological, "one after the other"), (Search::ConflictDirected, "learning")]
-        {
+        for (search, title) in [
+            (Search::Chronological, "One choice after the other"),
+            (Search::ConflictDirected, "Learning from failures"),
+        ] {
             let options = Options { search, trace_events: Some(100_000), ..Options::default() };
             let trace = kirk::plan(&network, &options, &mut Unlimited).trace.expect("it was asked for");
             assert!(!trace.is_truncated, "{}", lesson.name);
             let told = Told { network: &network, trace: &trace, plans: &plans };
-            listing.push_str(&format!("{}. {}, {title}\n", number + 1, lesson.name));
+            listing.push_str(&format!("\n### {title}\n\n"));
             let mut said: Vec<(String, usize)> = Vec::new();
             for (step, entry) in trace.events.iter().enumerate().filter(|(_, entry)| is_key(&entry.event)) {
                 let sentence = wording::event(&network, &trace, &entry.event);
@@ -226,7 +242,7 @@ fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
             }
             for (sentence, times) in said {
                 let times = if times == 1 { String::new() } else { format!(" ({times} times)") };
-                listing.push_str(&format!("  {sentence}{times}\n"));
+                listing.push_str(&format!("* {sentence}{times}\n"));
             }
         }
     }
@@ -236,13 +252,13 @@ fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
     {
         assert!(kinds.contains(kind), "no {kind} among {kinds:?}");
     }
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/key_sentences.txt");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/key-sentences.md");
     if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
         std::fs::write(file, &listing).expect("the listing can be written");
     }
     let kept = std::fs::read_to_string(file).unwrap_or_default();
     assert!(
         listing == kept,
-        "key_sentences.txt is not what the test finds: UPDATE_SNAPSHOTS=1 writes it anew"
+        "docs/key-sentences.md is not what the test finds: UPDATE_SNAPSHOTS=1 writes it anew"
     );
 }
