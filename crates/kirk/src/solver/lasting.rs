@@ -124,8 +124,7 @@ impl Problem<'_> {
         growth: &mut Growth<'_>,
     ) -> Result<(), Unencoded> {
         let model = self.model;
-        let premises = || changes.iter().map(|&change| Premise::Member(Member::Condition(change)));
-        solver.tell_from_premises(premises());
+        solver.tell_from(changes.iter().copied().map(Member::Condition));
         let mut durations = vec![vec![None; changes.len()]; changes.len() + 1];
         for (column, &movement) in changes.iter().enumerate() {
             let Some(departures) = model.demands.departures.get(&movement) else { continue };
@@ -180,10 +179,8 @@ impl Problem<'_> {
             solver.at_least_one(found);
         }
         if self.are_movements_in_any_order(changes) {
-            // Its durations are those of all of them.
-            let premise = Premise::Unknown;
             let movements = changes.iter().map(|&movement| self.intervals[movement]).collect();
-            let quickest = solver.tours.add(movements, &durations, premise);
+            let quickest = solver.tours.add(movements, &durations);
             for (position, &first) in quickest.iter().enumerate() {
                 for &then in &quickest[position + 1..] {
                     self.prefer_before(solver, changes[first], changes[then]);

@@ -21,8 +21,6 @@ type Set = usize;
 #[derive(Clone, Debug)]
 struct Tour {
     movements: Vec<Interval>,
-    /// What says so.
-    premise: Premise,
     /// The least time from the first start to the last end of each set.
     least: Vec<i64>,
 }
@@ -37,16 +35,11 @@ impl Tours {
     /// Adds movements of which no two overlap, with the least duration of each (second) right after each other one (first);
     /// the last row is where the vehicle is at first. `None` where none can be right after the other. Answers the quickest
     /// order of all of them.
-    pub(super) fn add(
-        &mut self,
-        movements: Vec<Interval>,
-        durations: &[Vec<Option<i64>>],
-        premise: Premise,
-    ) -> Vec<usize> {
+    pub(super) fn add(&mut self, movements: Vec<Interval>, durations: &[Vec<Option<i64>>]) -> Vec<usize> {
         let sides = |it: &Interval| [it.start.lower(), it.end.upper(), it.presence.side];
         self.queue.add(movements.iter().flat_map(sides));
         let (least, order) = least_of_sets(movements.len(), durations);
-        self.all.push(Tour { movements, premise, least });
+        self.all.push(Tour { movements, least });
         order
     }
 
@@ -54,7 +47,8 @@ impl Tours {
     pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<bool, Conflict> {
         let Some(id) = self.queue.pop() else { return Ok(false) };
         let tour = &self.all[id];
-        trail.premise = tour.premise;
+        // A tour's durations come from all movements and all ways between them.
+        trail.premise = Premise::Unknown;
         let movements = tour.movements.iter().enumerate();
         let (present, open): (Vec<usize>, Vec<usize>) = movements
             .filter(|(_, it)| !trail.fails(it.presence))

@@ -350,10 +350,24 @@ impl Review {
         !self.events.is_empty()
     }
 
-    /// The worst status of a section's lines; a section without lines has passed, but for rules that nobody has set.
+    /// The worst status of a section's lines. A section without lines has passed only where finding nothing says that all
+    /// is well; where there was nothing to look at, it is information.
     pub fn section_status(&self, section: Section) -> Status {
-        let none = if section == Section::MissionRules { Status::Information } else { Status::Passed };
-        self.lines(section).into_iter().map(|line| line.status).max().unwrap_or(none)
+        let worst = self.lines(section).into_iter().map(|line| line.status).max();
+        let is_passed = match section {
+            Section::Warnings => true,
+            Section::Conflicts | Section::Durations | Section::SeparationViolations => self.is_planned(),
+            Section::Plan
+            | Section::Choices
+            | Section::CausalLinks
+            | Section::States
+            | Section::Resources
+            | Section::Events
+            | Section::Traverses
+            | Section::MissionRules
+            | Section::Robustness => false,
+        };
+        worst.unwrap_or(if is_passed { Status::Passed } else { Status::Information })
     }
 
     /// What a section without lines says: that there is nothing to find fault with, or no plan to look at.

@@ -1,6 +1,6 @@
 //! The manual: its pages as prose, and a search over all of them.
 
-use egui::{Button, Frame, Margin, RichText, ScrollArea, TextEdit, Ui};
+use egui::{Button, Frame, Link, Margin, RichText, ScrollArea, TextEdit, Ui};
 use theme::icon::{self, Icon};
 use theme::space;
 use workbench::command::{Command, CommandSender};
@@ -26,7 +26,9 @@ impl Panel for ManualPanel {
         let state = &context.state.manual;
         let is_new = self.scrolled_to != state.opened();
         let page = state.place().and_then(|(page, section)| Some((manual::page_named(page)?, section)));
-        let mut area = ScrollArea::vertical().auto_shrink([false, false]).id_salt("manual");
+        // What is found of other words begins at the top, and the page stays where it was.
+        let salt = ("manual", state.query());
+        let mut area = ScrollArea::vertical().auto_shrink([false, false]).id_salt(salt);
         if is_new {
             area = area.vertical_scroll_offset(0.0);
         }
@@ -117,9 +119,8 @@ fn found(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         ui.add(egui::Label::new(RichText::new(text).color(context.tokens.text_muted)).wrap());
     }
     for place in state.found() {
-        let title =
-            Button::new(RichText::new(&place.title).color(context.tokens.accent)).frame_when_inactive(false);
-        if ui.add(title.wrap()).clicked() {
+        let title = RichText::new(&place.title).color(context.tokens.accent);
+        if ui.add(Link::new(title)).clicked() {
             commands.send(Command::Manual(ManualCommand::Open(place.page, place.section.clone())));
         }
         ui.add(egui::Label::new(RichText::new(&place.excerpt).color(context.tokens.text_muted)).wrap());

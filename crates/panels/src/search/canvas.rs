@@ -536,7 +536,14 @@ impl Scene<'_> {
     fn label(&self, id: TreeNodeId, center: Pos2, radius: f32, limits: [f32; 2]) -> Option<f32> {
         let tokens = self.context.tokens;
         let is_ringed = self.tree.at_step().contains(&Some(id));
-        let aside = if is_ringed { radius * 1.5 + 5.0 } else { radius + 3.0 };
+        let aside = if is_ringed {
+            radius * 1.5 + 5.0
+        } else if self.tree.status(id) == TreeStatus::Solution {
+            // Beside the corner of its sign.
+            radius * 1.35 + 4.0
+        } else {
+            radius + 3.0
+        };
         let is_on_path = self.path.binary_search(&id).is_ok();
         let color = if is_on_path { tokens.text } else { tokens.text_muted };
         let mut text = self.label_text(id);

@@ -74,7 +74,18 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
         if icon::button(ui, tokens, Icon::Close, "Hide the search tree").clicked() {
             send(GrowthCommand::Close);
         }
-        ui.add(egui::Label::new(RichText::new(shown.words()).color(tokens.text_muted)).extend());
+        let words = RichText::new(shown.words()).color(tokens.text_muted);
+        let words = egui::WidgetText::from(words).into_galley(
+            ui,
+            Some(egui::TextWrapMode::Extend),
+            f32::INFINITY,
+            egui::TextStyle::Body,
+        );
+        if words.size().x > ui.available_size_before_wrap().x {
+            ui.end_row();
+            ui.add_space(space::S);
+        }
+        ui.label(words);
     });
     if shown.is_race() {
         race(ui, context, shown, commands);

@@ -1,6 +1,7 @@
 //! The searches for a path that are looked at, sample by sample.
 
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
+use rmpl::program::ObstacleShape;
 
 use super::{Fact, Of, count, fact, measured, truth, words};
 use crate::state::AppState;
@@ -50,7 +51,40 @@ pub(super) const FACTS: &[Fact] = &[
     fact("obstacles", Of::Nothing, "how many obstacles the mission has", |state, _| {
         count(state.shown()?.program.world.obstacles.len())
     }),
+    fact(
+        "passes",
+        Of::Something("Ridge, Scarp"),
+        "whether a planned path leads between the middles of two obstacles",
+        |state, names| {
+            let (one, other) = names.split_once(',')?;
+            let snapshot = state.shown()?;
+            let middle = |name: &str| {
+                let obstacles = &snapshot.program.world.obstacles;
+                Some(middle(&obstacles.iter().find(|it| it.name.text == name.trim())?.shape))
+            };
+            let (from, to) = (middle(one)?, middle(other)?);
+            let legs = snapshot.traverses.iter().flat_map(|it| &it.legs);
+            truth(legs.flat_map(|leg| leg.points_m.windows(2)).any(|it| crosses([it[0], it[1]], [from, to])))
+        },
+    ),
 ];
+
+/// The middle of an obstacle's corners.
+fn middle(shape: &ObstacleShape) -> Point2<f64> {
+    match shape {
+        ObstacleShape::Circle { center_m, .. } => (*center_m).into(),
+        ObstacleShape::Polygon { corners_m } => {
+            let sum: Vector2<f64> = corners_m.iter().map(|&corner| Vector2::from(corner)).sum();
+            Point2::from(sum / corners_m.len().max(1) as f64)
+        }
+    }
+}
+
+/// Whether two lines have a point in common.
+fn crosses([a, b]: [Point2<f64>; 2], [c, d]: [Point2<f64>; 2]) -> bool {
+    let turn = |from: Point2<f64>, to: Point2<f64>, at: Point2<f64>| (to - from).perp(&(at - from));
+    turn(a, b, c) * turn(a, b, d) <= 0.0 && turn(c, d, a) * turn(c, d, b) <= 0.0
+}
 
 fn growth(state: &AppState) -> Option<&Shown> {
     state.terrain.growth.shown()
