@@ -6,6 +6,7 @@ mod support;
 use serde_json::{Value, json};
 use support::{App, start};
 use workbench::command::Command;
+use workbench::host::Remote as _;
 use workbench::lesson::{Answer, COURSE, CourseLesson, Expectation, Glossary, Lesson};
 use workbench::state::lesson::LessonCommand;
 
@@ -180,6 +181,30 @@ fn every_lesson_marks_terms_that_the_glossary_knows() {
         }
     }
     assert!(is_used > 40, "{is_used} stops");
+}
+
+#[test]
+fn a_task_is_not_done_by_something_else() {
+    let mut app = start();
+    let mut is_done = |lesson: &str, title: &str, from: &str, to: &str| {
+        let course = lessons().find(|(it, _)| it.name == lesson).expect("it is in the course").1;
+        let stop = course.stops.iter().position(|stop| stop.title == title).expect("it has this stop");
+        open(&mut app, lesson, stop);
+        let text = app.session.state().document.text().to_owned();
+        assert!(text.contains(from), "{text}");
+        app.session.set_source(&text.replacen(from, to, 1));
+        app.settle();
+        at(&app)["question"]["isRight"] == true
+    };
+    let wall = |x: f64, y: f64| {
+        let (right, top) = (x + 4.0, y + 35.0);
+        format!("obstacle Wall1 polygon ({x}, {y}, {right}, {y}, {right}, {top}, {x}, {top}); obstacle Scarp")
+    };
+    assert!(!is_done("rrt", "Walls", "obstacle Scarp", &wall(10.0, 10.0)), "the gap is open");
+    assert!(is_done("rrt", "Walls", "obstacle Scarp", &wall(122.0, 145.0)));
+    assert!(!is_done("bounds", "A bound more", "[0,70]", "[0,70"), "a broken text proves nothing");
+    assert!(!is_done("threats", "All in order", "DIG [5,5]", "DIG [50,50]"), "the day is as long");
+    assert!(is_done("threats", "All in order", "[0,20]", "[0, 14]"));
 }
 
 #[test]

@@ -30,9 +30,15 @@ pub(super) const FACTS: &[Fact] = &[
         "whether the text has a problem of this kind",
         |state, code| truth(latest(state)?.problems.iter().any(|it| it.code == code)),
     ),
-    fact("says", Of::Something("words"), "whether these words stand in the text", |state, words| {
-        truth(state.document.text().contains(words))
-    }),
+    fact(
+        "says",
+        Of::Something("words"),
+        "whether these words stand in the text, however they are spaced",
+        |state, words| {
+            let unspaced = |text: &str| -> String { text.split_whitespace().collect() };
+            truth(unspaced(state.document.text()).contains(&unspaced(words)))
+        },
+    ),
     fact("events", Of::Nothing, "how many events the network has", |state, _| {
         count(network(state)?.nodes.len())
     }),
