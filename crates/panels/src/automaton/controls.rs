@@ -29,8 +29,17 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                     }
                 }
                 if matches!(context.state.automaton.program(), Some(Program::Unbound(_))) {
-                    let text = "No plant: what is known is typed in";
-                    ui.label(RichText::new(text).small().color(context.tokens.text_muted));
+                    let text = RichText::new("No plant: what is known is typed in").small();
+                    let galley = egui::WidgetText::from(text.color(context.tokens.text_muted)).into_galley(
+                        ui,
+                        Some(egui::TextWrapMode::Extend),
+                        f32::INFINITY,
+                        egui::TextStyle::Small,
+                    );
+                    // Beside the controls, where there is room; the panel *What is known* says it as well.
+                    if galley.size().x <= ui.available_width() {
+                        ui.label(galley);
+                    }
                 }
             });
         });
