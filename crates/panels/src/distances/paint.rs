@@ -2,7 +2,7 @@
 
 use display::Point;
 use display::text::TEXT_SIZE;
-use egui::{Align2, Color32, FontId, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, vec2};
 use exact::Time;
 use kirk::Constraint;
 use theme::{Tokens, size};
@@ -210,24 +210,13 @@ impl Scene<'_> {
         self.arrow(edge.to, &points, color);
     }
 
-    /// The arrow's head, where the curve meets the box that it leads to.
+    /// The arrow's head, where the curve meets the box that it leads to, or ends beside it.
     fn arrow(&self, to: usize, points: &[Pos2], color: Color32) {
-        let frame = self.frame(to).expand(1.0);
-        let Some(enters) = points.windows(2).find(|pair| !frame.contains(pair[0]) && frame.contains(pair[1]))
-        else {
-            return;
-        };
-        // The point on the frame, by halving.
-        let (mut outside, mut inside) = (enters[0], enters[1]);
-        for _ in 0..8 {
-            let middle = outside + (inside - outside) / 2.0;
-            if frame.contains(middle) { inside = middle } else { outside = middle }
-        }
-        let along = (enters[1] - enters[0]).normalized();
+        let Some((tip, along)) = tip(self.frame(to).expand(1.0), points) else { return };
         let length = (7.0 * self.view.zoom() as f32).clamp(4.0, 9.0);
-        let back = outside - along * length;
+        let back = tip - along * length;
         let side = along.rot90() * length * 0.42;
-        self.painter.add(Shape::convex_polygon(vec![outside, back + side, back - side], color, Stroke::NONE));
+        self.painter.add(Shape::convex_polygon(vec![tip, back + side, back - side], color, Stroke::NONE));
     }
 
     fn vertex(&self, vertex: usize, is_pointed: bool) {
@@ -339,4 +328,38 @@ fn distance_to_segment(point: Pos2, from: Pos2, to: Pos2) -> f32 {
     let length = along.length_sq();
     let at = if length > 0.0 { ((point - from).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
     point.distance(from + along * at)
+}
+
+/// Where a curve ends that leads to a box, and its direction there: where it enters the box, or its last point if it
+/// stops short of it. Nothing of a curve without length.
+fn tip(frame: Rect, points: &[Pos2]) -> Option<(Pos2, Vec2)> {
+    let enters = points.windows(2).find(|pair| !frame.contains(pair[0]) && frame.contains(pair[1]));
+    let Some(enters) = enters else {
+        let last = points.windows(2).rfind(|pair| pair[0] != pair[1])?;
+        return Some((last[1], (last[1] - last[0]).normalized()));
+    };
+    // The point on the frame, by halving.
+    let (mut outside, mut inside) = (enters[0], enters[1]);
+    for _ in 0..8 {
+        let middle = outside + (inside - outside) / 2.0;
+        if frame.contains(middle) { inside = middle } else { outside = middle }
+    }
+    Some((outside, (enters[1] - enters[0]).normalized()))
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+
+    use super::*;
+
+    #[test]
+    fn every_curve_has_its_arrow_also_where_it_stops_short_of_the_box() {
+        let frame = Rect::from_min_max(pos2(10.0, 0.0), pos2(20.0, 10.0));
+        let (tip_in, along) = tip(frame, &[pos2(0.0, 5.0), pos2(15.0, 5.0)]).expect("it enters");
+        assert!((tip_in.x - 10.0).abs() < 0.1 && along == vec2(1.0, 0.0));
+        let short = [pos2(0.0, 5.0), pos2(8.0, 5.0), pos2(8.0, 5.0)];
+        assert_eq!(tip(frame, &short), Some((pos2(8.0, 5.0), vec2(1.0, 0.0))));
+        assert_eq!(tip(frame, &[pos2(3.0, 3.0), pos2(3.0, 3.0)]), None);
+    }
 }

@@ -355,7 +355,7 @@ impl Scene<'_> {
 
     /// From each state of a row up to the level of its choice point and over to it.
     fn edges(&self, row: usize, states: &[TreeNodeId]) {
-        let color = self.context.tokens.line_strong;
+        let color = self.context.tokens.text_faint;
         let strength = (self.view.cell.x / 6.0).clamp(0.35, 1.0);
         let stroke =
             Stroke::new(if self.view.cell.x < 4.0 { 0.6 } else { 1.0 }, color.gamma_multiply(strength));

@@ -235,7 +235,7 @@ pub fn color(context: &Context<'_>, share: Share) -> egui::Color32 {
     match share {
         // Not the first colour, which is that of the way to the step.
         Share::Only(side) => context.tokens.series(side + 1),
-        Share::Both | Share::Neither => context.tokens.line_strong,
+        Share::Both | Share::Neither => context.tokens.text_faint,
     }
 }
 
