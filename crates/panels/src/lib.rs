@@ -10,6 +10,7 @@ mod lesson;
 mod manual;
 mod mission_text;
 mod network;
+mod one_line;
 mod outline;
 mod painter;
 mod panel;

@@ -8,6 +8,7 @@ use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::automaton::{AutomatonCommand, Program};
 
 use crate::Context;
+use crate::one_line::in_one_line;
 
 /// Shows the row.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -30,12 +31,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                 }
                 if matches!(context.state.automaton.program(), Some(Program::Unbound(_))) {
                     let text = RichText::new("No plant: what is known is typed in").small();
-                    let galley = egui::WidgetText::from(text.color(context.tokens.text_muted)).into_galley(
-                        ui,
-                        Some(egui::TextWrapMode::Extend),
-                        f32::INFINITY,
-                        egui::TextStyle::Small,
-                    );
+                    let galley = in_one_line(ui, text.color(context.tokens.text_muted));
                     // Beside the controls, where there is room; the panel *What is known* says it as well.
                     if galley.size().x <= ui.available_width() {
                         ui.label(galley);

@@ -10,6 +10,7 @@ use workbench::state::growth::{Counts, GrowthCommand, Planners, Shown};
 use workbench::state::terrain::TerrainCommand;
 
 use crate::Context;
+use crate::one_line::in_one_line;
 
 /// The controls, when a growth is looked at.
 pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -74,13 +75,7 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
         if icon::button(ui, tokens, Icon::Close, "Hide the search tree").clicked() {
             send(GrowthCommand::Close);
         }
-        let words = RichText::new(shown.words()).color(tokens.text_muted);
-        let words = egui::WidgetText::from(words).into_galley(
-            ui,
-            Some(egui::TextWrapMode::Extend),
-            f32::INFINITY,
-            egui::TextStyle::Body,
-        );
+        let words = in_one_line(ui, RichText::new(shown.words()).color(tokens.text_muted));
         if words.size().x > ui.available_size_before_wrap().x {
             ui.end_row();
             ui.add_space(space::S);
