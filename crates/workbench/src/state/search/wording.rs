@@ -89,7 +89,7 @@ fn backjump(network: &Network, trace: &Trace, to: TreeNodeId, because: &[TreeNod
         [] => String::new(),
         others => format!(", besides {}", others.join(" and ")),
     };
-    format!("Jump back to {}, the last choice that the failure rests on{besides}.", named(last))
+    format!("Jump back to before {}, the last choice that the failure rests on{besides}.", named(last))
 }
 
 /// A constraint of a negative cycle, and why it holds.
