@@ -244,9 +244,43 @@ pub fn distance_point_segment(point: Point, from: Point, to: Point) -> f64 {
     point.distance(from.lerp(to, along.clamp(0.0, 1.0)))
 }
 
+/// Whether the segment between `from` and `to` passes through the inside of `rect` (clipped slab by slab).
+pub fn segment_meets_rect(from: Point, to: Point, rect: Rect) -> bool {
+    let sides = [(from.x, to.x, rect.min.x, rect.max.x), (from.y, to.y, rect.min.y, rect.max.y)];
+    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+    for (from, to, least, greatest) in sides {
+        let along = to - from;
+        if along == 0.0 {
+            if from <= least || greatest <= from {
+                return false;
+            }
+            continue;
+        }
+        let [one, other] = [(least - from) / along, (greatest - from) / along];
+        enters = enters.max(one.min(other));
+        leaves = leaves.min(one.max(other));
+    }
+    enters < leaves
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_segment_that_touches_a_rectangle_from_outside_does_not_meet_it() {
+        let rect = Rect::new(10.0, 10.0, 20.0, 14.0);
+        let meets = |from: [f64; 2], to: [f64; 2]| {
+            segment_meets_rect(Point::new(from[0], from[1]), Point::new(to[0], to[1]), rect)
+        };
+        assert!(meets([0.0, 12.0], [30.0, 12.0]) && meets([15.0, 0.0], [15.0, 30.0]), "across and down");
+        assert!(meets([11.0, 11.0], [12.0, 12.0]), "within");
+        assert!(meets([9.0, 9.0], [21.0, 15.0]), "from corner to corner");
+        assert!(!meets([15.0, 0.0], [15.0, 10.0]), "ends at the edge");
+        assert!(!meets([10.0, 0.0], [10.0, 30.0]), "along the edge");
+        assert!(!meets([0.0, 0.0], [9.0, 30.0]) && !meets([19.0, 8.0], [22.0, 11.0]), "past it");
+        assert!(!segment_meets_rect(Point::default(), Point::default(), rect));
+    }
 
     #[test]
     fn the_distance_to_a_curve_is_that_to_its_nearest_piece() {

@@ -3,7 +3,7 @@
 mod drawings;
 
 use display::{Theme, approximate_text_width, svg};
-use drawings::{draw, draw_with, enroute, segment_meets_rect};
+use drawings::{draw, draw_with, enroute, network_of, segment_meets_rect};
 use exact::{Bound, Time};
 use layout::overlay::{causal_links, negative_cycle, orderings, windows};
 use layout::{Item, NetworkState, Options, network_list};
@@ -187,4 +187,72 @@ fn links_and_orderings_end_at_the_edge_of_the_box_that_hides_their_end_and_not_w
     plan.orderings_added[0].then = ask;
     assert_eq!(causal_links(&drawing, &network, &plan), []);
     assert_eq!(orderings(&drawing, &network, &plan), []);
+}
+
+/// Three threads below each other, whose events stand in columns.
+const THREE_USES: &str = "var ARM : {STOWED, DIG, LIFT};
+scenario Arm-Day[0,20] = {
+  { delay[0,inf]; ARM=DIG [5,5] },
+  { delay[0,6]; ARM=LIFT [5,5] },
+  { delay[6,6]; ARM=STOWED [4,4] }
+}";
+
+#[test]
+fn orderings_run_beside_each_other_and_past_the_events_between_them() {
+    let network = network_of(THREE_USES);
+    let drawing = draw(&network);
+    let tell = |value: &str| label(&network, &format!("Tell(ARM={value})@Tell(ARM={value})#1"));
+    let orders = [("LIFT", "STOWED"), ("STOWED", "DIG"), ("DIG", "STOWED")];
+    let orderings_added: Vec<Ordering> =
+        orders.iter().map(|(first, then)| Ordering { first: tell(first), then: tell(then) }).collect();
+    let plan = Plan { orderings_added, ..plan(&enroute()) };
+    let curves = orderings(&drawing, &network, &plan);
+    assert_eq!(curves.len(), 3);
+    let lines: Vec<Vec<display::Point>> =
+        curves.iter().map(|curve| display::geometry::flatten(curve.start, &curve.pieces)).collect();
+    for line in &lines {
+        for node in &drawing.nodes {
+            // Half its size: a way begins and ends at the rim of its own events.
+            let inner = display::Rect::around(node.center, node.radius / 2.0);
+            let is_through = line.windows(2).any(|ends| segment_meets_rect(ends[0], ends[1], inner));
+            assert!(!is_through, "{line:?} passes through {node:?}");
+        }
+    }
+    let level_runs = |line: &[display::Point]| {
+        let runs = line.windows(2).filter(|ends| ends[0].y == ends[1].y && ends[0].distance(ends[1]) > 1.0);
+        runs.map(|ends| (ends[0].y, ends[0].x.min(ends[1].x), ends[0].x.max(ends[1].x))).collect::<Vec<_>>()
+    };
+    for (at, one) in lines.iter().enumerate() {
+        for other in &lines[at + 1..] {
+            for (y, left, right) in level_runs(one) {
+                let is_on = |run: &&(f64, f64, f64)| run.0 == y && run.1 < right && left < run.2;
+                assert_eq!(level_runs(other).iter().find(is_on), None, "{one:?} {other:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_text_that_a_link_runs_through_stands_on_a_plate() {
+    let network = network_of(THREE_USES);
+    let drawing = draw(&network);
+    let text = drawing.texts.iter().find(|text| text.text == "[0,6]").expect("the delay's bound");
+    let across = layout::OverlayCurve {
+        kind: layout::OverlayKind::CausalLink,
+        number: 0,
+        start: text.rect.center().shifted(0.0, -40.0),
+        pieces: vec![display::Piece::Line(text.rect.center().shifted(0.0, 40.0))],
+        bounds: text.rect.expanded(40.0),
+    };
+    let plates = |overlays: &[layout::OverlayCurve]| {
+        let state = NetworkState { overlays, ..NetworkState::default() };
+        let list = network_list(&drawing, &network, &state);
+        list.texts()
+            .iter()
+            .filter(|text| text.plate.is_some())
+            .map(|text| text.text.to_string())
+            .collect::<Vec<_>>()
+    };
+    assert!(!plates(&[]).contains(&"[0,6]".to_owned()));
+    assert!(plates(&[across]).contains(&"[0,6]".to_owned()));
 }

@@ -1,7 +1,8 @@
 //! A network as a display list: its structure and arcs, what a plan says of them, and what lies over them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use display::geometry::segment_meets_rect;
 use display::{
     Anchor, ColorRole, Detail, DisplayList, Fit, Group, Measure, PathEnd, Rect, Stroke, TargetKind, Text,
     approximate_text_width,
@@ -114,10 +115,38 @@ pub fn network_list(drawing: &NetworkDrawing, network: &Network, state: &Network
         list.write(Text { plate: Some(ColorRole::Surface.faint(0.8)), ..text }).at(Detail::below(FAR_ZOOM));
     }
     list.begin(Group { layer: layer::TEXTS, ..Group::default() });
-    for text in drawing.texts.iter().chain(state.notes) {
-        builder.text(text, &mut list);
+    let crossed = crossed_texts(drawing, state);
+    for (at, text) in drawing.texts.iter().chain(state.notes).enumerate() {
+        builder.text(text, crossed.contains(&at), &mut list);
     }
     list
+}
+
+/// The texts that curves over the drawing run through, by their position, notes after those of the drawing. Of more curves
+/// than are drawn in full none is looked at.
+fn crossed_texts(drawing: &NetworkDrawing, state: &NetworkState<'_>) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    if state.overlays.len() > MAX_CURVES as usize {
+        return found;
+    }
+    for curve in state.overlays {
+        let line = display::geometry::flatten(curve.start, &curve.pieces);
+        let is_crossed = |text: &TextShape| {
+            // Links begin and end at the edges of texts.
+            let inside = text.rect.expanded(-1.0);
+            line.windows(2).any(|ends| segment_meets_rect(ends[0], ends[1], inside))
+        };
+        drawing.visit(curve.bounds, 0.0, &mut |shape| {
+            if let crate::Shape::Text(at) = shape
+                && is_crossed(&drawing.texts[at as usize])
+            {
+                found.insert(at as usize);
+            }
+        });
+        let notes = state.notes.iter().enumerate().filter(|(_, note)| note.rect.touches(curve.bounds));
+        found.extend(notes.filter(|(_, note)| is_crossed(note)).map(|(at, _)| drawing.texts.len() + at));
+    }
+    found
 }
 
 /// What time has done to a network, over its list: how far arcs are that are under way, and dots in the events that
@@ -367,7 +396,7 @@ impl Builder<'_> {
         }
     }
 
-    fn text(&self, text: &TextShape, list: &mut DisplayList) {
+    fn text(&self, text: &TextShape, is_crossed: bool, list: &mut DisplayList) {
         let standing = self.standing_of(text.owner);
         if !self.parts.shows_text(text.role) || !self.parts.shows(standing) {
             return;
@@ -380,7 +409,8 @@ impl Builder<'_> {
             Item::Arc(arc) => (TargetKind::Arc, arc.0),
             Item::Block(block) => (TargetKind::Block, block.0),
         };
-        list.write(self.text_of(text, standing)).at(detail).stands_for(kind, id);
+        let plate = (is_crossed && text.role != TextRole::Node).then(|| ColorRole::Surface.into());
+        list.write(Text { plate, ..self.text_of(text, standing) }).at(detail).stands_for(kind, id);
     }
 
     fn text_of(&self, text: &TextShape, standing: Standing) -> Text {

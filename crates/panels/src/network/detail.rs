@@ -66,14 +66,15 @@ impl Detail {
         }
     }
 
-    /// Opens boxes until one of `nodes` is visible, if all of them are hidden in `drawing`.
+    /// Opens boxes until one of those of `nodes` that are hidden in `drawing` is visible.
     pub(super) fn reveal(&mut self, network: &Network, drawing: &NetworkDrawing, nodes: &[NodeId]) {
-        let is_hidden = |&node: &NodeId| drawing.node(node).is_none() && drawing.box_of(node).is_some();
-        if nodes.is_empty() || !nodes.iter().all(is_hidden) {
+        let is_hidden = |node: &NodeId| drawing.node(*node).is_none() && drawing.box_of(*node).is_some();
+        let nodes: Vec<NodeId> = nodes.iter().copied().filter(is_hidden).collect();
+        if nodes.is_empty() {
             return;
         }
         let (options, focus, room) = self.drawn(network);
-        for (first, last) in layout::openings(network, &options, focus, room, nodes, &approximate_text_width)
+        for (first, last) in layout::openings(network, &options, focus, room, &nodes, &approximate_text_width)
         {
             self.open(network, first, last);
         }

@@ -102,6 +102,19 @@ impl Highlight {
     }
 }
 
+/// The events that a selection is about where `drawing` hides all that it marks. That of a decision is also about where
+/// its ways begin.
+pub(super) fn wanted(selection: &Selection, network: &Network, drawing: &NetworkDrawing) -> Vec<NodeId> {
+    if let Selection::Decision(id) = selection {
+        let decision = network.decisions.get(id.index());
+        let arcs = decision.iter().flat_map(|decision| &decision.alternatives);
+        let ends = arcs.filter_map(|arc| network.arcs.get(arc.index())).map(|arc| arc.to);
+        return ends.collect();
+    }
+    let nodes = Highlight::of(selection, network).nodes;
+    if nodes.iter().any(|&node| drawing.node(node).is_some()) { Vec::new() } else { nodes }
+}
+
 /// What an item of the drawing stands for.
 pub(super) fn selection_of(item: Item, network: &Network) -> Selection {
     match item {

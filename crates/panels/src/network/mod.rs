@@ -22,7 +22,7 @@ use display::Point;
 use egui::{CursorIcon, InputState, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
 use layout::{BlockForm, Item, NetworkDrawing, OverlayCurve, OverlayKind, Progress};
 use mission::Snapshot;
-use tpn::{BlockId, Network, Plan};
+use tpn::{BlockId, Network, NodeId, Plan};
 use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::search::Focus;
 use workbench::state::settings::NetworkView;
@@ -100,16 +100,34 @@ impl NetworkPanel {
         let pins = (context.state.pins.version(), context.state.pins.plan(snapshot));
         let pins = context.state.settings.views.network.windows.then_some(pins);
         let mut is_new = self.drawn.follow(snapshot, network, context.step(), &self.detail, latest, pins);
-        let selection = &context.state.selection;
-        if is_new || *selection != self.followed_selection {
-            let shapes = Highlight::of(selection, network);
-            self.detail.reveal(network, &self.drawn.drawing, &shapes.nodes);
+        let is_selected_anew = context.state.selection != self.followed_selection;
+        let is_next_step = Self::step_of(context) != self.followed_step;
+        let of_selection = (is_new || is_selected_anew)
+            .then(|| highlight::wanted(&context.state.selection, network, &self.drawn.drawing));
+        let of_step = (is_new || is_next_step).then(|| Self::wanted_at_step(context, network));
+        for nodes in [of_selection.unwrap_or_default(), of_step.unwrap_or_default()] {
+            self.detail.reveal(network, &self.drawn.drawing, &nodes);
             is_new |= self.drawn.follow(snapshot, network, context.step(), &self.detail, latest, pins);
         }
         if is_new {
             context.layout_millis.set(Some(((context.clock)() - begun_secs) * 1000.0));
         }
         self.search.follow(network, self.drawn.version);
+    }
+
+    /// The step of the search that is looked at.
+    fn step_of(context: &Context<'_>) -> Option<usize> {
+        context.state.search.step().map(|step| step.step)
+    }
+
+    /// The events that the step of the search that is looked at is about, if it is one of those that tell something.
+    fn wanted_at_step(context: &Context<'_>, network: &Network) -> Vec<NodeId> {
+        let is_key = |view: &workbench::state::search::View| {
+            let entry = view.recording.trace().events.get(view.step.step);
+            entry.is_some_and(|entry| workbench::state::search::focus::is_key(&entry.event))
+        };
+        let focus = context.step().filter(|view| is_key(view)).and_then(|_| context.focus());
+        focus.map(|focus| Highlight::of_focus(&focus, network).nodes).unwrap_or_default()
     }
 
     /// What tells which approved plan is laid over the present one: in a review, unless that is switched off or a step of
@@ -355,7 +373,7 @@ impl NetworkPanel {
 
     /// Brings what a new step is about into view if none of it is.
     fn follow_step(&mut self, panel: Rect, context: &Context<'_>, network: &Network) {
-        let step = context.state.search.step().map(|step| step.step);
+        let step = Self::step_of(context);
         if step == self.followed_step {
             return;
         }

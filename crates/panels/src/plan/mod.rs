@@ -284,17 +284,23 @@ fn show_orderings(
     let pairs = counted(orders.len() as u64, "conflicting pair");
     let note = format!("{pairs}, {added} ordered by planning");
     section(ui, context, "Threats and orderings", &note);
-    rows(ui, "orderings", orders.len(), |ui, index| {
-        let ordering = orders[index];
-        let text =
-            format!("{} before {}", network.label_name(ordering.first), network.label_name(ordering.then));
-        let is_added = plan.orderings_added.contains(&ordering);
-        let (note, color) = if is_added {
-            ("   added", context.tokens.ordering)
-        } else {
-            ("   holds anyway", context.tokens.text_muted)
+    let (added, holding): (Vec<tpn::Ordering>, Vec<tpn::Ordering>) =
+        orders.into_iter().partition(|ordering| plan.orderings_added.contains(ordering));
+    let mut list = |ui: &mut Ui, id: &str, orders: &[tpn::Ordering], color: egui::Color32| {
+        rows(ui, id, orders.len(), |ui, index| {
+            let ordering = orders[index];
+            let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
+            let text = RichText::new(format!("{first} before {then}")).color(color);
+            selectable_row(ui, context, &Selection::Ordering(ordering), text, commands);
+        });
+    };
+    list(ui, "orderings", &added, context.tokens.ordering);
+    if !holding.is_empty() {
+        let title = match holding.len() {
+            1 => "1 holds anyway".to_owned(),
+            count => format!("{count} hold anyway"),
         };
-        let text = RichText::new(format!("{text}{note}")).color(color);
-        selectable_row(ui, context, &Selection::Ordering(ordering), text, commands);
-    });
+        let header = egui::CollapsingHeader::new(title).id_salt("orderings that hold");
+        header.show(ui, |ui| list(ui, "holding", &holding, context.tokens.text_muted));
+    }
 }

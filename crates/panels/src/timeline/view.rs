@@ -2,6 +2,9 @@
 
 use egui::Rect;
 
+/// The room at both ends of a range of times that is shown, in points.
+const END_MARGIN: f64 = 14.0;
+
 /// Which part of time is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TimeView {
@@ -17,11 +20,12 @@ impl TimeView {
         Self::range(0.0, horizon, width)
     }
 
-    /// Shows from `start` to `end` in `width` points, with a little room at both ends.
+    /// Shows from `start` to `end` in `width` points, with a little room at both ends, for links that bow out.
     pub(crate) fn range(start: f64, end: f64, width: f32) -> Self {
-        let margin = ((end - start) * 0.02).max(1e-6);
-        let span = (end - start + 2.0 * margin).max(1e-6);
-        Self { start: start - margin, scale: f64::from(width.max(1.0)) / span }
+        let width = f64::from(width.max(1.0));
+        let margin = END_MARGIN.min(width / 8.0);
+        let scale = (width - 2.0 * margin) / (end - start).max(1e-6);
+        Self { start: start - margin / scale, scale }
     }
 
     /// The time at `x` in `rect`.

@@ -31,7 +31,11 @@ const SIGN: (f64, f64) = (14.0, 4.0);
 /// A bar narrower than this is only a stroke.
 const LEAST_WIDTH: f64 = 3.0;
 /// Sizes of names, of the numbers on the axis, and of what is written in bars.
-const SIZES: [f64; 3] = [13.0, 11.0, 10.0];
+const SIZES: [f64; 3] = [13.0, 11.0, 11.0];
+/// Between words in a bar, and how much wider than measured they may be.
+const WORDS_GAP: f64 = 16.0;
+/// See [`WORDS_GAP`].
+const WORDS_SPARE: f64 = 1.06;
 /// A bar with less room than this has nothing written in it.
 const LEAST_ROOM: f64 = 44.0;
 /// From the lower edge of a row to the upper and the lower edge of what needs a value.
@@ -185,7 +189,10 @@ impl Track {
         };
         let bow = ((to.y - from.y).abs() * 0.3).clamp(14.0, 46.0);
         let out = if (to.x - from.x).abs() < 40.0 { -bow } else { bow };
-        let piece = Piece::Cubic(from.shifted(out, 0.0), to.shifted(-bow, 0.0), to);
+        // A curve comes three quarters of the way out: no further than to the left edge, where it would be cut.
+        let edge = self.visible.min.x + 1.0;
+        let inside = |end: Point, out: f64| end.shifted(out.max((edge - end.x).min(0.0) / 0.75), 0.0);
+        let piece = Piece::Cubic(inside(from, out), inside(to, -bow), to);
         LinkCurve { link, start: from, piece }
     }
 }
@@ -493,16 +500,21 @@ impl Builder<'_> {
         });
         let size = SIZES[2];
         let middle = whole.center().y;
-        let mut x = left + 6.0;
-        for (words, role) in own.into_iter().chain(labels) {
-            let width = text_width_at(&words, size, self.measure).ceil();
-            if x + width + 8.0 > right {
+        let width_of = |words: &SmolStr| (text_width_at(words, size, self.measure) * WORDS_SPARE).ceil();
+        let words: Vec<_> =
+            own.into_iter().chain(labels).map(|(words, role)| (width_of(&words), words, role)).collect();
+        let whole_width: f64 = words.iter().map(|(width, ..)| width + WORDS_GAP).sum();
+        // Behind the earliest end, where the bar is only hatched and no handle is, if all of it fits there.
+        let tail = self.track.x(bar.end[0]).max(left);
+        let mut x = if tail + whole_width <= right { tail } else { left } + WORDS_GAP / 2.0;
+        for (width, words, role) in words {
+            if x + width + WORDS_GAP / 2.0 > right {
                 return;
             }
             let place = Rect::new(x, middle - size / 2.0, x + width, middle + size / 2.0);
             let text = Text::new(words, size, place).anchored(Anchor::Start, Fit::Overflow);
             self.list.write(Text { plate: Some(ColorRole::Surface.into()), ..text.colored(role) });
-            x += width + 14.0;
+            x += width + WORDS_GAP;
         }
     }
 

@@ -9,10 +9,12 @@ use tpn::{Levels, Supply};
 use super::{Builder, SIGN, SIZES, Track};
 use crate::timeline::profile::{PROFILE_ROWS, Profile, ProfilePart};
 
-/// From the edges of the rows to the plot, above and below.
-const MARGINS: (f64, f64) = (9.0, 5.0);
-/// The height of a line's number, and how far its line may lie from another with a number of its own.
+/// From the edges of the rows to the plot, above and below, where the number of the lowest line stands.
+const MARGINS: (f64, f64) = (9.0, 14.0);
+/// The height of a line's number.
 const NUMBER_HEIGHT: f64 = 12.0;
+/// How far from the right end the numbers of what is reached end, left of those of what is possible.
+const LIMITS_WIDTH: f64 = 104.0;
 
 impl Track {
     /// Where the plot of a profile is, one of whose rows has this number.
@@ -94,27 +96,28 @@ impl Builder<'_> {
         for &(level, word) in reached.iter().filter(|it| is_apart(it.0)) {
             let stroke = Stroke::solid(ColorRole::Accent, 1.2).dashed(Dash::Dashed);
             let words = format_smolstr!("{word} {}", level.readable());
-            self.level(plot, level, stroke, words, Anchor::Start);
+            self.level(plot, level, stroke, words, LIMITS_WIDTH);
         }
         for &(level, word) in &limits {
             let is_reached = reached.iter().any(|it| it.0 == level);
             let reached = if is_reached { ", reached" } else { "" };
             let words = format_smolstr!("{word} {}{reached}", level.readable());
-            self.level(plot, level, Stroke::solid(ColorRole::Threat, 1.0), words, Anchor::End);
+            self.level(plot, level, Stroke::solid(ColorRole::Threat, 1.0), words, 4.0);
         }
     }
 
-    /// A line across, with its number at its left or right end where there is room.
-    fn level(&mut self, plot: &Plot, level: Rational, stroke: Stroke, words: SmolStr, anchor: Anchor) {
+    /// A line across, with its number so far from its right end.
+    fn level(&mut self, plot: &Plot, level: Rational, stroke: Stroke, words: SmolStr, from_end: f64) {
         let seen = self.track.visible;
         let (left, right) = (plot.rect.min.x.max(seen.min.x), plot.rect.max.x.min(seen.max.x));
         let y = plot.y(level);
         self.list.line(Point::new(left, y), Point::new(right, y), stroke);
-        // Numbers stand on their lines, those of lines at the top hang from them.
-        let top = if y - NUMBER_HEIGHT < plot.rect.min.y { y + 1.0 } else { y - NUMBER_HEIGHT - 1.0 };
-        let place = Rect::new(left + 4.0, top, right - 4.0, top + NUMBER_HEIGHT);
+        // Numbers stand on their lines; those of lines at the top and at the bottom hang from them.
+        let hangs = y - NUMBER_HEIGHT < plot.rect.min.y || y >= plot.rect.max.y - 1.0;
+        let top = if hangs { y + 1.0 } else { y - NUMBER_HEIGHT - 1.0 };
+        let place = Rect::new(left + 4.0, top, right - from_end, top + NUMBER_HEIGHT);
         if place.width() > 60.0 {
-            let text = Text::new(words, SIZES[2], place).anchored(anchor, Fit::Overflow);
+            let text = Text::new(words, SIZES[2], place).anchored(Anchor::End, Fit::Overflow);
             let plate = Some(ColorRole::Surface.faint(0.75));
             self.list.write(Text { plate, ..text.colored(stroke.color.role) });
         }

@@ -1,12 +1,17 @@
 //! What a plan, or its failure, adds to a drawing: curves between places on it, and texts under its nodes.
 
+mod ordering;
+
 use display::geometry::curve_bounds;
 use display::{Measure, Piece, Point, Rect};
 use serde::{Deserialize, Serialize};
-use tpn::{LabelId, Network, NodeId, Plan, Role, precedence};
+use tpn::{LabelId, Network, NodeId, Plan, Role};
+
+use self::ordering::between_nodes;
+pub use self::ordering::orderings;
 
 use crate::drawing::{Item, NetworkDrawing, TextShape};
-use crate::metrics::{EVENT_RADIUS, TextRole, VERTEX_RADIUS};
+use crate::metrics::{TextRole, VERTEX_RADIUS};
 use crate::text::{bounds_label, text_width};
 
 /// A curve over the drawing.
@@ -42,10 +47,6 @@ const TALLEST_TEXT: f64 = 20.0;
 /// Boxes that are so far apart are joined by a way between them.
 const BOX_GAP: f64 = 4.0;
 
-/// How far above the line of a row its texts end.
-const ABOVE_ROW: f64 = 27.0;
-/// Radius of the corners of a way between rows.
-const CORNER: f64 = 9.0;
 /// How far a curve between two places on one line hangs below it.
 const SAG: (f64, f64) = (34.0, 150.0);
 
@@ -61,34 +62,6 @@ pub fn causal_links(drawing: &NetworkDrawing, network: &Network, plan: &Plan) ->
         Some(between_labels(number as u32, *from, *to))
     };
     plan.causal_links.iter().enumerate().filter_map(curve).collect()
-}
-
-/// The orderings that planning added: from the first interval's end to the other's start. Those of the uses of resources
-/// are numbered after those of conditions. What follows from others is left out: of intervals that exclude each other
-/// there are as many as pairs, and one after each says the same.
-pub fn orderings(drawing: &NetworkDrawing, network: &Network, plan: &Plan) -> Vec<OverlayCurve> {
-    let of_labels = plan.orderings_added.iter().map(|ordering| {
-        let is_known = [ordering.first, ordering.then].iter().all(|it| it.index() < network.labels.len());
-        is_known.then(|| (network.interval(ordering.first).1, network.interval(ordering.then).0))
-    });
-    let of_uses = plan.uses_ordered.iter().map(|ordering| {
-        let is_known = [ordering.first, ordering.then].iter().all(|it| it.index() < network.uses.len());
-        let precedence = is_known.then(|| ordering.precedence(network))?;
-        Some((precedence.earlier, precedence.later))
-    });
-    let pairs =
-        |orderings: &mut dyn Iterator<Item = [usize; 2]>| precedence::needed(&orderings.collect::<Vec<_>>());
-    let labels = &mut plan.orderings_added.iter().map(|it| [it.first.index(), it.then.index()]);
-    let uses = &mut plan.uses_ordered.iter().map(|it| [it.first.index(), it.then.index()]);
-    let is_needed = [pairs(labels), pairs(uses)].concat();
-    let curve = |(number, ends): (usize, Option<(NodeId, NodeId)>)| {
-        let (from, to) = ends.filter(|_| is_needed[number])?;
-        if are_in_one_box(drawing, from, to) {
-            return None;
-        }
-        Some(between_nodes(drawing, OverlayKind::Ordering, number as u32, from, to))
-    };
-    of_labels.chain(of_uses).enumerate().filter_map(curve).collect()
 }
 
 /// Pairs of conditions that contradict each other and cannot be kept apart.
@@ -147,53 +120,6 @@ pub fn windows(
         .filter(|node| node.role != Role::Structural && node.radius > VERTEX_RADIUS)
         .filter_map(text)
         .collect()
-}
-
-/// A curve from node to node: between the rows where they are on different ones, below a shared one.
-pub fn between_nodes(
-    drawing: &NetworkDrawing,
-    kind: OverlayKind,
-    number: u32,
-    from: NodeId,
-    to: NodeId,
-) -> OverlayCurve {
-    let radius = |node: NodeId| {
-        let of_box = || drawing.box_of(node).map(|hiding| hiding.rect.height() / 2.0);
-        drawing.node(node).map(|shape| shape.radius).or_else(of_box).unwrap_or_default()
-    };
-    let (source, target) = (drawing.anchor(from), drawing.anchor(to));
-    if (target.y - source.y).abs() < ABOVE_ROW + EVENT_RADIUS {
-        let (start, piece) = free_curve(source, radius(from), target, radius(to));
-        return curve(kind, number, start, vec![piece]);
-    }
-    let (start, pieces) = between_rows(source, radius(from), target, radius(to));
-    curve(kind, number, start, pieces)
-}
-
-/// A way that leaves upright, runs level just above the lower of two rows, where no texts are, and arrives upright.
-fn between_rows(from: Point, from_radius: f64, to: Point, to_radius: f64) -> (Point, Vec<Piece>) {
-    let downwards = if to.y > from.y { 1.0 } else { -1.0 };
-    let run = from.y.max(to.y) - ABOVE_ROW;
-    let across = if to.x > from.x { 1.0 } else { -1.0 };
-    let corner = ((to.x - from.x).abs() / 2.0).min(CORNER);
-    let start = from.shifted(0.0, from_radius * downwards);
-    let end = to.shifted(0.0, -to_radius * downwards);
-    let pieces = vec![
-        Piece::Line(Point::new(from.x, run - corner * downwards)),
-        Piece::Cubic(
-            Point::new(from.x, run),
-            Point::new(from.x, run),
-            Point::new(from.x + corner * across, run),
-        ),
-        Piece::Line(Point::new(to.x - corner * across, run)),
-        Piece::Cubic(
-            Point::new(to.x, run),
-            Point::new(to.x, run),
-            Point::new(to.x, run + corner * downwards),
-        ),
-        Piece::Line(end),
-    ];
-    (start, pieces)
 }
 
 /// The start and the only piece of a curve between two circles. On one line it hangs below, where the arches are not.
