@@ -95,24 +95,51 @@ const MAX_ROWS: usize = 1000;
 
 /// The rows of a table that are written, in their order, and how many are not.
 fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
-    let more = rows.len().saturating_sub(MAX_ROWS);
-    if more > 0 {
-        let mut room = MAX_ROWS;
-        let mut keep = vec![false; rows.len()];
-        for passed in [false, true] {
-            for (_, keep) in rows.iter().zip(&mut keep).filter(|(row, _)| has_passed(row) == passed) {
-                *keep = room > 0;
-                room = room.saturating_sub(1);
-            }
-        }
+    let all = rows.len();
+    if all > MAX_ROWS {
+        let keep = chosen(&rows, MAX_ROWS, |rows| rows.len());
         let mut keep = keep.into_iter();
         rows.retain(|_| keep.next().unwrap_or(false));
     }
+    let more = all - rows.len();
     (rows, more)
 }
 
-/// How the cell of what has passed begins.
-const PASSED: &str = "<span class=\"status passed\">";
+/// Which rows there is room for: what has failed or is for attention before the rest, and what has passed last. Rows that
+/// go on with the one before, which have nothing in their first cell, stay with it. `size` is what rows take of the room.
+fn chosen(rows: &[Vec<String>], mut room: usize, size: impl Fn(&[Vec<String>]) -> usize) -> Vec<bool> {
+    let begins: Vec<usize> = (0..rows.len())
+        .filter(|&at| at == 0 || rows[at].first().is_some_and(|cell| !cell.is_empty()))
+        .collect();
+    let ends = begins.iter().skip(1).copied().chain([rows.len()]);
+    let mut groups: Vec<std::ops::Range<usize>> =
+        begins.iter().copied().zip(ends).map(|(from, to)| from..to).collect();
+    groups.sort_by_key(|group| urgency(&rows[group.start]));
+    let mut is_chosen = vec![false; rows.len()];
+    for group in groups {
+        if room == 0 {
+            break;
+        }
+        room = room.saturating_sub(size(&rows[group.clone()]));
+        is_chosen[group].fill(true);
+    }
+    is_chosen
+}
+
+/// Where a row stands among those that there is no room for all of, by its status.
+fn urgency(row: &[String]) -> u8 {
+    let is = |status: Status| {
+        let start = format!("<span class=\"status {}\">", status.name());
+        row.first().is_some_and(|cell| cell.starts_with(&start))
+    };
+    if is(Status::Failed) || is(Status::Attention) {
+        0
+    } else if is(Status::Passed) {
+        2
+    } else {
+        1
+    }
+}
 
 /// How high the rows of a table may be on paper together, in points: about two pages, so that a report of all sections
 /// stays below what people leaf through.
@@ -132,23 +159,9 @@ fn printed_height(row: &[String]) -> usize {
     5 + 13 * letters.div_ceil(45).max(1)
 }
 
-/// Which rows of a table are printed: what has not passed before what has, while there is room. The others stand on
-/// the screen.
+/// Which rows of a table are printed, while there is room. The others stand on the screen.
 fn printed(rows: &[Vec<String>]) -> Vec<bool> {
-    let mut room = PRINTED_HEIGHT;
-    let mut is_printed = vec![false; rows.len()];
-    for passed in [false, true] {
-        for (row, is_printed) in rows.iter().zip(&mut is_printed).filter(|(row, _)| has_passed(row) == passed)
-        {
-            *is_printed = room > 0;
-            room = room.saturating_sub(printed_height(row));
-        }
-    }
-    is_printed
-}
-
-fn has_passed(row: &[String]) -> bool {
-    row.first().is_some_and(|cell| cell.starts_with(PASSED))
+    chosen(rows, PRINTED_HEIGHT, |rows| rows.iter().map(|row| printed_height(row)).sum())
 }
 
 /// A table of rows of cells that are HTML already; a heading that begins with `#` is that of figures.
@@ -425,5 +438,24 @@ mod tests {
         assert!(html.contains(&format!("and {on_screen} more that are not printed")));
         assert!(html.contains("and 79000 more that are not listed here"));
         assert!(!table(&["", "What"], (0..MAX_ROWS).map(row)).contains("not listed"));
+    }
+
+    #[test]
+    fn rows_that_go_on_with_another_stay_with_it_and_those_for_attention_come_first() {
+        let group = |number: usize| {
+            let of = if number == 900 { Status::Attention } else { Status::Information };
+            let first = vec![status(of), format!("D{number}"), "taken".to_owned()];
+            let next = vec![String::new(), String::new(), format!("not needed in D{number}")];
+            [first, next.clone(), next]
+        };
+        let html = table(&["", "Choice", "Why"], (0..1000).flat_map(group));
+        let printed: Vec<&str> = html.lines().filter(|row| row.starts_with("<tr>")).collect();
+        assert!(printed.iter().any(|row| row.contains("status attention")), "{printed:#?}");
+        for name in ["D0", "D1", "D900"] {
+            let of_choice = printed.iter().filter(|row| row.contains(&format!("{name}<")));
+            assert_eq!(of_choice.count(), 3, "{name}: its own row and both that go on with it");
+        }
+        let written = html.matches("not needed in D").count();
+        assert_eq!(html.matches("status information").count() * 2 + 2, written, "no choice without its rows");
     }
 }

@@ -19,7 +19,7 @@ pub struct Arranged {
 /// From column to column, without the names.
 const COLUMN_GAP: f64 = 96.0;
 /// From row to row.
-const ROW_GAP: f64 = 56.0;
+const ROW_GAP: f64 = 64.0;
 /// How far the two directions between vertices are apart.
 const LANE: f64 = 7.0;
 /// Barycentre sweeps to and fro.
@@ -82,7 +82,7 @@ pub fn arrange(graph: &DistanceGraph, widths: &[f64]) -> Arranged {
         .iter()
         .zip(widths)
         .map(|(place, width)| {
-            Rect::new(place.x - width / 2.0, place.y - 16.0, place.x + width / 2.0, place.y + 16.0)
+            Rect::new(place.x - width / 2.0, place.y - 22.0, place.x + width / 2.0, place.y + 22.0)
         })
         .reduce(Rect::union)
         .unwrap_or_default();

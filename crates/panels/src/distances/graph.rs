@@ -39,8 +39,8 @@ pub struct DistanceGraph {
 pub struct Vertex {
     /// They.
     pub nodes: Vec<NodeId>,
-    /// The name of the first that has one; empty for forks and merges.
-    pub name: String,
+    /// What they are called, in at most two lines; none for forks and merges.
+    pub names: Vec<String>,
 }
 
 /// `to` happens at most `weight` after `from`.
@@ -79,7 +79,7 @@ impl DistanceGraph {
         }
         for vertex in &mut graph.vertices {
             vertex.nodes.sort_unstable();
-            vertex.name = name(network, &vertex.nodes);
+            vertex.names = names(network, &vertex.nodes);
         }
         let mut place = |node: NodeId| vertex_of.get(&groups.find(node.index())).copied();
         for edge in bounds(selected) {
@@ -110,7 +110,7 @@ impl DistanceGraph {
     /// A nameless vertex with one neighbour before and one after it is passed over.
     fn join_chains(&mut self) {
         for vertex in 0..self.vertices.len() {
-            if !self.vertices[vertex].name.is_empty() {
+            if !self.vertices[vertex].names.is_empty() {
                 continue;
             }
             let incoming: Vec<Edge> = self.edges.iter().filter(|edge| edge.to == vertex).copied().collect();
@@ -134,7 +134,7 @@ impl DistanceGraph {
         self.keep_tightest();
         let is_used = |vertex: usize| self.edges.iter().any(|edge| edge.from == vertex || edge.to == vertex);
         let kept: Vec<usize> = (0..self.vertices.len())
-            .filter(|&vertex| !self.vertices[vertex].name.is_empty() || is_used(vertex))
+            .filter(|&vertex| !self.vertices[vertex].names.is_empty() || is_used(vertex))
             .collect();
         let mut position = vec![0; self.vertices.len()];
         for (new, &old) in kept.iter().enumerate() {
@@ -191,8 +191,8 @@ pub(super) fn bounds(selected: &Selected<'_>) -> Vec<Between> {
     all
 }
 
-/// The name of events at the same time: that of the outermost, and how many others there are.
-fn name(network: &Network, nodes: &[NodeId]) -> String {
+/// The names of events at the same time: those of the two outermost, and how many others there are.
+fn names(network: &Network, nodes: &[NodeId]) -> Vec<String> {
     let is_event = |node: &&NodeId| {
         network.nodes.get(node.index()).is_some_and(|node| {
             let is_point = |event: &tpn::EventRef| matches!(event.end, EventEnd::PathVertex { .. });
@@ -200,9 +200,11 @@ fn name(network: &Network, nodes: &[NodeId]) -> String {
         })
     };
     let named: Vec<&NodeId> = nodes.iter().filter(is_event).collect();
-    let Some(first) = named.first() else { return String::new() };
-    let name = node_name(network, **first);
-    if named.len() > 1 { format!("{name} +{}", named.len() - 1) } else { name }
+    let mut names: Vec<String> = named.iter().take(2).map(|&&node| node_name(network, node)).collect();
+    if let Some(last) = names.last_mut().filter(|_| named.len() > 2) {
+        last.push_str(&format!(" +{}", named.len() - 2));
+    }
+    names
 }
 
 /// Events that are at the same time, found by joining.

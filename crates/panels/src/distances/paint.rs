@@ -47,8 +47,10 @@ pub enum Pointed {
     Edge(usize),
 }
 
-/// The height of a box with a name.
-const BOX_HEIGHT: f64 = 24.0;
+/// The height of a box with a name, and how much higher it is with each further one.
+const BOX_HEIGHTS: (f64, f64) = (24.0, 16.0);
+/// A vertex with so many edges more than the other end of an edge leaves its weight to that end.
+const CROWD: usize = 3;
 /// The radius of a vertex without a name.
 const DOT: f64 = 6.0;
 /// Texts that would be smaller than this in points are left out; others keep a size that can be read.
@@ -61,11 +63,10 @@ fn legible(font_size: f32) -> f32 {
 
 /// How wide a vertex is drawn.
 pub fn width(vertex: &Vertex) -> f64 {
-    if vertex.name.is_empty() {
-        return 2.0 * DOT;
-    }
+    let widths = vertex.names.iter().map(|name| display::approximate_text_width(name));
+    let Some(widest) = widths.reduce(f32::max) else { return 2.0 * DOT };
     // Measured in another size than the one that is drawn; the shape of letters is the same.
-    f64::from(display::approximate_text_width(&vertex.name)) * f64::from(size::BODY) / TEXT_SIZE + 18.0
+    f64::from(widest) * f64::from(size::BODY) / TEXT_SIZE + 18.0
 }
 
 impl Scene<'_> {
@@ -153,7 +154,10 @@ impl Scene<'_> {
         let zoom = self.view.zoom() as f32;
         let center = self.view.screen_point(self.panel, self.arranged.places[vertex]);
         let vertex = &self.graph.vertices[vertex];
-        let height = if vertex.name.is_empty() { 2.0 * DOT } else { BOX_HEIGHT };
+        let height = match vertex.names.len() {
+            0 => 2.0 * DOT,
+            lines => BOX_HEIGHTS.0 + (lines - 1) as f64 * BOX_HEIGHTS.1,
+        };
         Rect::from_center_size(center, vec2(width(vertex) as f32, height as f32) * zoom)
     }
 
@@ -242,19 +246,27 @@ impl Scene<'_> {
             _ => (tokens.line_strong, 1.0),
         };
         let fill = if is_selected { tokens.accent_soft } else { tokens.raised };
-        let round = if it.name.is_empty() { frame.height() / 2.0 } else { 6.0 };
+        let round = if it.names.is_empty() { frame.height() / 2.0 } else { 6.0 };
         self.painter.rect(frame, round, fill, Stroke::new(width, line), StrokeKind::Middle);
         let font_size = size::BODY * self.view.zoom() as f32;
-        if !it.name.is_empty() && font_size >= LEAST_TEXT {
-            let mut job = egui::text::LayoutJob::simple_singleline(
-                it.name.clone(),
-                FontId::proportional(legible(font_size)),
-                tokens.text,
-            );
+        if font_size < LEAST_TEXT {
+            return;
+        }
+        let lines = it.names.len() as f32;
+        let pitch = (BOX_HEIGHTS.1 * self.view.zoom()) as f32;
+        for (line, name) in it.names.iter().enumerate() {
+            let font = FontId::proportional(legible(font_size));
+            let mut job = egui::text::LayoutJob::simple_singleline(name.clone(), font, tokens.text);
             job.wrap = egui::text::TextWrapping::truncate_at_width(frame.width() - 4.0);
             let galley = self.painter.layout_job(job);
-            self.painter.galley(frame.center() - galley.size() / 2.0, galley, tokens.text);
+            let middle = frame.center() + vec2(0.0, (line as f32 - (lines - 1.0) / 2.0) * pitch);
+            self.painter.galley(middle - galley.size() / 2.0, galley, tokens.text);
         }
+    }
+
+    /// Of how many edges a vertex is an end.
+    fn degree(&self, vertex: usize) -> usize {
+        self.graph.edges.iter().filter(|edge| edge.from == vertex || edge.to == vertex).count()
     }
 
     /// The weight of an edge on its curve, where it covers nothing else.
@@ -271,7 +283,15 @@ impl Scene<'_> {
         let galley = self.painter.layout_no_wrap(text, font, color);
         // Forward and backward edges lie side by side: their weights stand at different places along them.
         let first = if edge.weight > Time::ZERO { 0.42 } else { 0.58 };
-        for along in [first, 0.5, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82] {
+        let (from, to) = (self.degree(edge.from), self.degree(edge.to));
+        let places = if from >= to + CROWD {
+            [0.72, 0.62, 0.82, 0.5, 0.42, 0.34, 0.26, 0.18]
+        } else if to >= from + CROWD {
+            [0.28, 0.38, 0.18, 0.5, 0.58, 0.66, 0.74, 0.82]
+        } else {
+            [first, 0.5, 0.34, 0.66, 0.26, 0.74, 0.18, 0.82]
+        };
+        for along in places {
             let place = Align2::CENTER_CENTER.anchor_size(at_fraction(&points, along), galley.size());
             let fits = taken.iter().all(|other| !other.intersects(place));
             if fits {

@@ -82,7 +82,7 @@ fn in_stretches(all: &Selected<'_>) -> Shown {
     let cycle = all.cycle;
     let stretch = cycle.len().div_ceil(MAX_VERTICES / 2);
     let parts: Vec<_> = cycle.chunks(stretch).collect();
-    let vertex = |node: NodeId| Vertex { nodes: vec![node], name: node_name(all.network, node) };
+    let vertex = |node: NodeId| Vertex { nodes: vec![node], names: vec![node_name(all.network, node)] };
     let vertices: Vec<Vertex> = parts.iter().filter_map(|part| Some(vertex(part.first()?.from))).collect();
     let edges = parts.iter().enumerate().filter_map(|(at, part)| {
         let weight = Time::checked_sum(part.iter().map(|member| member.weight))?;

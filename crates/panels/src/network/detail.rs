@@ -46,6 +46,11 @@ impl Detail {
         self.is_whole || self.focus.is_some() || !self.collapsed.is_empty()
     }
 
+    /// Whether some part is drawn in more detail than the rest.
+    pub(super) fn has_focus(&self) -> bool {
+        self.focus.is_some()
+    }
+
     /// What fits the panel, and nothing else.
     pub(super) fn reset(&mut self) {
         self.collapsed.clear();

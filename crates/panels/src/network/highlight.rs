@@ -66,6 +66,14 @@ impl Highlight {
         shapes
     }
 
+    /// These shapes but for the events and arcs of others.
+    pub(super) fn without(&self, other: &Self) -> Self {
+        let mut rest = self.clone();
+        rest.nodes.retain(|node| !other.nodes.contains(node));
+        rest.arcs.retain(|arc| !other.arcs.contains(arc));
+        rest
+    }
+
     /// The area that the shapes cover on a drawing; `None` if there are none.
     pub(super) fn bounds(&self, drawing: &NetworkDrawing) -> Option<Rect> {
         let nodes = self.nodes.iter().map(|&node| {

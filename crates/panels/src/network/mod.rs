@@ -60,8 +60,14 @@ pub struct NetworkPanel {
 
 /// How far from the pointer something may be to be pointed at, in points.
 const REACH: f64 = 6.0;
+/// From the upper edge of the panel to its badges, and how high those of one and of two lines are with the room below.
+const BADGES_TOP: f32 = 8.0;
+/// See [`BADGES_TOP`].
+const BADGE_HEIGHTS: [f32; 2] = [30.0, 44.0];
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
+/// Where something was opened, the whole is shown with it down to this zoom.
+const LEAST_OPENED: f64 = 0.62;
 /// A selection elsewhere is shown no larger than this.
 const SELECTION_ZOOM: f64 = 1.4;
 
@@ -79,7 +85,8 @@ impl Panel for NetworkPanel {
         if options != views.network {
             commands.send(Command::SetViews(Box::new(Views { network: options.clone(), ..views.clone() })));
         }
-        self.detail.follow(ui.available_size(), self.view.is_fitted(), options.windows);
+        let room = ui.available_size() - vec2(0.0, badges_height(context, snapshot));
+        self.detail.follow(room, self.view.is_fitted(), options.windows);
         self.draw(context, snapshot, network);
         self.answer(asked, network, commands);
         self.show_drawing(ui, context, snapshot, network, &options, commands);
@@ -189,7 +196,7 @@ impl NetworkPanel {
         let summary = describe::summary(network, plan);
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{}. {summary}", title(context))));
-        self.move_view(ui, context, panel, &response, network);
+        self.move_view(ui, context, panel, &response, (snapshot, network));
 
         let act = landmarks::show(ui, panel, &self.view, &self.drawn, network, &context.state.selection);
         let overview = if options.minimap { minimap::place(panel, &self.view, &self.drawn) } else { None };
@@ -281,7 +288,7 @@ impl NetworkPanel {
         context: &Context<'_>,
         panel: Rect,
         response: &Response,
-        network: &Network,
+        (snapshot, network): (&Snapshot, &Network),
     ) {
         let overview = minimap::place(panel, &self.view, &self.drawn)
             .filter(|_| context.state.settings.views.network.minimap);
@@ -325,8 +332,21 @@ impl NetworkPanel {
         self.follow_selection(panel, context, network);
         self.follow_step(panel, context, network);
         if self.view.is_fitted() {
-            self.view.fit(panel, self.drawn.frame());
+            self.fit(panel, context, snapshot, network);
         }
+    }
+
+    /// Shows all of the drawing below the badges; where something was opened and all would be too small to read, what is
+    /// around that.
+    fn fit(&mut self, panel: Rect, context: &Context<'_>, snapshot: &Snapshot, network: &Network) {
+        let top = badges_height(context, snapshot);
+        let area = panel.with_min_y(panel.top() + top);
+        let least = if self.detail.has_focus() { LEAST_OPENED } else { 0.0 };
+        let of_step = context.focus().map(|focus| Highlight::of_focus(&focus, network));
+        let shapes = of_step.unwrap_or_else(|| Highlight::of(&context.state.selection, network));
+        let part = shapes.bounds(&self.drawn.drawing);
+        self.view.fit_legibly(area, self.drawn.frame(), part, least);
+        self.view.keep_below(top);
     }
 
     fn follow_action(
@@ -539,21 +559,39 @@ fn arrow_keys(ui: &Ui) -> egui::Vec2 {
     })
 }
 
-/// Says when the drawing is that of an older text, and why there is no plan.
-fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snapshot: &Snapshot) {
-    let tokens = context.tokens;
-    let width = (panel.width() - 60.0).clamp(80.0, 520.0);
-    let mut corner = panel.left_top() + vec2(10.0, 8.0);
-    let stale = match context.state.status() {
+/// What a badge says of an older text that the drawing is of.
+fn stale_text(context: &Context<'_>) -> Option<&'static str> {
+    match context.state.status() {
         _ if !context.is_stale => None,
         Status::Broken => Some("⚠ The text has errors: this is its last good network"),
         Status::Empty => Some("⚠ There is nothing to plan in the text: this is the network before"),
         Status::Undecided => Some("⚠ This is the network of an earlier text"),
         _ => None,
-    };
-    if let Some(text) = stale {
+    }
+}
+
+/// The first reason why there is no plan.
+fn first_reason(snapshot: &Snapshot) -> Option<&kirk::Reason> {
+    snapshot.planning.as_ref()?.outcome.failure.as_ref()?.reasons.first()
+}
+
+/// The height of the panel's upper part that badges may cover: of a step, as of a reason, that of two lines, so that the
+/// drawing keeps its place from step to step.
+fn badges_height(context: &Context<'_>, snapshot: &Snapshot) -> f32 {
+    let stale = if stale_text(context).is_some() { BADGE_HEIGHTS[0] } else { 0.0 };
+    let is_told = context.step().is_some() || first_reason(snapshot).is_some();
+    let told = if is_told { BADGE_HEIGHTS[1] } else { 0.0 };
+    if stale + told > 0.0 { BADGES_TOP + stale + told } else { 0.0 }
+}
+
+/// Says when the drawing is that of an older text, and why there is no plan.
+fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snapshot: &Snapshot) {
+    let tokens = context.tokens;
+    let width = (panel.width() - 60.0).clamp(80.0, 520.0);
+    let mut corner = panel.left_top() + vec2(10.0, BADGES_TOP);
+    if let Some(text) = stale_text(context) {
         badge(painter, corner, text, tokens.warning, tokens, width);
-        corner.y += 30.0;
+        corner.y += BADGE_HEIGHTS[0];
     }
     if let Some(view) = context.step() {
         let trace = view.recording.trace();
@@ -565,8 +603,7 @@ fn show_badges(painter: &egui::Painter, panel: Rect, context: &Context<'_>, snap
         badge(painter, corner, &format!("Step {} / {steps}: {text}", step + 1), color, tokens, width);
         return;
     }
-    let failure = snapshot.planning.as_ref().and_then(|planning| planning.outcome.failure.as_ref());
-    if let Some(reason) = failure.and_then(|failure| failure.reasons.first()) {
+    if let Some(reason) = first_reason(snapshot) {
         badge(painter, corner, &format!("✗ No plan: {}", reason.message), tokens.error, tokens, width);
     }
 }

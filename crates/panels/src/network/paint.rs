@@ -46,11 +46,13 @@ impl Scene<'_> {
         let progress = self.progress.map(|it| progress_list(drawing, self.network, &state, it, area));
         let step = self.focus.map(|focus| Highlight::of_focus(focus, self.network)).unwrap_or_default();
         let is_failure = self.focus.is_some_and(|focus| focus.is_failure);
+        // Two glows over each other would be of neither colour: what failed keeps its own.
+        let selected = if is_failure { &self.selected.without(&step) } else { self.selected };
         let step_role = if is_failure { ColorRole::Error } else { ColorRole::Decision };
         let marked = [
             (&step, step_role, None),
             (self.hovered, ColorRole::Accent, Some(ColorRole::Hover)),
-            (self.selected, ColorRole::Accent, Some(ColorRole::Selection)),
+            (selected, ColorRole::Accent, Some(ColorRole::Selection)),
         ];
         let emphases = marked.into_iter().zip(STRENGTHS).map(|((shapes, role, plate), strength)| Emphasis {
             nodes: &shapes.nodes,

@@ -92,6 +92,11 @@ impl View {
         self.is_fitted = true;
     }
 
+    /// Leaves free what lies over the upper part of the panel, in points: what fits below it is moved there.
+    pub(crate) fn keep_below(&mut self, top: f32) {
+        self.center.y -= f64::from(top) / 2.0 / self.zoom;
+    }
+
     /// Shows all of `bounds` where that is no smaller than `least`; otherwise, at that size, what is around `part`, or the
     /// beginning of what of it does not fit. Keeps doing so until the user moves the view.
     pub(crate) fn fit_legibly(

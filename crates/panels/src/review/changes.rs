@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{RichText, Ui};
+use mission::Snapshot;
 use mission::review::record::Rate;
 use mission::review::since::TextChange;
 use mission::review::{Review, Since, since};
@@ -22,9 +23,11 @@ pub(super) struct Changes {
     made: Option<(Key, Since)>,
 }
 
-/// What tells what was compared: the approval, the review with its rules, and the runs.
+/// What tells what was compared: the approval, the mission, the review with its rules, and the runs.
 struct Key {
     approval: String,
+    /// A review that an undo brings back is there before its mission is.
+    snapshot: Arc<Snapshot>,
     review: Arc<Review>,
     rate: Option<Rate>,
 }
@@ -48,6 +51,7 @@ impl Changes {
         let found = state.robustness().map(AsRef::as_ref);
         let is_known = self.made.as_ref().is_some_and(|(key, _)| {
             key.approval == entry.digest()
+                && Arc::ptr_eq(&key.snapshot, snapshot)
                 && Arc::ptr_eq(&key.review, review)
                 && key.rate == found.map(Rate::new)
         });
@@ -55,7 +59,8 @@ impl Changes {
             // Holding the review keeps it from being changed in place.
             let (approval, review) = (entry.digest().to_owned(), Arc::clone(review));
             let made = since(approved, snapshot, &review, found);
-            self.made = Some((Key { approval, review, rate: found.map(Rate::new) }, made));
+            let (snapshot, rate) = (Arc::clone(snapshot), found.map(Rate::new));
+            self.made = Some((Key { approval, snapshot, review, rate }, made));
         }
         let Some((_, since)) = &self.made else { return };
         let title = "Since the last approval";

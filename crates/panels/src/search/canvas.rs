@@ -149,6 +149,11 @@ impl Side {
     }
 }
 
+/// The height in which a tree is drawn as it is meant to be.
+pub fn height_of(drawing: &TreeDrawing) -> f32 {
+    drawing.depth() * CELL.y + 2.0 * MARGIN.y
+}
+
 impl View {
     /// Zooms, shows everything, or what matters at the step.
     pub fn follow(&mut self, action: ViewAction, rect: Rect) {

@@ -37,9 +37,12 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
         ui.label(egui::RichText::new(event(recording.network(), trace, &entry.event)).color(color));
     });
     if let Event::Inconsistent { cycle } = &entry.event {
-        for member in cycle {
-            let text = cycle_step(recording.network(), member);
-            ui.label(egui::RichText::new(text).color(tokens.text_muted).small());
-        }
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 18.0;
+            for member in cycle {
+                let text = egui::RichText::new(cycle_step(recording.network(), member));
+                ui.add(egui::Label::new(text.color(tokens.text_muted).small()).extend());
+            }
+        });
     }
 }

@@ -36,6 +36,8 @@ const SIZES: [f64; 3] = [13.0, 11.0, 11.0];
 const WORDS_GAP: f64 = 16.0;
 /// See [`WORDS_GAP`].
 const WORDS_SPARE: f64 = 1.06;
+/// The width of a number of words that are left out.
+const MORE_WIDTH: f64 = 18.0;
 /// A bar with less room than this has nothing written in it.
 const LEAST_ROOM: f64 = 44.0;
 /// From the lower edge of a row to the upper and the lower edge of what needs a value.
@@ -503,18 +505,32 @@ impl Builder<'_> {
         let width_of = |words: &SmolStr| (text_width_at(words, size, self.measure) * WORDS_SPARE).ceil();
         let words: Vec<_> =
             own.into_iter().chain(labels).map(|(words, role)| (width_of(&words), words, role)).collect();
-        let whole_width: f64 = words.iter().map(|(width, ..)| width + WORDS_GAP).sum();
-        // Behind the earliest end, where the bar is only hatched and no handle is, if all of it fits there.
+        let fitting = |from: f64| {
+            let ends = words.iter().scan(from, |x, (width, ..)| {
+                *x += width + WORDS_GAP;
+                Some(*x)
+            });
+            ends.take_while(|&end| end <= right).count()
+        };
+        // Behind the earliest end, where the bar is only hatched and no handle is, unless that has room for fewer.
         let tail = self.track.x(bar.end[0]).max(left);
-        let mut x = if tail + whole_width <= right { tail } else { left } + WORDS_GAP / 2.0;
-        for (width, words, role) in words {
-            if x + width + WORDS_GAP / 2.0 > right {
-                return;
-            }
+        let from = if fitting(tail) == fitting(left) { tail } else { left };
+        let shown = fitting(from);
+        let mut x = from + WORDS_GAP / 2.0;
+        let mut write = |words: SmolStr, width: f64, role: ColorRole| {
             let place = Rect::new(x, middle - size / 2.0, x + width, middle + size / 2.0);
             let text = Text::new(words, size, place).anchored(Anchor::Start, Fit::Overflow);
             self.list.write(Text { plate: Some(ColorRole::Surface.into()), ..text.colored(role) });
             x += width + WORDS_GAP;
+            x
+        };
+        let rest = words.len() - shown;
+        let mut end = from;
+        for (width, words, role) in words.into_iter().take(shown) {
+            end = write(words, width, role);
+        }
+        if shown > 0 && rest > 0 && end + MORE_WIDTH <= right {
+            write(format_smolstr!("+{rest}"), MORE_WIDTH, ColorRole::TextMuted);
         }
     }
 

@@ -13,7 +13,7 @@ use rmpl::rule::{Activity, Moment, Rule};
 use tpn::{LabelId, Network, NodeId, OccurrenceKind, Plan, Supply};
 
 use self::breach::{Breach, at_levels, earliest};
-use self::known::Asked;
+use self::known::{Asked, Reading};
 use super::cases::{Condition, TooMany, each_case};
 use super::cut::{Edge, Times, joined};
 use super::level::{Change, Resource};
@@ -60,18 +60,19 @@ impl<'a> Meaning<'a> {
     ) -> Option<Finding> {
         let (mut applies, mut doubts, mut breaches) = (Vec::new(), Vec::new(), Vec::new());
         for place in self.places(&rule.moment)? {
-            let is_instant = place.is_instant;
+            let reading = if place.is_instant { Reading::Touching } else { Reading::Between };
+            // Where something touches the end of what is looked at, it is looked at still.
             let during = |meaning: &Self, asked: Asked| match &rule.during {
-                Some(during) => meaning.condition(during, asked, is_instant),
+                Some(during) => meaning.condition(during, asked, reading.of_negation()),
                 None => Condition::All(Vec::new()),
             };
             let looked_at = Condition::All(vec![place.scope.clone(), during(self, Asked::NotDenied)]);
             applies.extend(self.breaches(&looked_at, stop).ok()?.into_iter().map(|it| it.stretch));
-            let not_held = self.condition(&rule.holds, Asked::NotKnown, is_instant);
+            let not_held = self.condition(&rule.holds, Asked::NotKnown, reading);
             let doubt = Condition::All(vec![looked_at, not_held]);
             let found = self.breaches(&doubt, stop).ok()?;
             if !found.is_empty() {
-                let denied = self.condition(&rule.holds, Asked::Denied, is_instant);
+                let denied = self.condition(&rule.holds, Asked::Denied, reading);
                 let broken = Condition::All(vec![doubt, during(self, Asked::Known), denied]);
                 breaches.extend(self.breaches(&broken, stop).ok()?);
             }

@@ -172,19 +172,32 @@ impl Instant<'_> {
         level
     }
 
-    /// Whether it is known to hold, and whether its negation is.
-    fn known(&self, formula: &Formula) -> (bool, bool) {
+    /// Whether it is known to hold, and whether its negation is; what both sides of a moment touch is neither inside of a
+    /// `not`, and where a rule is looked at.
+    fn known(&self, formula: &Formula, is_strict: bool) -> (bool, bool) {
         match formula {
             Formula::Not(inner) => {
-                let (yes, no) = self.known(inner);
+                let (yes, no) = self.known(inner, true);
                 (no, yes)
             }
             Formula::All(parts) => {
-                (parts.iter().all(|part| self.known(part).0), parts.iter().any(|part| self.known(part).1))
+                let mut known = parts.iter().map(|part| self.known(part, is_strict));
+                (known.clone().all(|it| it.0), known.any(|it| it.1))
             }
             Formula::Any(parts) => {
-                (parts.iter().any(|part| self.known(part).0), parts.iter().all(|part| self.known(part).1))
+                let mut known = parts.iter().map(|part| self.known(part, is_strict));
+                (known.clone().any(|it| it.0), known.all(|it| it.1))
             }
+            _ => {
+                let (yes, no) = self.atom(formula);
+                if is_strict && yes && no { (false, false) } else { (yes, no) }
+            }
+        }
+    }
+
+    fn atom(&self, formula: &Formula) -> (bool, bool) {
+        match formula {
+            Formula::Not(_) | Formula::All(_) | Formula::Any(_) => unreachable!("it is made of others"),
             Formula::Is { variable, values } => self.variable(variable, &values[0]),
             Formula::Underway(activity) => {
                 let (mut yes, mut no) = (false, true);
@@ -283,11 +296,12 @@ fn worst(network: &Network, plan: &Plan, rule: &rmpl::rule::Rule, schedules: &[V
         }
         for (at, is_instant) in instants {
             let instant = Instant { network, plan, times, at, touches: is_instant };
-            let (during, not_during) = rule.during.as_ref().map_or((true, false), |it| instant.known(it));
+            let (during, not_during) =
+                rule.during.as_ref().map_or((true, false), |it| instant.known(it, true));
             if not_during {
                 continue;
             }
-            let (yes, no) = instant.known(&rule.holds);
+            let (yes, no) = instant.known(&rule.holds, false);
             let truth = match (yes, no && during) {
                 (true, _) => Truth::Yes,
                 (false, true) => Truth::No,

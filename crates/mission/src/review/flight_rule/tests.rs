@@ -47,6 +47,35 @@ fn what_the_plan_puts_in_order_holds() {
 }
 
 #[test]
+fn a_rule_and_its_negation_never_both_hold() {
+    const ABC: &str = "state M : {UP, DOWN} = DOWN; var C : {ON, OFF}; option threat_gap = 0;
+primitive A()[2,2]; primitive B()[3,3]; primitive Raise()[0,0] sets M=UP; primitive Lower()[0,0] sets M=DOWN;
+scenario S[0,60] = { { A(); B(); Raise(); Lower() }, { C=ON [2,2]; C=OFF [3,3] } }";
+    for moment in
+        ["at end of A", "at start of B", "at end of Raise", "at start of Lower", "at end", "", "from 1 to 5"]
+    {
+        for condition in ["A", "B", "M=UP", "M=DOWN", "C=ON", "not C=ON", "A or B", "A and C=ON", "Raise"] {
+            let outcomes =
+                ["", "never "].map(|word| found(ABC, &format!("{word}{condition} {moment}")).outcome);
+            let holding = outcomes.iter().filter(|outcome| **outcome == Outcome::Holds).count();
+            assert!(holding <= 1, "{condition} {moment}: {outcomes:?}");
+        }
+    }
+    // What only touches a moment is enough for a rule that wants it, and too much for one that does not.
+    holds(ABC, "B at end of A");
+    for rule in [
+        "never B at end of A",
+        "never A at start of B",
+        "never M=UP at end of Raise",
+        "M=UP while B at end of A",
+    ] {
+        let outcome = found(ABC, rule).outcome;
+        assert!(matches!(outcome, Outcome::Unsure(_)), "{rule}: {outcome:?}");
+    }
+    holds(ABC, "never B at start of A");
+}
+
+#[test]
 fn what_is_under_way_at_the_same_time_in_one_execution_only_breaks_a_rule() {
     let source = |delay: &str| {
         format!(

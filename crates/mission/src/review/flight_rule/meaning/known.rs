@@ -32,11 +32,36 @@ impl Asked {
     }
 }
 
+/// When conditions are asked for, and how what touches a moment is taken.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reading {
+    /// At any instant: what starts counts, what ends does not.
+    Between,
+    /// At a moment: what touches it counts.
+    Touching,
+    /// At a moment, where more than one touching side must not do: what its contrary touches as well is neither.
+    Strict,
+}
+
+impl Reading {
+    /// How the inside of a `not` is read: a condition and its negation never are both known.
+    pub(super) const fn of_negation(self) -> Self {
+        match self {
+            Self::Between => Self::Between,
+            Self::Touching | Self::Strict => Self::Strict,
+        }
+    }
+
+    const fn touches(self) -> bool {
+        !matches!(self, Self::Between)
+    }
+}
+
 impl Meaning<'_> {
-    pub(super) fn condition(&self, formula: &Formula, asked: Asked, is_instant: bool) -> Condition {
-        let all = |parts: &[Formula]| parts.iter().map(|it| self.condition(it, asked, is_instant)).collect();
+    pub(super) fn condition(&self, formula: &Formula, asked: Asked, reading: Reading) -> Condition {
+        let all = |parts: &[Formula]| parts.iter().map(|it| self.condition(it, asked, reading)).collect();
         match formula {
-            Formula::Not(inner) => self.condition(inner, asked.of_negation(), is_instant),
+            Formula::Not(inner) => self.condition(inner, asked.of_negation(), reading.of_negation()),
             Formula::All(parts) => match asked {
                 Asked::Known | Asked::NotDenied => Condition::All(all(parts)),
                 Asked::NotKnown | Asked::Denied => Condition::Any(all(parts)),
@@ -45,8 +70,21 @@ impl Meaning<'_> {
                 Asked::Known | Asked::NotDenied => Condition::Any(all(parts)),
                 Asked::NotKnown | Asked::Denied => Condition::All(all(parts)),
             },
+            Formula::Is { .. } | Formula::Underway(_) if reading == Reading::Strict => {
+                let contrary = match asked {
+                    Asked::Known => Asked::NotDenied,
+                    Asked::Denied => Asked::NotKnown,
+                    Asked::NotKnown => Asked::Denied,
+                    Asked::NotDenied => Asked::Known,
+                };
+                let parts = [asked, contrary].map(|it| self.condition(formula, it, Reading::Touching));
+                match asked {
+                    Asked::Known | Asked::Denied => Condition::All(parts.into()),
+                    Asked::NotKnown | Asked::NotDenied => Condition::Any(parts.into()),
+                }
+            }
             Formula::Is { variable, values } => {
-                let known = |is_among: bool| self.is_one_of(variable, values, is_among, is_instant);
+                let known = |is_among: bool| self.is_one_of(variable, values, is_among, reading.touches());
                 match asked {
                     Asked::Known => known(true),
                     Asked::NotKnown => known(true).negated(),
@@ -55,10 +93,11 @@ impl Meaning<'_> {
                 }
             }
             Formula::Underway(activity) => {
-                let inside = |(start, end)| between(start, end, is_instant);
+                let touches = reading.touches();
+                let inside = |(start, end)| between(start, end, touches);
                 let outside = |(start, end)| {
                     Condition::Any(vec![
-                        Condition::Edge(Edge::future(start, is_instant)),
+                        Condition::Edge(Edge::future(start, touches)),
                         Condition::Edge(Edge::past(end, true)),
                     ])
                 };
@@ -83,6 +122,7 @@ impl Meaning<'_> {
                     Order::Above => (true, false),
                     Order::AtLeast => (true, true),
                 };
+                let is_instant = reading.touches();
                 let wanted = Wanted { resource, is_above, amount: *amount, may_equal, is_instant };
                 Condition::Level(match asked {
                     Asked::Known | Asked::NotDenied => wanted,
