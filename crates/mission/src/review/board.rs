@@ -193,9 +193,10 @@ fn seats<'a>(board: &'a [Seat], approvals: &[&'a Entry]) -> Vec<Approvals<'a>> {
     board.iter().map(seat).collect()
 }
 
-/// A person by name, however it is spelled.
+/// A person by name, however it is spelled: by its letters and digits alone, for spaces, dashes and what nobody sees make
+/// no other person.
 fn person(name: &str) -> String {
-    name.trim().to_lowercase()
+    name.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
 fn is_complete(seats: &[Approvals<'_>]) -> bool {

@@ -77,10 +77,17 @@ fn a_plan_is_approved_once_everybody_has_approved_who_has_to() {
     assert_eq!(table.status(), PlanStatus::Draft, "rules are not about this plan");
     table.approve("Ada", "Science", "01", "");
     assert_eq!(table.status(), PlanStatus::InReview);
-    let again = table.standing(|it| it.may_approve(" ada", "Science"));
-    assert!(again.is_err_and(|why| why.contains("already")), "a person counts once in a role");
-    let nobody = table.standing(|it| it.may_approve(" ", "Science"));
-    assert!(nobody.is_err_and(|why| why.contains("name")));
+    for spelled in [" ada", "Ada\u{200b}", "A\u{ad}da", "ADA\u{a0}"] {
+        let again = table.standing(|it| it.may_approve(spelled, "Science"));
+        assert!(
+            again.is_err_and(|why| why.contains("already")),
+            "a person counts once in a role: {spelled:?}"
+        );
+    }
+    for nobody in [" ", "\u{200b}", "..."] {
+        let nobody = table.standing(|it| it.may_approve(nobody, "Science"));
+        assert!(nobody.is_err_and(|why| why.contains("name")));
+    }
     let elsewhere = table.standing(|it| it.may_approve("Ada", "Press"));
     assert!(elsewhere.is_err_and(|why| why.contains("no role \"Press\"")));
     table.approve("Grace", "Mobility", "02", "");

@@ -4,7 +4,7 @@ use rmpl::diagnostics::exogenous;
 use rmpl::files::Files;
 use rmpl::program::{Controllability, TimeUnit};
 use rmpl::{LineIndex, Severity, Span};
-use tpn::{Network, NodeId};
+use tpn::{ArcKind, Network, NodeId};
 
 use super::demand_lines::status_by_checker;
 use super::plan_lines::PlanLines;
@@ -107,6 +107,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         failure(planning, network, places)
     } else {
         let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
+        lines.extend(emptiness(planning, network, places));
         lines.extend(controllability(planning, network, places));
         lines.extend(natures(planning, network, places));
         lines.extend(verdict(planning, places));
@@ -116,6 +117,16 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     };
     lines.extend(undrivable(planning, network, places));
     lines
+}
+
+/// That the plan does nothing, which somebody who approves it should know.
+fn emptiness(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+    let plan = planning.outcome.plans.first()?;
+    let does_something = network.arcs.iter().zip(&plan.selected_arcs).any(|(arc, &is_selected)| {
+        is_selected && matches!(arc.kind, ArcKind::Activity | ArcKind::Assertion | ArcKind::Path)
+    });
+    let text = "nothing is done in this plan: it has no activity and asserts nothing";
+    (!does_something).then(|| places.plain(Status::Attention, text))
 }
 
 /// Whether the plan withstands what nature chooses, in the checker's word; nothing if nature chooses nothing (SPEC 13.1).

@@ -55,6 +55,16 @@ fn plan() {
 }
 
 #[test]
+fn a_plan_in_which_nothing_is_done() {
+    for source in ["scenario S[0,10] = { }", "scenario S[0,10] = { delay[1,2] }"] {
+        let empty = reviewed(source);
+        assert_eq!(line(&empty, Section::Plan, "nothing is done").status, Status::Attention, "{source}");
+    }
+    let review = reviewed(OPEN);
+    assert!(review.lines(Section::Plan).iter().all(|line| !line.text.contains("nothing is done")));
+}
+
+#[test]
 fn what_a_plan_is_worth() {
     let source = "primitive A()[1,2] costs 3; objective minimize cost; scenario S[0,9] = { A() }";
     let worth = "the plan is worth";
