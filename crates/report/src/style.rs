@@ -32,7 +32,8 @@ ins { background: #dff3e4; text-decoration: none; }
 .passed { color: #007555; }
 .attention { color: #9a6200; }
 .failed { color: #b84300; }
-.signatures td { height: 2.2em; border-bottom: 1px solid #a9b5c2; width: 33%; }
+.signatures td { height: 2.2em; border-bottom: 1px solid #a9b5c2; }
+.signatures td:last-child { min-width: 14em; width: 40%; }
 .criterion { min-width: 11em; }
 .muted { color: #5a6674; }
 figure { margin: .8em 0; }

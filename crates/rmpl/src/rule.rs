@@ -176,7 +176,7 @@ impl Reader<'_> {
                     Some(Moment::Within { from, to })
                 }
                 ((Some(Bound::Finite(_)), _), (Some(_), span)) => {
-                    self.report(syntax::CODE, span, "the end comes after the beginning");
+                    self.report(syntax::CODE, span, "the end has to come after the beginning");
                     None
                 }
                 ((_, span), (Some(_), _)) | (_, (_, span)) => {
@@ -479,7 +479,7 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
             wrong("Battery"),
             ["0 E-SYNTAX: `Battery` is a resource: compare it, as in `Battery >= 20`"]
         );
-        assert_eq!(wrong("Mast=IN from 9 to 3"), ["18 E-SYNTAX: the end comes after the beginning"]);
+        assert_eq!(wrong("Mast=IN from 9 to 3"), ["18 E-SYNTAX: the end has to come after the beginning"]);
         for text in ["", "Mast=IN and", "Mast=IN at noon", "Mast=IN; Comm=UP", "Battery >= ", "(Mast=IN"] {
             let found = wrong(text);
             assert!(found.len() == 1 && found[0].contains("E-SYNTAX"), "{text}: {found:?}");

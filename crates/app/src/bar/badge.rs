@@ -28,7 +28,7 @@ pub fn look(tokens: &Tokens, status: Status, is_stale: bool, verdict: Option<boo
     let (sign, text, color, fill, panel) = match (status, verdict) {
         (Status::Working, _) => (Icon::Working, "Planning", tokens.info, info, PanelKind::Plan),
         (Status::Broken, _) if is_stale => {
-            (Icon::Error, "Errors · last good plan shown", tokens.error, error, PanelKind::Problems)
+            (Icon::Error, "Errors · earlier text shown", tokens.error, error, PanelKind::Problems)
         }
         (Status::Broken, _) => (Icon::Error, "Errors", tokens.error, error, PanelKind::Problems),
         (Status::NoPlan, _) => (Icon::Warning, "No plan", tokens.warning, warning, PanelKind::Plan),
