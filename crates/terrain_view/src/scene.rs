@@ -187,8 +187,24 @@ pub fn cased_line(
     color: [f32; 4],
     under: [f32; 4],
 ) {
-    shapes.draped_line(ground, ends_m, width_px + 2.6, under);
-    shapes.draped_line(ground, ends_m, width_px, color);
+    cased_lines(shapes, ground, &[ends_m], width_px, color, under);
+}
+
+/// Lines on the ground with a casing, all of the casing below: beside a short line it would cover the next one.
+pub fn cased_lines(
+    shapes: &mut Shapes,
+    ground: &Ground,
+    lines_m: &[[Vec2; 2]],
+    width_px: f32,
+    color: [f32; 4],
+    under: [f32; 4],
+) {
+    for &ends_m in lines_m {
+        shapes.draped_line(ground, ends_m, width_px + 2.6, under);
+    }
+    for &ends_m in lines_m {
+        shapes.draped_line(ground, ends_m, width_px, color);
+    }
 }
 
 fn ring(

@@ -4,7 +4,7 @@ use glam::Vec2;
 use workbench::state::growth::Standing;
 
 use crate::ground::Ground;
-use crate::scene::{SceneInput, cased_line, faded, place};
+use crate::scene::{SceneInput, cased_line, cased_lines, faded, place};
 use crate::shapes::{Shapes, circle_outline};
 
 /// Draws the trees as they stand, the last sample, and the best path. Of searches that race each has its colour, and a
@@ -21,14 +21,19 @@ pub(crate) fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
             palette.trees[tree.min(palette.trees.len() - 1)]
         }
     };
-    let width = if is_race { 1.1 } else { 1.6 };
+    // Where several trees grow over each other, paths have to stand out of them.
+    let (width, strength) = if is_race { (1.1, 0.6) } else { (1.6, 1.0) };
     for (search, standing) in standings.iter().enumerate() {
-        for (tree, way) in &standing.edges {
-            for pair in way.windows(2) {
-                let ends = [place(pair[0]), place(pair[1])];
-                shapes.draped_line(input.ground, ends, width + 1.8, faded(palette.under, 0.55));
-                shapes.draped_line(input.ground, ends, width, color(search, *tree));
-            }
+        let pairs = || {
+            let ways = standing.edges.iter();
+            ways.flat_map(|(tree, way)| way.windows(2).map(|pair| (*tree, [place(pair[0]), place(pair[1])])))
+        };
+        // All of the dark ground first: beside short pieces it would cover their neighbours.
+        for (_, ends) in pairs().filter(|_| !is_race) {
+            shapes.draped_line(input.ground, ends, width + 1.8, faded(palette.under, 0.55));
+        }
+        for (tree, ends) in pairs() {
+            shapes.draped_line(input.ground, ends, width, faded(color(search, tree), strength));
         }
         for (tree, &root) in standing.roots_m.iter().enumerate() {
             disc(shapes, input, place(root), color(search, tree));
@@ -36,17 +41,13 @@ pub(crate) fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
     }
     for (search, standing) in standings.iter().enumerate() {
         let path: Vec<Vec2> = standing.path_m.iter().flatten().map(|&point| place(point)).collect();
-        if is_race {
-            let dash_m = input.options.vehicle_scale;
+        let (lines, color_of_path) = if is_race {
             let dashes = crate::dash::DASHES[search % crate::dash::DASHES.len()];
-            for ends in crate::dash::dashed(&path, dashes, dash_m) {
-                cased_line(shapes, input.ground, ends, 3.6, color(search, 0), palette.under);
-            }
+            (crate::dash::dashed(&path, dashes, input.options.vehicle_scale), color(search, 0))
         } else {
-            for pair in path.windows(2) {
-                cased_line(shapes, input.ground, [pair[0], pair[1]], 3.6, palette.light, palette.under);
-            }
-        }
+            (path.windows(2).map(|pair| [pair[0], pair[1]]).collect(), palette.light)
+        };
+        cased_lines(shapes, input.ground, &lines, 3.6, color_of_path, palette.under);
         let Some(sample) = standing.sample else { continue };
         let (at, arm) = (place(sample.at_m), 0.8 * input.options.vehicle_scale);
         let color = match () {
