@@ -97,7 +97,7 @@ const MAX_ROWS: usize = 1000;
 fn readable(mut rows: Vec<Vec<String>>) -> (Vec<Vec<String>>, usize) {
     let all = rows.len();
     if all > MAX_ROWS {
-        let keep = chosen(&rows, MAX_ROWS, |rows| rows.len());
+        let keep = chosen(&rows, MAX_ROWS, <[_]>::len);
         let mut keep = keep.into_iter();
         rows.retain(|_| keep.next().unwrap_or(false));
     }

@@ -16,12 +16,13 @@ use crate::Context;
 /// Cards are as wide as this, or as the panel allows.
 const WIDTH: f32 = 232.0;
 
-/// A card near `anchor`, kept inside `image` and clear of the anchor. Returns whether its cross was clicked.
+/// A card near `anchor`, kept inside `image`, clear of the anchor, and of what is at `others` as far as that goes. Returns
+/// whether its cross was clicked.
 pub fn show(
     ui: &mut Ui,
     context: &Context<'_>,
     image: Rect,
-    anchor: Pos2,
+    (anchor, others): (Pos2, &[Pos2]),
     title: &str,
     add: impl FnOnce(&mut Ui),
 ) -> bool {
@@ -29,7 +30,7 @@ pub fn show(
     let id = ui.scope_id().with(("card", title));
     let width = WIDTH.min(image.width() - 2.0 * space::M);
     let height = ui.ctx().data(|data| data.get_temp::<f32>(id)).unwrap_or(120.0);
-    let corner = corner(image.shrink(space::M), anchor, vec2(width, height));
+    let corner = corner(image.shrink(space::M), anchor, others, vec2(width, height));
     let card = Rect::from_min_size(corner, vec2(width, height));
     let end = card.clamp(anchor);
     if end.distance(anchor) > 4.0 && image.contains(anchor) {
@@ -73,8 +74,22 @@ pub fn show(
     is_closed
 }
 
+/// The top left corner of a card that is inside `room`: beside its anchor, or in a corner of the room if it covers fewer of
+/// the other places there.
+fn corner(room: Rect, anchor: Pos2, others: &[Pos2], size: egui::Vec2) -> Pos2 {
+    let far = (room.max - size).max(room.min);
+    let corners = [pos2(far.x, far.y), pos2(room.left(), far.y), pos2(far.x, room.top()), room.min];
+    let covered = |corner: Pos2| {
+        let card = Rect::from_min_size(corner, size).expand(space::S);
+        others.iter().chain([&anchor]).filter(|place| card.contains(**place)).count()
+    };
+    let first = beside(room, anchor, size);
+    // Of equal ones the first, which is where one looks.
+    [first].into_iter().chain(corners).min_by_key(|&corner| covered(corner)).unwrap_or(first)
+}
+
 /// The top left corner of a card that is beside its anchor and inside `room`.
-fn corner(room: Rect, anchor: Pos2, size: egui::Vec2) -> Pos2 {
+fn beside(room: Rect, anchor: Pos2, size: egui::Vec2) -> Pos2 {
     let beside = if anchor.x + 18.0 + size.x <= room.right() {
         anchor.x + 18.0
     } else if anchor.x - 18.0 - size.x >= room.left() {
@@ -155,7 +170,7 @@ pub fn show_path(
     ui: &mut Ui,
     context: &Context<'_>,
     image: Rect,
-    anchor: Pos2,
+    (anchor, path): (Pos2, &[Pos2]),
     (traverse, leg): (&Traverse, Option<usize>),
     commands: &mut CommandSender,
 ) {
@@ -164,7 +179,7 @@ pub fn show_path(
         .and_then(|network| network.occurrences.get(traverse.occurrence.index()))
         .map_or("Path", |occurrence| occurrence.name.as_str());
     let rows = path_rows(context, traverse, leg);
-    let is_closed = show(ui, context, image, anchor, title, |ui| {
+    let is_closed = show(ui, context, image, (anchor, path), title, |ui| {
         show_rows(ui, context.tokens, &rows);
         if context.is_stale {
             ui.label(RichText::new("of the text before").small().color(context.tokens.warning));
@@ -183,7 +198,7 @@ pub fn show_measurement(
     anchor: Pos2,
     measured: &Measurement,
 ) -> bool {
-    show(ui, context, image, anchor, "Measurement", |ui| {
+    show(ui, context, image, (anchor, &[]), "Measurement", |ui| {
         show_rows(ui, context.tokens, &measured.rows());
         ui.add_space(space::XS);
         show_chart(ui, context.tokens, measured);
@@ -192,13 +207,13 @@ pub fn show_measurement(
 
 /// Where the card of a traverse points: the place that was clicked if it is on it still, otherwise its middle.
 pub fn path_anchor(traverse: &Traverse, clicked_m: Option<Vec2>) -> Option<Vec2> {
-    let points: Vec<Vec2> = traverse
-        .legs
-        .iter()
-        .flat_map(|leg| &leg.points_m)
-        .map(|&point| terrain_view::scene::place(point))
-        .collect();
+    let points: Vec<Vec2> = path_points(traverse).collect();
     clicked_m.or_else(|| points.get(points.len() / 2).copied())
+}
+
+/// The points of a traverse's path.
+pub fn path_points(traverse: &Traverse) -> impl Iterator<Item = Vec2> {
+    traverse.legs.iter().flat_map(|leg| &leg.points_m).map(|&point| terrain_view::scene::place(point))
 }
 
 #[cfg(test)]
@@ -210,11 +225,26 @@ mod tests {
         let room = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 600.0));
         let size = vec2(200.0, 150.0);
         for anchor in [pos2(10.0, 10.0), pos2(790.0, 590.0), pos2(400.0, 300.0), pos2(790.0, 10.0)] {
-            let card = Rect::from_min_size(corner(room, anchor, size), size);
+            let card = Rect::from_min_size(corner(room, anchor, &[], size), size);
             assert!(room.contains_rect(card), "{anchor:?} {card:?}");
             assert!(!card.contains(anchor), "{anchor:?} {card:?}");
         }
         let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(210.0, 160.0));
-        assert!(narrow.contains_rect(Rect::from_min_size(corner(narrow, pos2(100.0, 80.0), size), size)));
+        assert!(
+            narrow.contains_rect(Rect::from_min_size(corner(narrow, pos2(100.0, 80.0), &[], size), size))
+        );
+    }
+
+    #[test]
+    fn a_card_goes_to_a_corner_where_it_would_cover_the_path() {
+        let room = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 600.0));
+        let size = vec2(200.0, 150.0);
+        let anchor = pos2(400.0, 300.0);
+        let path: Vec<Pos2> =
+            (0..40).map(|at| pos2(at as f32 * 20.0, 300.0 - (at as f32 - 20.0) * 8.0)).collect();
+        let covers =
+            |corner: Pos2| path.iter().filter(|it| Rect::from_min_size(corner, size).contains(**it)).count();
+        assert!(covers(beside(room, anchor, size)) > 0, "beside its anchor it is in the way");
+        assert_eq!(covers(corner(room, anchor, &path, size)), 0);
     }
 }

@@ -293,7 +293,8 @@ impl TerrainPanel {
         let place = card::path_anchor(traverse, clicked.map(|(.., place)| place));
         let Some(at) = place.and_then(anchor) else { return };
         let leg = clicked.map(|(_, leg, _)| leg);
-        card::show_path(ui, context, overlay.rect, at, (traverse, leg), commands);
+        let path: Vec<egui::Pos2> = card::path_points(traverse).filter_map(anchor).collect();
+        card::show_path(ui, context, overlay.rect, (at, &path), (traverse, leg), commands);
     }
 }
 
