@@ -61,6 +61,15 @@ fn type_into(page: &Opened, field: &str, text: &str) -> Result<()> {
     page.settle()
 }
 
+/// Waits until the panel says this of what differs since the last approval.
+fn wait_for_difference(page: &Opened, words: &str) -> Result<()> {
+    page.tab.wait_until(&format!(
+        "enroute.widgets('button').some((it) => it.label?.startsWith('Since the last approval') && \
+         it.label.includes('{words}'))"
+    ))?;
+    Ok(())
+}
+
 #[test]
 fn a_board_goes_from_draft_to_approval_and_an_edit_lapses_it() -> Result<()> {
     let page = reviewing()?;
@@ -87,9 +96,12 @@ fn a_board_goes_from_draft_to_approval_and_an_edit_lapses_it() -> Result<()> {
     page.wait_for("state.review.planStatus === 'lapsed'")?;
     page.tab.evaluate("enroute.dispatch('review.run')")?;
     page.wait_for("!state.review.stale")?;
-    // What was done is still there after the page was loaded again.
+    wait_for_difference(&page, "text 1")?;
     page.tab.evaluate("enroute.dispatch('edit.undo')")?;
     page.wait_for("state.review.planStatus === 'approved'")?;
+    // The review of what was approved is back before its plan is.
+    wait_for_difference(&page, "nothing differs")?;
+    // What was done is still there after the page was loaded again.
     let heads = page.state()?["review"]["heads"].clone();
     page.tab.evaluate("window.isOldPage = true; location.reload()")?;
     page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
