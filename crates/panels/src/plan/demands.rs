@@ -57,7 +57,7 @@ pub(super) fn worth(ui: &mut Ui, context: &Context<'_>, network: &Network, plan:
     }
 }
 
-/// Each resource with how far it is used at most, or between which levels it stays, and the uses that planning ordered.
+/// The uses that planning ordered; then each resource with how far it is used at most, or between which levels it stays.
 pub(super) fn resources(
     ui: &mut Ui,
     context: &Context<'_>,
@@ -65,6 +65,7 @@ pub(super) fn resources(
     plan: &Plan,
     commands: &mut CommandSender,
 ) {
+    show_orders(ui, context, network, plan, commands);
     let named = network.resources.iter().zip(&plan.levels).filter(|(it, _)| !it.name.contains('#'));
     let named: Vec<_> = named.collect();
     if !named.is_empty() {
@@ -83,6 +84,15 @@ pub(super) fn resources(
             });
         }
     }
+}
+
+fn show_orders(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    network: &Network,
+    plan: &Plan,
+    commands: &mut CommandSender,
+) {
     if plan.uses_ordered.is_empty() {
         return;
     }

@@ -8,6 +8,7 @@ use theme::{size, space, strong, structure};
 use workbench::command::{Command, CommandSender};
 use workbench::state::chance::{ChanceCommand, MAX_RUNS};
 
+use crate::one_line::cut_to;
 use crate::plan::section;
 use crate::{Context, Panel, show_empty};
 
@@ -17,6 +18,10 @@ pub struct RobustnessPanel;
 
 /// So many events are listed.
 const MAX_LISTED: usize = 8;
+/// The room for the two figures beside a name, and the least for a name, in points.
+const FIGURES_WIDTH: f32 = 190.0;
+/// See [`FIGURES_WIDTH`].
+const LEAST_NAME: f32 = 60.0;
 
 impl Panel for RobustnessPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -164,13 +169,14 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
         let share = tally.succeeded_by_replanning as f64 / tally.runs.max(1) as f64 * 100.0;
         ui.label(RichText::new(format!("{share:.1} % only by planning again")).color(tokens.text_muted));
     }
+    let names_width = (ui.available_width() - FIGURES_WIDTH).max(LEAST_NAME);
     if !tally.breaks.is_empty() {
         section(ui, context, "What breaks the plan", "");
         Grid::new("breaks").num_columns(3).striped(true).show(ui, |ui| {
             structure::part(ui, accesskit::Role::Table, "What breaks the plan");
             heading(ui, context, ["Event", "plan broken", "run stopped"]);
             for (name, breaks) in tally.worst_events().into_iter().take(MAX_LISTED) {
-                ui.add(egui::Label::new(name.as_str()).truncate()).on_hover_text(&breaks.example);
+                ui.label(cut_to(ui, name, names_width)).on_hover_text(&breaks.example);
                 ui.label(format!("{} ×", breaks.violations));
                 ui.label(format!("{} ×", breaks.stops));
                 ui.end_row();
@@ -182,7 +188,7 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
         structure::part(ui, accesskit::Role::Table, "Slack used");
         heading(ui, context, ["Event", "mean", "most"]);
         for (name, mean, most) in tally.tightest_events().into_iter().take(MAX_LISTED) {
-            ui.add(egui::Label::new(name.as_str()).truncate());
+            ui.label(cut_to(ui, name, names_width)).on_hover_text(name.as_str());
             ui.label(format!("{:.0} %", mean * 100.0));
             ui.label(format!("{:.0} %", most * 100.0));
             ui.end_row();
