@@ -165,6 +165,10 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
         high * 100.0
     );
     ui.label(RichText::new(text).color(tokens.text));
+    if tally.runs < robustness.settings.runs && !context.state.chance.is_running() {
+        let text = format!("Stopped: only {} of {} runs were made", tally.runs, robustness.settings.runs);
+        ui.label(RichText::new(text).color(tokens.warning));
+    }
     if tally.succeeded_by_replanning > 0 {
         let share = tally.succeeded_by_replanning as f64 / tally.runs.max(1) as f64 * 100.0;
         ui.label(RichText::new(format!("{share:.1} % only by planning again")).color(tokens.text_muted));
