@@ -83,8 +83,13 @@ impl Scene<'_> {
         }
         // Weights lie over the boxes' edges, never under them.
         let mut taken: Vec<Rect> = (0..self.graph.vertices.len()).map(|vertex| self.frame(vertex)).collect();
+        let mut degrees = vec![0; self.graph.vertices.len()];
+        for edge in &self.graph.edges {
+            degrees[edge.from] += 1;
+            degrees[edge.to] += 1;
+        }
         for &edge in edges.iter().rev() {
-            self.weight(edge, has_cycle, &mut taken);
+            self.weight(edge, has_cycle, &degrees, &mut taken);
         }
     }
 
@@ -264,13 +269,9 @@ impl Scene<'_> {
         }
     }
 
-    /// Of how many edges a vertex is an end.
-    fn degree(&self, vertex: usize) -> usize {
-        self.graph.edges.iter().filter(|edge| edge.from == vertex || edge.to == vertex).count()
-    }
-
-    /// The weight of an edge on its curve, where it covers nothing else.
-    fn weight(&self, edge: usize, has_cycle: bool, taken: &mut Vec<Rect>) {
+    /// The weight of an edge on its curve, where it covers nothing else; `degrees` says of how many edges each vertex is an
+    /// end.
+    fn weight(&self, edge: usize, has_cycle: bool, degrees: &[usize], taken: &mut Vec<Rect>) {
         let font_size = ((size::SMALL + 1.0) * self.view.zoom() as f32).min(14.0);
         if font_size < LEAST_TEXT {
             return;
@@ -283,7 +284,7 @@ impl Scene<'_> {
         let galley = self.painter.layout_no_wrap(text, font, color);
         // Forward and backward edges lie side by side: their weights stand at different places along them.
         let first = if edge.weight > Time::ZERO { 0.42 } else { 0.58 };
-        let (from, to) = (self.degree(edge.from), self.degree(edge.to));
+        let (from, to) = (degrees[edge.from], degrees[edge.to]);
         let places = if from >= to + CROWD {
             [0.72, 0.62, 0.82, 0.5, 0.42, 0.34, 0.26, 0.18]
         } else if to >= from + CROWD {

@@ -341,11 +341,14 @@ impl NetworkPanel {
     fn fit(&mut self, panel: Rect, context: &Context<'_>, snapshot: &Snapshot, network: &Network) {
         let top = badges_height(context, snapshot);
         let area = panel.with_min_y(panel.top() + top);
-        let least = if self.detail.has_focus() { LEAST_OPENED } else { 0.0 };
-        let of_step = context.focus().map(|focus| Highlight::of_focus(&focus, network));
-        let shapes = of_step.unwrap_or_else(|| Highlight::of(&context.state.selection, network));
-        let part = shapes.bounds(&self.drawn.drawing);
-        self.view.fit_legibly(area, self.drawn.frame(), part, least);
+        if self.detail.has_focus() {
+            let of_step = context.focus().map(|focus| Highlight::of_focus(&focus, network));
+            let shapes = of_step.unwrap_or_else(|| Highlight::of(&context.state.selection, network));
+            let part = shapes.bounds(&self.drawn.drawing);
+            self.view.fit_legibly(area, self.drawn.frame(), part, LEAST_OPENED);
+        } else {
+            self.view.fit(area, self.drawn.frame());
+        }
         self.view.keep_below(top);
     }
 

@@ -30,8 +30,8 @@ const INDENT: f64 = 12.0;
 const SIGN: (f64, f64) = (14.0, 4.0);
 /// A bar narrower than this is only a stroke.
 const LEAST_WIDTH: f64 = 3.0;
-/// Sizes of names, of the numbers on the axis, and of what is written in bars.
-const SIZES: [f64; 3] = [13.0, 11.0, 11.0];
+/// Sizes of names, and of the numbers on the axis and of what is written in bars.
+const SIZES: [f64; 2] = [13.0, 11.0];
 /// Between words in a bar, and how much wider than measured they may be.
 const WORDS_GAP: f64 = 16.0;
 /// See [`WORDS_GAP`].
@@ -500,7 +500,7 @@ impl Builder<'_> {
             LabelMode::Ask => (format_smolstr!("needs {}", label.text), ColorRole::Ask),
             LabelMode::Tell => (format_smolstr!("sets {}", label.text), ColorRole::Tell),
         });
-        let size = SIZES[2];
+        let size = SIZES[1];
         let middle = whole.center().y;
         let width_of = |words: &SmolStr| (text_width_at(words, size, self.measure) * WORDS_SPARE).ceil();
         let words: Vec<_> =

@@ -117,7 +117,7 @@ impl Builder<'_> {
         let top = if hangs { y + 1.0 } else { y - NUMBER_HEIGHT - 1.0 };
         let place = Rect::new(left + 4.0, top, right - from_end, top + NUMBER_HEIGHT);
         if place.width() > 60.0 {
-            let text = Text::new(words, SIZES[2], place).anchored(Anchor::End, Fit::Overflow);
+            let text = Text::new(words, SIZES[1], place).anchored(Anchor::End, Fit::Overflow);
             let plate = Some(ColorRole::Surface.faint(0.75));
             self.list.write(Text { plate, ..text.colored(stroke.color.role) });
         }
