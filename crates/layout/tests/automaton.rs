@@ -22,8 +22,10 @@ fn inside(inner: Rect, outer: Rect) -> bool {
 }
 
 /// Programs with every form, nested.
-const PROGRAMS: [&str; 5] = [
+const PROGRAMS: [&str; 6] = [
     ORBIT,
+    // Guards of several lines, over an arrow to each of two and over one back.
+    "P ()::(PARALLEL (IF-THENNEXT-ELSENEXT ((first_engine = standing_by) AND (second_engine = standing_by) AND (camera = off)) (A = on) (DO-WATCHING (A = on) (B = on))) (WHENEVER-DONEXT ((first_engine = standing_by) OR (second_engine = standing_by) OR (camera = off)) (A = on)))",
     "P ()::(SEQUENCE (A = on) (PARALLEL (B = off) (ALWAYS (C = on))) (WHENEVER-DONEXT (A = on) (B = on)))",
     "P ()::(IF-THENNEXT-ELSENEXT (A = on) (SEQUENCE (B = on) (C = on)) (UNLESS-THENNEXT (B = on) (A = off)))",
     "P ()::(DO-WATCHING (A = failed) (SEQUENCE (WHEN-DONEXT (A = on) (DO-WATCHING (B = on) (ALWAYS (C = on)))) (D = on)))",
@@ -69,11 +71,11 @@ fn texts_and_locations_do_not_overlap() {
         let texts: Vec<_> = drawing.texts.iter().collect();
         for (at, text) in texts.iter().enumerate() {
             for other in &texts[at + 1..] {
-                assert!(!text.rect.overlaps(other.rect), "{} lies over {}", text.text, other.text);
+                assert!(!text.rect.overlaps(other.rect), "{:?} lies over {:?}", text.lines, other.lines);
             }
             for location in &drawing.locations {
                 let own = text.owner == AutomatonItem::Location(location.id);
-                assert!(own || !text.rect.overlaps(location.rect), "{} lies over {location:?}", text.text);
+                assert!(own || !text.rect.overlaps(location.rect), "{:?} lies over {location:?}", text.lines);
             }
         }
         for (at, location) in drawing.locations.iter().enumerate() {

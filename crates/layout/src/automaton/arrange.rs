@@ -9,23 +9,31 @@ use super::{
     TransitionShape,
 };
 use crate::layered::level_curve;
-use crate::metrics::{GUTTER, MARGIN, TEXT_LIFT, TEXT_PAD, TextRole};
+use crate::metrics::{GUTTER, TEXT_LIFT, TEXT_PAD, TextRole};
 use crate::text::{cut_to_width, text_width};
 use display::list::ARROW_LENGTH;
 use display::{Measure, Piece, Point, Rect, approximate_text_width, text_width_at};
 
 /// Inside the box of a composite.
-const PADDING: f64 = 12.0;
+const PADDING: f64 = 9.0;
 /// Below the padding of a composite that can be preempted: half of the note on its border, whose other half is outside.
 const NOTE_ROOM: f64 = 4.0;
 /// Between children.
-const GAP: f64 = 14.0;
+const GAP: f64 = 11.0;
 /// Between the children of a sequence, where an arrow goes.
-const STEP: f64 = 36.0;
-const LOCATION_HEIGHT: f64 = 34.0;
+const STEP: f64 = 32.0;
+/// A sequence that is wider runs from top to bottom.
+const EASY_ROW: f64 = 480.0;
+/// Of a location with one line of text.
+const LOCATION_HEIGHT: f64 = 30.0;
 /// How high a transition from a location to itself rises.
 const LOOP_HEIGHT: f64 = 18.0;
-const LONGEST_TEXT: f64 = 300.0;
+/// A condition that is wider is broken before its connectives.
+const EASY_LINE: f64 = 132.0;
+/// A line that cannot be broken is cut at this width.
+const LONGEST_LINE: f64 = 300.0;
+/// Around the whole drawing.
+const MARGIN: f64 = 6.0;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Size {
@@ -36,12 +44,58 @@ struct Size {
 }
 
 struct Text {
-    text: SmolStr,
+    lines: Vec<SmolStr>,
+    role: TextRole,
     width: f64,
+}
+
+impl Text {
+    /// A text in lines no wider than `easy`, where connectives allow it.
+    fn wrapped(text: &str, role: TextRole, easy: f64, measure: &dyn Measure) -> Self {
+        let width_of = |line: &str| text_width(line, role, measure);
+        let mut lines: Vec<String> = Vec::new();
+        for part in parts_of(text) {
+            match lines.last_mut() {
+                Some(line) if width_of(&format!("{line} {part}")) <= easy => {
+                    line.push(' ');
+                    line.push_str(part);
+                }
+                _ => lines.push(part.to_owned()),
+            }
+        }
+        let lines: Vec<SmolStr> =
+            lines.iter().map(|line| cut_to_width(line, role, LONGEST_LINE, measure)).collect();
+        let width = lines.iter().map(|line| width_of(line)).fold(0.0, f64::max);
+        Self { lines, role, width }
+    }
+
+    fn height(&self) -> f64 {
+        self.lines.len() as f64 * self.role.line_height()
+    }
+
+    /// The text with its middle at `middle` and its upper border at `top`.
+    fn drawn(&self, middle: f64, top: f64, owner: AutomatonItem) -> AutomatonText {
+        let left = (middle - self.width / 2.0).floor();
+        let rect = Rect::new(left, top, left + self.width, top + self.height());
+        AutomatonText { lines: self.lines.clone(), role: self.role, rect, owner }
+    }
+}
+
+/// The parts of a condition that stay together: each but the first begins with its connective.
+fn parts_of(text: &str) -> impl Iterator<Item = &str> {
+    let mut rest = Some(text);
+    std::iter::from_fn(move || {
+        let whole = rest?;
+        let next = [" AND ", " OR "].iter().filter_map(|joint| whole.find(joint)).min();
+        let (part, after) = next.map_or((whole, None), |at| (&whole[..at], Some(&whole[at + 1..])));
+        rest = after;
+        Some(part)
+    })
 }
 
 struct Arranger<'a> {
     automaton: &'a Automaton,
+    measure: &'a dyn Measure,
     /// What each location says, and each transition, and each composite.
     location_texts: Vec<Text>,
     transition_texts: Vec<Text>,
@@ -53,37 +107,26 @@ struct Arranger<'a> {
 }
 
 pub(super) fn arrange(automaton: &Automaton, measure: &dyn Measure) -> AutomatonDrawing {
-    let cut = |text: &str, role: TextRole| {
-        let text = cut_to_width(text, role, LONGEST_TEXT, measure);
-        Text { width: text_width(&text, role, measure), text }
-    };
-    let guard_text = |test: hca::TestId| automaton.guard(test).map(|guard| format_smolstr!("{guard}"));
-    let title = |composite: &Composite| {
-        let text = match (composite.maintenance.and_then(guard_text), composite.kind) {
-            (Some(guard), _) => format_smolstr!("maintain {guard}"),
-            (None, CompositeKind::Sequence) => SmolStr::new_static("sequence"),
-            (None, CompositeKind::Parallel) => SmolStr::new_static("parallel"),
-            (None, _) => return None,
-        };
-        Some(cut(&text, TextRole::Quiet))
-    };
-    let locations = automaton.locations.iter().map(|location| cut(&location.label, TextRole::Name));
+    let text = |text: &str, role: TextRole| Text::wrapped(text, role, EASY_LINE, measure);
+    let locations = automaton.locations.iter().map(|location| text(&location.label, TextRole::Name));
     let transitions = automaton.transitions.iter().map(|transition| {
-        let text = transition.guard.and_then(guard_text).unwrap_or_else(|| SmolStr::new_static("always"));
-        cut(&text, TextRole::Bounds)
+        let guard = transition.guard.and_then(|test| automaton.guard(test));
+        let guard = guard.map_or_else(|| "always".to_owned(), ToString::to_string);
+        text(&guard, TextRole::Bounds)
     });
     let mut arranger = Arranger {
         automaton,
+        measure,
         location_texts: locations.collect(),
         transition_texts: transitions.collect(),
-        titles: automaton.composites.iter().map(title).collect(),
+        titles: automaton.composites.iter().map(|_| None).collect(),
         sizes: vec![Size::default(); automaton.composites.len()],
         composite_rects: vec![Rect::default(); automaton.composites.len()],
         location_rects: vec![Rect::default(); automaton.locations.len()],
         drawing: AutomatonDrawing::default(),
     };
     for at in (0..automaton.composites.len()).rev() {
-        arranger.sizes[at] = arranger.size(CompositeId(at as u32));
+        arranger.measure(CompositeId(at as u32));
     }
     arranger.place_all();
     arranger.finish()
@@ -92,6 +135,8 @@ pub(super) fn arrange(automaton: &Automaton, measure: &dyn Measure) -> Automaton
 /// How a composite's children are put beside each other.
 enum Shape<'a> {
     Row(&'a [Element]),
+    /// A sequence that would be too wide as a row.
+    Column(&'a [Element]),
     Stack(&'a [Element]),
     /// A location and what it starts.
     Fork(LocationId, &'a [Element]),
@@ -106,7 +151,10 @@ impl<'a> Arranger<'a> {
         let composite = self.composite(id);
         match (composite.kind, composite.children.as_slice()) {
             (CompositeKind::Guarded, [Element::Location(first), rest @ ..]) => Shape::Fork(*first, rest),
-            (CompositeKind::Sequence, children) => Shape::Row(children),
+            (CompositeKind::Sequence, children) => {
+                let width = row(children.iter().map(|&child| self.element_size(child))).width;
+                if width > EASY_ROW { Shape::Column(children) } else { Shape::Row(children) }
+            }
             (_, children) => Shape::Stack(children),
         }
     }
@@ -115,7 +163,7 @@ impl<'a> Arranger<'a> {
     fn frame(&self, id: CompositeId) -> (f64, f64, f64) {
         let composite = self.composite(id);
         let is_box = self.titles[id.0 as usize].is_some() || composite.kind == CompositeKind::Program;
-        let title = if self.titles[id.0 as usize].is_some() { TextRole::Quiet.line_height() } else { 0.0 };
+        let title = self.titles[id.0 as usize].as_ref().map_or(0.0, Text::height);
         let note = if composite.maintenance.is_some() { NOTE_ROOM } else { 0.0 };
         if is_box { (PADDING, PADDING + title, PADDING + note) } else { (0.0, 0.0, 0.0) }
     }
@@ -124,19 +172,48 @@ impl<'a> Arranger<'a> {
         match element {
             Element::Composite(id) => self.sizes[id.0 as usize],
             Element::Location(id) => {
-                let width = self.location_texts[id.0 as usize].width + 4.0 * TEXT_PAD;
-                Size { width, height: LOCATION_HEIGHT, axis: LOCATION_HEIGHT / 2.0 }
+                let text = &self.location_texts[id.0 as usize];
+                let height = LOCATION_HEIGHT + text.height() - text.role.line_height();
+                Size { width: text.width + 4.0 * TEXT_PAD, height, axis: height / 2.0 }
             }
         }
     }
 
-    fn size(&self, id: CompositeId) -> Size {
+    /// What a location starts, with room above the arrow to it for the guard that stands there.
+    fn started_size(&self, location: LocationId, element: Element) -> Size {
+        let size = self.element_size(element);
+        let guards = self.transitions_of(location).filter(|(_, target)| *target == element);
+        let heights = guards.map(|(id, _)| self.transition_texts[id.0 as usize].height() + TEXT_LIFT);
+        let above = (heights.fold(0.0, f64::max) - size.axis).max(0.0).ceil();
+        Size { height: size.height + above, axis: size.axis + above, ..size }
+    }
+
+    fn started_sizes(&self, location: LocationId, elements: &[Element]) -> impl Iterator<Item = Size> {
+        elements.iter().map(move |&element| self.started_size(location, element))
+    }
+
+    /// What a composite maintains, or how it runs what is in it.
+    fn title(&self, id: CompositeId, room: f64) -> Option<Text> {
+        let composite = self.composite(id);
+        let guard = composite.maintenance.and_then(|test| self.automaton.guard(test));
+        let text = match (guard, composite.kind) {
+            (Some(guard), _) => format_smolstr!("maintain {guard}"),
+            (None, CompositeKind::Sequence) => SmolStr::new_static("sequence"),
+            (None, CompositeKind::Parallel) => SmolStr::new_static("parallel"),
+            (None, _) => return None,
+        };
+        Some(Text::wrapped(&text, TextRole::Quiet, room.max(EASY_LINE), self.measure))
+    }
+
+    /// The size of a composite and its title, which takes the width that is there.
+    fn measure(&mut self, id: CompositeId) {
         let inner = match self.shape(id) {
             Shape::Row(children) => row(children.iter().map(|&child| self.element_size(child))),
+            Shape::Column(children) => column(children.iter().map(|&child| self.element_size(child))),
             Shape::Stack(children) => stack(children.iter().map(|&child| self.element_size(child))),
             Shape::Fork(location, children) => {
                 let source = self.element_size(Element::Location(location));
-                let bodies = stack(children.iter().map(|&child| self.element_size(child)));
+                let bodies = stack(self.started_sizes(location, children));
                 let loop_height = self.loop_height(location);
                 let room = if children.is_empty() { 0.0 } else { self.guard_room(location) };
                 let axis = (source.axis + loop_height).max(bodies.axis);
@@ -148,16 +225,17 @@ impl<'a> Arranger<'a> {
                 }
             }
         };
+        self.titles[id.0 as usize] = self.title(id, inner.width);
         let (side, above, below) = self.frame(id);
         let title = self.titles[id.0 as usize].as_ref().map_or(0.0, |title| title.width);
         let is_watching = self.composite(id).maintenance.is_some();
         let note =
             if is_watching { text_width_at(PREEMPTED, NOTE_SIZE, &approximate_text_width) } else { 0.0 };
-        Size {
+        self.sizes[id.0 as usize] = Size {
             width: (inner.width.max(title).max(note) + 2.0 * side).ceil(),
             height: (inner.height + above + below).ceil(),
             axis: (inner.axis + above).floor(),
-        }
+        };
     }
 
     fn transitions_of(&self, location: LocationId) -> impl Iterator<Item = (TransitionId, Element)> + 'a {
@@ -175,10 +253,8 @@ impl<'a> Arranger<'a> {
     }
 
     fn loop_height(&self, location: LocationId) -> f64 {
-        if self.own_loop(location).is_none() {
-            return 0.0;
-        }
-        LOOP_HEIGHT + TEXT_LIFT + TextRole::Bounds.line_height()
+        self.own_loop(location)
+            .map_or(0.0, |id| LOOP_HEIGHT + TEXT_LIFT + self.transition_texts[id.0 as usize].height())
     }
 
     fn loop_width(&self, location: LocationId) -> f64 {
@@ -207,7 +283,11 @@ impl<'a> Arranger<'a> {
             self.outline(id, rect, side);
             match self.shape(id) {
                 Shape::Row(children) => self.place_row(children, inner, rect.min.y + self.sizes[at].axis),
-                Shape::Stack(children) => self.place_stack(children, inner.min),
+                Shape::Column(children) => self.place_column(children, inner.min),
+                Shape::Stack(children) => {
+                    let sizes: Vec<_> = children.iter().map(|&child| self.element_size(child)).collect();
+                    self.place_stack(children, &sizes, inner.min);
+                }
                 Shape::Fork(location, children) => {
                     let size = self.element_size(Element::Location(location));
                     let wide = size.width.max(self.loop_width(location));
@@ -215,8 +295,9 @@ impl<'a> Arranger<'a> {
                     let line = rect.min.y + self.sizes[at].axis;
                     self.put(Element::Location(location), Point::new(left, line - size.axis));
                     let room = if children.is_empty() { 0.0 } else { self.guard_room(location) };
-                    let bodies = stack(children.iter().map(|&child| self.element_size(child)));
-                    self.place_stack(children, Point::new(inner.min.x + wide + room, line - bodies.axis));
+                    let sizes: Vec<_> = self.started_sizes(location, children).collect();
+                    let top = line - stack(sizes.iter().copied()).axis;
+                    self.place_stack(children, &sizes, Point::new(inner.min.x + wide + room, top));
                 }
             }
         }
@@ -230,10 +311,9 @@ impl<'a> Arranger<'a> {
         let is_watching = composite.maintenance.is_some();
         self.drawing.composites.push(CompositeShape { id, rect, kind: composite.kind, is_watching });
         if let Some(title) = &self.titles[id.0 as usize] {
-            let (left, top) = (rect.min.x + PADDING, rect.min.y + TEXT_PAD);
-            let rect = Rect::new(left, top, left + title.width, top + TextRole::Quiet.line_height());
-            let (text, owner) = (title.text.clone(), AutomatonItem::Composite(id));
-            self.drawing.texts.push(AutomatonText { text, role: TextRole::Quiet, rect, owner });
+            let middle = rect.min.x + PADDING + title.width / 2.0;
+            let text = title.drawn(middle, rect.min.y + TEXT_PAD, AutomatonItem::Composite(id));
+            self.drawing.texts.push(text);
         }
     }
 
@@ -261,11 +341,29 @@ impl<'a> Arranger<'a> {
         }
     }
 
-    fn place_stack(&mut self, children: &[Element], corner: Point) {
+    fn place_column(&mut self, children: &[Element], corner: Point) {
         let mut top = corner.y;
+        let mut above: Option<f64> = None;
         for &child in children {
+            let size = self.element_size(child);
+            if let Some(above) = above {
+                let x = corner.x + (above.min(size.width) / 4.0).floor();
+                self.drawing.successions.push((Point::new(x, top + 2.0), Point::new(x, top + STEP - 2.0)));
+                top += STEP;
+            }
             self.put(child, Point::new(corner.x, top));
-            top += self.element_size(child).height + GAP;
+            top += size.height;
+            above = Some(size.width);
+        }
+    }
+
+    /// Below each other, each at the bottom of the room that it has.
+    fn place_stack(&mut self, children: &[Element], rooms: &[Size], corner: Point) {
+        let mut bottom = corner.y;
+        for (&child, room) in children.iter().zip(rooms) {
+            bottom += room.height;
+            self.put(child, Point::new(corner.x, bottom - self.element_size(child).height));
+            bottom += GAP;
         }
     }
 
@@ -285,12 +383,9 @@ impl<'a> Arranger<'a> {
             let (rect, kind) = (self.location_rects[at], self.automaton.locations[at].kind);
             let is_start = starts.contains(id);
             self.drawing.locations.push(LocationShape { id, rect, kind, is_start });
-            let text = &self.location_texts[at];
-            let left = (rect.center().x - text.width / 2.0).floor();
-            let half = TextRole::Name.line_height() / 2.0;
-            let line = Rect::new(left, rect.center().y - half, left + text.width, rect.center().y + half);
-            let (text, owner) = (text.text.clone(), AutomatonItem::Location(id));
-            self.drawing.texts.push(AutomatonText { text, role: TextRole::Name, rect: line, owner });
+            let (text, middle) = (&self.location_texts[at], rect.center());
+            let top = middle.y - text.height() / 2.0;
+            self.drawing.texts.push(text.drawn(middle.x, top, AutomatonItem::Location(id)));
             for (transition, target) in self.transitions_of(id) {
                 self.transition(transition, id, target);
             }
@@ -319,10 +414,8 @@ impl<'a> Arranger<'a> {
             (start, vec![level_curve(start, level), Piece::Line(end)], text_at)
         };
         self.drawing.transitions.push(TransitionShape { id, start, pieces });
-        let left = (text_at.x - text.width / 2.0).floor();
-        let rect = Rect::new(left, text_at.y - TextRole::Bounds.line_height(), left + text.width, text_at.y);
-        let (text, owner) = (text.text.clone(), AutomatonItem::Transition(id));
-        self.drawing.texts.push(AutomatonText { text, role: TextRole::Bounds, rect, owner });
+        let text = text.drawn(text_at.x, text_at.y - text.height(), AutomatonItem::Transition(id));
+        self.drawing.texts.push(text);
     }
 }
 
@@ -334,6 +427,17 @@ fn row(sizes: impl Iterator<Item = Size>) -> Size {
         below = below.max(size.height - size.axis);
     }
     Size { width, height: above + below, axis: above }
+}
+
+/// Below each other, one after the other; entered where the first one is.
+fn column(sizes: impl Iterator<Item = Size>) -> Size {
+    let mut whole = Size::default();
+    for (at, size) in sizes.enumerate() {
+        whole.height += size.height + if at > 0 { STEP } else { 0.0 };
+        whole.width = whole.width.max(size.width);
+        whole.axis = if at == 0 { size.axis } else { whole.axis };
+    }
+    whole
 }
 
 /// Below each other; entered in the middle, or as its only member is.

@@ -1,7 +1,8 @@
 //! The drawing of an automaton: composites as nested boxes, locations as rounded boxes, transitions with their guards.
 //!
-//! Parallel children stand below each other, a sequence runs from left to right, and what a location starts stands to
-//! its right. Linear in the automaton, but for cutting long texts.
+//! Parallel children stand below each other, and what a location starts stands to its right. A sequence runs from left to
+//! right, or from top to bottom where that would be wide. Long conditions are broken into lines before their connectives.
+//! Linear in the automaton and its texts.
 
 mod arrange;
 
@@ -17,7 +18,7 @@ use crate::metrics::TextRole;
 pub(crate) const PREEMPTED: &str = "✗ preempted in the last step";
 
 /// How large that is written.
-pub(crate) const NOTE_SIZE: f64 = 11.0;
+pub(crate) const NOTE_SIZE: f64 = 11.5;
 
 /// An automaton as shapes. Composites are in the order of their ids: outer ones first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -76,8 +77,8 @@ pub struct TransitionShape {
 /// A text in the rectangle that is reserved for it alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AutomatonText {
-    /// What it says.
-    pub text: SmolStr,
+    /// What it says, in lines of one height.
+    pub lines: Vec<SmolStr>,
     /// What it is for: titles of composites, names of locations, guards as bounds.
     pub role: TextRole,
     /// Where it stands.

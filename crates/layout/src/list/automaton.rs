@@ -32,7 +32,7 @@ const CORNERS: (f64, f64) = (7.0, 5.0);
 /// How far inside its border a start location has another one.
 const INSET: f64 = 3.0;
 /// Size of the name on a location's border, and of its dot.
-const TAG: (f64, f64) = (9.5, 5.0);
+const TAG: (f64, f64) = (11.5, 5.0);
 /// From the right end of a composite's lower border to the note on it.
 const NOTE_INSET: f64 = 10.0;
 
@@ -175,17 +175,25 @@ impl Builder<'_> {
             AutomatonItem::Transition(id) => (TargetKind::Transition, id.0),
             AutomatonItem::Composite(id) => (TargetKind::Composite, id.0),
         };
-        let barred = text.text.find('~');
-        let words = barred.map_or_else(
-            || text.text.clone(),
-            |at| format!("{}{}", &text.text[..at], &text.text[at + 1..]).into(),
-        );
+        let anchor =
+            if matches!(text.owner, AutomatonItem::Composite(_)) { Anchor::Start } else { Anchor::Middle };
         let is_plated = matches!(text.owner, AutomatonItem::Transition(_)) && self.is_selected(text.owner);
-        let shown = Text {
-            overbar: barred.map(|at| at as u32),
-            plate: is_plated.then_some(ColorRole::Selection.into()),
-            ..Text::new(words, text.role.size(), text.rect).colored(role)
-        };
-        list.write(shown).stands_for(kind, id);
+        let height = text.rect.height() / text.lines.len().max(1) as f64;
+        let mut is_barred = false;
+        for (at, line) in text.lines.iter().enumerate() {
+            let top = text.rect.min.y + at as f64 * height;
+            let rect = Rect::new(text.rect.min.x, top, text.rect.max.x, top + height);
+            let begins = line.find('~');
+            let words =
+                begins.map_or_else(|| line.clone(), |at| [&line[..at], &line[at + 1..]].concat().into());
+            let overbar = begins.map(|at| at as u32).or(is_barred.then_some(0));
+            is_barred = overbar.is_some();
+            let shown = Text {
+                overbar,
+                plate: is_plated.then_some(ColorRole::Selection.into()),
+                ..Text::new(words, text.role.size(), rect).colored(role).anchored(anchor, Fit::Shrink)
+            };
+            list.write(shown).stands_for(kind, id);
+        }
     }
 }

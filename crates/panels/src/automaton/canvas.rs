@@ -25,8 +25,8 @@ type Press = (AutomatonItem, bool);
 
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
-/// At less than this, names are cut before they are too small to read: the part that matters is shown then.
-const LEAST_ZOOM: f64 = 0.92;
+/// At less than this, guards and names of locations are smaller than 11 points: the part that matters is shown then.
+const LEAST_ZOOM: f64 = 11.0 / 11.5;
 /// A small automaton is not blown up further than this where all of it is asked for.
 const LARGEST_WHOLE: f64 = 1.3;
 /// How far from the pointer something may be to be pointed at, in points.
