@@ -165,8 +165,7 @@ impl Reader<'_> {
     }
 
     fn moment(&mut self, node: SyntaxNode<'_>) -> Option<Moment> {
-        let words: Vec<SyntaxToken<'_>> =
-            node.own_tokens().filter(|token| token.kind == SyntaxKind::Name).collect();
+        let words: Vec<SyntaxToken<'_>> = node.own_tokens().filter(is_name).collect();
         if words.first()?.text == "from" {
             let mut times = node.children().filter_map(|child| Some((expression(child)?, child.span())));
             let (from, to) = (times.next()?, times.next()?);
@@ -217,13 +216,14 @@ impl Reader<'_> {
             |token: &SyntaxToken<'_>| matches!(token.kind, SyntaxKind::NotKeyword | SyntaxKind::Bang);
         let is_denied = node.own_tokens().filter(is_negation).count() % 2 == 1;
         let denied = |formula| if is_denied { Formula::Not(Box::new(formula)) } else { formula };
-        let name = node.own_tokens().find(|token| token.kind == SyntaxKind::Name);
+        let name = node.own_tokens().find(is_name);
         if let Some(order) = node.token(SyntaxKind::Order) {
             let amount = node.children().find_map(|child| Some((expression(child)?, child.span())));
             return Some(denied(self.amount(name, node.span(), order, amount)?));
         }
-        if let Some(arguments) = node.child(SyntaxKind::Arguments) {
-            return Some(denied(Formula::Underway(self.activity(name?, Some(arguments))?)));
+        let arguments = node.child(SyntaxKind::Arguments);
+        if arguments.is_some() || name.is_some_and(|name| name.kind == SyntaxKind::String) {
+            return Some(denied(Formula::Underway(self.activity(name?, arguments)?)));
         }
         let found = literal(node)?;
         let (variable, span) = (found.variable.text.as_str(), found.variable.span);
@@ -284,14 +284,16 @@ impl Reader<'_> {
         primitives.chain(activities).chain(undeclared)
     }
 
-    fn activity(&mut self, name: SyntaxToken<'_>, arguments: Option<SyntaxNode<'_>>) -> Option<Activity> {
-        let Some((_, formals)) = self.activities().find(|(it, _)| *it == name.text) else {
-            let nearest = nearest(name.text, self.activities().map(|(it, _)| it));
-            self.unknown(format!("no activity `{}` is declared", name.text), name.span, nearest);
+    fn activity(&mut self, token: SyntaxToken<'_>, arguments: Option<SyntaxNode<'_>>) -> Option<Activity> {
+        let name = unquoted(token);
+        let Some((_, formals)) = self.activities().find(|(it, _)| *it == name) else {
+            let nearest = nearest(name, self.activities().map(|(it, _)| it));
+            let nearest = nearest.map(|it| if name == token.text { it } else { format!("\"{it}\"") });
+            self.unknown(format!("no activity `{name}` is declared"), token.span, nearest);
             return None;
         };
         let Some(arguments) = arguments else {
-            return Some(Activity { name: name.text.into(), arguments: None });
+            return Some(Activity { name: name.into(), arguments: None });
         };
         let given: Vec<SmolStr> = arguments
             .children()
@@ -301,12 +303,12 @@ impl Reader<'_> {
         // Empty parentheses stand for any arguments, too.
         if !given.is_empty() && given.len() != formals {
             let words = if formals == 1 { "argument" } else { "arguments" };
-            let message = format!("`{}` has {formals} {words}", name.text);
+            let message = format!("`{name}` has {formals} {words}");
             self.report(arity::CODE, arguments.span(), message);
             return None;
         }
         let arguments = (!given.is_empty()).then_some(given);
-        Some(Activity { name: name.text.into(), arguments })
+        Some(Activity { name: name.into(), arguments })
     }
 
     /// The variable and the values of a literal (SPEC 1.3).
@@ -380,6 +382,15 @@ impl Reader<'_> {
     }
 }
 
+/// Names of networks from elsewhere stand in quotes where they are none of this language.
+const fn is_name(token: &SyntaxToken<'_>) -> bool {
+    matches!(token.kind, SyntaxKind::Name | SyntaxKind::String)
+}
+
+fn unquoted(name: SyntaxToken<'_>) -> &str {
+    name.text.trim_matches('"')
+}
+
 fn values_of(values: &[crate::program::Name]) -> Vec<SmolStr> {
     if values.is_empty() {
         return vec!["true".into()];
@@ -408,7 +419,8 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
 
     fn read(text: &str) -> Result<Rule, Vec<String>> {
         let program = crate::parse(MISSION).program();
-        let undeclared = Undeclared { variables: &["LIGHT".into()], activities: &[("Wait".into(), 0)] };
+        let activities = [("Wait".into(), 0), ("GoTo(A)#1".into(), 0)];
+        let undeclared = Undeclared { variables: &["LIGHT".into()], activities: &activities };
         let rule = super::read(text, &program, undeclared);
         rule.map_err(|found| {
             found.iter().map(|it| format!("{} {}: {}", it.span.start, it.code, it.message)).collect()
@@ -436,6 +448,26 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
         assert_eq!(read("never Wait").expect("one").holds, Formula::Not(Box::new(underway("Wait"))));
         assert_eq!(read("Mast_OUT").expect("it splits").holds, is("Mast", "OUT"));
         assert_eq!(read("Mast!=OUT").expect("one").holds, Formula::Not(Box::new(is("Mast", "OUT"))));
+    }
+
+    #[test]
+    fn names_from_elsewhere_stand_in_quotes() {
+        let go = underway("GoTo(A)#1");
+        assert_eq!(
+            read("never \"GoTo(A)#1\" while LIGHT").expect("one").holds,
+            Formula::Not(Box::new(go.clone()))
+        );
+        let both = read("not (\"GoTo(A)#1\" and Dig) or LIGHT").expect("it is one").holds;
+        let Formula::Any(parts) = &both else { panic!("{both:?}") };
+        assert_eq!(parts[0], Formula::Not(Box::new(Formula::All(vec![go, underway("Dig")]))));
+        let end = read("LIGHT at end of \"GoTo(A)#1\"").expect("it is one").moment;
+        assert_eq!(end, Moment::End(Some(Activity { name: "GoTo(A)#1".into(), arguments: None })));
+        assert_eq!(read("\"Dig\"").expect("one").holds, underway("Dig"));
+        assert_eq!(
+            read("never \"GoTo(B)\""),
+            Err(vec!["6 E-UNDEF: no activity `GoTo(B)` is declared".to_owned()])
+        );
+        assert!(read("\"GoTo(A)#1").is_err(), "the quotation is not closed");
     }
 
     #[test]

@@ -145,8 +145,15 @@ fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule
                 .font(egui::TextStyle::Monospace)
                 .desired_width(width);
             ui.add(text).accessible_name(format!("What rule {number} says"));
-            if let Some(problem) = problem_of(context, &rule.rule) {
-                ui.label(RichText::new(problem).color(context.tokens.error));
+            // Always a line, so that nothing below moves while somebody writes.
+            match problem_of(context, &rule.rule) {
+                Some(problem) => {
+                    ui.label(RichText::new(problem).color(context.tokens.error));
+                }
+                None if rule.rule.trim().is_empty() => {
+                    row::quiet_word(ui, "A condition, and when it has to hold");
+                }
+                None => row::quiet_word(ui, "The mission knows all that it names"),
             }
         });
     }

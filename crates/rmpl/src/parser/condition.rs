@@ -62,7 +62,8 @@ impl Parser<'_> {
             }
             index = self.index_after(index);
         }
-        if open_parens == 0 || self.kind_at(index) != SyntaxKind::Name {
+        let is_quoted = self.is_rule && self.kind_at(index) == SyntaxKind::String;
+        if open_parens == 0 || (self.kind_at(index) != SyntaxKind::Name && !is_quoted) {
             return false;
         }
         index = self.index_after(index);
@@ -137,6 +138,9 @@ impl Parser<'_> {
     }
 
     fn comparison(&mut self) {
+        if self.is_rule && self.eat(SyntaxKind::String) {
+            return;
+        }
         let is_place = self.at(SyntaxKind::Name) && self.peek() == SyntaxKind::Dot;
         if !self.variable_name() {
             let keyword = self.kind.is_keyword() && self.kind != SyntaxKind::ThennextKeyword;

@@ -50,7 +50,7 @@ impl Parser<'_> {
             self.bump();
             if !self.eat_word("start") && !self.eat_word("end") {
                 self.report_expected("`start` or `end`");
-            } else if self.eat_word("of") {
+            } else if self.eat_word("of") && !self.eat(SyntaxKind::String) {
                 if !self.eat(SyntaxKind::Name) {
                     self.report_expected("an activity");
                 } else if self.at(SyntaxKind::LeftParen) {
