@@ -321,6 +321,21 @@ fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
     ] {
         assert!(written.contains(&words), "{words} is missing in {written:?}");
     }
+    let is_number = |text: &&display::Text| {
+        let words = ["low ", "high ", "least ", "greatest ", "peak ", "capacity "];
+        words.iter().any(|word| text.text.starts_with(word))
+    };
+    let numbers: Vec<_> = list.texts().iter().filter(is_number).collect();
+    assert_eq!(numbers.len(), 6, "what is possible and what is reached, of both");
+    let words_of = |text: &display::Text| {
+        let width = display::text_width_at(&text.text, text.size, &approximate_text_width);
+        Rect::new(text.rect.max.x - width, text.rect.min.y, text.rect.max.x, text.rect.max.y)
+    };
+    for (at, text) in numbers.iter().enumerate() {
+        for other in &numbers[at + 1..] {
+            assert!(!words_of(text).overlaps(words_of(other)), "{} lies over {}", text.text, other.text);
+        }
+    }
     // Scrolled so that its first row is above what is seen, a profile is drawn all the same.
     let first = chart.rows.iter().position(|row| matches!(row.kind, RowKind::Profile(_))).expect("a profile");
     let state = TimelineState {

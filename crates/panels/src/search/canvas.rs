@@ -130,7 +130,7 @@ const LEAST_GAP: f32 = 2.0;
 const LEAST_SIGN: f32 = 7.0;
 /// A label with less room than this is left out.
 const LEAST_LABEL: f32 = 16.0;
-/// With less room than this, a label that does not fit is replaced instead of cut.
+/// With less room than this, a label is left out instead of cut.
 const LEAST_CUT: f32 = 56.0;
 /// Between a label and what comes before it.
 const LABEL_GAP: f32 = 6.0;
@@ -551,22 +551,26 @@ impl Scene<'_> {
         };
         let is_on_path = self.path.binary_search(&id).is_ok();
         let color = if is_on_path { tokens.text } else { tokens.text_muted };
-        let mut text = self.label_text(id);
-        let width = self.one_line(&text, color, f32::INFINITY).size().x;
         let rooms = [center.x - aside - limits[0], limits[1] - center.x - aside];
         // The arrow of a jump leaves at the left.
         let jumps = self.tree.jump.is_some() && is_ringed;
-        let side = if jumps { Side::Right } else { Side::of(width, rooms) };
-        let room = rooms[side as usize];
-        if room < LEAST_LABEL {
+        let side_of = |width: f32| if jumps { Side::Right } else { Side::of(width, rooms) };
+        if rooms[side_of(f32::INFINITY) as usize] < LEAST_LABEL {
             return None;
         }
-        if width > room && room < LEAST_CUT {
-            // A few letters say less than which alternative it is, or how many are folded.
-            let below = self.is_folded(id).then(|| format!("+{}", self.tree.index.below[id as usize]));
-            text = below.or_else(|| shortest_label(self.tree.trace.tree[id as usize].choice))?;
-        }
-        let galley = self.one_line(&text, color, room);
+        // What says less in whole words comes before what is cut; where the step is or leads from, even that.
+        let forms = self.label_forms(id);
+        let whole = forms.iter().find_map(|text| {
+            let galley = self.one_line(text, color, f32::INFINITY);
+            let side = side_of(galley.size().x);
+            (galley.size().x <= rooms[side as usize]).then_some((galley, side))
+        });
+        let (galley, side) = whole.or_else(|| {
+            let side = side_of(f32::INFINITY);
+            let room = rooms[side as usize];
+            ((is_ringed || is_on_path) && room >= LEAST_CUT)
+                .then(|| (self.one_line(&forms[0], color, room), side))
+        })?;
         let (align, x) = match side {
             Side::Left => (Align2::RIGHT_CENTER, center.x - aside),
             Side::Right => (Align2::LEFT_CENTER, center.x + aside),
@@ -576,19 +580,24 @@ impl Scene<'_> {
         Some(at.right())
     }
 
-    /// All that the label of a state says.
-    fn label_text(&self, id: TreeNodeId) -> String {
-        let mut text = short_label(self.tree.network, self.tree.trace.tree[id as usize].choice);
-        if let Some(bound) = self.bound(id) {
-            text = format!("{text} · {bound}");
-        }
-        if let Some(conflict) = self.tree.learned(id) {
-            text = format!("{text} · {}", wording::never(self.tree.network, conflict));
-        }
-        if self.is_folded(id) {
-            text = format!("{text} +{}", self.tree.index.below[id as usize]);
-        }
-        text
+    /// What the label of a state says where there is room for all, and what it says with less room.
+    fn label_forms(&self, id: TreeNodeId) -> Vec<String> {
+        let choice = self.tree.trace.tree[id as usize].choice;
+        let name = short_label(self.tree.network, choice);
+        let bound = self.bound(id).map(|bound| format!(" · {bound}")).unwrap_or_default();
+        let learned = self.tree.learned(id);
+        let learned = learned.map(|it| format!(" · {}", wording::never(self.tree.network, it)));
+        let folded = self.is_folded(id).then(|| format!("+{}", self.tree.index.below[id as usize]));
+        let below = folded.as_ref().map(|folded| format!(" {folded}")).unwrap_or_default();
+        let mut forms = vec![
+            format!("{name}{bound}{}{below}", learned.unwrap_or_default()),
+            format!("{name}{bound}{below}"),
+            format!("{name}{below}"),
+        ];
+        // How many are folded says more than which alternative it is.
+        forms.extend(folded.or_else(|| shortest_label(choice)));
+        forms.dedup();
+        forms
     }
 
     /// What the goals may become in a state, where the search goes by that.

@@ -14,7 +14,7 @@ use workbench::state::search::{MergedTree, Recording, SearchCommand, Share};
 use super::canvas::{self, Pointed, Tree};
 use super::kind_name;
 use super::tree::{TreeDrawing, TreeIndex};
-use crate::Context;
+use crate::{Context, one_line};
 
 /// The merged tree on screen, with what concerns only it.
 #[derive(Default)]
@@ -222,10 +222,15 @@ fn legend(ui: &mut Ui, context: &Context<'_>, drawn: &Drawn) {
             (Share::Only(0), format!("only {}: {}", name(0), counts.only[0])),
             (Share::Only(1), format!("only {}: {}", name(1), counts.only[1])),
         ] {
+            let text = one_line::in_one_line(ui, RichText::new(text).small().color(tokens.text));
+            if ui.available_size_before_wrap().x < 26.0 + space::S + text.size().x {
+                ui.end_row();
+                ui.add_space(space::S);
+            }
             let (rect, _) = ui.allocate_exact_size(vec2(26.0, 14.0), Sense::hover());
             let line = [pos2(rect.left(), rect.center().y), pos2(rect.right(), rect.center().y)];
             ui.painter().extend(lines(&line, Stroke::new(1.8, color(context, share)), share));
-            ui.label(RichText::new(text).small().color(tokens.text));
+            ui.label(text);
         }
     });
 }

@@ -383,7 +383,7 @@ impl Builder<'_> {
             let is_merged = place.width() < 1.0 && place.max.x < drawn_to + 1.0;
             if bar.kind.is_of_state() && self.chart.rows[index].kind == RowKind::State {
                 if place.touches(seen) {
-                    self.state_bar(at, bar, row);
+                    self.state_bar(at, bar, row, &self.chart.rows[index].bars);
                 }
                 continue;
             }

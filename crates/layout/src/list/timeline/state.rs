@@ -1,7 +1,11 @@
 //! The track of a variable that keeps its value: its values side by side, hatched while it changes, and below them a
 //! strip for each thing that needs it.
 
-use display::{Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text};
+use std::ops::Range;
+
+use display::{
+    Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text, approximate_text_width, text_width_at,
+};
 
 use super::{Builder, LEAST_WIDTH, SIZES};
 use crate::timeline::{Bar, BarKind, state};
@@ -11,7 +15,7 @@ const LEAST_VALUE: f64 = 16.0;
 
 impl Builder<'_> {
     /// A bar of a state track.
-    pub(super) fn state_bar(&mut self, at: usize, bar: &Bar, row: Rect) {
+    pub(super) fn state_bar(&mut self, at: usize, bar: &Bar, row: Rect, bars: &Range<usize>) {
         let Some(label) = bar.label else { return };
         let place = self.track.bar(bar, row);
         let role = super::bar_role(bar.kind);
@@ -40,6 +44,16 @@ impl Builder<'_> {
         let seen = self.track.visible;
         let (left, right) = (place.min.x.max(seen.min.x) + 5.0, place.max.x.min(seen.max.x) - 3.0);
         if bar.kind == BarKind::Value && right - left >= LEAST_VALUE {
+            let width = text_width_at(&bar.name, SIZES[1], &approximate_text_width).ceil();
+            // A name that is longer than its value lasts goes on beside it, as far as nothing follows.
+            let right = if right - left < width {
+                let mut after = self.chart.bars[at + 1..bars.end].iter();
+                let next = after.find(|next| next.kind != BarKind::Need);
+                let free = next.map_or(seen.max.x, |next| self.track.bar(next, row).min.x) - 3.0;
+                right.max(free.min(left + width))
+            } else {
+                right
+            };
             let place = Rect::new(left, place.min.y, right, place.max.y);
             let text = Text::new(bar.name.clone(), SIZES[1], place).anchored(Anchor::Start, Fit::Cut);
             self.list.write(text.colored(ColorRole::Text));
