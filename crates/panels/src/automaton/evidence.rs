@@ -16,19 +16,28 @@ const NUMBER_WIDTH: f32 = 20.0;
 /// So many of the most likely states are listed.
 const MAX_LISTED: usize = 6;
 
-/// Shows belief, observations and diagnosis.
+/// Whether the last step showed something that was not expected.
+pub(super) fn is_surprising(plant: &PlantMoment) -> bool {
+    plant.record.as_ref().is_some_and(|record| record.is_unexplained || !record.conflicts.is_empty())
+}
+
+/// Shows belief, observations and diagnosis; `reveals` brings the diagnosis into view.
 pub(super) fn show(
     ui: &mut Ui,
     context: &Context<'_>,
     model: &Model,
     plant: &PlantMoment,
+    reveals: bool,
     commands: &mut CommandSender,
 ) {
     belief(ui, context, model, plant);
     history(ui, context, commands);
     observations(ui, context, model, plant, commands);
-    diagnosis(ui, context, model, plant);
+    let place = ui.scope(|ui| diagnosis(ui, context, model, plant)).response;
     ui.add_space(space::L);
+    if reveals {
+        place.scroll_to_me(None);
+    }
 }
 
 fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {

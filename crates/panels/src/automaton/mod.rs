@@ -21,8 +21,8 @@ use hca::{Automaton, CompositeId, Marking, TransitionId};
 use layout::{AutomatonDrawing, AutomatonItem, AutomatonState};
 use plant::Model;
 use theme::space;
-use workbench::command::CommandSender;
-use workbench::state::automaton::{Moment, Program};
+use workbench::command::{Command, CommandSender};
+use workbench::state::automaton::{AutomatonCommand, Moment, Program, ProgramPart};
 
 use crate::{Context, Panel, show_empty};
 
@@ -32,25 +32,10 @@ pub struct AutomatonPanel {
     drawn: Option<Drawn>,
     machines: Option<components::Machines>,
     canvas: canvas::Canvas,
-    part: Part,
     /// The step that the log was scrolled to last.
     logged: usize,
-    /// Whether many runs were being made when the panel was last shown.
-    was_sampling: bool,
-}
-
-/// A part of the panel; the automaton and the steps stand beside the others where there is room.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Part {
-    /// The drawing.
-    #[default]
-    Automaton,
-    /// The plant at the moment that is looked at.
-    Plant,
-    /// Many runs with chance.
-    ManyRuns,
-    /// All steps.
-    Steps,
+    /// The step whose diagnosis was scrolled to.
+    diagnosed: Option<u32>,
 }
 
 /// With less room than this, one part is shown at a time.
@@ -131,11 +116,6 @@ impl Panel for AutomatonPanel {
         };
         let shown = Shown { program, automaton, moment };
         controls::show(ui, context, commands);
-        let is_sampling = context.state.automaton.chance.is_running();
-        if is_sampling && !self.was_sampling {
-            self.part = Part::ManyRuns;
-        }
-        self.was_sampling = is_sampling;
         self.layout(automaton);
         let room = ui.available_size();
         if room.x < LEAST_ROOM.x || room.y < LEAST_ROOM.y {
@@ -167,26 +147,22 @@ impl AutomatonPanel {
         commands: &mut CommandSender,
     ) {
         let has_plant = shown.moment.plant.is_some();
-        let parts = [
-            (Part::Automaton, "Automaton", true),
-            (Part::Plant, if has_plant { "Plant" } else { "What is known" }, true),
-            (Part::ManyRuns, "Many runs", has_plant),
-            (Part::Steps, "Steps", true),
-        ];
+        let parts = ProgramPart::ALL.into_iter().filter(|part| has_plant || *part != ProgramPart::ManyRuns);
+        let part = context.state.automaton.part;
         let margin = Margin::symmetric(8, 2);
         Frame::new().inner_margin(margin).show(ui, |ui| {
             ui.horizontal(|ui| {
-                for (part, name, _) in parts.into_iter().filter(|(.., is_there)| *is_there) {
-                    ui.selectable_value(&mut self.part, part, name);
+                for offered in parts {
+                    choose(ui, offered, offered == part, has_plant, commands);
                 }
             });
         });
-        match self.part {
-            Part::Automaton => self.drawing(ui, context, shown, commands),
-            Part::Plant | Part::ManyRuns => {
+        match part {
+            ProgramPart::Automaton => self.drawing(ui, context, shown, commands),
+            ProgramPart::Plant | ProgramPart::ManyRuns => {
                 Frame::new().inner_margin(margin).show(ui, |ui| self.side(ui, context, shown, commands));
             }
-            Part::Steps => {
+            ProgramPart::Steps => {
                 Frame::new().inner_margin(margin).show(ui, |ui| {
                     log::show(ui, context, shown, &mut self.logged, commands);
                 });
@@ -210,12 +186,9 @@ impl AutomatonPanel {
     fn beside(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
         if shown.moment.plant.is_some() {
             ui.horizontal(|ui| {
-                for (part, name) in [(Part::Plant, "Plant"), (Part::ManyRuns, "Many runs")] {
-                    let is_shown = (self.part == Part::ManyRuns) == (part == Part::ManyRuns);
-                    if ui.selectable_label(is_shown, name).clicked() {
-                        self.part = part;
-                    }
-                }
+                let is_sampled = context.state.automaton.part == ProgramPart::ManyRuns;
+                choose(ui, ProgramPart::Plant, !is_sampled, true, commands);
+                choose(ui, ProgramPart::ManyRuns, is_sampled, true, commands);
             });
         }
         self.side(ui, context, shown, commands);
@@ -224,8 +197,17 @@ impl AutomatonPanel {
     /// The plant, or many runs of it, or what is known where there is no plant.
     fn side(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
         let plant = shown.program.model().zip(shown.moment.plant.as_ref());
-        let is_sampled = plant.is_some() && self.part == Part::ManyRuns;
-        ScrollArea::vertical().id_salt(("automaton-side", is_sampled)).auto_shrink(false).show(ui, |ui| {
+        let is_sampled = plant.is_some() && context.state.automaton.part == ProgramPart::ManyRuns;
+        let mut area = ScrollArea::vertical().id_salt(("automaton-side", is_sampled)).auto_shrink(false);
+        // What is found out in a step is brought into view, and what is believed after the next one again.
+        let found = plant.filter(|(_, plant)| !is_sampled && evidence::is_surprising(plant));
+        let found = found.map(|_| shown.moment.upcoming.step);
+        if found.is_none() && self.diagnosed.is_some() {
+            area = area.vertical_scroll_offset(0.0);
+        }
+        let is_new = found.is_some() && found != self.diagnosed;
+        self.diagnosed = found;
+        area.show(ui, |ui| {
             if is_sampled {
                 chance::show(ui, context, commands);
                 return;
@@ -234,7 +216,7 @@ impl AutomatonPanel {
             match plant {
                 Some((model, plant)) => {
                     self.machines(ui, model).show(ui, context, plant, commands);
-                    evidence::show(ui, context, model, plant, commands);
+                    evidence::show(ui, context, model, plant, is_new, commands);
                 }
                 None => known::show(ui, context, shown.automaton, commands),
             }
@@ -252,6 +234,20 @@ impl AutomatonPanel {
         }
         let drawing = layout::automaton(automaton, &approximate_text_width);
         self.drawn = Some(Drawn { automaton: Arc::clone(automaton), drawing, listed: None });
+    }
+}
+
+/// A part of the panel, to choose it.
+fn choose(ui: &mut Ui, part: ProgramPart, is_chosen: bool, has_plant: bool, commands: &mut CommandSender) {
+    let name = match part {
+        ProgramPart::Automaton => "Automaton",
+        ProgramPart::Plant if has_plant => "Plant",
+        ProgramPart::Plant => "What is known",
+        ProgramPart::ManyRuns => "Many runs",
+        ProgramPart::Steps => "Steps",
+    };
+    if ui.selectable_label(is_chosen, name).clicked() {
+        commands.send(Command::Automaton(AutomatonCommand::Show(part)));
     }
 }
 

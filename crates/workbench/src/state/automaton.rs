@@ -52,11 +52,42 @@ pub struct AutomatonState {
     fault_seed: Option<FaultSeed>,
     /// How likely the program is to reach its end.
     pub chance: ProgramChanceState,
+    /// The part that is shown where there is no room for all.
+    pub part: ProgramPart,
     /// Why the last step could not be taken.
     pub error: Option<String>,
     /// Whether steps go by themselves.
     pub is_playing: bool,
     elapsed_secs: f64,
+}
+
+/// A part of what is shown of a program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ProgramPart {
+    /// The drawing.
+    #[default]
+    Automaton,
+    /// The plant at the moment that is looked at; without a plant, what is known.
+    Plant,
+    /// Many runs with chance.
+    ManyRuns,
+    /// All steps.
+    Steps,
+}
+
+impl ProgramPart {
+    /// All parts, in the order in which they are offered.
+    pub const ALL: [Self; 4] = [Self::Automaton, Self::Plant, Self::ManyRuns, Self::Steps];
+
+    /// What it is called by commands.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Automaton => "automaton",
+            Self::Plant => "plant",
+            Self::ManyRuns => "many-runs",
+            Self::Steps => "steps",
+        }
+    }
 }
 
 /// What decides by chance which components fail: with the same, the same ones fail in the same steps.
@@ -85,6 +116,8 @@ pub enum AutomatonCommand {
     TogglePlaying,
     /// Forgets all steps.
     Reset,
+    /// Shows this part where there is no room for all.
+    Show(ProgramPart),
     /// In the next step the component comes into this mode, whatever is commanded; `None` takes that back.
     Inject(ComponentId, Option<u8>),
     /// In the last step this was observed instead of what the plant showed; `None` takes that back.
@@ -310,6 +343,7 @@ impl AutomatonState {
                 self.elapsed_secs = 0.0;
             }
             AutomatonCommand::Reset => self.forget_steps(),
+            AutomatonCommand::Show(part) => self.part = part,
             AutomatonCommand::SetFaultSeed(seed) => {
                 self.fault_seed = seed;
                 self.wants_answer = true;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use executive::model_based::ProgramTally;
 use mission::{ProgramChance, Request, Response};
 
-use super::automaton::{AutomatonState, FaultSeed, Program};
+use super::automaton::{AutomatonState, FaultSeed, Program, ProgramPart};
 use super::{AppState, Effect, ToastKind};
 use crate::mission_file;
 
@@ -97,6 +97,7 @@ impl AppState {
                 chance.tally = ProgramTally::default();
                 chance.trouble = None;
                 chance.is_running = true;
+                self.automaton.part = ProgramPart::ManyRuns;
                 self.sample_program_on();
             }
             ProgramChanceCommand::Stop => self.automaton.chance.is_running = false,

@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::PanelKind;
 use crate::command::Command;
 use crate::state::AppState;
-use crate::state::automaton::{AutomatonCommand, Program};
+use crate::state::automaton::{AutomatonCommand, Program, ProgramPart};
 
 /// The component and its mode by name; without a mode, the component is left to behave.
 pub(super) fn injection(state: &AppState, arguments: &Value) -> Result<Command, String> {
@@ -36,6 +36,19 @@ pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, 
         }
     };
     Ok(Command::Automaton(AutomatonCommand::Know(VariableId(at as u32), value)))
+}
+
+/// A part of what is shown of a program, by name.
+pub(super) fn part(_: &AppState, arguments: &Value) -> Result<Command, String> {
+    let name = text_argument(arguments, "part")?;
+    let found = ProgramPart::ALL.into_iter().find(|part| part.name() == name);
+    let part = found.ok_or_else(|| {
+        format!(
+            "there is no part \"{name}\"; there are {}",
+            ProgramPart::ALL.map(ProgramPart::name).join(", ")
+        )
+    })?;
+    Ok(Command::Automaton(AutomatonCommand::Show(part)))
 }
 
 pub(super) fn text_argument<'a>(arguments: &'a Value, name: &str) -> Result<&'a str, String> {

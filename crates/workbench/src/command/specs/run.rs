@@ -2,7 +2,7 @@
 
 use executive::Disturbance;
 
-use super::arguments::{injection, knowledge, number_argument, text_argument};
+use super::arguments::{injection, knowledge, number_argument, part, text_argument};
 use super::available::{with_chance, with_program, with_run};
 use super::{called, plain, when};
 use crate::command::Command;
@@ -57,6 +57,15 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             let moment = number_argument(arguments, "moment")?.max(0.0) as usize;
             Ok(Command::Automaton(AutomatonCommand::GoTo(moment)))
         }),
+        with_program,
+    ),
+    when(
+        called(
+            "program.show",
+            "Show a part of the program where there is no room for all",
+            Group::Play,
+            part,
+        ),
         with_program,
     ),
     when(

@@ -5,7 +5,7 @@ use mission::SearchKind;
 use crate::PanelKind;
 use crate::command::ViewAction;
 use crate::lesson::{Expectation, LessonSearch, Show, StepTarget, Which};
-use crate::state::automaton::AutomatonCommand;
+use crate::state::automaton::{AutomatonCommand, ProgramPart};
 use crate::state::growth::{GrowthCommand, Planners};
 use crate::state::search::wording::event;
 use crate::state::search::{Recording, SearchCommand};
@@ -136,6 +136,7 @@ impl AppState {
         self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::Close));
         if self.automaton.is_control() {
             self.automaton.apply(AutomatonCommand::Reset);
+            self.automaton.part = ProgramPart::default();
         }
     }
 
