@@ -257,6 +257,51 @@ fn a_box_opens_where_the_selection_is() {
     assert!(has(&app, "Step1#61 in the network"), "{:?}", folded(&app));
 }
 
+/// A long mission with a choice in its middle, whose first alternative takes too long.
+fn long_with_a_choice(app: &mut support::App) {
+    let half = vec!["Step()"; 300].join("; ");
+    let source = format!(
+        "primitive Step()[1,1];\nprimitive Slow()[90,99];\nprimitive Quick()[2,3];\n\
+         scenario Long[0,640] = {{ {half}; choose {{ Slow(), Quick() }}; {half} }}\n"
+    );
+    app.harness.state_mut().set_source(&source);
+    for _ in 0..4 {
+        app.settle();
+    }
+    assert!(!has(app, "Slow#1 in the network"), "it is in a box");
+}
+
+#[test]
+fn a_box_opens_for_the_alternatives_of_a_selected_decision() {
+    let mut app = started();
+    long_with_a_choice(&mut app);
+    app.harness.state_mut().run(Command::Select(Selection::Decision(tpn::DecisionId::from_index(0))));
+    app.settle();
+    app.settle();
+    for name in ["Slow#1", "Quick#1"] {
+        assert!(has(&app, &format!("{name} in the network")), "{name} is still in {:?}", folded(&app));
+    }
+}
+
+#[test]
+fn a_box_opens_for_what_a_key_step_is_about() {
+    let mut app = started();
+    long_with_a_choice(&mut app);
+    let stops = json!({ "decision": true, "failure": false, "threat": false, "solution": false });
+    let teach = json!("teach");
+    for (command, arguments) in
+        [("view.workspace", &teach), ("search.breakpoints", &stops), ("search.run", &json!(null))]
+    {
+        app.harness.state_mut().dispatch(command, arguments).expect("a search");
+        app.settle();
+    }
+    for _ in 0..30 {
+        app.settle();
+    }
+    assert_eq!(app.json()["search"]["known"]["event"], "decide");
+    assert!(has(&app, "Slow#1 in the network"), "what is decided about is in {:?}", folded(&app));
+}
+
 #[test]
 fn two_fingers_move_the_drawing() {
     let mut app = started();

@@ -57,8 +57,10 @@ pub struct World {
     pub asked: RefCell<Vec<FileKind>>,
     /// What stands after `#`.
     pub fragment: RefCell<String>,
-    /// Whether requests are answered.
+    /// Whether requests are left without an answer.
     pub is_deaf: Cell<bool>,
+    /// Whether requests wait until this is over.
+    pub is_slow: Cell<bool>,
     /// Events that the host tells next.
     pub news: RefCell<VecDeque<HostEvent>>,
     /// Whether nothing is to move by itself.
@@ -72,6 +74,7 @@ pub struct World {
 /// A host that plans on the spot.
 pub struct TestHost {
     core: Core,
+    waiting: VecDeque<Request>,
     world: Rc<World>,
     inbox: Inbox,
 }
@@ -146,7 +149,7 @@ impl TestHost {
     pub fn new(world: &Rc<World>) -> Self {
         let inbox = Inbox::default();
         world.tabs.borrow_mut().push(Rc::clone(&inbox));
-        Self { core: Core::default(), world: Rc::clone(world), inbox }
+        Self { core: Core::default(), waiting: VecDeque::new(), world: Rc::clone(world), inbox }
     }
 }
 
@@ -159,10 +162,9 @@ impl Drop for TestHost {
 impl Host for TestHost {
     fn post(&mut self, request: Request) {
         self.world.posted.set(self.world.posted.get() + 1);
-        if self.world.is_deaf.get() {
-            return;
+        if !self.world.is_deaf.get() {
+            self.waiting.push_back(request);
         }
-        self.core.handle(request, &mut Answers { inbox: Rc::clone(&self.inbox) });
     }
 
     fn stop(&mut self) {
@@ -170,6 +172,11 @@ impl Host for TestHost {
     }
 
     fn poll(&mut self) -> Option<HostEvent> {
+        while !self.world.is_slow.get()
+            && let Some(request) = self.waiting.pop_front()
+        {
+            self.core.handle(request, &mut Answers { inbox: Rc::clone(&self.inbox) });
+        }
         self.inbox.borrow_mut().pop_front().or_else(|| self.world.news.borrow_mut().pop_front())
     }
 

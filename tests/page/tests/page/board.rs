@@ -99,7 +99,6 @@ fn a_board_goes_from_draft_to_approval_and_an_edit_lapses_it() -> Result<()> {
     wait_for_difference(&page, "text 1")?;
     page.tab.evaluate("enroute.dispatch('edit.undo')")?;
     page.wait_for("state.review.planStatus === 'approved'")?;
-    // The review of what was approved is back before its plan is.
     wait_for_difference(&page, "nothing differs")?;
     // What was done is still there after the page was loaded again.
     let heads = page.state()?["review"]["heads"].clone();
