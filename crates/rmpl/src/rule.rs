@@ -287,6 +287,12 @@ impl Reader<'_> {
     fn activity(&mut self, token: SyntaxToken<'_>, arguments: Option<SyntaxNode<'_>>) -> Option<Activity> {
         let name = unquoted(token);
         let Some((_, formals)) = self.activities().find(|(it, _)| *it == name) else {
+            // Arguments may be a part of a name from elsewhere.
+            let letters = |text: &str| text.split_whitespace().collect::<String>();
+            let whole = arguments.map(|arguments| letters(&format!("{name}{}", arguments.text())));
+            if let Some((known, _)) = self.activities().find(|(it, _)| whole == Some(letters(it))) {
+                return Some(Activity { name: known.into(), arguments: None });
+            }
             let nearest = nearest(name, self.activities().map(|(it, _)| it));
             let nearest = nearest.map(|it| if name == token.text { it } else { format!("\"{it}\"") });
             self.unknown(format!("no activity `{name}` is declared"), token.span, nearest);
@@ -419,7 +425,7 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
 
     fn read(text: &str) -> Result<Rule, Vec<String>> {
         let program = crate::parse(MISSION).program();
-        let activities = [("Wait".into(), 0), ("GoTo(A)#1".into(), 0)];
+        let activities = [("Wait".into(), 0), ("Go To(A)".into(), 0), ("GoTo(A)".into(), 0)];
         let undeclared = Undeclared { variables: &["LIGHT".into()], activities: &activities };
         let rule = super::read(text, &program, undeclared);
         rule.map_err(|found| {
@@ -452,22 +458,23 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
 
     #[test]
     fn names_from_elsewhere_stand_in_quotes() {
-        let go = underway("GoTo(A)#1");
+        let go = underway("Go To(A)");
         assert_eq!(
-            read("never \"GoTo(A)#1\" while LIGHT").expect("one").holds,
+            read("never \"Go To(A)\" while LIGHT").expect("one").holds,
             Formula::Not(Box::new(go.clone()))
         );
-        let both = read("not (\"GoTo(A)#1\" and Dig) or LIGHT").expect("it is one").holds;
+        let both = read("not (\"Go To(A)\" and Dig) or LIGHT").expect("it is one").holds;
         let Formula::Any(parts) = &both else { panic!("{both:?}") };
         assert_eq!(parts[0], Formula::Not(Box::new(Formula::All(vec![go, underway("Dig")]))));
-        let end = read("LIGHT at end of \"GoTo(A)#1\"").expect("it is one").moment;
-        assert_eq!(end, Moment::End(Some(Activity { name: "GoTo(A)#1".into(), arguments: None })));
+        let end = read("LIGHT at end of \"Go To(A)\"").expect("it is one").moment;
+        assert_eq!(end, Moment::End(Some(Activity { name: "Go To(A)".into(), arguments: None })));
+        assert_eq!(read("never GoTo(A)").expect("one").holds, Formula::Not(Box::new(underway("GoTo(A)"))));
         assert_eq!(read("\"Dig\"").expect("one").holds, underway("Dig"));
         assert_eq!(
-            read("never \"GoTo(B)\""),
-            Err(vec!["6 E-UNDEF: no activity `GoTo(B)` is declared".to_owned()])
+            read("never \"Gone(B)\""),
+            Err(vec!["6 E-UNDEF: no activity `Gone(B)` is declared".to_owned()])
         );
-        assert!(read("\"GoTo(A)#1").is_err(), "the quotation is not closed");
+        assert!(read("\"Go To(A)").is_err(), "the quotation is not closed");
     }
 
     #[test]
