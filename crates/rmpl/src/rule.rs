@@ -287,10 +287,15 @@ impl Reader<'_> {
     fn activity(&mut self, token: SyntaxToken<'_>, arguments: Option<SyntaxNode<'_>>) -> Option<Activity> {
         let name = unquoted(token);
         let Some((_, formals)) = self.activities().find(|(it, _)| *it == name) else {
-            // Arguments may be a part of a name from elsewhere.
+            // Arguments may be a part of a name from elsewhere, which is spaced as it likes.
             let letters = |text: &str| text.split_whitespace().collect::<String>();
-            let whole = arguments.map(|arguments| letters(&format!("{name}{}", arguments.text())));
-            if let Some((known, _)) = self.activities().find(|(it, _)| whole == Some(letters(it))) {
+            let written = arguments.map(|arguments| letters(arguments.text()));
+            let is_meant =
+                |it: &str| it.strip_prefix(name).is_some_and(|rest| written == Some(letters(rest)));
+            let mut meant: Vec<&str> =
+                self.activities().map(|(it, _)| it).filter(|it| is_meant(it)).collect();
+            meant.dedup();
+            if let [known] = meant[..] {
                 return Some(Activity { name: known.into(), arguments: None });
             }
             let nearest = nearest(name, self.activities().map(|(it, _)| it));
