@@ -23,6 +23,7 @@ mod contents;
 mod emit;
 mod fit;
 mod folding;
+mod joints;
 mod layered;
 mod place;
 mod recover;

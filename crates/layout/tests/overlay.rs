@@ -3,7 +3,7 @@
 mod drawings;
 
 use display::{Theme, approximate_text_width, svg};
-use drawings::{draw, draw_with, enroute, network_of, segment_meets_rect};
+use drawings::{draw, draw_with, enroute, network_of, random_mission, segment_meets_rect};
 use exact::{Bound, Time};
 use layout::overlay::{causal_links, negative_cycle, orderings, windows};
 use layout::{Item, NetworkState, Options, network_list};
@@ -93,6 +93,30 @@ fn a_negative_cycle_follows_arcs_where_there_are_any_and_closes() {
         span.start,
         "the horizon is walked backwards"
     );
+}
+
+#[test]
+fn a_step_of_a_cycle_leads_from_its_event_to_the_next_over_rows_as_well() {
+    let mut joined = 0;
+    for seed in 0..20 {
+        let network = network_of(&random_mission(seed, 60));
+        for row_width in [300.0, 500.0] {
+            let drawing = draw_with(&network, &Options { row_width, ..Options::default() });
+            for shape in &drawing.arcs {
+                let arc = &network.arcs[shape.id.index()];
+                let curves = negative_cycle(&drawing, &network, &[arc.from, arc.to]);
+                let Some(step) = curves.first() else { continue };
+                let end = step.pieces.last().expect("it goes somewhere").end();
+                for (node, at) in [(arc.from, step.start), (arc.to, end)] {
+                    let node = drawing.node(node).expect("nothing is folded");
+                    let apart = node.center.distance(at) - node.radius;
+                    assert!(apart < 1.0, "seed {seed}, {row_width}: {apart} from {:?}", node.id);
+                }
+                joined += usize::from(step.pieces.len() > drawing.pieces(shape).len());
+            }
+        }
+    }
+    assert!(joined > 200, "{joined}");
 }
 
 #[test]

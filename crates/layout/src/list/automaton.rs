@@ -3,7 +3,7 @@
 //! What is marked has a dot and a heavier border besides its colour. Non-entailment is a bar over what is not entailed.
 
 use display::{
-    Anchor, ColorRole, Dash, DisplayList, Fit, Group, PathEnd, Piece, Rect, Stroke, TargetKind, Text,
+    Anchor, ColorRole, Dash, DisplayList, Fit, Group, PathEnd, Piece, Point, Rect, Stroke, TargetKind, Text,
     approximate_text_width, text_width_at,
 };
 use hca::{Automaton, CompositeId, CompositeKind, LocationKind, Marking, TransitionId};
@@ -162,7 +162,7 @@ impl Builder<'_> {
             .stands_for(TargetKind::Location, shape.id.0);
     }
 
-    /// Writes a text into its place; what stands behind `~` gets a bar over it instead.
+    /// Writes a text into its place; what stands behind `~` gets a bar over it instead, of several lines one over all.
     fn text(&self, text: &AutomatonText, list: &mut DisplayList) {
         let role = match (text.role, text.owner) {
             (TextRole::Name, _) => ColorRole::Text,
@@ -179,17 +179,20 @@ impl Builder<'_> {
             if matches!(text.owner, AutomatonItem::Composite(_)) { Anchor::Start } else { Anchor::Middle };
         let is_plated = matches!(text.owner, AutomatonItem::Transition(_)) && self.is_selected(text.owner);
         let height = text.rect.height() / text.lines.len().max(1) as f64;
-        let mut is_barred = false;
+        let is_block = text.lines.len() > 1;
         for (at, line) in text.lines.iter().enumerate() {
             let top = text.rect.min.y + at as f64 * height;
             let rect = Rect::new(text.rect.min.x, top, text.rect.max.x, top + height);
             let begins = line.find('~');
             let words =
                 begins.map_or_else(|| line.clone(), |at| [&line[..at], &line[at + 1..]].concat().into());
-            let overbar = begins.map(|at| at as u32).or(is_barred.then_some(0));
-            is_barred = overbar.is_some();
+            if let Some(begins) = begins.filter(|_| is_block) {
+                let lead = text_width_at(&line[..begins], text.role.size(), &approximate_text_width);
+                let ends = [rect.min.x + lead, rect.max.x].map(|x| Point::new(x, rect.min.y));
+                list.line(ends[0], ends[1], Stroke::solid(role, 1.2)).stands_for(kind, id);
+            }
             let shown = Text {
-                overbar,
+                overbar: begins.filter(|_| !is_block).map(|at| at as u32),
                 plate: is_plated.then_some(ColorRole::Selection.into()),
                 ..Text::new(words, text.role.size(), rect).colored(role).anchored(anchor, Fit::Shrink)
             };

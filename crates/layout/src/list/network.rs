@@ -10,6 +10,7 @@ use display::{
 use tpn::{ArcId, ArcKind, LabelId, Network, NodeId, OccurrenceId, Plan, Role};
 
 use crate::drawing::{ArcShape, BlockForm, BlockShape, Item, NetworkDrawing, NodeShape, Route, TextShape};
+use crate::joints::Joints;
 use crate::metrics::{DECISION_INSET, TextRole};
 use crate::overlay::{OverlayCurve, OverlayKind};
 use crate::progress::{Progress, elapsed};
@@ -219,9 +220,10 @@ pub fn emphasis_list(
             let fill = role.faint(strength * 0.25);
             list.rectangle(block.rect, 6.0, Some(fill.into()), None);
         }
+        let joints = Joints::new(drawing, network, emphasis.arcs.iter().copied());
         for arc in emphasis.arcs.iter().filter_map(|&arc| drawing.arc(arc)) {
-            let stroke = Stroke::solid(color, RING.1);
-            list.path(arc.start, drawing.pieces(arc), PathEnd::Open, stroke);
+            let (start, pieces) = joints.way(arc);
+            list.path(start, &pieces, PathEnd::Open, Stroke::solid(color, RING.1));
         }
         for node in emphasis.nodes.iter().filter_map(|&node| drawing.node(node)) {
             list.circle(node.center, node.radius + RING.0, Some(color.into()), None);
@@ -418,7 +420,10 @@ impl Builder<'_> {
             Item::Arc(arc) => self.drawing.arc(arc).map(|arc| arc.bounds.width()),
             _ => None,
         };
+        // The number of an event is a few letters in the middle of its circle: cut, it would be none.
+        let fit = if text.role == TextRole::Node { Fit::Overflow } else { Fit::Shrink };
         Text {
+            fit,
             legible: (text.role == TextRole::Name).then(|| room().unwrap_or_else(|| text.rect.width())),
             slide: text.slide.map(crate::drawing::Slide::along_row),
             ..Text::new(text.text.clone(), text.size, text.rect)

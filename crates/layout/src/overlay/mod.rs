@@ -5,12 +5,13 @@ mod ordering;
 use display::geometry::curve_bounds;
 use display::{Measure, Piece, Point, Rect};
 use serde::{Deserialize, Serialize};
-use tpn::{LabelId, Network, NodeId, Plan, Role};
+use tpn::{ArcId, LabelId, Network, NodeId, Plan, Role};
 
 use self::ordering::between_nodes;
 pub use self::ordering::orderings;
 
 use crate::drawing::{Item, NetworkDrawing, TextShape};
+use crate::joints::Joints;
 use crate::metrics::{TextRole, VERTEX_RADIUS};
 use crate::text::{bounds_label, text_width};
 
@@ -79,15 +80,16 @@ pub fn threats(drawing: &NetworkDrawing, network: &Network, pairs: &[[LabelId; 2
 /// direction, follows the arc's own curve.
 pub fn negative_cycle(drawing: &NetworkDrawing, network: &Network, events: &[NodeId]) -> Vec<OverlayCurve> {
     let next = events.iter().cycle().skip(1);
-    let steps = events.iter().zip(next).filter(|(from, to)| from != to);
-    steps
-        .enumerate()
-        .map(|(number, (&from, &to))| {
-            along_arc(drawing, network, number as u32, from, to).unwrap_or_else(|| {
-                between_nodes(drawing, OverlayKind::NegativeCycle, number as u32, from, to)
-            })
-        })
-        .collect()
+    let steps: Vec<(&NodeId, &NodeId)> = events.iter().zip(next).filter(|(from, to)| from != to).collect();
+    let arcs = steps
+        .iter()
+        .flat_map(|&(&from, &to)| [arc_between(network, from, to), arc_between(network, to, from)]);
+    let joints = Joints::new(drawing, network, arcs.flatten());
+    let step = |(number, &(&from, &to)): (usize, &(&NodeId, &NodeId))| {
+        along_arc(drawing, network, &joints, number as u32, [from, to])
+            .unwrap_or_else(|| between_nodes(drawing, OverlayKind::NegativeCycle, number as u32, from, to))
+    };
+    steps.iter().enumerate().map(step).collect()
 }
 
 /// The window of every visible event and decision, below it.
@@ -185,24 +187,26 @@ fn between_labels(number: u32, from: Rect, to: Rect) -> OverlayCurve {
     curve(OverlayKind::CausalLink, number, start, vec![Piece::Cubic(first, second, end)])
 }
 
+fn arc_between(network: &Network, from: NodeId, to: NodeId) -> Option<ArcId> {
+    let outgoing = &network.nodes.get(from.index())?.out_arcs;
+    outgoing.iter().copied().find(|arc| network.arcs[arc.index()].to == to)
+}
+
+/// The whole way of the arc from one event to another, in either direction.
 fn along_arc(
     drawing: &NetworkDrawing,
     network: &Network,
+    joints: &Joints<'_>,
     number: u32,
-    from: NodeId,
-    to: NodeId,
+    [from, to]: [NodeId; 2],
 ) -> Option<OverlayCurve> {
-    let arc_between = |from: NodeId, to: NodeId| {
-        let outgoing = &network.nodes.get(from.index())?.out_arcs;
-        outgoing.iter().find(|arc| network.arcs[arc.index()].to == to).and_then(|&arc| drawing.arc(arc))
+    let way = |from, to| {
+        let shape = arc_between(network, from, to).and_then(|arc| drawing.arc(arc))?;
+        Some(joints.way(shape))
     };
-    let kind = OverlayKind::NegativeCycle;
-    if let Some(arc) = arc_between(from, to) {
-        return Some(curve(kind, number, arc.start, drawing.pieces(arc).to_vec()));
-    }
-    let arc = arc_between(to, from)?;
-    let (start, pieces) = reversed(arc.start, drawing.pieces(arc));
-    Some(curve(kind, number, start, pieces))
+    let back = || way(to, from).map(|(start, pieces)| reversed(start, &pieces));
+    let (start, pieces) = way(from, to).or_else(back)?;
+    Some(curve(OverlayKind::NegativeCycle, number, start, pieces))
 }
 
 /// The same curve the other way.
