@@ -32,17 +32,21 @@ pub fn lesson_layout(rows: &[Vec<Vec<PanelKind>>], size: SizeClass) -> Tree<Pane
 
 fn lesson_tiles(tiles: &mut Tiles<PanelKind>, rows: &[Vec<Vec<PanelKind>>], size: SizeClass) -> TileId {
     let lesson = tabs(tiles, &[PanelKind::Lesson, PanelKind::Manual]);
-    let rows: Vec<(TileId, f32)> = rows
+    let parts_of_rows: Vec<(TileId, f32)> = rows
         .iter()
         .enumerate()
         .map(|(at, columns)| {
-            let columns: Vec<(TileId, f32)> =
-                columns.iter().map(|panels| (tabs(tiles, panels), 1.0)).collect();
-            // What stands above is the figure, what stands below it explains it.
-            (split(tiles, LinearDir::Horizontal, &columns), if at == 0 { 1.3 } else { 1.0 })
+            let parts: Vec<(TileId, f32)> = columns.iter().map(|panels| (tabs(tiles, panels), 1.0)).collect();
+            // What stands above is the figure, what stands below it explains it; a timeline is cut where it ends.
+            let share = match at {
+                0 if columns.first().and_then(|tabs| tabs.first()) == Some(&PanelKind::Timeline) => 1.7,
+                0 => 1.3,
+                _ => 1.0,
+            };
+            (split(tiles, LinearDir::Horizontal, &parts), share)
         })
         .collect();
-    let figures = split(tiles, LinearDir::Vertical, &rows);
+    let figures = split(tiles, LinearDir::Vertical, &parts_of_rows);
     let share = if size == SizeClass::Wide { 0.33 } else { 0.38 };
     split(tiles, LinearDir::Horizontal, &[(lesson, share), (figures, 1.0 - share)])
 }

@@ -67,7 +67,7 @@ pub(super) const FACTS: &[Fact] = &[
     fact("commands", Of::Nothing, "the commands of the next step", |state, _| {
         let (model, plant) = plant(state)?;
         let named = model.command_names(plant.next_commands.as_ref()?);
-        let each: Vec<String> = named.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let each: Vec<String> = named.iter().map(|(name, value)| format!("{name}.{value}")).collect();
         words(each.join(", "))
     }),
     fact(
