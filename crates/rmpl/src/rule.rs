@@ -294,6 +294,7 @@ impl Reader<'_> {
                 |it: &str| it.strip_prefix(name).is_some_and(|rest| written == Some(letters(rest)));
             let mut meant: Vec<&str> =
                 self.activities().map(|(it, _)| it).filter(|it| is_meant(it)).collect();
+            meant.sort_unstable();
             meant.dedup();
             if let [known] = meant[..] {
                 return Some(Activity { name: known.into(), arguments: None });

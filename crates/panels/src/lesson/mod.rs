@@ -182,15 +182,15 @@ fn buttons(ui: &mut Ui, context: &Context<'_>, lesson: &Lesson, at: usize, comma
         if back.on_hover_text("The stop before (Shift+N)").clicked() {
             commands.send(Command::Lesson(LessonCommand::Turn(false)));
         }
-        let title = match (is_last, state.neighbour(true)) {
-            (true, Some(_)) => "Next lesson",
-            _ => "Next",
+        let (title, hint, turn) = match (is_last, state.neighbour(true)) {
+            (false, _) => ("Next", "The next stop (N)", LessonCommand::Turn(true)),
+            (true, Some(_)) => ("Next lesson", "The next stop (N)", LessonCommand::Turn(true)),
+            (true, None) => ("To the contents", "All lessons of the course", LessonCommand::Contents),
         };
-        let can_go = !is_last || state.neighbour(true).is_some();
         let next = Button::new(RichText::new(title).color(context.tokens.text_on_accent))
             .fill(context.tokens.accent);
-        if ui.add_enabled(can_go, next).on_hover_text("The next stop (N)").clicked() {
-            commands.send(Command::Lesson(LessonCommand::Turn(true)));
+        if ui.add(next).on_hover_text(hint).clicked() {
+            commands.send(Command::Lesson(turn));
         }
         let again = ui.button("Show again");
         if again.on_hover_text("Brings step, selection and camera back to what this stop shows").clicked() {

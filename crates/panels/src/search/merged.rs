@@ -223,10 +223,11 @@ fn legend(ui: &mut Ui, context: &Context<'_>, drawn: &Drawn) {
             (Share::Only(1), format!("only {}: {}", name(1), counts.only[1])),
         ] {
             let text = one_line::in_one_line(ui, RichText::new(text).small().color(tokens.text));
-            if ui.available_size_before_wrap().x < 26.0 + space::S + text.size().x {
+            if ui.available_size_before_wrap().x < space::L + 26.0 + space::S + text.size().x {
                 ui.end_row();
-                ui.add_space(space::S);
             }
+            // Nearer to its own words than to those before.
+            ui.add_space(space::M);
             let (rect, _) = ui.allocate_exact_size(vec2(26.0, 14.0), Sense::hover());
             let line = [pos2(rect.left(), rect.center().y), pos2(rect.right(), rect.center().y)];
             ui.painter().extend(lines(&line, Stroke::new(1.8, color(context, share)), share));

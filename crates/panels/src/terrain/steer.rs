@@ -16,6 +16,9 @@ use crate::Context;
 /// How near the camera comes to a place that it flies to, in metres.
 const NEAR_M: f32 = 45.0;
 
+/// From how far two places are seen that are so far apart, with some ground around them.
+const AROUND: f32 = 1.6;
+
 impl TerrainPanel {
     /// Follows view actions, flights and vehicles, and keeps the eye over the ground.
     pub(super) fn move_camera(&mut self, response: &Response, context: &Context<'_>, snapshot: &Snapshot) {
@@ -63,7 +66,10 @@ impl TerrainPanel {
             ViewAction::TopView => self.fly(camera, camera.top_view(), context),
             ViewAction::FitSelection => {
                 self.follow = None;
-                self.fly_to(context, snapshot, &context.state.selection, None);
+                match &context.state.selection {
+                    Selection::None => self.fly_to_sample(context),
+                    selection => self.fly_to(context, snapshot, selection, None),
+                }
             }
             ViewAction::Follow if self.follow.is_some() => self.follow = None,
             ViewAction::Follow => {
@@ -71,6 +77,17 @@ impl TerrainPanel {
                 self.fly_to_followed(context, snapshot);
             }
         }
+    }
+
+    /// Flies to what the last sample of a growing tree did: the sample and the vertex nearest to it are both in view.
+    fn fly_to_sample(&mut self, context: &Context<'_>) {
+        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
+        let growth = context.state.terrain.growth.shown();
+        let Some(last) = growth.and_then(|growth| growth.last()) else { return };
+        let [from, to] = [last.nearest_m, last.sample_m].map(|at| glam::DVec2::new(at.x, at.y).as_vec2());
+        let middle = shown.ground.nearest((from + to) / 2.0);
+        let target = camera.close_up(shown.ground.drape(middle, 0.0), NEAR_M.max(AROUND * from.distance(to)));
+        self.fly(camera, target, context);
     }
 
     /// Flies to what is selected, or nearer to a bare place.

@@ -4,7 +4,7 @@ use egui::{Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 use glam::Vec2;
 use terrain_view::dash::{DASHES, dashed};
 use theme::icon::{self, Icon};
-use theme::{size, space};
+use theme::{Tokens, size, space};
 use workbench::command::{Command, CommandSender};
 use workbench::state::growth::{Counts, GrowthCommand, Planners, Shown};
 use workbench::state::terrain::TerrainCommand;
@@ -125,7 +125,7 @@ fn race(ui: &mut Ui, context: &Context<'_>, shown: &Shown, commands: &mut Comman
                 for (at, search) in shown.searches.iter().enumerate() {
                     let planners = search.planner.map_or(Planners::AsPlanned, Planners::One);
                     ui.horizontal(|ui| {
-                        swatch(ui, at, tokens.series(at));
+                        swatch(ui, at);
                         if ui.link(planners.title()).on_hover_text("Show this one alone").clicked() {
                             let command = TerrainCommand::Growth(GrowthCommand::Choose(planners));
                             commands.send(Command::Terrain(command));
@@ -168,12 +168,15 @@ const HEADS: [(&str, &str); 6] = [
     ("Whole search", "How long the whole search took, in this machine's time"),
 ];
 
-/// The line of a planner's path as it is on the ground.
-fn swatch(ui: &mut Ui, search: usize, color: egui::Color32) {
+/// The line of a planner's path as it is on the ground, which is as dark in both themes.
+fn swatch(ui: &mut Ui, search: usize) {
     let (rect, _) = ui.allocate_exact_size(vec2(30.0, 12.0), Sense::hover());
     let Rect { min, max } = rect;
     let line = [Vec2::new(min.x, rect.center().y), Vec2::new(max.x, rect.center().y)];
-    for [from, to] in dashed(&line, DASHES[search % DASHES.len()], 3.0) {
-        ui.painter().line_segment([pos2(from.x, from.y), pos2(to.x, to.y)], Stroke::new(2.6, color));
+    let strokes = [Stroke::new(5.0, Tokens::UNDER_LINES), Stroke::new(2.6, theme::DARK.series(search))];
+    for stroke in strokes {
+        for [from, to] in dashed(&line, DASHES[search % DASHES.len()], 3.0) {
+            ui.painter().line_segment([pos2(from.x, from.y), pos2(to.x, to.y)], stroke);
+        }
     }
 }
