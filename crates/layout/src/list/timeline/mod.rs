@@ -512,9 +512,10 @@ impl Builder<'_> {
             });
             ends.take_while(|&end| end <= right).count()
         };
-        // Behind the earliest end, where the bar is only hatched and no handle is, unless that has room for fewer.
-        let tail = self.track.x(bar.end[0]).max(left);
-        let from = if fitting(tail) == fitting(left) { tail } else { left };
+        // Behind the earliest end, where the bar is only hatched and no handle is, or from the latest start on, so that
+        // the hatching before it is seen; at the beginning where those have room for fewer.
+        let places = [bar.end[0], bar.start[1]].map(|time| self.track.x(time).max(left));
+        let from = places.into_iter().find(|&from| fitting(from) == fitting(left)).unwrap_or(left);
         let shown = fitting(from);
         let mut x = from + WORDS_GAP / 2.0;
         let mut write = |words: SmolStr, width: f64, role: ColorRole| {

@@ -56,6 +56,10 @@ impl AppState {
         if is_found {
             self.lesson.samples_due = None;
             self.apply_to_terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples)));
+            // From near, the last sample is what is to be seen.
+            if self.lesson.stop().is_some_and(|stop| stop.show.near.contains(&PanelKind::Terrain)) {
+                self.request_view(PanelKind::Terrain, ViewAction::FitSelection);
+            }
         }
     }
 
