@@ -383,7 +383,7 @@ export type Library = {
 export type KeptMission = {
   id: string;
   name: string;
-  kind: "own" | "example" | "shared" | "file";
+  kind: "own" | "example" | "lesson" | "shared" | "file";
   /** In milliseconds since 1970, UTC. */
   created: number;
   /** In milliseconds since 1970, UTC. */
@@ -466,7 +466,7 @@ export type Review = {
   status: "information" | "passed" | "attention" | "failed" | null;
   counts: ReviewCounts | null;
   /** What the mission is held against: see section 16 of the specification. */
-  rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; board: { role: string; approvals: number }[] };
+  rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; rules: { name: string; rule: string; source: string; waivable: boolean }[]; board: { role: string; approvals: number }[] };
   items: Array<ReviewItem>;
   /** How the plan stands with its board. */
   planStatus: "draft" | "in-review" | "approved" | "approved-with-comments" | "lapsed" | null;
@@ -667,7 +667,7 @@ export interface Enroute {
   setSource(text: string): void;
   /** The text as it stands. */
   source(): string;
-  /** Runs a command of the command palette by its name. */
+  /** Runs a command by its name: one of the menus, or one with arguments, which section 4.3 of the contracts lists. */
   dispatch(command: string, args?: object): void;
   /** The state as plain data. */
   state(): State;

@@ -1,4 +1,4 @@
-//! The manual has a section on every problem that the sources can make.
+//! The manual has a section on every problem that the sources can make, and the contracts every command with arguments.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -21,6 +21,15 @@ fn every_code_that_a_problem_of_the_page_can_have_has_its_section() {
         let page = page_named(name).expect("a page");
         assert!(page.document.heading(&section).is_some(), "{code}: {name}#{section}");
     }
+}
+
+#[test]
+fn every_command_with_arguments_stands_in_the_contracts() {
+    let contracts = include_str!("../../../docs/contracts.md");
+    let called = workbench::command::all_commands().filter(|spec| !spec.is_plain());
+    let missing: Vec<&str> =
+        called.map(|spec| spec.id).filter(|id| !contracts.contains(&format!("`{id}`"))).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 /// The codes in the sources below a folder, as they are made there.

@@ -28,7 +28,7 @@ pub struct Args {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late" | "state" |
-    /// "level" | "obstacle" | "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
+    /// "level" | "fault" | "obstacle" | "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
     #[arg(long, value_name = "D.json")]
     disturb: Option<PathBuf>,
     /// Lets nature choose its durations so as to break the plan: ends of ranges, where nothing breaks it.

@@ -420,8 +420,11 @@ impl Builder<'_> {
             Item::Arc(arc) => self.drawing.arc(arc).map(|arc| arc.bounds.width()),
             _ => None,
         };
-        // The number of an event is a few letters in the middle of its circle: cut, it would be none.
-        let fit = if text.role == TextRole::Node { Fit::Overflow } else { Fit::Shrink };
+        let is_number = matches!(
+            text.role,
+            TextRole::Node | TextRole::Bounds | TextRole::Nature | TextRole::ZeroBounds | TextRole::Window
+        );
+        let fit = if is_number { Fit::Whole } else { Fit::Shrink };
         Text {
             fit,
             legible: (text.role == TextRole::Name).then(|| room().unwrap_or_else(|| text.rect.width())),

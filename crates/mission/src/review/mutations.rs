@@ -260,6 +260,13 @@ fn the_share_of_runs_that_reach_the_end() {
     let rate = SuccessRate { wanted: 0.5, least: 0.1 };
     let lenient = FlightRules { success_rate: Some(rate), ..rules.clone() };
     assert_eq!(worst(&judged(54, 100, &lenient), Section::Robustness), Status::Passed);
+    let silent = FlightRules { success_rate: None, ..rules.clone() };
+    assert_eq!(
+        worst(&judged(54, 100, &silent), Section::Robustness),
+        Status::Information,
+        "held against nothing"
+    );
+    assert_eq!(worst(&judged(50, 50, &silent), Section::Robustness), Status::Attention);
     assert_eq!(judged(0, 0, &rules).robustness, None, "no runs, no line");
 }
 

@@ -411,7 +411,12 @@ fn success(rules: &FlightRules, found: &Robustness, runs_programs: bool) -> Line
     if !is_by_chance {
         text.push_str("; nothing was left to chance in them");
     }
-    let checked = if found.is_complete() && is_by_chance { Status::Passed } else { Status::Attention };
+    let checked = match (found.is_complete() && is_by_chance, rules.success_rate) {
+        (false, _) => Status::Attention,
+        (true, Some(_)) => Status::Passed,
+        // Held against nothing.
+        (true, None) => Status::Information,
+    };
     let mut line = Line::new(checked, text);
     if let Some(wanted) = rules.success_rate {
         let source = FlightRules::source(|it| it.success_rate == rules.success_rate);

@@ -44,7 +44,7 @@ impl Machines {
         plant: &PlantMoment,
         commands: &mut CommandSender,
     ) {
-        title(ui, context, "Components", "shade: how likely   ● true   dashed: fault");
+        title(ui, context, "Components", "shade: how likely   ● true   dotted: fault");
         chance(ui, context, commands);
         let available = ui.available_width();
         let mut row: Vec<(ComponentId, f32)> = Vec::new();

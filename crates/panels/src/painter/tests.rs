@@ -129,7 +129,7 @@ fn assert_same(list: &DisplayList) {
             _ => false,
         });
         let room = 40.0 + text.rect.width();
-        let is_loose = text.fit != display::Fit::Shrink && room > 80.0;
+        let is_loose = !text.fit.fills_its_place() && room > 80.0;
         assert!(is_there || is_loose && texts.contains(&text.text.as_str()), "{text:?} is not on the screen");
     }
     // Lines: as many as there are paths with a stroke in the file, but for dashes, of which each is a line.

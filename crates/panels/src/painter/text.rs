@@ -10,6 +10,8 @@ use super::DisplayPainter;
 
 /// Names that would be smaller than this in points keep this size instead, and are cut to the room there is.
 const LEGIBLE: f64 = 11.0;
+/// What is shown whole or not at all may be so much wider than its place.
+const WHOLE_SPARE: f32 = 5.0;
 /// Other texts that would be smaller than that keep it too, where they would be no smaller than this: there is room for
 /// so much more around them.
 const RAISED_FROM: f64 = 7.9;
@@ -47,7 +49,7 @@ impl DisplayPainter<'_> {
         }
         let color = self.color(text.color);
         let size = size.max(LEGIBLE);
-        let (galley, font) = self.fitted(text, size, place, color);
+        let Some((galley, font)) = self.fitted(text, size, place, color) else { return };
         let left = match text.anchor {
             Anchor::Start => place.left(),
             Anchor::Middle => place.center().x - galley.size().x / 2.0,
@@ -56,7 +58,7 @@ impl DisplayPainter<'_> {
         let corner = pos2(left, place.center().y - galley.size().y / 2.0);
         if let Some(plate) = text.plate {
             let behind =
-                if text.fit == Fit::Shrink { place } else { Rect::from_min_size(corner, galley.size()) };
+                if text.fit.fills_its_place() { place } else { Rect::from_min_size(corner, galley.size()) };
             self.painter.rect_filled(behind.expand(2.0), 3.0, self.color(plate));
         }
         if let Some(before) = text.overbar.and_then(|at| text.text.get(..at as usize)) {
@@ -68,25 +70,29 @@ impl DisplayPainter<'_> {
         self.painter.galley(corner, galley, color);
     }
 
-    /// The text at `size`, made to fit into `place` as it says.
-    fn fitted(&self, text: &Text, size: f64, place: Rect, color: Color32) -> (Arc<Galley>, FontId) {
+    /// The text at `size`, made to fit into `place` as it says; nothing where it is left out.
+    fn fitted(&self, text: &Text, size: f64, place: Rect, color: Color32) -> Option<(Arc<Galley>, FontId)> {
         // Whole and half sizes only, so that zooming does not fill the font atlas.
         let font = |size: f64| font(text.weight, ((size * 2.0).floor() / 2.0) as f32);
         let used = font(size);
         if text.fit == Fit::Cut {
             let mut job = LayoutJob::simple_singleline(text.text.to_string(), used.clone(), color);
             job.wrap = TextWrapping::truncate_at_width(place.width().max(12.0));
-            return (self.painter.layout_job(job), used);
+            return Some((self.painter.layout_job(job), used));
         }
         let galley = self.painter.layout_no_wrap(text.text.to_string(), used.clone(), color);
         if text.fit == Fit::Overflow || galley.size().x <= place.width() + 1.0 {
-            return (galley, used);
+            return Some((galley, used));
         }
         // No smaller than it can be read: the rest is cut.
         let smaller = font((size * f64::from(place.width() / galley.size().x)).max(LEGIBLE.min(size)));
         let mut job = LayoutJob::simple_singleline(text.text.to_string(), smaller.clone(), color);
+        if text.fit == Fit::Whole {
+            let galley = self.painter.layout_job(job);
+            return (galley.size().x <= place.width() + WHOLE_SPARE).then_some((galley, smaller));
+        }
         job.wrap = TextWrapping::truncate_at_width(place.width().max(12.0) + 1.0);
-        (self.painter.layout_job(job), smaller)
+        Some((self.painter.layout_job(job), smaller))
     }
 
     /// A name at the least legible size over the middle of its place, cut to its room, if there is any between what is

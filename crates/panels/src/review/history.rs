@@ -84,7 +84,9 @@ fn show_entry(
             let done = format!("{} {}{of}", who(entry), entry.act.name());
             let done = strong(done).color(tokens.text);
             ui.label(if taken_back.is_some() { done.strikethrough() } else { done });
-            let is_stale = context.state.review.hash() != Some(entry.content_hash.as_str());
+            // Rules are not about one content.
+            let is_stale = context.state.review.hash() != Some(entry.content_hash.as_str())
+                && !matches!(entry.act, Act::Rules { .. });
             let about = if is_stale { ", other content" } else { "" };
             let when = format!("{}{about}", moment(&entry.time));
             let label = ui.label(RichText::new(when).small().color(tokens.text_muted));

@@ -82,8 +82,7 @@ impl TerrainPanel {
     /// Flies to what the last sample of a growing tree did: the sample and the vertex nearest to it are both in view.
     fn fly_to_sample(&mut self, context: &Context<'_>) {
         let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let growth = context.state.terrain.growth.shown();
-        let Some(last) = growth.and_then(|growth| growth.last()) else { return };
+        let Some(last) = context.state.terrain.growth.last_sample() else { return };
         let [from, to] = [last.nearest_m, last.sample_m].map(|at| glam::DVec2::new(at.x, at.y).as_vec2());
         let middle = shown.ground.nearest((from + to) / 2.0);
         let target = camera.close_up(shown.ground.drape(middle, 0.0), NEAR_M.max(AROUND * from.distance(to)));

@@ -77,11 +77,13 @@ fn camera_menu(
     follow: &mut Option<usize>,
     commands: &mut CommandSender,
 ) {
-    let can_fly = !context.state.selection.is_none();
+    let is_selected = !context.state.selection.is_none();
+    let can_fly = is_selected || context.state.terrain.growth.last_sample().is_some();
+    let flight = if is_selected || !can_fly { "Fly to the selection" } else { "Fly to the last sample" };
     for (name, action, is_enabled) in [
         ("Whole map", ViewAction::Fit, true),
         ("Straight down", ViewAction::TopView, true),
-        ("Fly to the selection", ViewAction::FitSelection, can_fly),
+        (flight, ViewAction::FitSelection, can_fly),
     ] {
         if ui.add_enabled(is_enabled, egui::Button::new(name)).clicked() {
             commands.send(Command::ViewOf(PanelKind::Terrain, action));

@@ -155,7 +155,7 @@ fn spelled(word: &str) -> String {
 /// Reads an `ask` block whose fence is in line `fence`; nothing if it cannot be judged.
 pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Option<Ask> {
     let mut question = String::new();
-    let mut choices = Vec::new();
+    let mut choices: Vec<Choice> = Vec::new();
     let before = errors.len();
     let mut wrong = Vec::new();
     let entries = entries(text, fence, |line, text| {
@@ -164,6 +164,9 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
                 Ok(choice) => choices.push(choice),
                 Err(message) => wrong.push(LessonError::new(line, message)),
             }
+        } else if let Some(choice) = choices.last_mut().filter(|_| text.starts_with(' ')) {
+            choice.text.push(' ');
+            choice.text.push_str(text.trim());
         } else {
             question.push_str(if question.is_empty() { "" } else { " " });
             question.push_str(text.trim());

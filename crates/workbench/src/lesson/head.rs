@@ -29,7 +29,7 @@ pub(super) fn read(lesson: &mut Lesson, head: Option<&Head>, errors: &mut Vec<Le
                 if let Some(search) = search(&value) {
                     lesson.search = search;
                 } else {
-                    let message = "`search` is `chronological`, `conflict-directed` or `both`";
+                    let message = "`search` is `chronological`, `conflict-directed`, `best-first` or `both`";
                     errors.push(LessonError::new(line, message));
                 }
             }

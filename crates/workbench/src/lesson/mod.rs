@@ -237,6 +237,8 @@ fn entries<'a>(
     mut other: impl FnMut(u32, &'a str),
 ) -> Vec<(u32, &'a str, String)> {
     let mut entries: Vec<(u32, &str, String)> = Vec::new();
+    // A line that begins with spaces goes on with the one before, whatever that is.
+    let mut is_other = false;
     for (line, number) in text.lines().zip(fence + 1..) {
         if line.trim().is_empty() {
             continue;
@@ -245,12 +247,18 @@ fn entries<'a>(
             !key.is_empty() && key.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-')
         };
         match (line.split_once(':').filter(|(key, _)| is_key(key)), entries.last_mut()) {
-            (_, Some((_, _, value))) if line.starts_with(' ') => {
+            (_, Some((_, _, value))) if line.starts_with(' ') && !is_other => {
                 value.push(' ');
                 value.push_str(line.trim());
             }
-            (Some((key, value)), _) => entries.push((number, key, value.trim().to_owned())),
-            (None, _) => other(number, line),
+            (Some((key, value)), _) => {
+                is_other = false;
+                entries.push((number, key, value.trim().to_owned()));
+            }
+            (None, _) => {
+                is_other = true;
+                other(number, line);
+            }
         }
     }
     entries

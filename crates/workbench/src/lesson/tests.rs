@@ -123,6 +123,11 @@ fn a_mistake_is_told_with_its_line_and_what_would_be_right() {
     check("```ask\nnumber: 3\n```", 7, "the question is missing");
     check("```ask\nWhat?\nnumber: 3\nword: choice(D1)\n```", 10, "one answer");
     check("```ask\nWhat?\n- [x] one\n```", 7, "at least two");
+    let (read, errors) =
+        Lesson::read("x", &with("```ask\nWhat?\n- [x] one\n  and more\n- [ ] two\nhint: a\n  b\n```"));
+    let ask = read.stops[1].ask.as_ref().expect("it asks");
+    let Answer::Choice(choices) = &ask.answer else { panic!("{ask:?}") };
+    assert_eq!((choices[0].text.as_str(), ask.hint.as_str(), errors.len()), ("one and more", "a b", 0));
     check("```ask\nWhat?\n- [x] one\n- two\n- [ ] three\n```", 10, "a choice begins with");
     check("```ask\nWhat?\ntask: plan\nsolution: \"a\" instead\n```", 10, "becomes");
     let two = "```ask\nA?\nnumber: 1\n```\n\n```ask\nB?\nnumber: 1\n```";

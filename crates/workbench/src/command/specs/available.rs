@@ -88,6 +88,11 @@ pub(super) fn with_selection(state: &AppState) -> Availability {
     if state.selection.is_none() { Err("nothing is selected") } else { Ok(()) }
 }
 
+/// Somewhere to fly to: what is selected, or what the last sample of a growing tree did.
+pub(super) fn with_goal_of_flight(state: &AppState) -> Availability {
+    if state.terrain.growth.last_sample().is_some() { Ok(()) } else { with_selection(state) }
+}
+
 pub(super) fn with_ground(state: &AppState) -> Availability {
     let has_ground = state.shown().is_some_and(|shown| shown.map.is_some());
     if has_ground { Ok(()) } else { Err("the mission has no places") }

@@ -1,7 +1,7 @@
 //! The ground, its camera and its tools.
 
 use super::arguments::{number_argument, text_argument};
-use super::available::{with_ground, with_paths, with_run, with_selection, with_vehicles};
+use super::available::{with_goal_of_flight, with_ground, with_paths, with_run, with_vehicles};
 use super::{PLAIN, called, keys, plain, when};
 use crate::command::chord::Key;
 use crate::command::registry::{CommandSpec, Group, Scope};
@@ -15,7 +15,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         plain("terrain.fly", "Fly to the selection", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::View(ViewAction::FitSelection))
         }),
-        with_selection,
+        with_goal_of_flight,
     ),
     when(
         plain("terrain.follow", "Follow the vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {

@@ -30,7 +30,7 @@ pub struct Library {
 pub struct KeptMission {
     id: String,
     name: String,
-    #[cfg_attr(test, ts(type = "\"own\" | \"example\" | \"shared\" | \"file\""))]
+    #[cfg_attr(test, ts(type = "\"own\" | \"example\" | \"lesson\" | \"shared\" | \"file\""))]
     kind: MissionKind,
     /// In milliseconds since 1970, UTC.
     #[cfg_attr(test, ts(type = "number"))]

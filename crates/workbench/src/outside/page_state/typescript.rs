@@ -99,7 +99,7 @@ export interface Enroute {
   setSource(text: string): void;
   /** The text as it stands. */
   source(): string;
-  /** Runs a command of the command palette by its name. */
+  /** Runs a command by its name: one of the menus, or one with arguments, which section 4.3 of the contracts lists. */
   dispatch(command: string, args?: object): void;
   /** The state as plain data. */
   state(): State;

@@ -143,7 +143,12 @@ pub const fn planner_title(planner: PlannerKind) -> &'static str {
 }
 
 impl Growth {
-    /// What is looked at.
+    /// What the last sample of the growth that is looked at did.
+    pub fn last_sample(&self) -> Option<&GrowthStep> {
+        self.shown()?.last()
+    }
+
+    /// The growth that is looked at.
     pub fn shown(&self) -> Option<&Shown> {
         self.shown.as_ref()
     }

@@ -104,14 +104,14 @@ impl AppState {
             self.lesson.samples_due = show.samples;
             self.draw_samples();
         }
+        if let Some(time) = show.time {
+            self.playback.seek(time);
+        }
         for (line, id, arguments) in &show.commands {
             match crate::command::from_json(self, id, arguments) {
                 Ok(command) => self.do_lesson_command(command),
                 Err(error) => self.tell_lecturer(*line, &format!("{id}: {error}")),
             }
-        }
-        if let Some(time) = show.time {
-            self.playback.seek(time);
         }
         for panel in VIEWS {
             let is_near = show.near.contains(&panel);

@@ -91,6 +91,9 @@ impl AppState {
         };
         let is_empty = act.text().trim().is_empty();
         match act {
+            _ if self.review.hash().is_none() => {
+                Err("The mission has not been worked out: wait until it is".to_owned())
+            }
             _ if by.name.trim().is_empty() => {
                 Err("Whoever does something for a review has a name".to_owned())
             }
