@@ -86,7 +86,10 @@ fn parts_of(text: &str) -> impl Iterator<Item = &str> {
     let mut rest = Some(text);
     std::iter::from_fn(move || {
         let whole = rest?;
-        let next = [" AND ", " OR "].iter().filter_map(|joint| whole.find(joint)).min();
+        let mut spaces = whole.match_indices(' ').map(|(at, _)| at);
+        let begins = |at: &usize| ["AND ", "OR "].iter().any(|word| whole[at + 1..].starts_with(word));
+        // No further than to the next connective, so that all parts together take one pass.
+        let next = spaces.find(begins);
         let (part, after) = next.map_or((whole, None), |at| (&whole[..at], Some(&whole[at + 1..])));
         rest = after;
         Some(part)

@@ -153,7 +153,10 @@ fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule
                 None if rule.rule.trim().is_empty() => {
                     row::quiet_word(ui, "A condition, and when it has to hold");
                 }
-                None => row::quiet_word(ui, "The mission knows all that it names"),
+                None if context.snapshot.is_some_and(|snapshot| snapshot.network.is_some()) => {
+                    row::quiet_word(ui, "The mission knows all that it names");
+                }
+                None => row::quiet_word(ui, "Not looked at: the mission has no network"),
             }
         });
     }

@@ -3,9 +3,7 @@
 
 use std::ops::Range;
 
-use display::{
-    Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text, approximate_text_width, text_width_at,
-};
+use display::{Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text, text_width_at};
 
 use super::{Builder, LEAST_WIDTH, SIZES};
 use crate::timeline::{Bar, BarKind, state};
@@ -44,7 +42,7 @@ impl Builder<'_> {
         let seen = self.track.visible;
         let (left, right) = (place.min.x.max(seen.min.x) + 5.0, place.max.x.min(seen.max.x) - 3.0);
         if bar.kind == BarKind::Value && right - left >= LEAST_VALUE {
-            let width = text_width_at(&bar.name, SIZES[1], &approximate_text_width).ceil();
+            let width = text_width_at(&bar.name, SIZES[1], self.measure).ceil();
             // A name that is longer than its value lasts goes on beside it, as far as nothing follows.
             let right = if right - left < width {
                 let mut after = self.chart.bars[at + 1..bars.end].iter();
