@@ -2,7 +2,7 @@
 //! --release --example edit_speed -- 10000`; panels are those of the Author workspace.
 
 mod figures;
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/it/support/mod.rs"]
 mod support;
 
 use std::time::Instant;

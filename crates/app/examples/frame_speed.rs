@@ -1,7 +1,7 @@
 //! Measures how long a frame takes natively while the network and the timeline are dragged, and how long an event takes
 //! to drag, at about 1,000 and 10,000 nodes: `cargo run -p app --example frame_speed`.
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/it/support/mod.rs"]
 mod support;
 
 use std::time::{Duration, Instant};

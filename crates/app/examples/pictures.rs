@@ -1,6 +1,6 @@
 //! Takes pictures of the app in all workspaces and themes, to look at: `cargo run -p app --example pictures -- FOLDER`.
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/it/support/mod.rs"]
 mod support;
 
 use workbench::command::Command;

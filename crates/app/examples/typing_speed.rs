@@ -1,7 +1,7 @@
 //! Measures how long a frame and a keystroke take in the editor with a long text: `cargo run -p app --example typing_speed`.
 
 mod figures;
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/it/support/mod.rs"]
 mod support;
 
 use std::time::Instant;

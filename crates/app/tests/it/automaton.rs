@@ -1,0 +1,195 @@
+//! A control program as a user meets it: opened, stepped, broken, watched.
+
+use crate::support;
+use egui::Role;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use serde_json::json;
+use workbench::host::Remote as _;
+
+fn opened(source: &str) -> support::App {
+    let mut app = support::start();
+    app.settle();
+    app.harness.state_mut().set_source(source);
+    app.settle();
+    app
+}
+
+fn orbit_insertion() -> support::App {
+    let mut app = support::start();
+    app.settle();
+    app.harness.state_mut().open("orbit-insertion").expect("it is an example");
+    app.settle();
+    app
+}
+
+fn press(app: &mut support::App, name: &str) {
+    app.harness.get_by_role_and_label(Role::Button, name).scroll_to_me();
+    app.settle();
+    app.harness.get_by_role_and_label(Role::Button, name).click();
+    app.settle();
+}
+
+/// The names of the buttons that stand for marked locations.
+fn marked(app: &support::App) -> Vec<String> {
+    let buttons = app.harness.query_all_by_role(Role::Button);
+    let mut names: Vec<String> = buttons
+        .filter_map(|node| node.accesskit_node().label())
+        .filter_map(|label| label.strip_suffix(", marked").map(str::to_owned))
+        .collect();
+    names.sort();
+    names
+}
+
+/// SPEC 8.4, nominal: five, five minus the camera, and after three steps the goal to fire and the reserve.
+#[test]
+fn orbit_insertion_shows_its_marking_step_by_step() {
+    let mut app = orbit_insertion();
+    let names = |app: &support::App| {
+        marked(app)
+            .iter()
+            .map(|name| name.split(':').next().unwrap_or_default().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(names(&app), ["a1", "a2", "a3", "w1", "w2"]);
+    press(&mut app, "Step");
+    assert_eq!(names(&app), ["a1", "a2", "w1", "w2"]);
+    press(&mut app, "Step");
+    press(&mut app, "Step");
+    assert_eq!(
+        marked(&app),
+        ["a4: assert EngineA=Firing", "w2: when (EngineA=Failed AND EngineB=Standby AND Camera=Off)"]
+    );
+    press(&mut app, "Step back");
+    press(&mut app, "Step back");
+    assert_eq!(names(&app), ["a1", "a2", "w1", "w2"]);
+}
+
+#[test]
+fn the_keys_that_step_through_plans_step_the_program() {
+    let mut app = orbit_insertion();
+    app.harness.key_press(egui::Key::Period);
+    app.settle();
+    assert_eq!(marked(&app).len(), 4, "one step on");
+    app.harness.key_press(egui::Key::Comma);
+    app.settle();
+    assert_eq!(marked(&app).len(), 5, "and back");
+}
+
+#[test]
+fn a_fault_is_injected_by_pressing_a_component() {
+    let mut app = orbit_insertion();
+    press(&mut app, "Step");
+    press(&mut app, "Step");
+    press(&mut app, "EngineA");
+    press(&mut app, "Failed");
+    press(&mut app, "Step");
+    press(&mut app, "Step");
+    assert_eq!(marked(&app), ["a5: assert EngineB=Firing"]);
+    let tells_why = app.harness.query_all_by_label_contains("EngineA=Firing contradicts").next().is_some();
+    assert!(tells_why, "the diagnosis says what contradicts what");
+}
+
+#[test]
+fn a_program_is_no_mission_with_errors() {
+    let app = orbit_insertion();
+    assert_eq!(app.json()["status"], json!("program"));
+    assert_eq!(app.json()["diagnostics"], json!([]));
+    let app = opened("Main ():: (WHEN-DONEXT (start = on) (shutter = open))");
+    assert_eq!(app.json()["status"], json!("program"));
+}
+
+#[test]
+fn pressing_a_mode_of_a_component_injects_it_and_pressing_it_again_takes_that_back() {
+    let mut app = orbit_insertion();
+    app.harness.get_by_label_contains("EngineA: Failed").click();
+    app.settle();
+    assert_eq!(app.json()["hca"]["step"], 0, "nothing has happened yet");
+    app.harness.get_by_label("EngineA: Failed, 0 %, injected in this step").click();
+    app.settle();
+    press(&mut app, "Step");
+    assert_eq!(app.json()["hca"]["plant"]["trueState"]["EngineA"], "Off", "it was taken back");
+    app.harness.get_by_label_contains("EngineA: Failed").click();
+    app.settle();
+    press(&mut app, "Step");
+    assert_eq!(app.json()["hca"]["plant"]["trueState"]["EngineA"], "Failed");
+}
+
+/// After engine A was commanded to standby and seen there, SPEC 9.1 leaves 1/397 for a failure that shows the same.
+#[test]
+fn the_modes_of_a_component_tell_how_likely_they_are() {
+    let mut app = orbit_insertion();
+    (0..3).for_each(|_| press(&mut app, "Step"));
+    app.harness.get_by_label("EngineA: Standby, 99.75 %, most likely, true");
+    app.harness.get_by_label("EngineA: Failed, 0.25 %");
+    app.harness.get_by_label("Camera: Off, 100 %, most likely, true");
+}
+
+#[test]
+fn many_runs_tell_how_likely_the_program_is_to_reach_its_end() {
+    let mut app = orbit_insertion();
+    press(&mut app, "EngineA: Failed, 0 %");
+    press(&mut app, "Many runs");
+    press(&mut app, "Run with chance");
+    for _ in 0..200 {
+        app.settle();
+    }
+    let chance = app.json()["hca"]["chance"].clone();
+    assert_eq!((&chance["runs"], &chance["isRunning"]), (&json!(2000), &json!(false)));
+    let share = chance["probability"].as_f64().expect("a number");
+    let low = chance["interval"][0].as_f64().expect("a number");
+    let high = chance["interval"][1].as_f64().expect("a number");
+    // Engine B alone is left: in some three steps it may fail with 0.01 each.
+    assert!(0.9 < low && low < share && share < high && high < 1.0, "{chance}");
+    app.harness.get_by_label_contains("EngineB=Failed");
+    app.harness.get_by_label_contains("Step through run").click();
+    app.settle();
+    (0..12).for_each(|_| press(&mut app, "Step"));
+    assert_eq!(app.json()["hca"]["canStep"], json!(true), "the run that is shown does not reach its end");
+    assert_eq!(app.json()["hca"]["plant"]["trueState"]["EngineB"], "Failed");
+}
+
+#[test]
+fn runs_stop_when_asked_to_and_belong_to_the_text_they_were_made_of() {
+    let mut app = orbit_insertion();
+    press(&mut app, "Many runs");
+    app.world.is_deaf.set(true);
+    press(&mut app, "Run with chance");
+    press(&mut app, "Stop the runs");
+    app.world.is_deaf.set(false);
+    press(&mut app, "Run with chance");
+    for _ in 0..200 {
+        app.settle();
+    }
+    assert_eq!(app.json()["hca"]["chance"]["runs"], 2000);
+    let text = format!("; Another text.\n{}", app.harness.state().source());
+    app.harness.state_mut().set_source(&text);
+    app.settle();
+    assert_eq!(app.json()["hca"]["chance"], json!(null));
+}
+
+#[test]
+fn components_fail_by_chance_from_the_same_fault_seed_again_and_again() {
+    let mut app = orbit_insertion();
+    app.harness.get_by_label("Components fail by chance").click();
+    app.settle();
+    let states = |app: &mut support::App| {
+        let mut states = Vec::new();
+        for _ in 0..4 {
+            press(app, "Step");
+            states.push(app.json()["hca"]["plant"]["trueState"].clone());
+        }
+        states
+    };
+    let first = states(&mut app);
+    press(&mut app, "Reset");
+    assert_eq!(states(&mut app), first);
+}
+
+/// There is nothing to show over time or on the ground.
+#[test]
+fn a_control_program_has_the_window_to_itself() {
+    let app = orbit_insertion();
+    let automaton = app.harness.get_by_label_contains("Automaton. ").rect();
+    assert!(automaton.height() > 450.0 && automaton.width() > 500.0, "{automaton}");
+    assert!(app.harness.query_by_label("There is no plan to show over time.").is_none());
+}

@@ -1,0 +1,17 @@
+//! The integration tests of `app`, in one program: each module is about one thing.
+
+mod automaton;
+mod editor;
+mod execution;
+mod lesson;
+mod missions;
+mod network;
+mod panels;
+mod review;
+mod search;
+mod shell;
+mod snapshots;
+mod strategy;
+mod support;
+mod terrain;
+mod timeline;

@@ -1,0 +1,262 @@
+//! The timeline as a user meets it: dragging events and bounds, grouping, ranges, and missions of any size.
+
+use crate::support;
+use egui::{Key, Modifiers, Pos2, Role, vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use layout::timeline::Grouping;
+use serde_json::{Value, json};
+use workbench::command::Command;
+use workbench::host::Remote as _;
+
+fn reviewing() -> support::App {
+    // High enough for all rows, whatever else the workspace shows.
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1440.0, 1500.0]));
+    app.settle();
+    app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
+    // What stands left of the timeline would be taken for its names.
+    for panel in ["review", "plan"] {
+        app.harness.state_mut().dispatch("view.closePanel", &json!(panel)).expect("a panel");
+    }
+    app.settle();
+    app
+}
+
+/// Where the handle of an event is; the bar it belongs to is selected first, as a user would find it.
+fn handle(app: &support::App, event: &str) -> Pos2 {
+    let label = format!("Move {event} on the timeline");
+    app.harness.get_by_label(&label).rect().center()
+}
+
+/// Points of the screen per mission unit on the time axis, found by looking at it.
+fn points_per_unit(app: &mut support::App) -> f32 {
+    let axis = app.harness.get_by_label("Time axis").rect();
+    let mut time_at = |x: f32| {
+        app.harness.drag_at(Pos2::new(x, axis.center().y));
+        app.settle();
+        app.harness.drop_at(Pos2::new(x, axis.center().y));
+        app.settle();
+        app.json()["time"].as_f64().expect("a time")
+    };
+    let (left, right) = (axis.left() + 100.0, axis.left() + 200.0);
+    let (early, late) = (time_at(left), time_at(right));
+    ((f64::from(right - left)) / (late - early)) as f32
+}
+
+fn drag(app: &mut support::App, from: Pos2, to: Pos2) {
+    hold(app, from, to);
+    app.harness.drop_at(to);
+    app.settle();
+}
+
+/// Presses at one place and moves to another without letting go.
+fn hold(app: &mut support::App, from: Pos2, to: Pos2) {
+    app.harness.hover_at(from);
+    app.settle();
+    app.harness.drag_at(from);
+    app.settle();
+    for part in [0.3, 0.7, 1.0] {
+        app.harness.hover_at(from + (to - from) * part);
+        app.settle();
+    }
+}
+
+fn window(state: &Value, event: &str) -> [f64; 2] {
+    let window = &state["windows"][event];
+    [window[0].as_f64().expect("a time"), window[1].as_f64().expect("a time")]
+}
+
+#[test]
+fn dragging_an_event_narrows_the_windows_of_the_others_and_escape_gives_them_back() {
+    let mut app = reviewing();
+    let scale = points_per_unit(&mut app);
+    let source = app.harness.state().source();
+    let free = app.json()["plan"].clone();
+    // SPEC 3.6: the mission's own slack of 45.
+    assert_eq!(window(&free, "Group-Enroute#1.start"), [10.0, 55.0]);
+    assert_eq!(app.json()["pinned"], Value::Null);
+
+    let from = handle(&app, "Group-Enroute#1.start");
+    hold(&mut app, from, from + vec2(20.0 * scale, 0.0));
+    let pinned = app.json()["pinned"].clone();
+    let time = pinned["events"]["Group-Enroute#1.start"].as_f64().expect("it is pinned");
+    assert!((25.0..=35.0).contains(&time), "{time}");
+    assert_eq!(window(&pinned, "Group-Enroute#1.start"), [time, time]);
+    // The activity lasts 450 to 540, and the drive in it ends by 460, when the path closes.
+    assert_eq!(window(&pinned, "Group-Enroute#1.end")[0], time + 450.0);
+    assert_eq!(window(&pinned, "Group-Traverse-Path#1.end"), [time + 405.0, 460.0]);
+
+    // Escape while dragging puts the event back.
+    app.harness.key_press(Key::Escape);
+    app.settle();
+    assert_eq!(app.json()["pinned"], Value::Null);
+    app.harness.drop_at(from);
+    app.settle();
+
+    // Beyond its window it stays at the window's end; Escape afterwards releases it.
+    drag(&mut app, from, from + vec2(300.0 * scale, 0.0));
+    let pinned = app.json()["pinned"].clone();
+    assert_eq!(window(&pinned, "Group-Enroute#1.start"), [55.0, 55.0]);
+    assert_eq!(window(&pinned, "Group-Traverse-Path#1.end"), [460.0, 460.0]);
+    assert!(app.harness.query_by_label("1 event pinned").is_some());
+    app.harness.key_press(Key::Escape);
+    app.settle();
+    assert_eq!(app.json()["pinned"], Value::Null);
+    assert_eq!(app.json()["plan"], free);
+    assert_eq!(app.harness.state().source(), source, "the text was left alone");
+}
+
+#[test]
+fn the_keyboard_moves_and_releases_events() {
+    let mut app = reviewing();
+    app.harness.get_by_label("Move Group-Wait#1.end on the timeline").focus();
+    app.settle();
+    app.harness.key_press(Key::ArrowRight);
+    app.settle();
+    let pinned = app.json()["pinned"]["events"]["Group-Wait#1.end"].as_f64().expect("it is pinned");
+    assert!(pinned > 415.0, "{pinned}");
+    app.harness.key_press(Key::Delete);
+    app.settle();
+    assert_eq!(app.json()["pinned"], Value::Null);
+}
+
+#[test]
+fn dragging_a_bound_rewrites_its_number_as_one_step_of_the_history() {
+    let mut app = reviewing();
+    let scale = points_per_unit(&mut app);
+    let source = app.harness.state().source();
+    app.harness.state_mut().dispatch("go.select", &json!("Group-Enroute#1")).expect("an occurrence");
+    app.settle();
+    let from = app.harness.get_by_label("Change the greatest duration of Group-Enroute#1").rect().center();
+    drag(&mut app, from, from + vec2(-40.0 * scale, 0.0));
+    let changed = app.harness.state().source();
+    let at = changed.find("Group-Enroute()[450,").expect("the call") + "Group-Enroute()[450,".len();
+    let number: f64 = changed[at..].split(']').next().and_then(|it| it.parse().ok()).expect("a number");
+    assert!((490.0..=510.0).contains(&number), "{number}");
+    assert_eq!(changed.replace(&format!("[450,{number}]"), "[450,540]"), source);
+    assert_eq!(window(&app.json()["plan"], "Group-Enroute#1.end")[1], (55.0 + number).min(595.0));
+
+    app.harness.state_mut().dispatch("edit.undo", &Value::Null).expect("an edit");
+    app.settle();
+    assert_eq!(app.harness.state().source(), source);
+}
+
+#[test]
+fn a_drag_with_shift_selects_a_range_and_escape_clears_it() {
+    let mut app = reviewing();
+    let axis = app.harness.get_by_label("Time axis").rect();
+    let (from, to) = (axis.left_center() + vec2(60.0, 0.0), axis.left_center() + vec2(220.0, 0.0));
+    app.harness.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
+    drag(&mut app, from, to);
+    app.harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    let range = app.json()["timeRange"].clone();
+    assert!(range[0].as_f64() < range[1].as_f64(), "{range}");
+    assert_eq!(app.json()["time"], 0.0, "the time shown stays");
+    app.harness.key_press(Key::Escape);
+    app.settle();
+    assert_eq!(app.json()["timeRange"], Value::Null);
+}
+
+fn group(app: &mut support::App, grouping: Grouping) {
+    app.harness.state_mut().dispatch("view.grouping", &json!(grouping.name())).expect("a grouping");
+    app.settle();
+}
+
+fn labels(app: &support::App, start: &str) -> Vec<String> {
+    let buttons = app.harness.query_all_by_role(Role::Button);
+    let labels = buttons.filter_map(|node| node.accesskit_node().label());
+    labels.filter(|label| label.starts_with(start) && label.ends_with("on the timeline")).collect()
+}
+
+#[test]
+fn bars_are_grouped_by_thread_or_by_vehicle_and_groups_close() {
+    let mut app = reviewing();
+    group(&mut app, Grouping::Thread);
+    // Two threads in the scenario, two more at the end of the activity.
+    assert_eq!(
+        labels(&app, "Close Thread"),
+        [
+            "Close Thread 1 · Group-Enroute on the timeline",
+            "Close Thread 1.1 · Group-Transmit on the timeline",
+            "Close Thread 1.2 · Group-Wait on the timeline",
+        ]
+    );
+    group(&mut app, Grouping::Vehicle);
+    for heading in ["Rover1", "Rover2", "No vehicle", "Conditions"] {
+        app.harness.get_by_label(&format!("Close {heading} on the timeline"));
+    }
+    let drives = |app: &support::App| {
+        let is_drive = |it: &egui_kittest::Node<'_>| {
+            it.accesskit_node().label().is_some_and(|it| it.starts_with("Group-Traverse-Path#1: starts"))
+        };
+        app.harness.query_all_by_role(Role::Button).filter(is_drive).count()
+    };
+    assert_eq!(drives(&app), 2, "both rovers drive");
+    app.harness.get_by_label("Close Rover1 on the timeline").click();
+    app.settle();
+    app.harness.get_by_label("Open Rover1 on the timeline");
+    assert_eq!(drives(&app), 2, "a closed group shows its bars in its own row");
+}
+
+#[test]
+fn conditions_are_tracks_with_what_is_asserted_and_what_is_required() {
+    let mut app = reviewing();
+    for label in [
+        "Tell(PATH1=OK)#1: starts [10, 10], ends [460, 460]",
+        "PATH1=OK of Group-Traverse-Path#1: starts [10, 55], ends [415, 460]",
+    ] {
+        let shown = app.harness.query_all_by_role(Role::Button).any(|node| {
+            node.accesskit_node()
+                .label()
+                .is_some_and(|it| it == label || it.ends_with(&label["Tell(".len()..]))
+        });
+        assert!(shown, "{label}");
+    }
+    app.harness
+        .get_by(|node| node.label().is_some_and(|it| it.starts_with("PATH1=OK of Group-Traverse-Path#1")))
+        .click();
+    app.settle();
+    assert_eq!(app.json()["selection"]["name"], "Ask(PATH1=OK)@Group-Traverse-Path#1");
+}
+
+fn generated(nodes: usize) -> support::App {
+    let recipe = tpn::generate::Recipe { nodes, tightness: tpn::generate::Tightness::Feasible, seed: 1 };
+    let source = tpn::generate::mission(recipe);
+    let mut app = support::start();
+    app.settle();
+    app.harness.state_mut().run(Command::OpenSource { name: "generated".into(), source });
+    app.settle();
+    app.harness.state_mut().dispatch("view.workspace", &json!("review")).expect("a workspace");
+    // What stands left of the timeline would be taken for its names.
+    for panel in ["review", "plan"] {
+        app.harness.state_mut().dispatch("view.closePanel", &json!(panel)).expect("a panel");
+    }
+    app.settle();
+    app
+}
+
+/// Where the timeline ends in the workspace for reviews: the network is below it.
+fn bottom(app: &support::App) -> f32 {
+    app.harness.get_by_label("Close Network").rect().top()
+}
+
+/// The names of activities that are painted to the left of the time axis.
+fn painted_names(app: &support::App) -> usize {
+    let axis = app.harness.get_by_label("Time axis").rect();
+    let is_name = |shape: &&egui::epaint::ClippedShape| match &shape.shape {
+        egui::Shape::Text(text) => {
+            text.pos.x < axis.left() - 20.0 && text.pos.y > axis.bottom() && text.pos.y < bottom(app)
+        }
+        _ => false,
+    };
+    app.harness.output().shapes.iter().filter(is_name).count()
+}
+
+#[test]
+fn a_large_mission_draws_all_and_only_the_rows_in_view() {
+    let app = generated(1_000);
+    assert_eq!(app.json()["status"], "plan");
+    let axis = app.harness.get_by_label("Time axis").rect();
+    let rows = ((bottom(&app) - axis.bottom()) / 24.0) as usize;
+    let painted = painted_names(&app);
+    assert!((rows - 1..=rows + 2).contains(&painted), "{painted} names for {rows} rows");
+}

@@ -1,0 +1,3 @@
+//! The integration tests of `exact`, in one program: each module is about one thing.
+
+mod properties;

@@ -1,0 +1,9 @@
+//! The integration tests of `executive`, in one program: each module is about one thing.
+
+mod model_based;
+mod pinned;
+mod progress;
+mod runs;
+mod states;
+mod strategy;
+mod uncertain;

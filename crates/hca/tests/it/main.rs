@@ -1,0 +1,5 @@
+//! The integration tests of `hca`, in one program: each module is about one thing.
+
+mod conformance;
+mod esterel;
+mod interpreter;

@@ -1,0 +1,11 @@
+//! The integration tests of `kirk`, in one program: each module is about one thing.
+
+mod conformance;
+mod enclosed;
+mod explanations;
+mod families;
+mod foreign;
+mod planning_again;
+mod replay;
+mod searches;
+mod support;

@@ -1,0 +1,10 @@
+//! The integration tests of `layout`, in one program: each module is about one thing.
+
+mod automaton;
+mod drawings;
+mod fit;
+mod lists;
+mod network;
+mod overlay;
+mod recover;
+mod threads;

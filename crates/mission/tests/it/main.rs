@@ -1,0 +1,22 @@
+//! The integration tests of `mission`, in one program: each module is about one thing.
+
+mod days;
+mod enroute;
+mod exploration;
+mod geojson;
+mod kinodynamics;
+mod levels;
+mod listing;
+mod meetings;
+mod movements;
+mod nature;
+mod networks;
+mod paths;
+mod programs;
+mod repairs;
+mod robustness;
+mod sessions;
+mod simulation;
+mod standing;
+mod support;
+mod tours;

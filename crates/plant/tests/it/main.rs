@@ -1,0 +1,5 @@
+//! The integration tests of `plant`, in one program: each module is about one thing.
+
+mod checks;
+mod estimation;
+mod planning;

@@ -1,0 +1,16 @@
+//! The integration tests of `rmpl`, in one program: each module is about one thing.
+
+mod conformance_programs;
+mod contingent;
+mod editor_help;
+mod editor_lasting;
+mod editor_names;
+mod editor_text;
+mod explanations;
+mod fixture;
+mod formatting;
+mod incremental;
+mod large;
+mod lasting;
+mod suite;
+mod written;

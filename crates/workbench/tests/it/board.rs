@@ -1,0 +1,467 @@
+//! A board at work: from a draft to an approval over one edit, through files, tabs, reloads and what was tampered with.
+
+use crate::support;
+use std::rc::Rc;
+
+use crate::support::App;
+use mission::review::Record;
+use serde_json::{Value, json};
+use workbench::command::Command;
+use workbench::host::{FileKind, Remote as _};
+use workbench::state::review::ReviewCommand;
+
+/// The open mission, reviewed, before a board of two roles.
+fn before_the_board() -> App {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    let board = json!([{ "role": "Science", "approvals": 1 }, { "role": "Mobility", "approvals": 1 }]);
+    app.dispatch("review.rules", &json!({ "board": board }));
+    app
+}
+
+fn status(app: &App) -> Value {
+    app.json()["review"]["planStatus"].clone()
+}
+
+fn edit(app: &mut App, from: &str, to: &str) {
+    let source = app.session.source();
+    assert!(source.contains(from), "{from}");
+    app.run(Command::SetSource(source.replace(from, to)));
+    app.run(Command::Review(ReviewCommand::Run));
+}
+
+fn refused(app: &mut App, command: &str, arguments: &Value) -> String {
+    let answer = app.session.dispatch(command, arguments);
+    answer.expect_err("it is refused").to_string()
+}
+
+/// What the last act was, and by whom.
+fn last_act(app: &App) -> (String, String) {
+    let history = app.json()["review"]["history"].clone();
+    let last = history.as_array().and_then(|all| all.last().cloned()).expect("an entry");
+    let text = |member: &str| last[member].as_str().expect("a text").to_owned();
+    (text("by"), text("act"))
+}
+
+/// The report as it is written now: how it says that the plan stands, and where the board signs.
+fn report(app: &mut App) -> (String, String) {
+    app.run(Command::WriteReport);
+    let page = app.world.saved_text();
+    let part = |from: &str, to: &str| {
+        let rest = page.split_once(from).unwrap_or_else(|| panic!("no {from}")).1;
+        rest.split(to).next().unwrap_or_default().to_owned()
+    };
+    let hash = app.json()["review"]["hash"].as_str().expect("a hash").to_owned();
+    assert!(part("<dd class=\"hash\">", "</dd>").contains(&hash), "the report is of another content");
+    let short: String = hash.chars().filter(char::is_ascii_hexdigit).collect();
+    assert!(part("@bottom-left", "}").contains(&short), "its pages are of another content");
+    (part("<dt>Board</dt>", "</dd>"), part("<h2>Signatures</h2>", "<h2"))
+}
+
+#[test]
+fn a_report_has_only_the_signatures_that_hold_for_its_content() {
+    let mut app = before_the_board();
+    let named = |(_, signed): &(String, String)| {
+        ["Ada", "Grace"].map(|name| signed.contains(&format!("<td>{name}</td>")))
+    };
+    let draft = report(&mut app);
+    assert!(draft.0.contains("draft") && named(&draft) == [false, false], "{draft:?}");
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    let half = report(&mut app);
+    assert!(half.0.contains("in review") && named(&half) == [true, false], "{half:?}");
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    let whole = report(&mut app);
+    assert!(whole.0.contains("approved") && named(&whole) == [true, true], "{whole:?}");
+    // One of them takes it back: the seat is empty again, in the report of the same content.
+    let given = app.json()["review"]["history"].as_array().and_then(|all| all.last().cloned());
+    let id = given.expect("an entry")["id"].clone();
+    let back = json!({ "name": "Grace", "role": "Mobility", "id": id, "text": "Not read to the end." });
+    app.dispatch("review.withdraw", &back);
+    let taken = report(&mut app);
+    assert!(taken.0.contains("in review") && named(&taken) == [true, false], "{taken:?}");
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    assert_eq!(named(&report(&mut app)), [true, true]);
+    // An edit: no signature is of this content, and the report says whose approval lapsed, and why.
+    edit(&mut app, "PATH1=OK [450,450]", "PATH1=OK [460,460]");
+    let lapsed = report(&mut app);
+    assert!(lapsed.0.contains("lapsed") && lapsed.0.contains("Grace approved"), "{lapsed:?}");
+    assert_eq!(named(&lapsed), [false, false], "{lapsed:?}");
+    assert!(lapsed.1.contains("In the way of an approval"), "{lapsed:?}");
+}
+
+#[test]
+fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
+    let mut app = before_the_board();
+    assert_eq!(status(&app), "draft");
+    // A comment is open, and stands in the way.
+    let asked =
+        json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": "Why so long?" });
+    app.dispatch("review.comment", &asked);
+    assert_eq!(status(&app), "in-review");
+    let ada = json!({ "name": "Ada", "role": "Science" });
+    let why = refused(&mut app, "review.approve", &ada);
+    assert!(why.contains("not acknowledged") && why.contains("1 comment is open"), "{why}");
+    // It is resolved by name; a second time is refused.
+    let id = app.json()["review"]["comments"][0]["id"].clone();
+    let resolve = json!({ "name": "Grace", "role": "Mobility", "id": id, "text": "It waits for light." });
+    app.dispatch("review.resolve", &resolve);
+    assert!(refused(&mut app, "review.resolve", &resolve).contains("not open"));
+    assert_eq!(app.json()["review"]["comments"][0]["open"], false);
+    // Lines for attention are acknowledged with a reason, each.
+    let items = app.json()["review"]["items"].as_array().expect("a list").clone();
+    let index = items.iter().position(|item| item["status"] == "attention").expect("a line");
+    let silent = json!({ "name": "Ada", "item": index, "text": " " });
+    assert!(refused(&mut app, "review.acknowledge", &silent).contains("reason"));
+    app.acknowledge_all("Ada");
+    assert_eq!(
+        app.json()["review"]["items"][index]["acknowledged"],
+        json!({ "by": "Ada", "text": "As meant." })
+    );
+    // One role, then the other.
+    app.dispatch("review.approve", &ada);
+    assert_eq!(status(&app), "in-review");
+    assert!(refused(&mut app, "review.approve", &ada).contains("already"));
+    assert!(refused(&mut app, "review.approve", &json!({ "name": "Ada" })).contains("no role"));
+    let grace = json!({ "name": "Grace", "role": "Mobility", "text": "Mind the slope." });
+    app.dispatch("review.approve", &grace);
+    assert_eq!(status(&app), "approved-with-comments");
+    // An edit lapses it, and its undo brings it back.
+    edit(&mut app, "PATH1=OK [450,450]", "PATH1=OK [460,460]");
+    assert_eq!(status(&app), "lapsed");
+    assert_eq!(app.json()["review"]["signed"]["stale"], true);
+    // The approved plan lies under the present one, on the timeline and in the report.
+    assert!(app.session.state().approved_times().is_some());
+    app.run(Command::WriteReport);
+    let page = app.world.saved_text();
+    for part in [
+        "Timeline of the plan over the approved one",
+        "approved: from ",
+        "Network of the plan over the approved one",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    app.dispatch("edit.undo", &json!(null));
+    assert_eq!(status(&app), "approved-with-comments");
+    assert_eq!(app.session.state().approved_times(), None);
+    app.dispatch("edit.redo", &json!(null));
+    assert_eq!(status(&app), "lapsed");
+    // The board approves the edited plan; what differs is acknowledged anew, what does not is not.
+    let left = app.json()["review"]["blockers"].clone();
+    app.acknowledge_all("Grace");
+    assert_eq!(app.json()["review"]["blockers"], json!([]), "{left}");
+    app.dispatch("review.approve", &ada);
+    assert_eq!(status(&app), "in-review");
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    assert_eq!(status(&app), "approved");
+    // Grace takes her approval back, and that stays in the history.
+    let history = app.json()["review"]["history"].clone();
+    let given = history.as_array().and_then(|all| all.last()).expect("an entry")["id"].clone();
+    let withdraw =
+        json!({ "name": "Grace", "role": "Mobility", "id": given, "text": "Not read to the end." });
+    app.dispatch("review.withdraw", &withdraw);
+    assert!(refused(&mut app, "review.withdraw", &withdraw).contains("already"));
+    assert_eq!(status(&app), "in-review");
+    assert_eq!(last_act(&app), ("Grace".to_owned(), "took back".to_owned()));
+    let taken = app.json()["review"]["history"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .any(|entry| entry["id"] == given && entry["withdrawn"] == true && entry["act"] == "approved");
+    assert!(taken, "what was taken back is still told");
+    // Another run finds all of it, and the report has it.
+    let told = app.json()["review"]["history"].clone();
+    app.run(Command::WriteReport);
+    let page = app.world.saved_text();
+    for part in ["History of the review", "taken back by Grace", "Since the last approval", "Mind the slope."]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+    let world = Rc::clone(&app.world);
+    drop(app);
+    let mut again = support::start_in(world);
+    again.settle();
+    assert_eq!(again.json()["review"]["history"], told);
+}
+
+/// What a board's history tells, row by row, as `docs/reviews.md` shows it.
+struct Told {
+    app: App,
+    known: usize,
+    rows: Vec<String>,
+}
+
+impl Told {
+    /// Half an hour later something is done; what that adds to the history becomes rows with the status after it.
+    fn then(&mut self, act: impl FnOnce(&mut App)) {
+        self.app.world.now_secs.set(self.app.world.now_secs.get() + 1800.0);
+        act(&mut self.app);
+        let review = self.app.json()["review"].clone();
+        let entries = review["history"].as_array().expect("a list").clone();
+        let text = |entry: &Value, member: &str| entry[member].as_str().unwrap_or_default().to_owned();
+        let new = &entries[self.known..];
+        self.known = entries.len();
+        let content = text(&review, "hash")[..6].to_owned();
+        let status = text(&review, "planStatus").replace('-', " ");
+        let Some(first) = new.first() else {
+            self.rows.push(format!("| | | *the text is edited* | `{content}` | {status} |"));
+            return;
+        };
+        let words = match text(first, "text") {
+            _ if new.len() > 1 => format!(", {} lines", new.len()),
+            words if words.is_empty() => String::new(),
+            words => format!(": “{words}”"),
+        };
+        let time = text(first, "time")[11..16].to_owned();
+        let (by, act) = (text(first, "by"), text(first, "act"));
+        let role = match text(first, "role") {
+            role if role.is_empty() => role,
+            role => format!(" ({role})"),
+        };
+        assert!(
+            new.iter().all(|entry| text(entry, "hash").starts_with(&content)),
+            "each says what it is about"
+        );
+        self.rows.push(format!("| {time} | {by}{role} | {act}{words} | `{content}` | {status} |"));
+    }
+}
+
+#[test]
+fn the_manual_shows_a_board_s_history_from_draft_to_approval_over_one_edit() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    let mut told = Told { app, known: 0, rows: Vec::new() };
+    let by = |name: &str, role: &str| json!({ "name": name, "role": role });
+    let (ada, grace) = (by("Ada", "Science"), by("Grace", "Mobility"));
+    told.then(|app| {
+        app.session.state_mut().settings.reviewer = "Chris".to_owned();
+        app.session.state_mut().settings.reviewer_role = "Chair".to_owned();
+        let board = json!([{ "role": "Science", "approvals": 1 }, { "role": "Mobility", "approvals": 1 }]);
+        app.dispatch("review.rules", &json!({ "board": board }));
+    });
+    told.then(|app| {
+        let words = "Why so long?";
+        let about = json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": words });
+        app.dispatch("review.comment", &about);
+    });
+    told.then(|app| {
+        let id = app.json()["review"]["comments"][0]["id"].clone();
+        let words = "It waits for light.";
+        app.dispatch(
+            "review.resolve",
+            &json!({ "name": "Grace", "role": "Mobility", "id": id, "text": words }),
+        );
+    });
+    told.then(|app| app.acknowledge_all("Ada"));
+    told.then(|app| app.dispatch("review.approve", &ada));
+    told.then(|app| {
+        let words = "Mind the slope.";
+        app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility", "text": words }));
+    });
+    told.then(|app| edit(app, "PATH1=OK [450,450]", "PATH1=OK [460,460]"));
+    told.then(|app| app.acknowledge_all("Ada"));
+    told.then(|app| app.dispatch("review.approve", &ada));
+    told.then(|app| app.dispatch("review.approve", &grace));
+    let statuses: Vec<&str> =
+        told.rows.iter().filter_map(|row| row.trim_matches(['|', ' ']).rsplit(" | ").next()).collect();
+    assert_eq!(
+        statuses,
+        [
+            "draft",
+            "in review",
+            "in review",
+            "in review",
+            "in review",
+            "approved with comments",
+            "lapsed",
+            "lapsed",
+            "in review",
+            "approved",
+        ]
+    );
+    let manual = include_str!("../../../../docs/reviews.md");
+    let table = told.rows.join("\n");
+    assert!(manual.contains(&table), "docs/reviews.md does not show this:\n{table}");
+    // What is shown there is what can be checked: the record, saved and read again.
+    let record = told.app.session.state().review.record();
+    let read = Record::from_json(&record.to_json()).expect("it is intact");
+    assert_eq!((read.entries().len(), &read), (told.known, record));
+}
+
+fn open_json(app: &mut App, text: &str) {
+    app.world.open_file(FileKind::Json, "board.review.json", text.as_bytes());
+    app.settle();
+}
+
+/// What the last message said.
+fn last_toast(app: &App) -> String {
+    app.session.state().toasts.shown().last().map(|toast| toast.text.clone()).unwrap_or_default()
+}
+
+/// A history of one comment, with its text altered.
+fn tampered(app: &App) -> String {
+    let text = app.session.state().review.record().to_json();
+    let altered = text.replace("Why so long?", "Fine as it is.");
+    assert_ne!(text, altered);
+    altered
+}
+
+#[test]
+fn a_history_that_was_altered_is_refused_and_nothing_of_it_is_added() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    let altered = tampered(&author);
+    let mut app = support::start();
+    open_json(&mut app, &altered);
+    assert_eq!(app.json()["review"]["history"], json!([]));
+    let said = last_toast(&app);
+    assert!(said.contains("altered") && said.contains("entry 2 (Ada"), "{said}");
+    open_json(&mut app, &author.session.state().review.record().to_json());
+    assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
+}
+
+#[test]
+fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    let theirs = author.session.state().review.record().to_json();
+    let mut app = support::start();
+    app.run(Command::OpenExample("both-paths".into()));
+    app.run(Command::Review(ReviewCommand::Run));
+    let rules = app.session.state().review.record().rules().clone();
+    open_json(&mut app, &theirs);
+    let said = last_toast(&app);
+    assert!(said.contains("the review of “enroute”") && said.contains("Nothing of it was added"), "{said}");
+    assert_eq!(app.json()["review"]["history"], json!([]));
+    assert_eq!(*app.session.state().review.record().rules(), rules, "its flight rules, neither");
+    assert_eq!(status(&app), "draft");
+    // Under another name, with the very text that it is about, it belongs there.
+    let mut renamed: Value = serde_json::from_str(&theirs).expect("JSON");
+    renamed["mission"] = json!("Drive to the target");
+    let mut app = support::start();
+    open_json(&mut app, &renamed.to_string());
+    assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
+}
+
+const KEY: &str = "enroute/review-1/enroute";
+
+#[test]
+fn what_is_kept_and_cannot_be_used_is_kept_aside_and_never_lost() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    let altered = tampered(&author);
+    let world = Rc::clone(&author.world);
+    drop(author);
+    world.storage.borrow_mut().insert(KEY.into(), altered.clone());
+    let mut app = support::start_in(Rc::clone(&world));
+    app.settle();
+    assert!(app.json()["review"]["aside"].as_str().is_some_and(|why| why.contains("altered")));
+    assert_eq!(app.json()["review"]["history"], json!([]));
+    app.dispatch("review.comment", &json!({ "author": "Grace", "text": "Begun anew." }));
+    assert_eq!(world.storage.borrow().get(&format!("{KEY}/aside")), Some(&altered));
+    assert_eq!(app.json()["review"]["unkept"], Value::Null);
+    app.run(Command::Review(ReviewCommand::SaveAside));
+    assert_eq!(world.saved.borrow().last().expect("a file").1, altered.as_bytes());
+    drop(app);
+    let mut again = support::start_in(world);
+    again.settle();
+    assert_eq!(again.json()["review"]["comments"][0]["text"], "Begun anew.");
+    assert!(again.json()["review"]["aside"].is_string(), "it can still be saved");
+}
+
+#[test]
+fn a_review_of_a_later_version_is_never_written_over() {
+    let world = Rc::<support::World>::default();
+    let newer = json!({ "format": "enroute-review/3", "votes": [1, 2] }).to_string();
+    world.storage.borrow_mut().insert(KEY.into(), newer.clone());
+    let mut app = support::start_in(Rc::clone(&world));
+    app.settle();
+    app.dispatch("review.comment", &json!({ "author": "Ada", "text": "Here?" }));
+    assert_eq!(world.storage.borrow().get(KEY), Some(&newer));
+    let why = app.json()["review"]["unkept"].clone();
+    assert!(why.as_str().is_some_and(|why| why.contains("later version")), "{why}");
+    assert_eq!(app.json()["review"]["comments"][0]["text"], "Here?");
+}
+
+#[test]
+fn a_whole_mission_with_an_altered_history_opens_and_says_so() {
+    let mut author = before_the_board();
+    author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
+    author.dispatch("file.saveAs", &json!(null));
+    let text = author.world.saved_text().replace("Why so long?", "Fine as it is.");
+    let mut app = support::start();
+    open_json(&mut app, &text);
+    assert!(app.json()["review"]["aside"].as_str().is_some_and(|why| why.contains("altered")));
+    let aside = app.world.storage.borrow().values().any(|kept| kept.contains("Fine as it is."));
+    assert!(aside, "it is kept");
+}
+
+#[test]
+fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    app.sample(20, 5);
+    let kept = app.session.state().review.record().to_json();
+    let record = Record::from_json(&kept).expect("a record");
+    let hash = app.json()["review"]["hash"].as_str().expect("a hash").to_owned();
+    let runs = record.runs_of(&hash).expect("they are kept by content");
+    assert_eq!((runs.seed, runs.runs, runs.tally.runs), (5, 20, 20));
+    let world = Rc::clone(&app.world);
+    drop(app);
+    let mut again = support::start_in(world);
+    again.settle();
+    again.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(again.json()["robustness"]["runs"], 20);
+    again.run(Command::WriteReport);
+    let page = again.world.saved_text();
+    assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
+}
+
+#[test]
+fn schedules_say_how_the_plan_stands_and_what_is_pinned() {
+    let mut app = support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada" }));
+    assert_eq!(status(&app), "approved");
+    app.dispatch("plan.pin", &json!({ "event": "Group-Wait#1.end", "time": 450 }));
+    app.dispatch("export.schedule", &json!({ "as": "json", "epoch": "2004-01-25T05:05:00Z" }));
+    let schedule: Value = serde_json::from_str(&app.world.saved_text()).expect("JSON");
+    assert_eq!(schedule["plan_status"], "approved");
+    assert_eq!(schedule["content_hash"], app.json()["review"]["hash"]);
+    assert_eq!(schedule["pinned"][0]["time"], 450);
+    let rows = schedule["activities"].as_array().expect("a list");
+    let wait = rows.iter().find(|row| row["name"] == "Group-Wait#1").expect("the wait");
+    assert_eq!((&wait["end"]["earliest"], &wait["end"]["latest"]), (&json!(450), &json!(450)));
+    assert_eq!(wait["end"]["earliest_utc"], "2004-01-25T12:35:00Z");
+}
+
+#[test]
+fn rules_of_the_mission_are_evaluated_as_soon_as_they_are_set() {
+    let mut app = before_the_board();
+    let lines = |app: &App| -> Vec<(String, String)> {
+        let items = app.json()["review"]["items"].as_array().expect("a list").clone();
+        let rules = items.iter().filter(|item| item["section"] == "mission-rules");
+        let text = |item: &Value, member: &str| item[member].as_str().expect("a text").to_owned();
+        rules.map(|item| (text(item, "status"), text(item, "text"))).collect()
+    };
+    assert_eq!(lines(&app), []);
+    let rule = |rule: &str| json!([{ "name": "Way", "rule": rule, "source": "FR 2", "waivable": false }]);
+    app.dispatch("review.rules", &json!({ "rules": rule("PATH1=OK while Group-Traverse-Path") }));
+    app.settle();
+    let held = ("passed".to_owned(), "Way: holds in every execution of the plan".to_owned());
+    assert_eq!(lines(&app), [held]);
+    assert_eq!(app.session.state().rule_tracks().len(), 1);
+    // A rule that the plan breaks keeps the board from approving, whatever is acknowledged.
+    app.dispatch("review.rules", &json!({ "rules": rule("never Group-Traverse-Path while PATH1=OK") }));
+    app.settle();
+    let [(status, text)] = &lines(&app)[..] else { panic!("one line") };
+    assert_eq!(status, "failed", "{text}");
+    app.acknowledge_all("Ada");
+    let why = refused(&mut app, "review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    assert!(why.contains("failed"), "{why}");
+    // With another text it is stale, and drawn no more; with the text again, it is there again.
+    let source = app.session.source();
+    app.run(Command::SetSource(source.replace("[450,450]", "[440,440]")));
+    assert!(app.session.state().rule_tracks().is_empty());
+}

@@ -1,0 +1,19 @@
+//! The integration tests of `workbench`, in one program: each module is about one thing.
+
+mod board;
+mod counters;
+mod course;
+mod editing;
+mod effects;
+mod esterel;
+mod files;
+mod key_sentences;
+mod key_steps;
+mod library;
+mod manual;
+mod opening;
+mod path_race;
+mod session;
+mod support;
+mod transport;
+mod truth;

@@ -1,0 +1,5 @@
+//! The integration tests of `xtask`, in one program: each module is about one thing.
+
+mod citations;
+mod policy;
+mod repository;
