@@ -38,7 +38,6 @@ pub struct Answer {
 /// How much the exhaustive search may look at.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Schedules.
     pub schedules: u64,
     /// Distinct plans: what happens at one instant may have very many orders.
     pub plans: usize,

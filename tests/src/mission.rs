@@ -77,7 +77,6 @@ pub fn sound(network: &Network, plan: &Plan) -> Result<(), String> {
 pub struct PlanKey {
     /// `D1=0`, …
     pub choices: Vec<String>,
-    /// Ask and Tell.
     pub links: Vec<(String, String)>,
     /// First and then.
     pub conflicts: Vec<(String, String)>,

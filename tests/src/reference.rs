@@ -25,7 +25,6 @@ pub struct Found {
 pub struct Answer {
     /// Distinct by choices, links and order of conflicts, in the order of SPEC 5.4.
     pub plans: Vec<Found>,
-    /// Steps taken.
     pub steps: u64,
 }
 

@@ -12,7 +12,6 @@ pub(crate) struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Starts now.
     pub(crate) fn start() -> Self {
         let thread = ThreadTime::now();
         Self { wall: Instant::now(), thread }

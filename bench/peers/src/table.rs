@@ -28,7 +28,6 @@ impl Table {
         self.notes.push(text.into());
     }
 
-    /// Prints it.
     #[expect(clippy::print_stdout, reason = "printing tables is what this program is for")]
     pub(crate) fn print(&self) {
         let width = |column: usize| {
@@ -56,7 +55,6 @@ pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
     sorted.get(((sorted.len() as f64 - 1.0) * share).round() as usize).copied().unwrap_or(f64::NAN)
 }
 
-/// The median.
 pub(crate) fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }

@@ -28,7 +28,6 @@ pub struct AccessibilityMirror {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Act {
-    /// Clicks it.
     Click,
     /// Gives it the keyboard.
     Focus,

@@ -23,7 +23,6 @@ pub struct FailingRun {
 pub struct RunEvent {
     /// One of the events there, with a name if one of them has one.
     pub event: NodeId,
-    /// When.
     pub time: Time,
     /// The duration that nature ends there; otherwise the executive acts.
     pub natures: Option<ArcId>,

@@ -37,7 +37,6 @@ pub enum Source {
 /// A plan's events as time points, with its constraints and contingent links in ticks. Ties are no constraints here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanNetwork {
-    /// The network.
     pub network: stnu::Network,
     /// The ticks of its times.
     pub scale: Scale,

@@ -15,11 +15,9 @@ pub enum ColorRole {
     Raised,
     /// Bands beside each other, and what is under the pointer.
     Hover,
-    /// Quiet lines.
     Line,
     /// Outlines that must be seen.
     LineStrong,
-    /// Text.
     Text,
     /// Text that matters less.
     TextMuted,
@@ -33,9 +31,7 @@ pub enum ColorRole {
     Selection,
     /// A quiet fill for what holds.
     GoodSoft,
-    /// Doubtful.
     Warning,
-    /// Wrong.
     Error,
     /// What the plan selects.
     Path,
@@ -43,13 +39,11 @@ pub enum ColorRole {
     PathUnselected,
     /// The inside of nodes.
     NodeFill,
-    /// Decisions.
     Decision,
     /// Asserted conditions.
     Tell,
     /// Required conditions.
     Ask,
-    /// Causal links.
     Link,
     /// Added orderings.
     Ordering,
@@ -59,7 +53,7 @@ pub enum ColorRole {
     Nature,
     /// The flexible part of a window.
     Slack,
-    /// The present.
+    /// The present time.
     Now,
     /// A category such as a vehicle, starting over after the eighth; always with another sign beside the colour.
     Series(u8),
@@ -70,7 +64,6 @@ pub enum ColorRole {
 /// A colour as it is used: by its role, and how much of it there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color {
-    /// Which one.
     pub role: ColorRole,
     /// How much of it, from 0 to 1.
     pub strength: f32,

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 /// A place on the drawing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// To the right.
+    /// Increases to the right.
     pub x: f64,
-    /// Downwards.
+    /// Increases downward.
     pub y: f64,
 }
 

@@ -42,11 +42,8 @@ pub struct Group {
 /// A shape with its fill and its stroke.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
-    /// What it is.
     pub shape: Shape,
-    /// What it is filled with.
     pub fill: Option<Fill>,
-    /// Its line.
     pub stroke: Option<Stroke>,
     /// At which zooms it is drawn.
     pub detail: Detail,
@@ -63,21 +60,16 @@ pub enum Shape {
         start: Point,
         /// Its pieces, by [`DisplayList::pieces`].
         pieces: Run,
-        /// How it ends.
         end: PathEnd,
     },
     /// An upright rectangle.
     Rectangle {
-        /// Where.
         rect: Rect,
         /// The radius of its corners.
         corner: f64,
     },
-    /// A circle.
     Circle {
-        /// Its middle.
         center: Point,
-        /// Its radius.
         radius: f64,
     },
     /// A text, by its place; see [`DisplayList::text`].
@@ -94,7 +86,6 @@ pub struct Run {
 /// How a path ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
-    /// As it is.
     Open,
     /// With an arrow head in the colour of the line.
     Head,
@@ -105,7 +96,6 @@ pub enum PathEnd {
 /// What an item is filled with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fill {
-    /// A colour.
     Solid(Color),
     /// Slanted lines.
     Hatched(Color),
@@ -114,22 +104,17 @@ pub enum Fill {
 /// A line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// Its colour.
     pub color: Color,
     /// Its width in drawing units.
     pub width: f64,
-    /// Its pattern.
     pub dash: Dash,
 }
 
 /// The pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dash {
-    /// Unbroken.
     Solid,
-    /// Dashes.
     Dashed,
-    /// Dots.
     Dotted,
 }
 
@@ -147,7 +132,6 @@ pub struct Detail {
 pub struct Target {
     /// What kind of thing.
     pub kind: TargetKind,
-    /// Which one.
     pub id: u32,
 }
 
@@ -158,7 +142,6 @@ pub enum TargetKind {
     Node,
     /// A constraint of a network.
     Arc,
-    /// A condition.
     Label,
     /// A block of a program.
     Block,

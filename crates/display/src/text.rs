@@ -8,7 +8,6 @@ use crate::geometry::Rect;
 /// A text in the place that is reserved for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// What it says.
     pub text: SmolStr,
     /// Its size in drawing units.
     pub size: f64,
@@ -20,7 +19,6 @@ pub struct Text {
     pub weight: Weight,
     /// What becomes of it where its place is too narrow.
     pub fit: Fit,
-    /// Its colour.
     pub color: Color,
     /// A plate behind it, which keeps what passes below from disturbing it.
     pub plate: Option<Color>,
@@ -39,9 +37,9 @@ pub struct Text {
 /// Which part of a text lies on the same part of its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its left end.
+    /// Anchored at the left end of the text.
     Start,
-    /// Its middle.
+    /// Anchored at the middle of the text.
     Middle,
     /// Its right end.
     End,
@@ -50,9 +48,7 @@ pub enum Anchor {
 /// How heavy a text is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weight {
-    /// As texts are.
     Regular,
-    /// Stands out.
     Strong,
 }
 

@@ -102,7 +102,6 @@ impl LineLayout {
         Some((head, text.len()))
     }
 
-    /// The galley.
     pub(crate) fn galley(&self) -> &Arc<Galley> {
         &self.galley
     }

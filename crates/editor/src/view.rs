@@ -40,7 +40,6 @@ pub struct EditorView<'a> {
     pub active_secs: f64,
     /// Seconds at the start of this frame, on any clock.
     pub now_secs: f64,
-    /// The colours.
     pub tokens: &'static Tokens,
 }
 
@@ -95,7 +94,6 @@ impl Severity {
 /// A marked place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mark {
-    /// The place.
     pub bytes: Range<usize>,
     /// What is behind its text.
     pub fill: Color32,
@@ -106,9 +104,7 @@ pub struct Mark {
 /// A piece of text with a colour of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Highlight {
-    /// The piece.
     pub bytes: Range<usize>,
-    /// Its colour.
     pub color: Color32,
 }
 
@@ -128,7 +124,6 @@ pub struct Popup<'a> {
 /// An entry of a list at the caret.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PopupItem<'a> {
-    /// Its text.
     pub label: &'a str,
     /// More about it.
     pub detail: &'a str,
@@ -139,7 +134,6 @@ pub struct PopupItem<'a> {
 /// The signature of the call around the caret.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Signature {
-    /// Its text.
     pub label: String,
     /// The parameter that is being written, in bytes of the label.
     pub active: Option<Range<usize>>,

@@ -9,9 +9,7 @@ use crate::{ReadError, Time};
 /// An upper bound: a finite time or infinity. Finite bounds order below infinity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Bound {
-    /// A finite time.
     Finite(Time),
-    /// No bound.
     Infinite,
 }
 
@@ -21,7 +19,6 @@ pub enum BoundError {
     /// The exact result does not fit.
     #[error("the exact value of this expression does not fit into 64 bits")]
     Overflow,
-    /// Division by zero.
     #[error("division by zero")]
     DivisionByZero,
     /// ∞ · x for x < 0.

@@ -13,7 +13,6 @@ use tpn::{
 /// What has happened and what is known at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
-    /// The present.
     pub now: Time,
     /// Nodes of the program's network that have happened.
     pub happened: Vec<(NodeId, Time)>,
@@ -51,7 +50,6 @@ pub struct StandingPlace {
     pub vehicle: u32,
     /// Metres east and north.
     pub place_m: [f64; 2],
-    /// Since when.
     pub since: Time,
 }
 

@@ -9,7 +9,6 @@ use smol_str::SmolStr;
 pub struct Entry {
     /// When, in mission units.
     pub time: Time,
-    /// What.
     #[serde(flatten)]
     pub happening: Happening,
 }
@@ -19,13 +18,9 @@ pub struct Entry {
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum Happening {
     /// A named event of the plan.
-    Executed {
-        /// Its name.
-        name: SmolStr,
-    },
+    Executed { name: SmolStr },
     /// What an activity under way shows of itself, such as a step of its control program.
     Progress {
-        /// The activity.
         name: SmolStr,
         /// What was done.
         text: String,
@@ -41,7 +36,6 @@ pub enum Happening {
     },
     /// How far a resource is used changes (SPEC 11).
     Level {
-        /// Its name.
         resource: SmolStr,
         /// The level of a reservoir; of another resource what is in use.
         level: Rational,
@@ -52,7 +46,6 @@ pub enum Happening {
     Violation {
         /// The event that broke it.
         name: SmolStr,
-        /// Why.
         reason: String,
     },
     /// A new plan was made from here.
@@ -61,10 +54,7 @@ pub enum Happening {
         changes: Vec<String>,
     },
     /// There is no plan from here: everything is stopped.
-    Stopped {
-        /// Why.
-        reason: String,
-    },
+    Stopped { reason: String },
     /// The mission is over.
     Finished,
 }

@@ -33,10 +33,7 @@ pub enum PlanError {
     Overflow,
     /// What the world makes of it does not fit.
     #[error("{event} would come at a time that does not fit into 64 bits")]
-    TooLate {
-        /// The event.
-        event: String,
-    },
+    TooLate { event: String },
 }
 
 impl From<stn::Overflow> for PlanError {

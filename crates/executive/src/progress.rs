@@ -12,7 +12,6 @@ use crate::uncertain_progress::uncertain_progress;
 pub struct Observations {
     /// Events that happened, and when.
     pub executed: Vec<(NodeId, Time)>,
-    /// The present.
     pub now: Time,
 }
 
@@ -28,7 +27,6 @@ pub enum Progress {
 /// An event that could happen earlier if nature ended something earlier (SPEC 13.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Waiting {
-    /// What waits.
     pub event: NodeId,
     /// For the end of which duration.
     pub natures: ArcId,

@@ -44,7 +44,6 @@ pub trait Replanner {
 pub struct RunOutcome {
     /// What happened, in order.
     pub log: Vec<Entry>,
-    /// How it ended.
     pub ending: Ending,
     /// The plans that were executed, one after the other; there is at least one.
     pub plans: Vec<ExecutedPlan>,

@@ -210,7 +210,6 @@ impl Dispatch {
 /// A vertex of a path: it guides the vehicle, and is no deadline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Guide {
-    /// The traverse.
     pub(crate) traverse: OccurrenceId,
     /// How long it takes at least from the start of the traverse.
     pub(crate) least_before: Time,
@@ -367,7 +366,6 @@ pub struct ExecutedPlan {
     pub from: Time,
     /// Its network, with the facts known then.
     pub network: Arc<Network>,
-    /// The plan.
     pub plan: Plan,
     /// When each node happened, those before `from` included; `None` for those that did not while this plan held.
     pub times: Vec<Option<Time>>,

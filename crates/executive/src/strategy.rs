@@ -30,7 +30,6 @@ pub struct Strategy {
 /// Who makes an event happen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Actor {
-    /// The executive.
     Executive,
     /// Nature, at the end of a duration that it chose.
     Nature(ArcId),
@@ -39,11 +38,9 @@ pub enum Actor {
 /// What comes at one instant because somebody acts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Act {
-    /// When.
     pub time: Time,
     /// What happens, at least one event; those with names first.
     pub events: Vec<NodeId>,
-    /// Who acts.
     pub actor: Actor,
     /// When it could have happened, with what happened before.
     pub window: Window,
@@ -52,7 +49,7 @@ pub struct Act {
 /// A duration that nature is choosing: it has begun and has not ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnderWay {
-    /// The duration.
+    /// The uncontrolled duration.
     pub natures: ArcId,
     /// When it began.
     pub began: Time,
@@ -63,7 +60,6 @@ pub struct UnderWay {
 /// How a run stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// The present.
     pub now: Time,
     /// What happened so far, in the order of time.
     pub acts: Vec<Act>,

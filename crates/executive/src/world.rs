@@ -18,7 +18,6 @@ pub enum Disturbance {
     Duration {
         /// The occurrence, such as `Group-Transmit#1`; `delay#1` where nature chooses that.
         activity: SmolStr,
-        /// Its duration.
         duration: Time,
     },
     /// A vehicle drives at a share of its greatest speed: its traverses take longer by that much.
@@ -32,7 +31,6 @@ pub enum Disturbance {
     Withdrawn {
         /// The assertion, such as `Tell(PATH1=OK)#1`.
         condition: SmolStr,
-        /// When it ends.
         at: Time,
     },
     /// A component of the plant fails, or comes into another mode, while an activity's control program runs.
@@ -41,7 +39,6 @@ pub enum Disturbance {
         activity: SmolStr,
         /// At the end of this step, from 1.
         step: u32,
-        /// The component.
         component: SmolStr,
         /// The mode it is in from then on.
         mode: SmolStr,
@@ -56,25 +53,20 @@ pub enum Disturbance {
     /// A variable that lasts has another value from a time on, until something changes it. While an activity changes it,
     /// nothing comes of this. A running assertion of another value ends.
     State {
-        /// Its name.
         variable: SmolStr,
         /// One of its values.
         value: SmolStr,
-        /// Since when.
         at: Time,
     },
     /// A reservoir is at another level at a time.
     Level {
-        /// Its name.
         resource: SmolStr,
         /// The level, within the reservoir's range.
         level: Rational,
-        /// When.
         at: Time,
     },
     /// Something stands in the world from a time on that is not on the map. Vehicles see it when it is in their range.
     Obstacle {
-        /// Since when.
         at: Time,
         /// Metres east.
         x: f64,
@@ -88,13 +80,10 @@ pub enum Disturbance {
     },
     /// A vehicle drives at most at a share of its traverse's greatest speed for a time; at a share of 0 it stands.
     VehicleSlow {
-        /// Its name.
         vehicle: SmolStr,
         /// The share, from 0 to 1.
         factor: Rational,
-        /// Since when.
         from: Time,
-        /// Until when.
         until: Time,
     },
 }
@@ -201,21 +190,12 @@ pub struct World {
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorldChange {
     /// A variable has this value.
-    State {
-        /// When.
-        at: Time,
-        /// The variable.
-        variable: SmolStr,
-        /// The value.
-        value: SmolStr,
-    },
+    State { at: Time, variable: SmolStr, value: SmolStr },
     /// A reservoir is at this level.
     Level {
-        /// When.
         at: Time,
         /// The reservoir.
         resource: SmolStr,
-        /// The level.
         level: Rational,
     },
 }

@@ -122,7 +122,6 @@ struct Held {
     value: Option<ValueId>,
     /// What gave it; nothing for the world.
     by: Option<LabelId>,
-    /// What is changing it.
     changing: Vec<LabelId>,
     /// What it was at some moment of the present instant.
     seen: Vec<ValueId>,
@@ -131,7 +130,7 @@ struct Held {
 /// The world's state at the present instant.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct WorldState {
-    /// By variable.
+    /// Indexed by variable.
     held: Vec<Held>,
     /// By resource: of a reservoir its level, of another what is in use.
     levels: Vec<Rational>,

@@ -33,7 +33,6 @@ pub struct TestId(pub u32);
 pub enum Element {
     /// A primitive location.
     Location(LocationId),
-    /// A composite.
     Composite(CompositeId),
 }
 
@@ -45,11 +44,11 @@ pub enum LocationKind {
     Assert,
     /// Starts its body at every step.
     Always,
-    /// Chooses once.
+    /// Chooses between two bodies, once.
     If,
     /// Starts its body once unless something holds.
     Unless,
-    /// Waits once.
+    /// Starts its body the first time that its condition holds.
     When,
     /// Waits again and again.
     Whenever,
@@ -77,7 +76,6 @@ pub struct Assertion {
 /// A primitive location.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Location {
-    /// What it does.
     pub kind: LocationKind,
     /// How traces and drawings call it, such as `assert Camera=Off` or `when (…)`.
     pub label: SmolStr,
@@ -140,7 +138,6 @@ pub struct Transition {
 /// A control program compiled.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Automaton {
-    /// Its variables.
     pub variables: Vec<Variable>,
     /// Its conditions.
     pub tests: Vec<Test>,

@@ -22,7 +22,6 @@ const MAX_STATES: u32 = 4_000;
 pub(crate) struct Enclosed {
     /// Its nodes; the first two are its first and last event.
     points: Vec<NodeId>,
-    /// Its arcs.
     arcs: Vec<ArcId>,
     /// Its conflicting pairs of labels, in textual order.
     pairs: Vec<(LabelId, LabelId)>,

@@ -102,7 +102,6 @@ pub struct Relaxation {
     /// Whether the least duration changes; otherwise the greatest one. What nature chooses becomes narrower by it, all
     /// else wider.
     pub is_lower: bool,
-    /// The bound as it is.
     pub old: Bound,
     /// The bound that gives a plan: the closest one in whole units of the mission's common denominator.
     pub new: Time,

@@ -7,9 +7,9 @@ use crate::structure::Relation;
 /// The tree of a program's blocks, and which block each arc belongs to.
 #[derive(Clone, Debug)]
 pub(crate) struct Nesting {
-    /// By arc.
+    /// Indexed by arc.
     block_of: Vec<Option<BlockId>>,
-    /// By block.
+    /// Indexed by block.
     places: Vec<Place>,
 }
 

@@ -127,7 +127,7 @@ pub struct Stats {
     pub backtracks: u64,
     /// Choice points jumped over on the way back.
     pub jumped_over: u64,
-    /// Failures met.
+    /// Failures that the search met.
     pub conflicts: u64,
     /// Nogoods learned.
     pub nogoods: u64,
@@ -135,7 +135,6 @@ pub struct Stats {
     pub leaves: u64,
     /// Causal links tried.
     pub links_tried: u64,
-    /// Orderings tried.
     pub orderings_tried: u64,
 }
 
@@ -143,7 +142,6 @@ pub struct Stats {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// There is a plan.
     Plan,
     /// There is none.
     NoPlan,

@@ -39,22 +39,15 @@ pub struct Entry {
 #[serde(rename_all = "kebab-case")]
 pub enum Event {
     /// A selected node's out-arcs are added next.
-    Expand {
-        /// The node.
-        node: NodeId,
-    },
+    Expand { node: NodeId },
     /// An alternative is taken.
     Decide {
-        /// The decision.
         decision: DecisionId,
         /// The alternative, from 0.
         alternative: u32,
     },
     /// An arc is selected and its bounds constrain the network.
-    AddArc {
-        /// The arc.
-        arc: ArcId,
-    },
+    AddArc { arc: ArcId },
     /// The bounds have been propagated.
     Propagate {
         /// How many events had to move in the schedule that the search maintains.
@@ -71,29 +64,13 @@ pub enum Event {
         ask: LabelId,
     },
     /// An assertion is tried for a requirement.
-    TryLink {
-        /// The link.
-        link: CausalLink,
-    },
+    TryLink { link: CausalLink },
     /// Two conflicting intervals may overlap.
-    Threat {
-        /// One of them.
-        left: LabelId,
-        /// The other.
-        right: LabelId,
-    },
+    Threat { left: LabelId, right: LabelId },
     /// One is put before the other.
-    TryOrder {
-        /// The order.
-        order: Ordering,
-    },
+    TryOrder { order: Ordering },
     /// Two conflicting intervals can be put in neither order.
-    Unresolvable {
-        /// One of them.
-        left: LabelId,
-        /// The other.
-        right: LabelId,
-    },
+    Unresolvable { left: LabelId, right: LabelId },
     /// The choices made contain a conflict learned before.
     Known {
         /// The choices of the conflict, the last one made last; none if there is no solution.
@@ -111,7 +88,6 @@ pub enum Event {
         /// The states whose choices caused the failure.
         because: Vec<TreeNodeId>,
     },
-    /// A plan.
     Solution {
         /// Its position among the plans.
         plan: u32,
@@ -121,20 +97,15 @@ pub enum Event {
     /// A conflict-driven search starts.
     Begin(SearchRound),
     /// One use of a resource is put before another.
-    TryUseOrder {
-        /// The order.
-        order: UseOrdering,
-    },
+    TryUseOrder { order: UseOrdering },
     /// A use of a resource starts as early as it can; others wait for it.
     TryStart {
-        /// The use.
         used: UseId,
         /// When it starts, at the latest.
         by: Time,
     },
     /// What follows from choices made before.
     Imply {
-        /// What.
         choice: TreeChoice,
         /// Whether it is so; otherwise it is ruled out.
         holds: bool,
@@ -142,30 +113,18 @@ pub enum Event {
         because: Vec<TreeChoice>,
     },
     /// No alternative is left of a decision.
-    NoAlternative {
-        /// The decision.
-        decision: DecisionId,
-    },
+    NoAlternative { decision: DecisionId },
     /// Too much of a resource, and none of the uses can wait for another one any more.
-    Unsharable {
-        /// The uses.
-        uses: Vec<UseId>,
-    },
+    Unsharable { uses: Vec<UseId> },
     /// No plan with these choices is as good as what is looked for.
-    NotBetter {
-        /// The choices.
-        choices: Vec<TreeChoice>,
-    },
+    NotBetter { choices: Vec<TreeChoice> },
     /// Choices that cannot be made together.
     Clash {
         /// The choices; none if there is a contradiction whatever is chosen.
         choices: Vec<TreeChoice>,
     },
     /// Whatever is done, nature can choose durations for which these choices leave no times (SPEC 13.1).
-    Uncontrollable {
-        /// The choices.
-        choices: Vec<TreeChoice>,
-    },
+    Uncontrollable { choices: Vec<TreeChoice> },
     /// Changes without length that are each before the next one, in a circle (SPEC 10.2).
     Circle {
         /// The orders along the circle.
@@ -264,7 +223,6 @@ pub enum Constraint {
 /// One step of a contradiction: `to − from ≤ weight`. The weights of a cycle add up to less than zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CycleMember {
-    /// The constraint.
     pub constraint: Constraint,
     /// Where the step starts.
     pub from: NodeId,
@@ -291,7 +249,6 @@ pub struct TreeNode {
 pub enum TreeChoice {
     /// An alternative of the program.
     Decision {
-        /// The decision.
         decision: DecisionId,
         /// The alternative, from 0.
         alternative: u32,
@@ -309,14 +266,12 @@ pub enum TreeChoice {
     UseOrder(UseOrdering),
     /// A latest start of a use of a resource.
     Start {
-        /// The use.
         used: UseId,
         /// When it starts, at the latest.
         by: Time,
     },
     /// A use of a resource starts later than another state of the same search has it.
     Later {
-        /// The use.
         used: UseId,
         /// It starts after this.
         than: Time,
@@ -358,9 +313,7 @@ pub enum TreeStatus {
     Excluded,
     /// Entered, and left for the states below.
     Decision,
-    /// A failure.
     Failed,
-    /// A plan.
     Solution,
 }
 

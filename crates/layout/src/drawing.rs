@@ -19,7 +19,6 @@ pub struct NetworkDrawing {
     pub nodes: Vec<NodeShape>,
     /// The constraints that are visible.
     pub arcs: Vec<ArcShape>,
-    /// All texts.
     pub texts: Vec<TextShape>,
     /// Outlines of activities, lanes of branches, and boxes of collapsed blocks.
     pub blocks: Vec<BlockShape>,
@@ -39,9 +38,7 @@ pub struct NetworkDrawing {
 /// An event.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeShape {
-    /// Which one.
     pub id: NodeId,
-    /// Its middle.
     pub center: Point,
     /// Its outer radius.
     pub radius: f64,
@@ -52,7 +49,6 @@ pub struct NodeShape {
 /// A constraint as a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArcShape {
-    /// Which one.
     pub id: ArcId,
     /// What it stands for.
     pub kind: ArcKind,
@@ -84,9 +80,7 @@ pub enum Route {
 /// A text in the rectangle that is reserved for it alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TextShape {
-    /// What it says.
     pub text: SmolStr,
-    /// What it is for.
     pub role: TextRole,
     /// Text size, at most that of the role.
     pub size: f64,
@@ -101,7 +95,6 @@ pub struct TextShape {
 /// How far a row of texts may be moved along a long arc.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Slide {
-    /// The arc.
     pub arc: ArcId,
     /// The left edge and the width of the row that the text is part of.
     pub row: (f64, f64),
@@ -131,9 +124,7 @@ pub struct BlockShape {
     pub block: Option<BlockId>,
     /// The last one, if it is a box for several neighbours; otherwise the same.
     pub last: Option<BlockId>,
-    /// What it is.
     pub form: BlockForm,
-    /// Where it is.
     pub rect: Rect,
     /// How many outlines it lies in.
     pub depth: u32,
@@ -159,7 +150,6 @@ pub enum BlockForm {
 /// A line from a node to another place that stands for the same node.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Connector {
-    /// The node.
     pub node: NodeId,
     /// Where the curve begins.
     pub start: Point,
@@ -170,13 +160,10 @@ pub struct Connector {
 /// Something on the drawing that can be pointed at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Item {
-    /// An event.
     Node(NodeId),
     /// A condition on an arc.
     Label(LabelId),
-    /// A constraint.
     Arc(ArcId),
-    /// A block.
     Block(BlockId),
 }
 

@@ -11,9 +11,7 @@ use crate::tree::{block_children, path_chain};
 /// One block, or neighbours in a sequence or among branches, behind one box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Fold {
-    /// The first of the blocks.
     pub(crate) first: BlockId,
-    /// The last of them.
     pub(crate) last: BlockId,
     /// The event before the box.
     pub(crate) start: NodeId,

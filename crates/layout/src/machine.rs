@@ -33,7 +33,6 @@ pub struct MachineDrawing {
 pub struct MachineArcShape {
     /// Where the curve begins.
     pub start: Point,
-    /// The curve.
     pub pieces: Vec<Piece>,
 }
 

@@ -44,9 +44,7 @@ pub struct Detail {
 /// Neighbours in a sequence or among branches that are open, and drawn in more detail than what is around them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Finer {
-    /// The first of them.
     pub first: BlockId,
-    /// The last of them.
     pub last: BlockId,
     /// How many steps a box inside may hold.
     pub grain: u32,

@@ -54,7 +54,7 @@ pub(crate) struct Clearance {
     pub(crate) before: f64,
     /// To both sides, below the line: past its window.
     pub(crate) beneath: f64,
-    /// Downwards.
+    /// Increases downward.
     pub(crate) below: f64,
 }
 

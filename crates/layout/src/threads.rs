@@ -8,7 +8,6 @@ use tpn::{BlockId, BlockKind, Network, OccurrenceId};
 pub struct Thread {
     /// Which branch of which: `[1, 2]` is the second branch of the first; empty outside all branches.
     pub path: Vec<u32>,
-    /// The branch.
     pub block: Option<BlockId>,
     /// What occurs in it, outside its own branches, in textual order.
     pub occurrences: Vec<OccurrenceId>,

@@ -33,7 +33,6 @@ pub(crate) struct Tree {
     pub(crate) root: Option<PartId>,
     /// Arcs that the structure does not have; they are drawn across it.
     pub(crate) across: Vec<ArcId>,
-    /// The boxes.
     pub(crate) folding: Folding,
 }
 
@@ -48,18 +47,26 @@ pub(crate) struct Part {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum PartKind {
-    /// One arc.
     Arc(ArcId),
     /// A node by itself, or nothing between two nodes.
     Nothing,
     /// One after the other, neighbours sharing a node.
     Series(Range<u32>),
-    /// Side by side.
-    Fan { branches: Range<u32>, is_choice: bool },
+    Fan {
+        branches: Range<u32>,
+        is_choice: bool,
+    },
     /// Arcs above a child that has the same ends.
-    Span { child: PartId, arcs: Range<u32>, occurrence: Option<OccurrenceId> },
+    Span {
+        child: PartId,
+        arcs: Range<u32>,
+        occurrence: Option<OccurrenceId>,
+    },
     /// An arc with the pieces of its path above it, as a string of beads.
-    Beads { arc: ArcId, chain: Range<u32> },
+    Beads {
+        arc: ArcId,
+        chain: Range<u32>,
+    },
     /// A box that hides what is between the ends, by its position in [`Folding::folds`].
     Collapsed(u32),
     /// An irregular graph.

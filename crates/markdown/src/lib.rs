@@ -32,18 +32,15 @@ pub struct Head {
 pub struct Block {
     /// The line on which it begins, from 1; for fenced code, that of the fence.
     pub line: u32,
-    /// What it is.
     pub content: Content,
 }
 
 /// What a block is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Content {
-    /// A heading.
     Heading {
         /// From 1 for the title to 6.
         level: u8,
-        /// Its words.
         text: Vec<Run>,
     },
     /// Words that are wrapped together.
@@ -59,7 +56,6 @@ pub enum Content {
     List {
         /// The number of the first item; without it, items have no numbers.
         first: Option<u64>,
-        /// The items.
         items: Vec<Vec<Block>>,
     },
     /// What somebody else says, or what is set apart.

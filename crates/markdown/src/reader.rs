@@ -6,7 +6,6 @@ use pulldown_cmark::{CodeBlockKind, Event, OffsetIter, Options, Parser, Tag, Tag
 
 use crate::{Block, Content, Document, Head, Run, Style};
 
-/// Reads a text.
 pub(crate) fn read(text: &str) -> Document {
     let options = Options::ENABLE_TABLES | Options::ENABLE_YAML_STYLE_METADATA_BLOCKS;
     let events = Parser::new_ext(text, options).into_offset_iter().peekable();

@@ -3,7 +3,6 @@
 /// Words that look alike and lead to the same place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Run {
-    /// The words.
     pub text: String,
     /// How they look.
     pub style: Style,
@@ -14,11 +13,9 @@ pub struct Run {
 /// How words look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// With weight.
     pub strong: bool,
     /// Slanted, or set apart in another way.
     pub emphasis: bool,
-    /// As code.
     pub code: bool,
 }
 

@@ -42,9 +42,7 @@ pub struct ControlRun {
 pub struct ControlStanding {
     /// That of the request.
     pub token: u64,
-    /// The run.
     pub run: ContentKey,
-    /// What is run.
     pub program: ContentKey,
     /// The program, unless the asker holds it.
     pub content: Option<ControlProgram>,
@@ -64,12 +62,7 @@ pub struct ControlStanding {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ControlProgram {
     /// A program and the plant that it controls.
-    Bound {
-        /// The program.
-        automaton: Arc<Automaton>,
-        /// The plant.
-        model: Arc<Model>,
-    },
+    Bound { automaton: Arc<Automaton>, model: Arc<Model> },
     /// A program alone: what is known of its variables is typed in.
     Unbound(Arc<Automaton>),
     /// A plant without a program.
@@ -105,7 +98,6 @@ pub struct Moment {
 pub struct PlantMoment {
     /// What is believed.
     pub belief: Belief,
-    /// What is true.
     pub true_state: State,
     /// The step that led here; nothing at the start.
     pub record: Option<StepRecord>,

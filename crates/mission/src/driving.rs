@@ -16,7 +16,6 @@ use crate::snapshot::{Keyframe, VehicleMotion};
 /// One traverse with times: who drives which way, from when to when.
 #[derive(Clone, Debug)]
 pub struct Drive {
-    /// The activity.
     pub occurrence: OccurrenceId,
     /// The vehicles, as indices into the program's world; the first leads.
     pub vehicles: Vec<u32>,
@@ -28,7 +27,7 @@ pub struct Drive {
     pub path: Path,
     /// Departure, in mission units.
     pub start: Time,
-    /// Arrival.
+    /// Time of arrival.
     pub end: Time,
 }
 

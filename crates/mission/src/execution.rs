@@ -39,7 +39,6 @@ pub struct Execution {
     /// What happened, in order.
     #[serde(with = "crate::json_text")]
     pub log: Vec<Entry>,
-    /// How it ended.
     pub ending: Ending,
     /// The plans that were executed, one after the other; there is at least one.
     pub plans: Vec<Executed>,
@@ -54,11 +53,9 @@ pub struct Executed {
     pub from: Time,
     /// Its network, with its paths; what was known by then of durations is in it, what had happened is in `times`.
     pub network: Arc<Network>,
-    /// The plan.
     pub plan: Plan,
     /// When each node happened, up to the end of the run.
     pub times: Vec<Option<Time>>,
-    /// Its traverses.
     pub traverses: Vec<Traverse>,
     /// Where the vehicles are over time: as it happened, and as planned for what did not happen.
     pub motions: Vec<VehicleMotion>,
@@ -66,7 +63,6 @@ pub struct Executed {
 
 /// A run with what replanning found.
 pub struct Ran {
-    /// How it went.
     pub outcome: RunOutcome,
     /// What each replan started from and gave, in order.
     pub replanned: Vec<(Facts, Planned)>,

@@ -21,7 +21,6 @@ pub struct JobKey(u64);
 /// A request on its way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// Names it.
     pub id: JobId,
     /// Names what it asks for.
     pub key: JobKey,
@@ -57,7 +56,6 @@ pub enum Kind {
 /// What holds for a kind of job.
 #[derive(Clone, Copy, Debug)]
 pub struct Rule {
-    /// The kind.
     pub kind: Kind,
     /// The kinds of earlier jobs that are pointless once one of this kind is asked for.
     pub supersedes: &'static [Kind],

@@ -24,14 +24,12 @@ use crate::worth;
 pub struct Listed {
     /// The network with the paths of its traverses, and with its choices alone.
     pub network: Arc<Network>,
-    /// The plan.
     pub plan: Plan,
 }
 
 /// A plan that would be listed if it could be driven.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
-    /// Its choices.
     pub choices: Vec<Choice>,
     /// Why it cannot be driven, for the author.
     pub reason: String,

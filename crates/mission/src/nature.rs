@@ -13,7 +13,6 @@ use crate::robustness::Distribution;
 /// How nature chooses durations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Nature {
-    /// By chance.
     Chance,
     /// Ends of ranges by chance, and what makes the plan fail where something does.
     Adversary,

@@ -11,7 +11,6 @@ use crate::request::Update;
 /// Searches that are wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathGrowth {
-    /// The mission.
     pub update: Update,
     /// The name of the traverse.
     pub traverse: SmolStr,
@@ -24,7 +23,6 @@ pub struct PathGrowth {
 /// A planner that is to search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WantedPlanner {
-    /// Which one.
     pub planner: PlannerKind,
     /// The search that the asker holds samples of.
     pub held_search: ContentKey,
@@ -41,9 +39,7 @@ pub struct GrowthStanding {
     pub traverse: SmolStr,
     /// Its leg, from 0.
     pub leg: u32,
-    /// Who searches.
     pub planner: PlannerKind,
-    /// The search.
     pub search: ContentKey,
     /// Where its trees begin, in metres.
     pub roots_m: Vec<Point2<f64>>,

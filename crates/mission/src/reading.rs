@@ -141,7 +141,6 @@ impl Reading {
         Some(Arc::clone(&self.compiled.as_ref()?.network.as_ref()?.value))
     }
 
-    /// Its key.
     pub(crate) fn network_key(&self) -> Option<ContentKey> {
         Some(self.compiled.as_ref()?.network.as_ref()?.key)
     }

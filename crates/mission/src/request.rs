@@ -67,7 +67,6 @@ pub enum Request {
     ImportMap {
         /// The name that the declaration uses.
         name: SmolStr,
-        /// The file.
         bytes: Vec<u8>,
     },
     /// Searches the network of a text in both ways, recorded and measured, for showing side by side.
@@ -85,7 +84,6 @@ pub struct Update {
     pub revision: u64,
     /// The whole text.
     pub source: Arc<str>,
-    /// What to plan.
     pub goal: Goal,
     /// How to search.
     pub search: kirk::Search,
@@ -107,7 +105,6 @@ pub enum Goal {
     Scenario(SmolStr),
     /// An activity, with the bounds of its invocation.
     Activity {
-        /// Its name.
         name: SmolStr,
         /// Least duration.
         lower: Time,
@@ -136,19 +133,13 @@ pub enum Response {
         snapshot: Arc<Snapshot>,
     },
     /// The ground of the missions that name `key`; sent once, before the first snapshot that refers to it.
-    Map {
-        /// Which map.
-        key: MapKey,
-        /// Its heights.
-        map: Arc<terrain::Terrain>,
-    },
+    Map { key: MapKey, map: Arc<terrain::Terrain> },
     /// A run of a mission.
     Execution(Arc<Execution>),
     /// A mission cannot be executed.
     NotExecuted {
         /// The revision of its text.
         revision: u64,
-        /// Why not.
         reason: String,
     },
     /// Some of many runs of a mission.

@@ -103,7 +103,6 @@ pub enum Faults {
     /// With the probabilities of the plant's model.
     #[default]
     ByChance,
-    /// Not at all.
     Never,
 }
 
@@ -134,9 +133,7 @@ pub struct Incident {
 /// What the runs are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RobustnessSettings {
-    /// How many.
     pub runs: u64,
-    /// Seeds chance.
     pub seed: u64,
     /// What is left to chance.
     #[serde(with = "crate::json_text")]
@@ -160,7 +157,6 @@ pub struct Tally {
     pub end_sum: i64,
     /// The earliest end, in thousandths of a unit.
     pub end_least: Option<i64>,
-    /// The latest.
     pub end_most: Option<i64>,
 }
 
@@ -184,7 +180,6 @@ pub struct SlackUsed {
     pub count: u64,
     /// The thousandths, summed.
     pub sum_permille: u64,
-    /// The greatest.
     pub most_permille: u64,
 }
 

@@ -24,7 +24,6 @@ pub struct Snapshot {
     pub revision: u64,
     /// How far this snapshot goes.
     pub stage: Stage,
-    /// The text.
     pub source: Arc<str>,
     /// What is wrong with it, or could be.
     pub problems: Arc<[Problem]>,
@@ -77,7 +76,6 @@ pub struct Planning {
 /// A traverse that could not be driven.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Undrivable {
-    /// Which one.
     pub occurrence: OccurrenceId,
     /// The leg, from 1; 0 when it is the whole traverse that does not fit its bounds.
     pub leg: u32,
@@ -101,7 +99,6 @@ pub struct MapKey {
 /// A traverse of the plan with its path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Traverse {
-    /// The activity.
     pub occurrence: OccurrenceId,
     /// The vehicles, as indices into the program's world; the first leads.
     pub vehicles: Vec<u32>,

@@ -22,7 +22,6 @@ use crate::standing;
 /// A traverse of a plan: who drives, and through which places.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// The activity.
     pub occurrence: OccurrenceId,
     /// Indices of the vehicles into the program's world; the first leads.
     pub vehicles: Vec<usize>,

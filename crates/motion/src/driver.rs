@@ -39,7 +39,6 @@ pub struct DriverSettings {
     pub step_s: f64,
     /// Its range finder.
     pub sensor: RangeSensor,
-    /// Its sonars.
     pub sonars: SonarArray,
 }
 
@@ -73,7 +72,6 @@ impl DriverSettings {
 /// What one step of driving came to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum DriveEvent {
-    /// Under way.
     Driving,
     /// At the path's end.
     Arrived,

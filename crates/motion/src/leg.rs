@@ -22,7 +22,6 @@ pub struct Leg {
 pub struct LegFailure {
     /// Which leg: 0 goes from the first waypoint to the second.
     pub leg: usize,
-    /// Why.
     pub failure: Failure,
 }
 

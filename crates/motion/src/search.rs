@@ -44,7 +44,6 @@ pub struct Query {
 /// How a search goes about it. The same settings on the same query give the same path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Which planner.
     pub planner: PlannerKind,
     /// The longest edge in metres (ε).
     pub step_m: f64,
@@ -137,7 +136,6 @@ pub struct Statistics {
 /// What one sample did, for display.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// The sample.
     pub sample_m: Point2<f64>,
     /// The tree that was grown toward it.
     pub tree: u32,
@@ -233,7 +231,6 @@ pub struct SearchResult {
     pub trajectory: Option<Trajectory>,
     /// The trees that were grown; none when an end was in collision or the goal enclosed.
     pub trees: Vec<Tree>,
-    /// Counts.
     pub statistics: Statistics,
     /// The seed of the search: [`trace`](crate::trace()) with it shows how the trees grew.
     pub seed: u64,

@@ -8,9 +8,7 @@ use crate::path::Path;
 /// Which end of the query a tree grows from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Root {
-    /// The start.
     Start,
-    /// The goal.
     Goal,
 }
 

@@ -26,7 +26,6 @@ pub struct VehicleModel {
     pub acceleration_mps2: f64,
     /// Greatest change of the turning rate in radians per second squared.
     pub turn_acceleration_rps2: f64,
-    /// How it moves.
     pub drive: Drive,
 }
 

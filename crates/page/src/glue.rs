@@ -97,7 +97,6 @@ extern "C" {
     /// A file that the user chose.
     pub(crate) type ChosenFile;
 
-    /// Its name.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn name(this: &ChosenFile) -> String;
 
@@ -105,7 +104,6 @@ extern "C" {
     #[wasm_bindgen(method, getter)]
     pub(crate) fn token(this: &ChosenFile) -> Option<u32>;
 
-    /// All of it.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn bytes(this: &ChosenFile) -> Uint8Array;
 }

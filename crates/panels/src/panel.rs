@@ -19,7 +19,6 @@ pub struct Context<'a> {
     pub snapshot: Option<&'a Arc<Snapshot>>,
     /// Whether `snapshot` belongs to an older text than the editor's.
     pub is_stale: bool,
-    /// The colours.
     pub tokens: &'static Tokens,
     /// For panels that draw with wgpu; `None` in tests without a graphics adapter.
     pub render_state: Option<&'a eframe::egui_wgpu::RenderState>,

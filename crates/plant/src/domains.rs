@@ -8,7 +8,7 @@ use crate::model::{Model, Observation};
 /// Every narrowing is written down, so that a trial is undone in time proportional to what it did.
 #[derive(Clone, Debug)]
 pub(crate) struct Domains {
-    /// Per symbol.
+    /// Indexed by symbol.
     pub(crate) sets: Vec<u64>,
     pub(crate) reasons: Vec<Places>,
     /// What was narrowed: the symbol, and its set and reasons before.

@@ -14,7 +14,6 @@ pub enum Formula {
         /// The values, one bit each.
         set: u64,
     },
-    /// All hold.
     All(Vec<Formula>),
     /// At least one holds.
     Any(Vec<Formula>),

@@ -26,15 +26,12 @@ pub struct CommandVariableId(pub u32);
 pub struct Component {
     /// What it is called.
     pub name: SmolStr,
-    /// Its class.
     pub class: SmolStr,
     /// Its modes; a state gives each component the index of its mode.
     pub modes: Vec<Mode>,
     /// The mode in which it starts.
     pub initial: u8,
-    /// What is at its ports.
     pub ports: Vec<(SmolStr, ComponentId)>,
-    /// Its commands.
     pub commands: Vec<CommandVariableId>,
     /// Where it is declared.
     pub span: Span,
@@ -88,7 +85,6 @@ pub struct PlantVariable {
     pub name: SmolStr,
     /// The component that declares it.
     pub component: ComponentId,
-    /// Its values.
     pub values: Vec<SmolStr>,
     /// Whether it is observed.
     pub observable: bool,
@@ -103,7 +99,6 @@ pub struct CommandVariable {
     pub name: SmolStr,
     /// The component that takes it.
     pub component: ComponentId,
-    /// Its values.
     pub values: Vec<SmolStr>,
 }
 
@@ -118,11 +113,8 @@ pub struct Observation(pub BTreeMap<VariableId, u8>);
 /// A plant.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Model {
-    /// Its components.
     pub components: Vec<Component>,
-    /// Its variables.
     pub variables: Vec<PlantVariable>,
-    /// Its command variables.
     pub command_variables: Vec<CommandVariable>,
     /// Parts whose mode constraints share nothing with those of other parts.
     pub(crate) islands: Vec<Island>,

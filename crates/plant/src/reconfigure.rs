@@ -19,7 +19,6 @@ const MAX_STATES: usize = 20_000;
 /// A component to be brought into one of some modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Goal {
-    /// The component.
     pub component: ComponentId,
     /// The modes that will do, one bit each.
     pub modes: u64,
@@ -42,7 +41,6 @@ impl Goal {
 /// A goal that is not pursued, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unreachable {
-    /// The goal.
     pub goal: Goal,
     /// Why, in words.
     pub reason: String,
@@ -64,7 +62,6 @@ pub struct NextCommands {
 pub struct Command {
     /// The component commanded, or the command variable where it has several.
     pub component: SmolStr,
-    /// The command.
     pub command: SmolStr,
 }
 

@@ -15,9 +15,7 @@ pub enum EstimateError {
     /// The model is not deterministic there.
     #[error("`{component}` in mode {from} has two enabled transitions, to {first} and to {second}")]
     Ambiguous {
-        /// The component.
         component: String,
-        /// Its mode.
         from: String,
         /// The target of the first enabled transition.
         first: String,

@@ -17,7 +17,6 @@ pub(crate) struct Table {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Member {
     pub(crate) symbol: u32,
-    /// What ends with it.
     ends: Ends,
     pub(crate) set: u64,
 }

@@ -18,7 +18,6 @@ pub struct Document<'a> {
     pub name: &'a str,
     /// The mission as it was worked out.
     pub snapshot: &'a Snapshot,
-    /// Its review.
     pub review: &'a Review,
     /// What the board said and approved, if that is to stand in the report.
     pub record: Option<&'a Record>,

@@ -80,7 +80,6 @@ fn about(calendar: Option<&Calendar>) -> export::About<'_> {
     export::About { content_hash: HASH, status: PlanStatus::InReview, calendar, pins: &[], plan: None }
 }
 
-/// A content.
 const HASH: &str = "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff";
 
 fn calendar() -> Calendar {

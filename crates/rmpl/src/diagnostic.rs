@@ -50,7 +50,6 @@ pub struct Fix {
 /// One thing to tell the author about one place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// The kind.
     pub code: Code,
     /// How grave it is.
     pub severity: Severity,

@@ -5,7 +5,6 @@ use crate::diagnostic::{Code, Severity};
 /// The manual page of one kind of diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Explanation {
-    /// The kind.
     pub code: Code,
     /// How grave it is; `E-` codes are errors, `W-` codes warnings.
     pub severity: Severity,

@@ -12,7 +12,6 @@ use crate::span::Span;
 /// A name and where it is written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Name {
-    /// The name.
     pub text: SmolStr,
     /// Where it stands.
     pub span: Span,
@@ -61,7 +60,6 @@ pub struct ControlDecl {
 /// `const NAME = expression;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConstantDecl {
-    /// The constant.
     pub name: Name,
     /// Its value, which may name other constants.
     pub value: Expr,
@@ -72,7 +70,6 @@ pub struct ConstantDecl {
 /// `var X : {V1, V2};` or `state X : {V1, V2} = V1;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VariableDecl {
-    /// The variable.
     pub name: Name,
     /// Its domain, in textual order.
     pub values: Vec<Name>,
@@ -98,7 +95,6 @@ pub fn component_of_state(variable: &str) -> Option<&str> {
 /// `resource NAME …;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResourceDecl {
-    /// The resource.
     pub name: Name,
     /// How much of it there is.
     pub supply: Supply,
@@ -128,7 +124,6 @@ pub enum Supply {
 /// `objective minimize cost, maximize reward;`: the goals, the most important one first (SPEC 12).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObjectiveDecl {
-    /// The goals.
     pub goals: Vec<GoalDecl>,
     /// The whole declaration.
     pub span: Span,
@@ -141,7 +136,6 @@ pub struct GoalDecl {
     pub is_maximized: bool,
     /// What is added up: each measure with its factor, which may be negative.
     pub terms: Vec<(Rational, Measure)>,
-    /// The goal.
     pub span: Span,
 }
 
@@ -224,14 +218,13 @@ pub struct Effect {
     pub variable: Name,
     /// The value, or a parameter that stands for one.
     pub value: Name,
-    /// Both.
+    /// Variable and value together.
     pub span: Span,
 }
 
 /// `uses Power 3`, `consumes Battery 2 per minute`, `produces Battery 5`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResourceUse {
-    /// The resource.
     pub resource: Name,
     /// What happens to it.
     pub change: Change,
@@ -267,7 +260,6 @@ impl Change {
 /// `3`, `2 per minute`, `0.5 per metre`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Amount {
-    /// The number.
     pub value: Expr,
     /// What it is multiplied by.
     pub per: Option<Per>,
@@ -308,20 +300,16 @@ pub struct Moves {
     pub speed_mps: Option<(Rational, Rational)>,
     /// Whether what the vehicles can do with their wheels bounds how long their ways take (SPEC 7.2).
     pub is_kinodynamic: bool,
-    /// The clause.
     pub span: Span,
 }
 
 /// `Name(params)[l,u] = { … }`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActivityDecl {
-    /// The activity.
     pub name: Name,
     /// Its formal parameters.
     pub formals: Vec<Name>,
-    /// Its header bounds.
     pub bounds: HeaderBounds,
-    /// Its body.
     pub body: Statement,
     /// The whole definition.
     pub span: Span,
@@ -330,7 +318,6 @@ pub struct ActivityDecl {
 /// The bounds in the header of an activity definition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum HeaderBounds {
-    /// None written.
     None,
     /// Either side may be a bound parameter (a plain name, bound to the invocation's bound: default 0 and inf)
     /// or an expression, intersected with the invocation's.
@@ -356,11 +343,8 @@ pub enum HeaderBound {
 /// `scenario Name[lo,hi] = { … }`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioDecl {
-    /// The scenario.
     pub name: Name,
-    /// The horizon.
     pub bounds: Option<Bounds>,
-    /// Its threads.
     pub body: Statement,
     /// The whole definition.
     pub span: Span,
@@ -417,7 +401,6 @@ pub struct Bounds {
 /// An expression in a bound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expr {
-    /// What it is.
     pub kind: ExprKind,
     /// Where it stands.
     pub span: Span,
@@ -426,7 +409,6 @@ pub struct Expr {
 /// The kinds of expression.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ExprKind {
-    /// A number.
     Number(Rational),
     /// A number of a unit of time: `90s`, `1.5h`.
     Duration(Rational, DurationUnit),
@@ -499,7 +481,6 @@ pub enum BinaryOp {
 /// A statement with the bounds written behind it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Statement {
-    /// What it does.
     pub kind: StatementKind,
     /// The bounds written behind it.
     pub bounds: Option<Bounds>,
@@ -563,11 +544,9 @@ pub struct Argument {
 pub enum ArgumentValue {
     /// A name: a formal of the surrounding activity, a location, or a symbol.
     Name(SmolStr),
-    /// A number.
     Number(Rational),
     /// An expression, evaluated where the call stands.
     Expression(Expr),
-    /// A condition.
     Condition(Condition),
 }
 
@@ -662,11 +641,8 @@ impl TimeUnit {
 pub struct World {
     /// The terrain, if declared.
     pub terrain: Option<TerrainDecl>,
-    /// Named places.
     pub locations: Vec<LocationDecl>,
-    /// Obstacles.
     pub obstacles: Vec<ObstacleDecl>,
-    /// Vehicles.
     pub vehicles: Vec<VehicleDecl>,
 }
 
@@ -688,7 +664,6 @@ pub struct TerrainDecl {
 /// `location NAME (x, y);`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocationDecl {
-    /// The place.
     pub name: Name,
     /// Metres east and north.
     pub position_m: [f64; 2],
@@ -701,9 +676,7 @@ pub struct LocationDecl {
 /// `obstacle NAME circle (x, y, r);` or `obstacle NAME polygon (x, y, …);`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObstacleDecl {
-    /// The obstacle.
     pub name: Name,
-    /// Its shape.
     pub shape: ObstacleShape,
     /// The numbers inside the parentheses, for edits.
     pub numbers_span: Span,
@@ -714,11 +687,8 @@ pub struct ObstacleDecl {
 /// The shape of an obstacle, in metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ObstacleShape {
-    /// A disc.
     Circle {
-        /// The centre.
         center_m: [f64; 2],
-        /// The radius.
         radius_m: f64,
     },
     /// A simple polygon, at least three corners.
@@ -731,7 +701,6 @@ pub enum ObstacleShape {
 /// `vehicle NAME : MODEL at LOCATION;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleDecl {
-    /// The vehicle.
     pub name: Name,
     /// Its model: ATRV, ATRV-Jr or Blimp.
     pub model: Name,

@@ -41,21 +41,14 @@ pub struct Rule {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
     /// A variable has one of these values; a Boolean condition has `true`.
-    Is {
-        /// The variable.
-        variable: SmolStr,
-        /// The values.
-        values: Vec<SmolStr>,
-    },
+    Is { variable: SmolStr, values: Vec<SmolStr> },
     /// An activity is under way.
     Underway(Activity),
     /// The level of a reservoir, or what is in use of another resource, compares so with an amount.
     Amount {
-        /// The resource.
         resource: SmolStr,
         /// How it compares.
         order: Order,
-        /// With what.
         amount: Rational,
     },
     /// The condition does not hold.

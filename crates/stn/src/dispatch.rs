@@ -15,7 +15,7 @@ pub struct RigidComponent {
 /// An edge of the dispatchable form: `to − from ≤ weight`, between leaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct DispatchEdge {
-    /// A leader.
+    /// The leader where the edge starts.
     pub from: PointId,
     /// Another leader.
     pub to: PointId,

@@ -22,7 +22,6 @@ pub(crate) struct UpEdge {
     pub(crate) down: i64,
 }
 
-/// No bound.
 pub(crate) const FREE: i64 = i64::MAX;
 
 /// Points with more neighbours than this are not eliminated: it takes time quadratic in them.

@@ -11,7 +11,6 @@ pub struct Execution<'a> {
     pub executed: &'a [(PointId, i64)],
     /// Events that are known not to have happened before `now`.
     pub pending: &'a [PointId],
-    /// The present.
     pub now: i64,
 }
 

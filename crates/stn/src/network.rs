@@ -66,7 +66,6 @@ pub struct CycleEdge {
     pub from: PointId,
     /// The later end of the edge.
     pub to: PointId,
-    /// Its weight.
     pub weight: i64,
     /// The tag it was inserted with.
     pub tag: Tag,

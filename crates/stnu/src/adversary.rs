@@ -50,7 +50,6 @@ pub fn residual(network: &Network, times: &[Option<i64>], now: i64) -> Result<Ne
 pub struct Intention {
     /// The points that it executes if nothing happens before.
     pub points: Vec<PointId>,
-    /// When.
     pub at: i64,
 }
 

@@ -25,7 +25,6 @@ pub enum Part {
 /// A part and how often the cycle goes along it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Member {
-    /// What.
     pub part: Part,
     /// How often, at most [`u64::MAX`].
     pub multiplicity: u64,

@@ -15,7 +15,7 @@ use crate::network::{Edge, LinkId, Network, PointId};
 /// `point` must not happen before `link` ends or this long after its activation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Wait {
-    /// Who waits.
+    /// The point that waits.
     pub point: PointId,
     /// For the end of which link.
     pub link: LinkId,

@@ -13,7 +13,7 @@ use crate::network::{LinkId, PointId};
 /// What can be said about a time point at a moment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// It happened.
+    /// Executed at this time.
     Executed(i64),
     /// All that must come before has.
     Enabled {

@@ -125,7 +125,6 @@ fn weight(line: usize, text: &str) -> Result<Bound, ParseError> {
 pub enum Layout {
     /// Sections that start with `#`.
     Plain,
-    /// XML.
     GraphMl,
 }
 

@@ -34,7 +34,6 @@ pub struct Edge {
     pub from: PointId,
     /// Where it ends.
     pub to: PointId,
-    /// Its weight.
     pub weight: i64,
 }
 

@@ -7,7 +7,6 @@ use crate::network::{Edge, Network};
 /// A change of one part: a constraint's weight rises, a link's lower bound rises, or its upper bound falls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Relaxation {
-    /// What changes.
     pub part: Part,
     /// What it was: a weight or a bound.
     pub old: i64,

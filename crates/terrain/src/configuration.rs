@@ -22,7 +22,6 @@ pub enum Collision {
     Cell {
         /// The cell that is nearest to the point.
         cell: Cell,
-        /// What is in it.
         state: CellState,
     },
 }

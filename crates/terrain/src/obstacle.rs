@@ -11,11 +11,8 @@ use crate::frame::{Cell, GridFrame};
 /// The shape of an obstacle, in metres east and north.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Obstacle {
-    /// A disc.
     Circle {
-        /// The centre.
         center_m: Point2<f64>,
-        /// The radius.
         radius_m: f64,
     },
     /// A simple polygon; its last corner is joined to its first.

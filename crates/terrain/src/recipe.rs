@@ -21,11 +21,9 @@ pub struct Recipe {
     pub frame: GridFrame,
     /// Everything random comes from this.
     pub seed: u64,
-    /// Hills.
     pub relief: Relief,
     /// Impact craters.
     pub craters: Craters,
-    /// Sand.
     pub dunes: Option<Dunes>,
     /// A river delta.
     pub fan: Option<Fan>,
@@ -51,7 +49,6 @@ pub struct Relief {
 /// A population of craters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Craters {
-    /// How many.
     pub count: u32,
     /// The least and the greatest diameter in metres.
     pub diameters_m: [f64; 2],

@@ -22,19 +22,15 @@ use crate::scene::{self, SceneInput, SceneOptions, ScenePalette, Sketch};
 /// What an image shows.
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
-    /// The state.
     pub state: &'a AppState,
     /// The colours around the ground.
     pub tokens: &'a Tokens,
-    /// The mission.
     pub snapshot: &'a Snapshot,
     /// Its map, once it is there.
     pub map: Option<&'a Arc<Terrain>>,
     /// What is shown.
     pub view: &'a TerrainView,
-    /// The view.
     pub camera: &'a Camera,
-    /// The ground.
     pub ground: &'a Ground,
     /// What a tool has.
     pub sketch: &'a Sketch,

@@ -37,7 +37,6 @@ pub struct ViewUniform {
 /// Everything one image depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// The view.
     pub view: ViewUniform,
     /// The ground's patches.
     pub patches: Vec<Patch>,

@@ -15,13 +15,9 @@ use crate::scene;
 pub struct Scene<'a> {
     /// The image in the window.
     pub rect: Rect,
-    /// The view.
     pub camera: &'a Camera,
-    /// The ground.
     pub ground: &'a Ground,
-    /// The mission.
     pub snapshot: &'a Snapshot,
-    /// The state.
     pub state: &'a AppState,
     /// The plates with names, as they were painted last.
     pub plates: &'a [(Rect, Selection)],
@@ -34,7 +30,6 @@ pub struct OnPath {
     pub traverse: usize,
     /// Its leg, from 0.
     pub leg: usize,
-    /// The place.
     pub place_m: Vec2,
 }
 

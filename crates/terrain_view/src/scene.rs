@@ -37,7 +37,6 @@ pub struct ScenePalette {
 pub struct SceneOptions {
     /// The trees that found the paths.
     pub trees: bool,
-    /// The paths.
     pub paths: bool,
     /// Declared obstacles.
     pub obstacles: bool,
@@ -50,9 +49,7 @@ pub struct SceneOptions {
 /// What the scene is built from.
 #[derive(Clone, Copy)]
 pub struct SceneInput<'a> {
-    /// The mission.
     pub snapshot: &'a Snapshot,
-    /// Its ground.
     pub ground: &'a Ground,
     /// In mission units.
     pub time: f64,
@@ -64,7 +61,6 @@ pub struct SceneInput<'a> {
     pub hovered: &'a Selection,
     /// A search that is looked at.
     pub growth: &'a Growth,
-    /// The colours.
     pub palette: &'a ScenePalette,
     /// What is shown.
     pub options: &'a SceneOptions,
@@ -85,7 +81,6 @@ pub struct Sketch {
     pub marks: Vec<Vec2>,
     /// A place where the view is blocked.
     pub blocked: Option<Vec3>,
-    /// A disc.
     pub disc: Option<(Vec2, f32)>,
 }
 

@@ -34,7 +34,6 @@ pub struct LineSegment {
 pub struct Shapes {
     /// Three corners per triangle.
     pub triangles: Vec<ShapeCorner>,
-    /// Segments.
     pub lines: Vec<LineSegment>,
 }
 

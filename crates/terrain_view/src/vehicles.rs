@@ -12,11 +12,8 @@ pub struct VehicleShape {
     pub place_m: Vec2,
     /// Direction of its nose, counter-clockwise from east.
     pub heading_rad: f32,
-    /// Its length.
     pub length_m: f32,
-    /// Its width.
     pub width_m: f32,
-    /// Its colour.
     pub color: [f32; 4],
 }
 

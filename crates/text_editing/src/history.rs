@@ -11,7 +11,7 @@ pub enum EditKind {
     Deleting,
     /// A dragged number or place: the whole drag, known by this number, is undone as one.
     Drag(u64),
-    /// Undone alone.
+    /// Undone on its own.
     Single,
 }
 

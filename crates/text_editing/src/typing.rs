@@ -28,7 +28,6 @@ pub enum TextCommand {
     Delete(Motion),
     /// Moves the caret; with `select` the selection grows.
     Move {
-        /// Where to.
         motion: Motion,
         /// Whether the selection's other end stays.
         select: bool,
@@ -96,9 +95,7 @@ pub enum Motion {
     Up(usize),
     /// Rows down.
     Down(usize),
-    /// To the start of the text.
     TextStart,
-    /// To the end of the text.
     TextEnd,
 }
 

@@ -31,9 +31,7 @@ pub enum Icon {
     Working,
     /// A lamp: a fix.
     Fix,
-    /// Runs time.
     Play,
-    /// Stops time.
     Pause,
     /// To the next event.
     StepForward,
@@ -43,21 +41,14 @@ pub enum Icon {
     Run,
     /// To the place before at which it stops.
     RunBack,
-    /// To the start.
     ToStart,
-    /// To the end.
     ToEnd,
-    /// Up.
     Up,
-    /// Down.
     Down,
-    /// Open below.
     ChevronDown,
     /// Opens to the right.
     ChevronRight,
-    /// Closer.
     Plus,
-    /// Further away.
     Minus,
     /// Everything at once.
     Fit,
@@ -65,7 +56,6 @@ pub enum Icon {
     Maximize,
     /// A frame before another one: back among the others.
     Restore,
-    /// Options.
     Options,
     /// Two arrows apart: at another time.
     Moved,

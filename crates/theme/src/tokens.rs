@@ -16,7 +16,6 @@ pub struct Tokens {
 
     /// Behind everything: bars and gaps.
     pub background: Color32,
-    /// A panel.
     pub surface: Color32,
     /// What lies on a panel: headers, cards, popups.
     pub raised: Color32,
@@ -33,7 +32,6 @@ pub struct Tokens {
     /// The shadow under popups.
     pub shadow: Color32,
 
-    /// Text.
     pub text: Color32,
     /// Text that matters less: captions, units.
     pub text_muted: Color32,
@@ -51,7 +49,6 @@ pub struct Tokens {
 
     /// Verified, done, feasible.
     pub good: Color32,
-    /// Doubtful.
     pub warning: Color32,
     /// Wrong, infeasible, violated.
     pub error: Color32,
@@ -72,7 +69,6 @@ pub struct Tokens {
     pub tell: Color32,
     /// Required conditions.
     pub ask: Color32,
-    /// Causal links.
     pub link: Color32,
     /// Orderings that resolve threats.
     pub ordering: Color32,
@@ -91,14 +87,12 @@ pub struct Tokens {
 
     /// Categories such as vehicles and threads, in order; always with another sign beside the colour.
     pub series: [Color32; 8],
-    /// Source text.
     pub syntax: Syntax,
 }
 
 /// The colours of source text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Syntax {
-    /// Keywords.
     pub keyword: Color32,
     /// Activities and primitives.
     pub activity: Color32,
@@ -114,7 +108,6 @@ pub struct Syntax {
     pub number: Color32,
     /// Texts in quotes.
     pub string: Color32,
-    /// Comments.
     pub comment: Color32,
     /// Brackets, separators, operators.
     pub punctuation: Color32,

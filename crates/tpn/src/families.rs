@@ -86,9 +86,7 @@ pub const JOB_SHOPS: [JobShop; 7] = [
 /// Missions of one kind.
 #[derive(Clone, Debug)]
 pub struct Family {
-    /// What they are.
     pub name: String,
-    /// Their texts.
     pub missions: Vec<String>,
 }
 

@@ -69,7 +69,6 @@ id! {
 /// node's arcs: a plan selects those of which it selects both events.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Network {
-    /// The events.
     pub nodes: Vec<Node>,
     /// The constraints, in textual order within each node.
     pub arcs: Vec<Arc>,
@@ -113,7 +112,6 @@ pub struct Network {
 /// An event.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Node {
-    /// What it is for.
     pub role: Role,
     /// The named events that it is, in textual order; a node may carry several names or none.
     pub events: Vec<EventRef>,
@@ -141,7 +139,6 @@ pub enum Role {
 /// One of the names of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct EventRef {
-    /// Whose event.
     pub occurrence: OccurrenceId,
     /// Its start, its end, or a point of its path.
     pub end: EventEnd,
@@ -150,9 +147,7 @@ pub struct EventRef {
 /// Which event of an occurrence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum EventEnd {
-    /// It begins.
     Start,
-    /// It is over.
     End,
     /// A traverse passes a vertex of its path (SPEC 7.3): `leg` from 1, `vertex` from 1 within the leg.
     /// The vertex that ends a leg is its waypoint.
@@ -180,7 +175,6 @@ pub struct Arc {
     pub is_contingent: bool,
     /// What it stands for.
     pub kind: ArcKind,
-    /// Its labels.
     pub labels: Vec<LabelId>,
     /// The occurrence it is the duration of.
     pub occurrence: Option<OccurrenceId>,
@@ -194,13 +188,11 @@ pub struct Arc {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ArcKind {
-    /// A primitive.
     #[serde(rename = "act")]
     Activity,
     /// An assertion, or an explicit ask.
     #[serde(rename = "assert")]
     Assertion,
-    /// A delay.
     Delay,
     /// An instance of a defined activity, start to end.
     #[serde(rename = "comp")]
@@ -209,7 +201,6 @@ pub enum ArcKind {
     Span,
     /// The guard of an `if`.
     Point,
-    /// Sequence.
     Glue,
     /// From a fork to a branch.
     Fork,
@@ -229,7 +220,6 @@ pub enum ArcKind {
 /// A condition asserted or required over an arc.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Label {
-    /// The arc.
     pub arc: ArcId,
     /// Asserted or required.
     pub mode: LabelMode,
@@ -263,7 +253,6 @@ pub enum Extent {
 /// A state variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variable {
-    /// Its name.
     pub name: SmolStr,
     /// The values that are declared or occur.
     pub values: Vec<SmolStr>,
@@ -315,7 +304,6 @@ pub enum Supply {
 /// What an activity or a block takes of a resource, or gives to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Use {
-    /// Of what.
     pub resource: ResourceId,
     /// What happens to it.
     pub change: Change,
@@ -327,9 +315,7 @@ pub struct Use {
     pub arc: ArcId,
     /// When it begins.
     pub start: NodeId,
-    /// When it ends.
     pub end: NodeId,
-    /// Who it is.
     pub owner: Option<OccurrenceId>,
     /// Where it is written.
     pub span: Option<Span>,
@@ -344,7 +330,6 @@ pub struct Worth {
     pub cost: Rational,
     /// Its cost for each metre of the planned path.
     pub cost_per_metre: Rational,
-    /// Its reward.
     pub reward: Rational,
 }
 
@@ -386,9 +371,7 @@ pub struct Goal {
 /// A variable restricted to a set of values.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Literal {
-    /// The variable.
     pub variable: VariableId,
-    /// The values.
     pub values: ValueSet,
 }
 
@@ -469,7 +452,6 @@ pub struct Occurrence {
     pub name: SmolStr,
     /// Its activity, without the count: `Group-Wait`.
     pub activity: SmolStr,
-    /// What it is.
     pub kind: OccurrenceKind,
     /// Its first event.
     pub start: NodeId,
@@ -498,7 +480,6 @@ pub enum OccurrenceKind {
     Activity,
     /// An assertion or an explicit ask.
     Assertion,
-    /// A delay.
     Delay,
     /// The scenario itself, or the activity planned for.
     Scenario,
@@ -510,7 +491,6 @@ pub enum OccurrenceKind {
 /// A piece of the program's structure, between its first and its last event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Block {
-    /// What it is.
     pub kind: BlockKind,
     /// Its first event.
     pub start: NodeId,
@@ -524,16 +504,10 @@ pub struct Block {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum BlockKind {
     /// One arc: a primitive, an assertion, a delay, or nothing (an empty block's glue).
-    Leaf {
-        /// The arc.
-        arc: ArcId,
-    },
+    Leaf { arc: ArcId },
     /// One after the other; the glue between neighbours is the arc from one's end to the next one's start, if they
     /// are different nodes.
-    Sequence {
-        /// In order.
-        children: Vec<BlockId>,
-    },
+    Sequence { children: Vec<BlockId> },
     /// All, between a fork and a join.
     Parallel {
         /// The branches, in textual order.
@@ -541,7 +515,6 @@ pub enum BlockKind {
     },
     /// One of several, between a decision and a merge.
     Choose {
-        /// The decision.
         decision: DecisionId,
         /// The alternatives, in textual order.
         alternatives: Vec<BlockId>,
@@ -560,7 +533,6 @@ pub enum BlockKind {
     Guard {
         /// The point arc that asks.
         arc: ArcId,
-        /// What follows.
         child: BlockId,
     },
 }

@@ -9,7 +9,6 @@ use crate::network::{Arc, ArcId, ArcKind, EventEnd, EventRef, Network, Node, Nod
 /// A path found for one traverse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraversePath {
-    /// The traverse.
     pub occurrence: OccurrenceId,
     /// Its legs between waypoints, in order.
     pub legs: Vec<PathLeg>,

@@ -35,7 +35,6 @@ pub struct Plan {
 /// A decision taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Choice {
-    /// The decision.
     pub decision: DecisionId,
     /// The alternative, from 0.
     pub alternative: u32,
@@ -195,8 +194,6 @@ pub struct Quality {
 /// When an event may happen, in time units from the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Window {
-    /// At the earliest.
     pub earliest: Time,
-    /// At the latest.
     pub latest: Bound,
 }

@@ -21,7 +21,6 @@ pub enum PlanError {
     Unknown {
         /// Event, interval, decision or alternative.
         kind: &'static str,
-        /// The name.
         name: String,
     },
 }

@@ -6,7 +6,6 @@ use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
 pub(crate) struct Vocabulary {
     /// Whether the document declares its variables, so that only their values count.
     pub(crate) is_complete: bool,
-    /// The variables.
     pub(crate) variables: Vec<Variable>,
 }
 

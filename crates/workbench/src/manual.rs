@@ -14,16 +14,13 @@ use crate::state::no_plan::NO_PLAN;
 pub struct Page {
     /// Its name in addresses, commands and links, without `.md`.
     pub name: &'static str,
-    /// Its title.
     pub title: String,
-    /// What it says.
     pub document: Document,
 }
 
 /// A place that was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
-    /// The page.
     pub page: &'static str,
     /// The heading over it, as links have it; empty above the first heading but the title.
     pub section: String,

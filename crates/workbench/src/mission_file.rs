@@ -7,7 +7,6 @@ pub struct Example {
     pub name: &'static str,
     /// What the mission picker calls it.
     pub title: &'static str,
-    /// Its text.
     pub source: &'static str,
 }
 

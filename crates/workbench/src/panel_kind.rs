@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PanelKind {
-    /// The text.
     Editor,
     /// What the text declares.
     Outline,
@@ -38,7 +37,6 @@ pub enum PanelKind {
     Robustness,
     /// A lesson beside what it is about.
     Lesson,
-    /// The manual.
     Manual,
 }
 

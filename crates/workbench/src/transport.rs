@@ -35,9 +35,7 @@ pub enum TransportCommand {
     TogglePlaying,
     /// To the next moment (`true`) or the one before (`false`) at which something happens.
     Step(bool),
-    /// To the start.
     Start,
-    /// To the end.
     End,
     /// So many times as fast.
     Speed(f64),

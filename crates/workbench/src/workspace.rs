@@ -11,7 +11,6 @@ pub enum Workspace {
     Author,
     /// See how planning works.
     Teach,
-    /// Judge a plan.
     Review,
     /// Run a mission or a control program.
     Execute,

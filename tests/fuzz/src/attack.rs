@@ -13,7 +13,6 @@ const MAX_POOL: usize = 2_000;
 /// An input that made a reader panic.
 #[derive(Clone, Debug)]
 pub struct Breaking {
-    /// The input.
     pub input: Vec<u8>,
     /// How many inputs came before it.
     pub number: u64,

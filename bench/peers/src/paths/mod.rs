@@ -15,7 +15,6 @@ use crate::table::{Table, figure, median, millis, quantile};
 use crate::tools::{Absent, Tools, answer};
 use map::{ENDS, Map};
 
-/// One search.
 #[derive(Deserialize)]
 struct Run {
     first_ms: f64,

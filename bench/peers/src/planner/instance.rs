@@ -42,7 +42,6 @@ pub(crate) struct Requirement {
     pub(crate) supports: Vec<Interval>,
 }
 
-/// The problem.
 #[derive(Serialize)]
 pub(crate) struct Instance {
     /// The number of literals, the true one included.

@@ -30,7 +30,6 @@ const LIMIT: Duration = Duration::from_secs(20);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Verdict {
-    /// A plan.
     Plan,
     /// A proof that there is none.
     NoPlan,

@@ -60,9 +60,7 @@ pub struct Element {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Flag {
-    /// It is not.
     False,
-    /// It is.
     True,
     /// Some of what it stands for is.
     Mixed,

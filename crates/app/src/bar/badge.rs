@@ -9,9 +9,7 @@ use workbench::state::Status;
 /// What the badge shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
-    /// The sign.
     pub sign: Icon,
-    /// The word.
     pub text: &'static str,
     /// The colour of both.
     pub color: Color32,

@@ -20,7 +20,6 @@ use super::system::System;
 pub struct Trials<'inputs> {
     /// How each run is made; its seed is replaced by that of the run.
     pub options: Options,
-    /// Seeds chance.
     pub seed: u64,
     /// A run that has not ended after so many steps has not reached its end.
     pub most_steps: u32,

@@ -17,9 +17,7 @@ use super::goal::{GoalConfigurations, goal_configurations};
 /// What a variable of the program stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Binding {
-    /// The mode of a component.
     Mode(ComponentId),
-    /// A variable of the plant.
     Plant(VariableId),
     /// A variable that only the program sets.
     Program,
@@ -28,9 +26,7 @@ enum Binding {
 /// A control program and its plant.
 #[derive(Clone, Debug)]
 pub struct System {
-    /// The program.
     pub automaton: Arc<Automaton>,
-    /// The plant.
     pub model: Arc<Model>,
     /// The plant's reactive planner.
     pub planner: Arc<Planner>,

@@ -20,7 +20,6 @@ const MAX_TASKS: usize = 4_000;
 struct Shared {
     capacity: i64,
     tasks: Vec<(Interval, i64)>,
-    /// What says so.
     premise: Premise,
 }
 

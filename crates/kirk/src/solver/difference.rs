@@ -41,7 +41,7 @@ struct Step {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Differences {
     all: TiVec<DifferenceId, Difference>,
-    /// By source.
+    /// Indexed by source.
     steps: TiVec<Side, Vec<Step>>,
     /// By the side that makes their literal hold.
     waiting: TiVec<Side, Vec<DifferenceId>>,
@@ -74,7 +74,6 @@ impl Differences {
         self.movements.resize(num_variables * 2, Movement::default());
     }
 
-    /// Adds a step.
     pub(crate) fn add(&mut self, difference: Difference) {
         let id = self.all.push_and_get_key(difference);
         let Difference { from, to, weight, when } = difference;

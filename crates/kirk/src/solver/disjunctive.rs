@@ -23,7 +23,6 @@ struct Exclusion {
     tasks: Vec<Interval>,
     /// The least time between one and the next.
     gap: i64,
-    /// What says so.
     premise: Premise,
 }
 

@@ -34,7 +34,6 @@ impl From<Variable> for usize {
 }
 
 impl Variable {
-    /// Its value.
     pub(crate) const fn upper(self) -> Side {
         Side(self.0 * 2)
     }
@@ -73,7 +72,6 @@ pub(crate) struct Literal {
 }
 
 impl Literal {
-    /// Always holds.
     pub(crate) const TRUE: Self = Variable(0).holds();
 
     pub(crate) const fn new(side: Side, most: i64) -> Self {

@@ -28,7 +28,7 @@ pub(super) fn maximize(gains: &[f64], rows: &[(Vec<f64>, f64)]) -> Optimum {
 struct Tableau {
     num_variables: usize,
     columns: usize,
-    /// Row by row.
+    /// In row-major order.
     cells: Vec<f64>,
     limits: Vec<f64>,
     gains: Vec<f64>,

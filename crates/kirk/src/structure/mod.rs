@@ -53,7 +53,6 @@ struct TreeBlock {
     own: (i64, i64),
     /// Whether there is a choice in it.
     has_choices: bool,
-    /// Whether a label is in it.
     has_labels: bool,
     /// What it is among the enclosed ones, if its conditions conflict only with each other.
     enclosed: Option<EnclosedId>,

@@ -33,16 +33,13 @@ pub struct AutomatonDrawing {
     pub transitions: Vec<TransitionShape>,
     /// From each child of a sequence to the next.
     pub successions: Vec<(Point, Point)>,
-    /// All texts.
     pub texts: Vec<AutomatonText>,
 }
 
 /// A composite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CompositeShape {
-    /// Which one.
     pub id: CompositeId,
-    /// Its box.
     pub rect: Rect,
     /// Which form it comes from.
     pub kind: CompositeKind,
@@ -53,11 +50,8 @@ pub struct CompositeShape {
 /// A primitive location.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocationShape {
-    /// Which one.
     pub id: LocationId,
-    /// Its box.
     pub rect: Rect,
-    /// What it does.
     pub kind: LocationKind,
     /// Whether it is marked when the whole program starts.
     pub is_start: bool,
@@ -66,11 +60,9 @@ pub struct LocationShape {
 /// A transition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TransitionShape {
-    /// Which one.
     pub id: TransitionId,
     /// Where the curve begins.
     pub start: Point,
-    /// The curve.
     pub pieces: Vec<Piece>,
 }
 
@@ -92,9 +84,7 @@ pub struct AutomatonText {
 pub enum AutomatonItem {
     /// A primitive location.
     Location(LocationId),
-    /// A transition.
     Transition(TransitionId),
-    /// A composite.
     Composite(CompositeId),
 }
 

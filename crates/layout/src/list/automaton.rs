@@ -23,7 +23,6 @@ pub struct AutomatonState<'a> {
     pub fired: &'a [TransitionId],
     /// The composites that were preempted in it.
     pub preempted: &'a [CompositeId],
-    /// What is selected.
     pub selected: &'a [AutomatonItem],
 }
 

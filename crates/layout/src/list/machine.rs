@@ -10,7 +10,6 @@ use crate::machine::{MODE_HEIGHT, MachineArc, MachineDrawing};
 /// How things stand with a mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeState {
-    /// Its name.
     pub name: SmolStr,
     /// How likely it is, from 0 to 1.
     pub likelihood: f64,
@@ -18,7 +17,6 @@ pub struct ModeState {
     pub percent: SmolStr,
     /// Whether it is the most likely one.
     pub is_estimate: bool,
-    /// Whether it is the true one.
     pub is_true: bool,
     /// Whether the component will be brought into it.
     pub is_injected: bool,

@@ -22,7 +22,6 @@ pub struct MapFrame {
 /// A path on a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapPath<'a> {
-    /// Its name.
     pub name: &'a str,
     /// From point to point.
     pub points_m: Vec<Point2<f64>>,

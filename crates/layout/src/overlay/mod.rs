@@ -24,7 +24,6 @@ pub struct OverlayCurve {
     pub number: u32,
     /// Where the curve begins.
     pub start: Point,
-    /// The curve.
     pub pieces: Vec<Piece>,
     /// The curve lies inside.
     pub bounds: Rect,

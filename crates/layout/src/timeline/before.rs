@@ -26,7 +26,6 @@ pub enum BarChange {
 /// An activity that only the other plan has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gone {
-    /// Its name.
     pub name: SmolStr,
     /// When it could start and end.
     pub times: [[f64; 2]; 2],

@@ -21,7 +21,7 @@ use super::{ChartOptions, group, profile, rule};
 pub struct Chart {
     /// From top to bottom.
     pub rows: Vec<Row>,
-    /// Row by row.
+    /// In the order of rows.
     pub bars: Vec<Bar>,
     /// Causal links and orderings between bars.
     pub links: Vec<Link>,
@@ -40,7 +40,6 @@ pub struct Chart {
 /// A row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What it is.
     pub kind: RowKind,
     /// What is written on its left.
     pub name: SmolStr,
@@ -50,7 +49,6 @@ pub struct Row {
     pub key: Option<SmolStr>,
     /// Whether the rows below it are hidden; their bars are then in this row.
     pub is_closed: bool,
-    /// Its bars.
     pub bars: Range<usize>,
 }
 
@@ -76,7 +74,6 @@ pub enum RowKind {
 /// An activity, condition or delay over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
-    /// What it is.
     pub kind: BarKind,
     /// Whose bar it is.
     pub occurrence: Option<OccurrenceId>,
@@ -105,7 +102,6 @@ pub enum BarKind {
     Composite,
     /// A primitive activity.
     Activity,
-    /// A delay.
     Delay,
     /// An asserted condition.
     Tell,
@@ -151,7 +147,6 @@ pub enum LinkKind {
 /// A row before it is known which rows are closed.
 #[derive(Clone, Debug)]
 pub(super) struct Item {
-    /// What the row is.
     pub(super) kind: RowKind,
     /// What is written on its left.
     pub(super) name: SmolStr,
@@ -159,7 +154,6 @@ pub(super) struct Item {
     pub(super) key: Option<SmolStr>,
     /// How deep it lies.
     pub(super) depth: u32,
-    /// What is in it.
     pub(super) bars: Vec<Bar>,
 }
 

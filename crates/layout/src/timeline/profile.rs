@@ -14,7 +14,6 @@ pub const PROFILE_ROWS: usize = 3;
 /// The use of one resource over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// The resource.
     pub name: SmolStr,
     /// How much of it there is.
     pub supply: Supply,
@@ -29,15 +28,11 @@ pub struct Profile {
 /// An activity or a block that takes of a resource or gives to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Taker {
-    /// Which use.
     pub used: UseId,
     /// Whose, if it has a name.
     pub occurrence: Option<OccurrenceId>,
-    /// Its name.
     pub name: SmolStr,
-    /// What it does.
     pub change: Change,
-    /// How much.
     pub amount: Rational,
     /// Its first and its last event.
     pub events: [NodeId; 2],
@@ -48,7 +43,6 @@ pub struct Taker {
 /// A level from a time on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// From when.
     pub time: f64,
     /// What is used of a reusable resource, or left in a reservoir.
     pub level: Rational,

@@ -79,9 +79,7 @@ pub enum Subject {
     Activity,
     /// An activity that consists of others, or the whole scenario.
     Phase,
-    /// An assertion.
     Condition,
-    /// A delay.
     Delay,
     /// A requirement with the assertion that carries it.
     Link,
@@ -113,9 +111,7 @@ impl Subject {
 /// Something that happens in either plan, with its times in both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Its name.
     pub name: String,
-    /// What it is.
     pub subject: Subject,
     /// What happened to it; nothing if both plans have it at the same times.
     pub change: Option<Change>,
@@ -128,7 +124,6 @@ pub struct Row {
 /// The way of a traverse in both plans.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathPair {
-    /// The traverse.
     pub name: String,
     /// Its way in the first plan.
     pub before: Option<Way>,

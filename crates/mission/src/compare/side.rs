@@ -46,7 +46,6 @@ pub struct Taken {
 /// Something that happens.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
-    /// What it is.
     pub subject: Subject,
     /// Its arguments, where they are known.
     pub arguments: Option<String>,

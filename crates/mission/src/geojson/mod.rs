@@ -43,7 +43,6 @@ pub enum GeoJsonError {
     /// A position that is none.
     #[error("{place}: {problem}")]
     Position {
-        /// The feature.
         place: String,
         /// What is wrong.
         problem: String,

@@ -35,7 +35,6 @@ pub trait Transport {
 /// What a core says.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
-    /// It is there.
     Ready,
     /// It goes on with the job under way.
     Alive,
@@ -51,17 +50,11 @@ pub enum News {
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkEvent {
     /// A job was answered, in full or in part.
-    Answer {
-        /// Which one.
-        job: JobId,
-        /// The answer.
-        response: Response,
-    },
+    Answer { job: JobId, response: Response },
     /// A job was given up because the core stopped over it, or could not be started.
     Failed {
         /// Which one, if it was over a job.
         job: Option<JobId>,
-        /// Its kind.
         kind: Option<Kind>,
         /// The revision of the text that it was about.
         revision: Option<u64>,
@@ -102,7 +95,6 @@ enum CoreState {
     Absent,
     /// One was started, and has not said anything yet. Jobs are handed to it all the same.
     Starting,
-    /// It is there.
     Ready,
 }
 

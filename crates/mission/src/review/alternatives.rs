@@ -34,7 +34,6 @@ pub enum Fate {
     Taken,
     /// No plan can take it, given the choices before it.
     Impossible {
-        /// Why.
         reason: String,
         /// Places in the text that have to do with it, the most telling first.
         spans: Vec<Span>,

@@ -119,7 +119,6 @@ impl<'a> Present<'a> {
 /// How a plan stands with its board.
 #[derive(Clone, Debug)]
 pub struct Standing<'a> {
-    /// In one word.
     pub status: PlanStatus,
     /// The roles, in the board's order, each with the approvals that count.
     pub seats: Vec<Approvals<'a>>,

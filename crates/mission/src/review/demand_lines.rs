@@ -16,7 +16,6 @@ use crate::snapshot::Planning;
 pub struct ResourceReview {
     /// How far it is used, and what is left.
     pub line: Line,
-    /// Its name.
     pub name: String,
     /// How much of it there is.
     pub supply: Supply,

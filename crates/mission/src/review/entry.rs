@@ -14,7 +14,6 @@ pub type Entry = Sealed<Said>;
 /// What an entry says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Said {
-    /// Who.
     pub by: String,
     /// In which role; empty if in none.
     pub role: String,
@@ -38,31 +37,18 @@ pub enum Act {
     Comment {
         /// What it is about, by the names of all output; the whole mission if nothing is named.
         about: Option<String>,
-        /// The words.
         text: String,
     },
     /// Resolved a comment.
-    Resolve {
-        /// The comment.
-        of: String,
-        /// How.
-        text: String,
-    },
+    Resolve { of: String, text: String },
     /// Opened a resolved comment again.
-    Reopen {
-        /// The comment.
-        of: String,
-        /// Why.
-        text: String,
-    },
+    Reopen { of: String, text: String },
     /// Acknowledged a line for attention.
     Acknowledge {
-        /// The line.
         line: LineKey,
         /// Why it may be so.
         text: String,
     },
-    /// Approved.
     Approve {
         /// The digest of what was approved: a [`Subject`].
         subject: String,
@@ -70,17 +56,9 @@ pub enum Act {
         text: String,
     },
     /// Took an entry back.
-    Withdraw {
-        /// The entry.
-        of: String,
-        /// Why.
-        text: String,
-    },
+    Withdraw { of: String, text: String },
     /// Set the flight rules.
-    Rules {
-        /// The rules.
-        rules: FlightRules,
-    },
+    Rules { rules: FlightRules },
 }
 
 impl Act {
@@ -124,9 +102,7 @@ impl Act {
 /// What tells a line of a checklist from others: an acknowledgement holds as long as the line says the same.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct LineKey {
-    /// Its section.
     pub section: Section,
-    /// What it says.
     pub text: String,
     /// What it is held against.
     pub criterion: Option<String>,
@@ -142,7 +118,6 @@ impl LineKey {
 /// What was approved, as it was then: later contents can be compared with it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Subject {
-    /// The text.
     pub source: String,
     /// What was planned.
     pub goal: Goal,
@@ -166,11 +141,8 @@ pub struct Subject {
 /// A line of a checklist as it was seen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeenLine {
-    /// Its section.
     pub section: Section,
-    /// How it stood.
     pub status: Status,
-    /// What it said.
     pub text: String,
     /// What it was about, by the names of all output.
     pub names: Vec<String>,
@@ -181,7 +153,6 @@ pub struct SeenLine {
 pub struct Rate {
     /// How many reached the end.
     pub succeeded: u64,
-    /// Of how many.
     pub runs: u64,
     /// The seed of the runs.
     pub seed: u64,
@@ -238,7 +209,6 @@ pub struct Runs {
     pub content_hash: String,
     /// How many were asked for.
     pub runs: u64,
-    /// Their seed.
     pub seed: u64,
     /// What was left to chance.
     pub uncertainty: Uncertainty,
@@ -263,7 +233,6 @@ impl Runs {
 /// Who does something, when, and about what.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Who {
-    /// The name.
     pub by: String,
     /// The role; empty for none.
     pub role: String,

@@ -208,7 +208,6 @@ pub struct EventReview {
 pub struct TraverseReview {
     /// Length, duration, clearance and slope.
     pub line: Line,
-    /// The activity.
     pub occurrence: OccurrenceId,
     /// Its name: `Group-Traverse-Path#1`.
     pub name: String,

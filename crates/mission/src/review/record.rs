@@ -59,7 +59,6 @@ pub enum RecordError {
         /// What it says of itself.
         found: String,
     },
-    /// It is damaged.
     #[error("this review cannot be read: {0}")]
     Damaged(String),
     /// Its history has been altered.

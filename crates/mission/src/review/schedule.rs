@@ -6,7 +6,6 @@ use tpn::{Network, OccurrenceId, OccurrenceKind, Plan, Window};
 /// An activity, assertion or delay that a plan selects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scheduled {
-    /// Which one.
     pub occurrence: OccurrenceId,
     /// When it may begin. Under the earliest schedule it begins at the earliest time.
     pub start: Window,

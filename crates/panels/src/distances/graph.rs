@@ -13,7 +13,6 @@ use workbench::state::selection::node_name;
 /// What the graph is made of.
 #[derive(Clone, Copy)]
 pub struct Selected<'a> {
-    /// The network.
     pub network: &'a Network,
     /// Selected events.
     pub nodes: &'a [NodeId],
@@ -30,14 +29,12 @@ pub struct Selected<'a> {
 pub struct DistanceGraph {
     /// Its vertices, those that can happen first before the others.
     pub vertices: Vec<Vertex>,
-    /// Its edges.
     pub edges: Vec<Edge>,
 }
 
 /// Events at the same time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vertex {
-    /// They.
     pub nodes: Vec<NodeId>,
     /// What they are called, in at most two lines; none for forks and merges.
     pub names: Vec<String>,
@@ -46,13 +43,12 @@ pub struct Vertex {
 /// `to` happens at most `weight` after `from`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// By position.
+    /// Position in the list of nodes.
     pub from: usize,
-    /// By position.
+    /// Position in the list of nodes.
     pub to: usize,
     /// In time units.
     pub weight: Time,
-    /// Why.
     pub constraint: Constraint,
     /// Whether it is part of the contradiction.
     pub is_in_cycle: bool,

@@ -19,7 +19,6 @@ const MAX_EVENTS: usize = 32;
 /// What the matrix is made of.
 #[derive(Clone, Copy)]
 pub struct Parts<'a> {
-    /// The network.
     pub network: &'a Network,
     /// Selected events.
     pub nodes: &'a [NodeId],

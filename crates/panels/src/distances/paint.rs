@@ -20,17 +20,12 @@ use crate::network::view::View;
 pub struct Scene<'a> {
     /// Paints inside the panel only.
     pub painter: &'a egui::Painter,
-    /// The panel.
     pub panel: Rect,
     /// Where it is looked at from.
     pub view: &'a View,
-    /// The graph.
     pub graph: &'a DistanceGraph,
-    /// Its places.
     pub arranged: &'a Arranged,
-    /// The network that it is of.
     pub network: &'a Network,
-    /// The colours.
     pub tokens: &'a Tokens,
     /// What is selected.
     pub selection: &'a Selection,
@@ -41,9 +36,7 @@ pub struct Scene<'a> {
 /// What the pointer is over, by position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pointed {
-    /// A vertex.
     Vertex(usize),
-    /// An edge.
     Edge(usize),
 }
 

@@ -18,7 +18,6 @@ const BESIDE: usize = 12;
 
 /// A graph, and how much of what is selected it shows.
 pub struct Shown {
-    /// The graph.
     pub graph: DistanceGraph,
     /// How many events it leaves out.
     pub left_out: usize,

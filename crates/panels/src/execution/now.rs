@@ -64,7 +64,6 @@ pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     });
 }
 
-/// The lists.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
     let is_over = shown.run.log.last().is_some_and(|last| {
         has_come(last.time, context.state.playback.time)

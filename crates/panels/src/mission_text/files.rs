@@ -8,7 +8,6 @@ use workbench::command::{Command, CommandSender, EditorCommand};
 
 use crate::Context;
 
-/// Shows them.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let state = context.state;
     let document = &state.document;

@@ -28,7 +28,6 @@ pub(super) struct Drawn {
     /// What the search had selected at the step that is looked at.
     step: Option<Arc<Plan>>,
     detail: Detail,
-    /// The shapes.
     pub(super) drawing: NetworkDrawing,
     /// Causal links of the plan.
     pub(super) links: Vec<OverlayCurve>,

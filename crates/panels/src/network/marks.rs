@@ -14,13 +14,11 @@ use super::view::View;
 /// A problem at its place on the drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mark {
-    /// Where.
     pub(super) at: Point,
     /// The arc that it is about, if it is about one.
     pub(super) arc: Option<ArcId>,
     /// How grave it is.
     pub(super) severity: Severity,
-    /// What it says.
     pub(super) message: String,
     /// Where it is in the latest text.
     pub(super) span: Span,

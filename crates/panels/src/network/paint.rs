@@ -21,13 +21,11 @@ const STRENGTHS: [f32; 3] = [0.40, 0.22, 0.45];
 pub(super) struct Scene<'a> {
     /// The drawing and its list.
     pub(super) drawn: &'a Drawn,
-    /// The network.
     pub(super) network: &'a Network,
     /// The plan, if there is one for this network.
     pub(super) plan: Option<&'a Plan>,
     /// What is shown.
     pub(super) options: &'a NetworkView,
-    /// What is selected.
     pub(super) selected: &'a Highlight,
     /// What the pointer is over, here or in another panel.
     pub(super) hovered: &'a Highlight,

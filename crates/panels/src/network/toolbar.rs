@@ -12,7 +12,6 @@ use crate::Context;
 /// What the user asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Asked {
-    /// Nothing.
     Nothing,
     /// The next match of the search.
     NextMatch,

@@ -47,7 +47,6 @@ impl LevelLines {
         }
     }
 
-    /// Paints them.
     pub(super) fn paint(self, painter: &Painter) {
         if self.0.is_empty() {
             return;

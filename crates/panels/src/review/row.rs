@@ -21,7 +21,6 @@ const NARROW: f32 = 430.0;
 pub(super) struct Row<'a> {
     /// How it stands.
     pub(super) status: Option<Status>,
-    /// What it says.
     pub(super) text: &'a str,
     /// What it is held against; below it.
     pub(super) criterion: &'a str,
@@ -35,7 +34,6 @@ pub(super) struct Row<'a> {
     pub(super) is_quiet: bool,
 }
 
-/// Shows a row.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Response {
     let tokens = context.tokens;
     let body = TextStyle::Body.resolve(ui.style());

@@ -23,7 +23,7 @@ const MAX_LEARNED: usize = 40;
 /// A search that is told of.
 #[derive(Clone, Copy)]
 pub struct Told<'a> {
-    /// Which of two.
+    /// 0 for the first search, 1 for the second.
     pub side: usize,
     /// What was recorded.
     pub recording: &'a Recording,

@@ -39,7 +39,6 @@ struct Drawn {
 /// What of a merged tree each search knows at its step.
 #[derive(Clone, Copy)]
 pub struct Merged<'a> {
-    /// The tree.
     pub tree: &'a MergedTree,
     recordings: &'a [Recording; 2],
     own: &'a [TreeIndex; 2],

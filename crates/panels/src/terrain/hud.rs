@@ -20,15 +20,10 @@ use crate::Context;
 pub struct Overlay<'a> {
     /// Paints inside the image only.
     pub painter: &'a egui::Painter,
-    /// The image.
     pub rect: Rect,
-    /// The view.
     pub camera: &'a Camera,
-    /// The ground.
     pub ground: &'a Ground,
-    /// The mission.
     pub snapshot: &'a Snapshot,
-    /// The state.
     pub context: &'a Context<'a>,
     /// What is shown.
     pub view: &'a TerrainView,

@@ -9,13 +9,10 @@ use workbench::state::Selection;
 pub struct Label {
     /// The point it names, in the window.
     pub anchor: Pos2,
-    /// The name.
     pub text: String,
-    /// Its colour.
     pub color: Color32,
     /// How much it matters: names of the highest rank are never left out.
     pub rank: Rank,
-    /// What it names.
     pub names: Selection,
 }
 
@@ -24,13 +21,11 @@ pub struct Label {
 pub enum Rank {
     /// It is selected or under the pointer.
     Chosen,
-    /// A vehicle.
     Vehicle,
     /// A place that the plan drives to.
     OnPath,
     /// Another place.
     Place,
-    /// An obstacle.
     Obstacle,
 }
 

@@ -113,7 +113,6 @@ pub(crate) fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut Command
     }
 }
 
-/// The time.
 pub(crate) fn clock(ui: &mut Ui, context: &Context<'_>) {
     let unit = context.snapshot.map_or(TimeUnit::Minute, |snapshot| snapshot.program.options.time_unit);
     let time = context.state.playback.time;

@@ -49,7 +49,6 @@ pub struct TimelinePanel {
     prepared: Option<Prepared>,
     /// Keys of the rows that are closed.
     closed: BTreeSet<SmolStr>,
-    /// The width of the names.
     names_width: f32,
     /// The selection that was last brought into view.
     followed_selection: Selection,

@@ -17,9 +17,7 @@ pub(super) const ROW_HEIGHT: f32 = layout::list::timeline::ROW_HEIGHT as f32;
 
 /// What all parts of one frame need.
 pub(super) struct Painting<'a> {
-    /// The state.
     pub(super) context: &'a Context<'a>,
-    /// The network.
     pub(super) network: &'a Network,
     /// The rows and bars.
     pub(super) chart: &'a Chart,

@@ -31,7 +31,6 @@ pub(crate) struct Figure {
 }
 
 impl Figure {
-    /// As HTML.
     pub(crate) fn html(&self) -> String {
         // A drawing inside HTML needs no namespace of its own.
         let drawing = self.drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);

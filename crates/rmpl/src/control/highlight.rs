@@ -25,16 +25,13 @@ pub enum HighlightKind {
     Bar,
     /// Parentheses and signs.
     Punctuation,
-    /// A comment.
     Comment,
 }
 
 /// A piece of text and its role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Highlight {
-    /// Where it is.
     pub span: Span,
-    /// Its role.
     pub kind: HighlightKind,
 }
 

@@ -29,7 +29,6 @@ pub struct MergedClass<'file> {
     pub lineage: Vec<SmolStr>,
     /// Its variables, those of the most general class first.
     pub variables: Vec<MergedVariable>,
-    /// Its commands.
     pub commands: Vec<MergedVariable>,
     /// Its ports, each with the class of what stands there.
     pub ports: Vec<(&'file Name, &'file Name)>,

@@ -43,9 +43,7 @@ impl TokenKind {
 /// One token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Token {
-    /// What it is.
     pub kind: TokenKind,
-    /// Where it is.
     pub span: Span,
 }
 

@@ -8,7 +8,6 @@ use crate::span::Span;
 /// A name or value as written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Name {
-    /// Its text.
     pub text: SmolStr,
     /// Where it is written.
     pub span: Span,
@@ -37,9 +36,7 @@ impl ControlFile {
 pub struct Definition {
     /// What it is called.
     pub name: Name,
-    /// Its parameters.
     pub parameters: Vec<Name>,
-    /// What it does.
     pub body: Expression,
     /// Where it is written.
     pub span: Span,
@@ -48,7 +45,6 @@ pub struct Definition {
 /// An expression and where it is written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Expression {
-    /// What it says.
     pub kind: ExpressionKind,
     /// Where it is written.
     pub span: Span,
@@ -59,7 +55,6 @@ pub struct Expression {
 pub enum ExpressionKind {
     /// A constraint to make true.
     Assert(Constraint),
-    /// All at once.
     Parallel(Vec<Expression>),
     /// One after the other.
     Sequence(Vec<Expression>),
@@ -85,7 +80,6 @@ pub enum ExpressionKind {
     WhenDoNext {
         /// What is waited for.
         guard: Guard,
-        /// Done next.
         body: Box<Expression>,
     },
     /// Starts the body after every step in which the guard holds.
@@ -106,7 +100,6 @@ pub enum ExpressionKind {
     Call {
         /// What is called.
         name: Name,
-        /// With what.
         arguments: Vec<Argument>,
         /// Whether it is written without parentheses, as parameters are.
         bare: bool,
@@ -140,7 +133,6 @@ pub struct Guard {
 /// A constraint and where it is written.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Constraint {
-    /// What it says.
     pub kind: ConstraintKind,
     /// Where it is written.
     pub span: Span,
@@ -149,20 +141,15 @@ pub struct Constraint {
 /// The forms of a constraint.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ConstraintKind {
-    /// Always true.
     True,
-    /// Never true.
     False,
     /// The variable has the value.
     Equals {
-        /// The variable.
         variable: Name,
-        /// The value.
         value: Name,
     },
     /// The inner constraint is false.
     Not(Box<Constraint>),
-    /// All hold.
     And(Vec<Constraint>),
     /// At least one holds.
     Or(Vec<Constraint>),
@@ -201,7 +188,6 @@ pub enum FieldKind {
     Variable {
         /// What it is called.
         name: Name,
-        /// Its domain.
         values: Vec<Name>,
         /// Whether it is observed.
         observable: bool,
@@ -212,7 +198,6 @@ pub enum FieldKind {
     Command {
         /// What it is called.
         name: Name,
-        /// Its values.
         values: Vec<Name>,
     },
     /// `(PORT name class)`.
@@ -254,7 +239,6 @@ pub enum FieldKind {
 pub struct Instance {
     /// What it is called.
     pub name: Name,
-    /// Its class.
     pub class: Name,
     /// The components at its ports.
     pub ports: Vec<(Name, Name)>,

@@ -4,7 +4,6 @@ use crate::analysis::Call;
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 
-/// The code.
 pub const CODE: Code = Code("E-ARITY");
 
 /// What it means, with an example.

@@ -6,7 +6,6 @@ use crate::diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
 use crate::explanation::Explanation;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("E-BOUNDS");
 
 /// What it means, with an example.

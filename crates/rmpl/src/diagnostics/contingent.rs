@@ -5,7 +5,6 @@ use crate::explanation::Explanation;
 use crate::parser::{CONTINGENT, replacement};
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("E-CONTINGENT");
 
 /// What it means, with an example.

@@ -5,7 +5,6 @@ use crate::explanation::Explanation;
 use crate::parser::replacement;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("W-CONTROLLABILITY");
 
 /// What it means, with an example.

@@ -6,7 +6,6 @@ use crate::explanation::Explanation;
 use crate::program::Name;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("E-DUP");
 
 /// What it means, with an example.

@@ -4,7 +4,6 @@ use crate::diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
 use crate::explanation::Explanation;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("W-EXOGENOUS");
 
 /// What it means, with an example.

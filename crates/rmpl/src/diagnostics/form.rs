@@ -3,7 +3,6 @@
 use crate::diagnostic::{Code, Severity};
 use crate::explanation::Explanation;
 
-/// The code.
 pub const CODE: Code = Code("E-FORM");
 
 /// What it means, with an example.

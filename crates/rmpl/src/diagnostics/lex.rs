@@ -6,7 +6,6 @@ use crate::parser::replacement;
 use crate::span::Span;
 use crate::syntax::{LexProblem, LexProblemKind, is_dash};
 
-/// The code.
 pub const CODE: Code = Code("E-LEX");
 
 /// What it means, with an example.

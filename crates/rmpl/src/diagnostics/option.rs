@@ -6,7 +6,6 @@ use crate::explanation::Explanation;
 use crate::parser::replacement;
 use crate::program::Name;
 
-/// The code.
 pub const CODE: Code = Code("W-OPTION");
 
 /// What it means, with an example.

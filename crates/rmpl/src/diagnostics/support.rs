@@ -4,7 +4,6 @@ use crate::analysis::{Literal, Names};
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 
-/// The code.
 pub const CODE: Code = Code("W-SUPPORT");
 
 /// What it means, with an example.

@@ -6,7 +6,6 @@ use crate::parser::{insertion, replacement};
 use crate::program::Measure;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("E-SYNTAX");
 
 /// What it means, with an example.

@@ -5,7 +5,6 @@ use crate::explanation::Explanation;
 use crate::program::{Condition, LabelMode};
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("W-START");
 
 /// What it means, with an example.

@@ -6,7 +6,6 @@ use crate::parser::replacement;
 use crate::program::Name;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("E-NAME");
 
 /// What it means, with an example.

@@ -4,7 +4,6 @@ use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("E-NETWORK");
 
 /// What it means, with an example.

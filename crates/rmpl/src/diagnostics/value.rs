@@ -6,7 +6,6 @@ use crate::parser::{insertion, replacement};
 use crate::program::Name;
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("E-VALUE");
 
 /// What it means, with an example.

@@ -8,7 +8,6 @@ use crate::parser::insertion;
 use crate::program::{Statement, StatementKind};
 use crate::span::Span;
 
-/// The code.
 pub const CODE: Code = Code("W-WINDOW");
 
 /// What it means, with an example.

@@ -12,7 +12,6 @@ use super::name::{NameUse, name_at, names_in};
 /// A place where a name stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
-    /// The name.
     pub span: Span,
     /// Whether it is declared here.
     pub is_definition: bool,

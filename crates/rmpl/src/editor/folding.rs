@@ -20,7 +20,6 @@ pub enum FoldKind {
 pub struct Fold {
     /// What disappears: for braces, what is between them.
     pub span: Span,
-    /// What it is.
     pub kind: FoldKind,
 }
 

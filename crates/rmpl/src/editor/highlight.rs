@@ -10,19 +10,16 @@ use super::name::{NameKind, names_in};
 /// How a piece of text is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum HighlightKind {
-    /// A comment.
     Comment,
     /// A word of the language, also one that is reserved only in its place.
     Keyword,
     /// An activity or a primitive.
     Activity,
-    /// A scenario.
     Scenario,
     /// A state variable, an atom or a resource.
     Variable,
     /// A value of a variable.
     Value,
-    /// A parameter.
     Parameter,
     /// A name of the header's bounds.
     BoundName,
@@ -49,7 +46,6 @@ pub enum HighlightKind {
 /// A piece of text and how it is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Highlight {
-    /// The piece.
     pub span: Span,
     /// How it is shown.
     pub kind: HighlightKind,

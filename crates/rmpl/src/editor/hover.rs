@@ -43,7 +43,6 @@ pub struct EventWindow {
     pub span: Span,
     /// The event, such as `Group-Wait#1.start`.
     pub event: SmolStr,
-    /// The earliest time.
     pub earliest: Time,
     /// The latest time.
     pub latest: Bound,

@@ -20,27 +20,18 @@ pub enum NameKind {
     Parameter,
     /// A name of the header's bounds.
     BoundName,
-    /// A constant.
     Constant,
-    /// A scenario.
     Scenario,
-    /// A location.
     Location,
-    /// An obstacle.
     Obstacle,
-    /// A vehicle.
     Vehicle,
-    /// A resource.
     Resource,
     /// An occurrence that `as` names.
     Occurrence,
     /// A vehicle model.
     Model,
-    /// An option.
     Option,
-    /// The value of an option.
     OptionValue,
-    /// A control program.
     ControlProgram,
     /// An argument that is nothing of the above: a symbol for the activity that it is handed to.
     Symbol,
@@ -58,7 +49,6 @@ impl NameKind {
 pub struct NameUse {
     /// Where it stands.
     pub span: Span,
-    /// The name.
     pub text: SmolStr,
     /// What it stands for.
     pub kind: NameKind,

@@ -11,25 +11,16 @@ pub enum OutlineKind {
     Variable,
     /// A variable that keeps its value.
     State,
-    /// A resource.
     Resource,
-    /// A primitive.
     Primitive,
     /// An activity with a definition.
     Activity,
-    /// A scenario.
     Scenario,
-    /// A constant.
     Constant,
-    /// An option.
     Option,
-    /// The terrain.
     Terrain,
-    /// A location.
     Location,
-    /// An obstacle.
     Obstacle,
-    /// A vehicle.
     Vehicle,
 }
 
@@ -38,7 +29,6 @@ pub enum OutlineKind {
 pub struct OutlineItem {
     /// What it declares.
     pub kind: OutlineKind,
-    /// The name.
     pub name: String,
     /// What follows the name in the declaration, on one line: parameters, bounds, domain, coordinates.
     pub detail: String,

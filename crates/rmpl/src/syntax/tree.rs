@@ -10,7 +10,6 @@ use super::SyntaxKind;
 /// A token: it starts where the one before it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// What it is.
     pub kind: SyntaxKind,
     /// Offset just past it, relative to its declaration.
     pub end: u32,
@@ -68,9 +67,7 @@ pub struct SyntaxNode<'a> {
 /// A token seen in its file.
 #[derive(Clone, Copy, Debug)]
 pub struct SyntaxToken<'a> {
-    /// What it is.
     pub kind: SyntaxKind,
-    /// Its text.
     pub text: &'a str,
     /// Where it stands in the file.
     pub span: Span,
@@ -81,7 +78,6 @@ pub struct SyntaxToken<'a> {
 /// A direct child of a node.
 #[derive(Clone, Copy, Debug)]
 pub enum Element<'a> {
-    /// A node.
     Node(SyntaxNode<'a>),
     /// A token that belongs to no child node.
     Token(SyntaxToken<'a>),

@@ -70,7 +70,6 @@ pub enum FormatError {
     Unsupported {
         /// The format's name.
         format: &'static str,
-        /// What it uses.
         problem: String,
     },
     /// More cells than [`MAX_CELL_COUNT`].

@@ -7,7 +7,6 @@ enum Value {
     Shorts(Vec<u16>),
     Doubles(Vec<f64>),
     Text(&'static str),
-    /// A long.
     Offset(u32),
 }
 

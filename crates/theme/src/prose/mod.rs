@@ -15,7 +15,6 @@ use words::{Look, show_words};
 /// How prose looks, and what its links lead to.
 #[derive(Clone, Copy)]
 pub struct Prose<'a> {
-    /// The colours.
     pub tokens: &'a Tokens,
     /// What the hover of a link shows; nothing for links that show nothing.
     pub hover: &'a dyn Fn(&str) -> Option<&'a [Block]>,

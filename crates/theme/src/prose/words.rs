@@ -18,7 +18,6 @@ pub(super) struct Look {
     pub size: f32,
     /// Whether all of them carry weight.
     pub is_strong: bool,
-    /// Their colour.
     pub color: Color32,
 }
 

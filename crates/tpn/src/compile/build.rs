@@ -49,13 +49,11 @@ impl Builder {
         self.nodes.len()
     }
 
-    /// A new node.
     pub(super) fn node(&mut self) -> NodeId {
         self.nodes.push(Node::default());
         NodeId::from_index(self.nodes.len() - 1)
     }
 
-    /// A new arc.
     pub(super) fn arc(
         &mut self,
         from: NodeId,

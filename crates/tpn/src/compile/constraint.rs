@@ -44,7 +44,6 @@ impl<'program> Named<'program> {
         self.path.push(self.entered);
     }
 
-    /// Ends it.
     pub(super) fn leave(&mut self) {
         self.path.pop();
     }

@@ -44,7 +44,6 @@ pub enum Top {
     Scenario(Option<SmolStr>),
     /// One invocation of an activity, as `--activity A --bounds L,U` asks for (SPEC 1.4).
     Activity {
-        /// Its name.
         name: SmolStr,
         /// The invocation's least duration.
         lower: Time,

@@ -18,19 +18,13 @@ use crate::network::Network;
 pub enum PlanSchemaError {
     /// It is neither JSON nor EDN.
     #[error("this is neither JSON ({json}) nor EDN ({edn})")]
-    Notation {
-        /// Why not JSON.
-        json: String,
-        /// Why not EDN.
-        edn: EdnError,
-    },
+    Notation { json: String, edn: EdnError },
     /// It is data, but not a map of objects with a network.
     #[error("{0}")]
     Shape(String),
     /// An object refers to one that is not there.
     #[error("`{from}` refers to `{to}`, which the file does not have")]
     Dangling {
-        /// The object.
         from: String,
         /// What it names.
         to: String,

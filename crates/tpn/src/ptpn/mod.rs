@@ -17,7 +17,6 @@ pub const NAMESPACE: &str = "http://mers.csail.mit.edu/tpn";
 /// Why a file is no network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PtpnError {
-    /// It is no XML.
     #[error("this is no XML: {0}")]
     Xml(String),
     /// An element is not there, or not as it has to be.

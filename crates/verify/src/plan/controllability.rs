@@ -17,7 +17,7 @@ struct Parted {
     points: usize,
     edges: Vec<Edge>,
     links: Vec<Link>,
-    /// By link.
+    /// Indexed by link.
     arcs: Vec<ArcId>,
 }
 

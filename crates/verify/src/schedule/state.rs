@@ -16,7 +16,6 @@ use crate::{Rule, Violation};
 /// How a producer can carry a requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Support {
-    /// It cannot.
     No,
     /// It does, however ties are decided.
     Always,

@@ -20,7 +20,6 @@ pub fn network(text: &str) -> Network {
 pub struct Sketch<'names> {
     /// The alternatives taken, of D1, D2, ….
     pub choices: &'names [(u32, u32)],
-    /// Ask and Tell.
     pub links: &'names [(&'names str, &'names str)],
     /// First and then.
     pub order: &'names [(&'names str, &'names str)],

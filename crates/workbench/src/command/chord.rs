@@ -3,7 +3,6 @@
 /// A key with the modifiers that are held with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Chord {
-    /// What is held.
     pub modifiers: Modifiers,
     /// What is pressed.
     pub key: Key,
@@ -14,7 +13,6 @@ pub struct Chord {
 pub struct Modifiers {
     /// Ctrl, or ⌘ on a Mac.
     pub command: bool,
-    /// Shift.
     pub shift: bool,
     /// Alt, or ⌥ on a Mac.
     pub alt: bool,
@@ -33,7 +31,6 @@ impl Modifiers {
 
 /// The keys that commands have, by what they mean on the user's keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names are what stands on the keys")]
 pub enum Key {
     ArrowDown,
     ArrowLeft,

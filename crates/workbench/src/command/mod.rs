@@ -43,7 +43,6 @@ pub enum Command {
     OpenSource {
         /// Its name, without extension.
         name: SmolStr,
-        /// The text.
         source: String,
     },
     /// Something that concerns the missions of the library.
@@ -116,7 +115,6 @@ pub enum Command {
     WriteReport,
     /// Writes the plan's schedule for another tool.
     WriteSchedule {
-        /// The format.
         form: ScheduleForm,
         /// When the mission starts, where the format needs it.
         epoch: String,
@@ -127,7 +125,6 @@ pub enum Command {
     /// Something that concerns the manual.
     Manual(ManualCommand),
 
-    /// What to plan.
     SetGoal(Goal),
     /// How to search.
     SetSearch(SearchKind),
@@ -140,7 +137,6 @@ pub enum Command {
     /// Whether the search is recorded.
     SetTrace(bool),
 
-    /// Shows a workspace.
     ShowWorkspace(Workspace),
     /// Puts the panels of the present workspace back where they were at first.
     ResetWorkspace,
@@ -156,7 +152,6 @@ pub enum Command {
     TurnPanel(bool),
     /// A view action for the panel used last.
     View(ViewAction),
-    /// A view action for one panel.
     ViewOf(PanelKind, ViewAction),
     /// What panels show.
     SetViews(Box<Views>),
@@ -167,7 +162,6 @@ pub enum Command {
 
     /// Opens a dialog over everything.
     ShowDialog(Dialog),
-    /// Closes it.
     CloseDialog,
     /// Leaves what is on top: a dialog, the find bar, the selection.
     Escape,
@@ -185,7 +179,6 @@ pub enum Command {
     SaveFile {
         /// The name to suggest.
         name: String,
-        /// The content.
         bytes: Vec<u8>,
     },
     /// Lets the user save a picture as a PNG.
@@ -298,9 +291,7 @@ pub enum EditorCommand {
 /// What can be done with a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewAction {
-    /// Closer.
     ZoomIn,
-    /// Further away.
     ZoomOut,
     /// Designed size.
     ZoomReset,

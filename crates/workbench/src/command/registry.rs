@@ -31,7 +31,6 @@ pub struct CommandSpec {
 pub enum Group {
     /// Missions and files.
     File,
-    /// The text.
     Edit,
     /// Going to places.
     Go,
@@ -39,13 +38,10 @@ pub enum Group {
     View,
     /// The ground, its camera and its tools.
     Terrain,
-    /// Planning.
     Plan,
     /// Judging and comparing plans, and documents about them.
     Review,
-    /// Time.
     Play,
-    /// Help.
     Help,
 }
 
@@ -82,7 +78,6 @@ impl Group {
 /// Where a command's keys work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
-    /// Everywhere.
     Everywhere,
     /// In the editor, and where no text field has the focus.
     Editor,

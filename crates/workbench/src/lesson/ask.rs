@@ -20,7 +20,6 @@ pub struct Ask {
     pub text: String,
     /// What is right.
     pub answer: Answer,
-    /// Helps.
     pub hint: String,
     /// Says, once it is answered, why that is right.
     pub because: String,
@@ -45,7 +44,6 @@ pub enum Answer {
 /// One of several answers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// Its words.
     pub text: String,
     /// Whether it is right: always, never, or when this holds.
     pub is_right: Expression,

@@ -14,7 +14,6 @@ pub struct Chapter {
 pub struct CourseLesson {
     /// Its name in addresses and commands.
     pub name: &'static str,
-    /// Its file.
     pub text: &'static str,
 }
 

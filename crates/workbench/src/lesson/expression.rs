@@ -19,9 +19,7 @@ use crate::state::AppState;
 pub enum Value {
     /// A number, in mission units where it is a time.
     Number(Rational),
-    /// Words.
     Text(String),
-    /// Yes or no.
     Truth(bool),
 }
 
@@ -44,13 +42,11 @@ pub enum Expression {
     Fact(&'static Fact, String),
     /// The other truth.
     Not(Box<Self>),
-    /// Of two.
     Both(Box<Self>, Operator, Box<Self>),
 }
 
 /// How two values make one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Operator {
     Or,
     And,

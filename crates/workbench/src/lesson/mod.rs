@@ -31,7 +31,6 @@ pub use show::{Show, StepKind, StepTarget, Which};
 pub struct Lesson {
     /// Its name in addresses and commands.
     pub name: String,
-    /// Its title.
     pub title: String,
     /// What it is about, in a sentence; empty if it does not say.
     pub about: String,
@@ -57,7 +56,6 @@ pub enum LessonMission {
 /// How the mission of a lesson is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LessonSearch {
-    /// By one of the searches.
     One(SearchKind),
     /// By both, side by side.
     Both,
@@ -69,7 +67,6 @@ pub enum Expectation {
     /// A plan that holds.
     #[default]
     Plan,
-    /// No plan.
     NoPlan,
     /// Errors in the text.
     Errors,
@@ -80,7 +77,6 @@ pub enum Expectation {
 /// A stop: prose beside what it shows, and at most one question.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stop {
-    /// Its heading.
     pub title: String,
     /// The line of its heading, from 1.
     pub line: u32,
@@ -88,9 +84,7 @@ pub struct Stop {
     pub mission: Option<LessonMission>,
     /// What it says; `{{…}}` stands for what is computed.
     pub prose: Vec<Block>,
-    /// What it shows.
     pub show: Show,
-    /// What it asks.
     pub ask: Option<Ask>,
 }
 

@@ -43,13 +43,10 @@ pub struct Show {
 pub enum StepTarget {
     /// By number, from 1.
     Number(usize),
-    /// The last one.
     End,
     /// By what happens in it.
     Kind {
-        /// Which of them.
         which: Which,
-        /// What happens.
         kind: StepKind,
         /// Words of the sentence that says what happens; any if empty.
         with: String,
@@ -61,13 +58,11 @@ pub enum StepTarget {
 pub enum Which {
     /// From 1.
     Nth(usize),
-    /// The last one.
     Last,
 }
 
 /// Kinds of steps of a search, as lessons call them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum StepKind {
     Decision,
     Expansion,

@@ -21,7 +21,7 @@ pub struct MissionId(pub SmolStr);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MissionKind {
-    /// Begun here.
+    /// Created in Enroute.
     Own,
     /// An edited copy of an example.
     Example,
@@ -29,7 +29,7 @@ pub enum MissionKind {
     Lesson,
     /// An edited copy of what a link held.
     Shared,
-    /// From a file.
+    /// Opened from a file.
     File,
 }
 
@@ -51,11 +51,9 @@ impl MissionKind {
 pub struct TextFile {
     /// Its name with extension, unique in the mission.
     pub name: SmolStr,
-    /// What it says.
     pub text: String,
 }
 
-/// Texts as one.
 pub(crate) fn joined(texts: &[TextFile]) -> String {
     rmpl::files::joined(texts.iter().map(|file| (file.name.as_str(), file.text.as_str())))
 }

@@ -9,7 +9,6 @@ pub struct Template {
     pub title: &'static str,
     /// One line about it.
     pub about: &'static str,
-    /// The text.
     pub source: &'static str,
 }
 

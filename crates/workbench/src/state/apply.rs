@@ -40,7 +40,6 @@ pub enum Effect {
     SaveFile {
         /// The name to suggest.
         name: String,
-        /// The content.
         bytes: Vec<u8>,
     },
     /// Let the user save a picture as a PNG.

@@ -26,7 +26,6 @@ pub struct AutomatonState {
     revision: u64,
     is_control: bool,
     program: Option<Program>,
-    /// Of the program.
     program_key: ContentKey,
     /// Of the run that the moments are of.
     run_key: ContentKey,
@@ -64,14 +63,12 @@ pub struct AutomatonState {
 /// A part of what is shown of a program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ProgramPart {
-    /// The drawing.
     #[default]
     Automaton,
     /// The plant at the moment that is looked at; without a plant, what is known.
     Plant,
     /// Many runs with chance.
     ManyRuns,
-    /// All steps.
     Steps,
 }
 
@@ -93,7 +90,6 @@ impl ProgramPart {
 /// What decides by chance which components fail: with the same, the same ones fail in the same steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultSeed {
-    /// Seeds chance.
     pub seed: u64,
     /// Which of the many runs with that seed, from 0; without it, the seed is that of the run itself.
     pub run: Option<u64>,

@@ -15,7 +15,6 @@ pub enum ScheduleForm {
     Json,
     /// A plan for Open MCT.
     OpenMct,
-    /// A calendar.
     Icalendar,
     /// A plan for `PlanDev` (Aerie).
     PlanDev,

@@ -61,7 +61,6 @@ impl Places {
 /// A place to scroll to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reveal {
-    /// The place.
     pub span: Span,
     /// Whether it is moved to the middle even when it is visible at an edge.
     pub center: bool,
@@ -94,11 +93,9 @@ pub enum PopupKind {
 /// An entry of a list at the caret.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PopupItem {
-    /// Its text.
     pub label: String,
     /// More about it.
     pub detail: String,
-    /// What kind of completion it is.
     pub kind: Option<CompletionKind>,
     /// What taking it does.
     pub action: PopupAction,

@@ -30,7 +30,6 @@ enum Notation {
 /// What a piece of source text is, in either notation: each has a colour of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SyntaxRole {
-    /// A keyword.
     Keyword,
     /// An activity or a primitive.
     Activity,
@@ -46,7 +45,6 @@ pub enum SyntaxRole {
     Number,
     /// A text in quotes.
     String,
-    /// A comment.
     Comment,
     /// A bracket, a separator or an operator.
     Punctuation,

@@ -22,13 +22,10 @@ pub enum LibraryCommand {
     New(&'static Template),
     /// Begins a mission that is a copy of an example and opens it.
     NewFromExample(SmolStr),
-    /// Opens a mission.
     Open(MissionId),
     /// Gives a mission another name.
     Rename {
-        /// Which one.
         id: Option<MissionId>,
-        /// The new name.
         name: String,
     },
     /// Opens a copy of a mission.

@@ -16,7 +16,6 @@ pub enum NewThing {
     Location(Point2<f64>),
     /// A round obstacle.
     Circle {
-        /// Its centre.
         center_m: Point2<f64>,
         /// Its radius in metres.
         radius_m: f64,
@@ -30,7 +29,6 @@ pub enum NewThing {
         /// How thick it is, in metres.
         thickness_m: f64,
     },
-    /// A vehicle.
     Vehicle {
         /// The name of its model.
         model: SmolStr,
@@ -51,7 +49,6 @@ pub enum VehicleStart {
 /// The edits that declare something, in textual order, and what to select then.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Declared {
-    /// The edits.
     pub edits: Vec<Edit>,
     /// What was declared.
     pub selection: Selection,

@@ -28,7 +28,6 @@ pub struct ProgramChanceState {
 pub struct ProgramChanceSettings {
     /// How many runs.
     pub runs: u64,
-    /// Seeds chance.
     pub seed: u64,
     /// A run that takes more steps has not reached its end.
     pub most_steps: u32,

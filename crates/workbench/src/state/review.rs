@@ -24,18 +24,12 @@ pub enum ReviewCommand {
     Run,
     /// Approves what the review is about.
     Approve {
-        /// Who approves.
         by: Person,
         /// What goes with it; empty for an approval without comments.
         text: String,
     },
     /// Does something that needs no approval: comments, resolves, acknowledges, takes back.
-    Say {
-        /// Who.
-        by: Person,
-        /// What.
-        act: Act,
-    },
+    Say { by: Person, act: Act },
     /// Holds the mission against these flight rules from now on.
     SetRules(Box<FlightRules>),
     /// Lets the user save the flight rules as a file.
@@ -51,7 +45,6 @@ pub enum ReviewCommand {
 /// Somebody of the board.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Person {
-    /// The name.
     pub name: String,
     /// The role; empty for the only one of the board, or for none.
     pub role: String,
@@ -60,9 +53,7 @@ pub struct Person {
 /// A record that was kept or came with a mission, and cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Aside {
-    /// Why.
     pub reason: String,
-    /// The record.
     pub text: String,
 }
 

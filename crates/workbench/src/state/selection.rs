@@ -13,7 +13,6 @@ use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, OccurrenceId,
 /// The one thing that is selected in all panels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Selection {
-    /// Nothing.
     #[default]
     None,
     /// An activity, assertion, delay or scenario as it occurs in the expanded program.
@@ -22,7 +21,6 @@ pub enum Selection {
     Node(NodeId),
     /// A temporal constraint.
     Arc(ArcId),
-    /// A decision.
     Decision(DecisionId),
     /// One alternative of a decision, from 0.
     Alternative(DecisionId, u32),
@@ -34,9 +32,7 @@ pub enum Selection {
     Ordering(Ordering),
     /// A named place.
     Location(SmolStr),
-    /// An obstacle.
     Obstacle(SmolStr),
-    /// A vehicle.
     Vehicle(SmolStr),
     /// A step of the recorded search, from 0.
     SearchStep(u32),

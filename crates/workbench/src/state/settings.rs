@@ -81,7 +81,6 @@ pub enum ThemeChoice {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PlanSettings {
-    /// What to plan.
     #[serde(skip)]
     pub goal: Goal,
     /// Which search plans.
@@ -98,13 +97,10 @@ pub struct PlanSettings {
 pub struct Views {
     /// The mission text.
     pub editor: EditorView,
-    /// The network.
     pub network: NetworkView,
-    /// The timeline.
     pub timeline: TimelineView,
     /// The plan's tables.
     pub plan: PlanView,
-    /// The terrain.
     pub terrain: TerrainView,
 }
 
@@ -128,7 +124,6 @@ pub struct NetworkView {
     pub names: bool,
     /// The windows of selected events.
     pub windows: bool,
-    /// Causal links.
     pub links: bool,
     /// Orderings that resolve threats.
     pub orderings: bool,
@@ -247,9 +242,8 @@ pub enum WindowSort {
     Earliest,
     /// By latest time.
     Latest,
-    /// By slack.
     Slack,
-    /// By name.
+    /// By the name of the event.
     Event,
 }
 
@@ -263,7 +257,6 @@ pub struct TerrainView {
     pub paths: bool,
     /// The search trees that found them.
     pub trees: bool,
-    /// Obstacles.
     pub obstacles: bool,
     /// What laser range finders see, in a run.
     pub rays: bool,
@@ -286,9 +279,7 @@ pub enum Coloring {
     /// As it would look.
     #[default]
     Natural,
-    /// Height.
     Height,
-    /// Slope.
     Slope,
 }
 

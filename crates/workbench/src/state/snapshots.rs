@@ -33,7 +33,6 @@ pub enum Status {
     Empty,
     /// A control program, which is not planned but run.
     Program,
-    /// There is a plan.
     Plan,
     /// There is none.
     NoPlan,

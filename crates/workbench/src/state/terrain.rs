@@ -19,7 +19,7 @@ use crate::state::{AppState, Selection, Snapshots, ToastKind};
 /// What clicks on the ground do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
-    /// They select.
+    /// Clicks select things.
     #[default]
     Look,
     /// They measure from place to place.
@@ -78,18 +78,12 @@ pub enum TerrainCommand {
     Finish,
     /// Declares something in the text.
     Place {
-        /// What.
         thing: NewThing,
         /// Whether the tool stays in hand.
         again: bool,
     },
     /// Makes a vehicle start elsewhere.
-    MoveStart {
-        /// Its name.
-        vehicle: SmolStr,
-        /// Where.
-        start: VehicleStart,
-    },
+    MoveStart { vehicle: SmolStr, start: VehicleStart },
     /// Moves the camera, and brings the terrain to the front.
     View(ViewAction),
     /// Shows the clearance map, or hides it.

@@ -5,7 +5,6 @@
 pub struct Toast {
     /// What it is about.
     pub kind: ToastKind,
-    /// The message.
     pub text: String,
     /// When it goes away, in seconds on the host's clock; set when it is first shown.
     pub until_secs: Option<f64>,

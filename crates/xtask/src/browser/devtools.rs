@@ -29,7 +29,6 @@ pub(super) struct Event {
     pub(super) session: Option<String>,
     /// Its name, such as `Runtime.exceptionThrown`.
     pub(super) method: String,
-    /// What it says.
     pub(super) params: Value,
 }
 

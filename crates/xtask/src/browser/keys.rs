@@ -4,7 +4,6 @@ use std::ops::BitOr;
 
 /// A key that is not a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "each is the key of that name")]
 pub enum Key {
     ArrowDown,
     ArrowLeft,

@@ -46,7 +46,6 @@ pub enum Graphics {
     WebGl2,
     /// WebGPU, computed on the processor.
     WebGpu,
-    /// Neither.
     Nothing,
 }
 

@@ -179,7 +179,6 @@ fn reviews(input: &[u8]) -> Outcome {
     }
 }
 
-/// Flight rules.
 pub(super) const FLIGHT_RULES: Reader = Reader {
     name: "flight-rules",
     seeds: &[],

@@ -16,7 +16,6 @@ pub use host::{TestHost, World};
 
 /// A harness around the app, and what it shares with its host.
 pub struct App {
-    /// The harness.
     pub harness: Harness<'static, Enroute>,
     /// The host's side.
     pub world: Rc<World>,

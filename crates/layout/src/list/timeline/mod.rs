@@ -71,7 +71,6 @@ pub struct Track {
 /// What stands out in a row or a bar.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Standing {
-    /// It is selected.
     pub is_selected: bool,
     /// It is pointed at.
     pub is_hovered: bool,
@@ -99,11 +98,9 @@ pub struct TimelineState<'a> {
 /// A link as a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkCurve<'a> {
-    /// The link.
     pub link: &'a Link,
     /// Where the curve begins.
     pub start: Point,
-    /// The curve.
     pub piece: Piece,
 }
 
@@ -572,7 +569,6 @@ fn note(text: impl Into<SmolStr>, place: Rect, anchor: Anchor, role: ColorRole) 
 /// infinite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairRow {
-    /// Its name.
     pub name: SmolStr,
     /// Whether the plans differ in it.
     pub is_different: bool,

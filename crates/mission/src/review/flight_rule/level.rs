@@ -55,7 +55,6 @@ pub(super) struct Change {
 }
 
 impl Change {
-    /// It has come.
     fn has_come(&self, is_instant: bool) -> Edge {
         Edge::past(self.node, !(is_instant && self.is_start))
     }

@@ -50,7 +50,6 @@ pub struct Finding {
     pub open: Vec<Stretch>,
     /// The events between which that is, by name.
     pub names: Vec<String>,
-    /// These events.
     pub nodes: Vec<NodeId>,
 }
 
@@ -83,7 +82,6 @@ pub enum Outcome {
         /// What is wrong.
         message: String,
     },
-    /// There is no plan.
     NoPlan,
 }
 

@@ -40,7 +40,6 @@ pub enum Wanted {
 pub struct CompletionItem {
     /// What the list shows.
     pub label: String,
-    /// What it is.
     pub kind: CompletionKind,
     /// More about it, in a few words.
     pub detail: String,
@@ -56,19 +55,15 @@ pub enum CompletionKind {
     Keyword,
     /// An activity with a definition.
     Activity,
-    /// A primitive.
     Primitive,
     /// A state variable, an atom or a resource.
     Variable,
     /// A value of a variable.
     Value,
-    /// A parameter.
     Parameter,
     /// A name of the header's bounds.
     BoundName,
-    /// A constant.
     Constant,
-    /// A location.
     Location,
     /// A vehicle or a model.
     Vehicle,

@@ -24,7 +24,6 @@ const USER_DEFINED: u16 = 32_767;
 const DOUBLE_PARAMETERS: u16 = 34_736;
 /// Mars' equatorial radius, for maps in degrees that don't name their body's.
 const MARS_RADIUS_M: f64 = 3_396_190.0;
-/// The Earth's.
 const EARTH_RADIUS_M: f64 = 6_378_137.0;
 
 /// How the rows and columns of an image lie on the ground.

@@ -14,9 +14,7 @@ use crate::state::AppState;
 
 /// Something that is known of the state.
 pub struct Fact {
-    /// Its name.
     pub name: &'static str,
-    /// What it is of.
     pub of: Of,
     /// What it is, in a sentence without its full stop.
     pub meaning: &'static str,

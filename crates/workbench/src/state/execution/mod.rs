@@ -53,7 +53,6 @@ pub enum ExecutionCommand {
     Withdraw(smol_str::SmolStr),
     /// A round obstacle appears at the time shown.
     Appear {
-        /// Its centre.
         center_m: Point2<f64>,
         /// Its radius in metres.
         radius_m: f64,
@@ -62,7 +61,6 @@ pub enum ExecutionCommand {
     },
     /// A vehicle drives more slowly from the time shown on; at a share of 0 it stands.
     SlowDown {
-        /// Its name.
         vehicle: smol_str::SmolStr,
         /// The share of its traverse's greatest speed that is left, from 0 to 1.
         factor: Rational,

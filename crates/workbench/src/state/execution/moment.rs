@@ -28,7 +28,6 @@ pub struct Moment {
 /// Something that is to begin or to end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pending {
-    /// What.
     pub occurrence: OccurrenceId,
     /// When it began, if it has.
     pub since: Option<Time>,

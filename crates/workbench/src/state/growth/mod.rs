@@ -39,7 +39,6 @@ pub enum Planners {
     /// The search that planned the leg.
     #[default]
     AsPlanned,
-    /// That of one planner.
     One(PlannerKind),
     /// Those of all planners, which draw their samples side by side.
     Race,
@@ -48,7 +47,6 @@ pub enum Planners {
 /// What is looked at: the searches for one leg.
 #[derive(Clone, Debug)]
 pub struct Shown {
-    /// The traverse.
     pub occurrence: OccurrenceId,
     /// Its name, by which it is found again in another network.
     pub name: SmolStr,
@@ -67,7 +65,6 @@ pub struct Shown {
 pub enum GrowthCommand {
     /// Shows the growth for the selected traverse, or the first one; hides it if it is shown.
     Toggle,
-    /// Hides it.
     Close,
     /// Another leg of the traverse, from 0.
     ChooseLeg(usize),
@@ -84,7 +81,6 @@ pub enum GrowthCommand {
 /// What a growth is made from.
 #[derive(Clone, Copy)]
 pub struct GrowthInput<'a> {
-    /// The mission.
     pub snapshot: &'a Snapshot,
     /// What is selected.
     pub selection: &'a Selection,

@@ -16,7 +16,6 @@ pub struct Search {
 
 #[derive(Clone, Debug)]
 enum Source {
-    /// The recorded one.
     Recorded(Arc<GrowthTrace>),
     /// One that the core runs.
     Running(Box<Running>),
@@ -49,7 +48,6 @@ pub struct Standing {
 /// A sample, to be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LastSample {
-    /// Where it is.
     pub at_m: Point2<f64>,
     /// The vertex nearest to it.
     pub nearest_m: Point2<f64>,

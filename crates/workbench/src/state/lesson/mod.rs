@@ -76,7 +76,6 @@ pub struct LessonState {
 pub struct Given {
     /// What was answered.
     pub text: String,
-    /// Whether it was right.
     pub is_right: bool,
 }
 

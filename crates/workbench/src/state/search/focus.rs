@@ -12,11 +12,8 @@ use crate::state::Selection;
 pub struct Focus {
     /// Whether the search has just met a failure.
     pub is_failure: bool,
-    /// Events.
     pub nodes: Vec<NodeId>,
-    /// Constraints.
     pub arcs: Vec<ArcId>,
-    /// Conditions.
     pub labels: Vec<LabelId>,
     /// Where these are written.
     pub spans: Vec<Span>,

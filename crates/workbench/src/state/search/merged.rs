@@ -32,7 +32,6 @@ pub enum Share {
 /// How many states were entered by whom.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShareCounts {
-    /// By both.
     pub both: usize,
     /// By each alone.
     pub only: [usize; 2],

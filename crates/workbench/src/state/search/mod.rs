@@ -57,11 +57,9 @@ pub struct SearchState {
 pub struct Breakpoints {
     /// An alternative is taken.
     pub decision: bool,
-    /// A failure.
     pub failure: bool,
     /// Two conflicting intervals may overlap, or a resource be used too much.
     pub threat: bool,
-    /// A plan.
     pub solution: bool,
 }
 

@@ -97,9 +97,7 @@ pub fn recorded(snapshot: &Snapshot) -> Option<&Trace> {
 /// A step of a recording that is looked at, with what the search knew there.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The search.
     pub recording: Recording,
-    /// What it knew.
     pub step: Arc<ReplayStep>,
     /// What was selected at the step, in the form of a plan, for the panels that draw plans.
     pub plan: Arc<Plan>,
@@ -111,7 +109,6 @@ pub struct View {
 /// A window that a step changed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowChange {
-    /// Whose.
     pub node: NodeId,
     /// What it was before; nothing if the event was not selected.
     pub before: Option<Window>,

@@ -14,7 +14,6 @@ pub use host::{TestHost, World};
 
 /// A session, and what it shares with its host.
 pub struct App {
-    /// The session.
     pub session: Session,
     /// The host's side.
     pub world: Rc<World>,
