@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use acceptance::mission::{all_plans, first_plan, key, network};
 use acceptance::random::small_mission;
+use interchange::plan_schema::{self, Document, PlanSchemaError};
 use kirk::Search;
 use serde_json::{Value, json};
-use tpn::plan_schema::{self, Document, PlanSchemaError};
 use tpn::{ArcKind, network_json};
 
 /// The files that other tools wrote; `None`, said aloud, where this machine does not have them.

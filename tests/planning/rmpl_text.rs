@@ -6,11 +6,12 @@ use std::path::Path;
 
 use acceptance::mission::{all_plans, network};
 use acceptance::random::{crowded_mission, small_mission, timed_mission};
+use interchange::Source;
+use interchange::plan_schema::{self, Document};
+use interchange::rmpl_text;
 use kirk::{Search, Status};
 use tpn::generate::{Recipe, Tightness, mission};
-use tpn::interchange::Source;
-use tpn::plan_schema::{self, Document};
-use tpn::{Network, OccurrenceKind, network_json, rmpl_text};
+use tpn::{Network, OccurrenceKind, network_json};
 
 /// The windows of one plan's activities, by event.
 type Windows = BTreeMap<String, String>;

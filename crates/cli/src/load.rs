@@ -5,11 +5,11 @@ use std::time::Instant;
 
 use anyhow::Context as _;
 use exact::{Bound, Time};
+use interchange::Source;
 use mission::{Goal, Problem};
 use rmpl::diagnostics::network;
 use rmpl::program::Program;
 use tpn::Network;
-use tpn::interchange::Source;
 
 use crate::input::{read_mission, read_text};
 
@@ -103,7 +103,7 @@ pub fn read_network(name: &str, source: &str) -> anyhow::Result<(Network, Vec<Pr
 /// Whether a file holds a network rather than a mission text.
 pub fn is_network(name: &str, source: &str) -> bool {
     let is_named_so = [".json", ".edn", ".tpn", ".ptpn", ".xml"].iter().any(|ending| name.ends_with(ending));
-    is_named_so || (name == "-" && tpn::interchange::is_network_text(source))
+    is_named_so || (name == "-" && interchange::is_network_text(source))
 }
 
 fn parse_bounds(text: &str) -> anyhow::Result<(Time, Bound)> {

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use interchange::Source;
 use rmpl::diagnostics::{network, unreadable_network};
 use rmpl::{Diagnostic, Severity};
 use tpn::Network;
-use tpn::interchange::Source;
 
 /// A network as its text says.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub(crate) struct NetworkText {
 }
 
 impl NetworkText {
-    /// Reads a text for which [`tpn::interchange::is_network_text`] holds.
+    /// Reads a text for which [`interchange::is_network_text`] holds.
     pub(crate) fn read(text: &str) -> Self {
         let (network, found) = match Source::read(text) {
             Ok(source) => {

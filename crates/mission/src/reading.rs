@@ -6,11 +6,11 @@
 use std::sync::Arc;
 
 use exact::Time;
+use interchange::is_network_text;
 use rmpl::program::{ControlDecl, Program, Runs};
 use rmpl::spans::{Spans as _, difference};
 use rmpl::{Diagnostic, Edit, Parse, Severity};
 use smol_str::SmolStr;
-use tpn::interchange::is_network_text;
 use tpn::{Network, Top};
 
 use crate::content::{ContentKey, Keyed, Keys};

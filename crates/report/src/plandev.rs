@@ -2,11 +2,11 @@
 //! start of the plan.
 
 use exact::Time;
+use interchange::plandev::DURATION;
 use jiff::Timestamp;
 use mission::Snapshot;
 use rmpl::program::{Program, TimeUnit};
 use serde_json::{Map, Value, json};
-use tpn::plandev::DURATION;
 use tpn::{Occurrence, OccurrenceKind};
 
 use crate::calendar::Calendar;

@@ -1,4 +1,4 @@
-//! Temporal plan networks: the data model, compilation from RMPL, plans as data, and interchange formats.
+//! Temporal plan networks: the data model, compilation from RMPL, and plans as data.
 //!
 //! Nothing here decides what a plan is; planning is `kirk`, checking is `verify`.
 
@@ -6,21 +6,16 @@ mod alternative;
 pub mod compile;
 pub mod families;
 pub mod generate;
-pub mod interchange;
 pub mod network;
 pub mod network_json;
 pub mod path;
 pub mod plan;
 pub mod plan_json;
-pub mod plan_schema;
-pub mod plandev;
 pub mod precedence;
-pub mod ptpn;
-pub mod rmpl_text;
 pub mod selection;
 mod spans;
 pub mod text;
-mod vocabulary;
+pub mod vocabulary;
 
 pub use compile::{Top, assumed, compile, compile_scenarios, merge_diagnostics};
 pub use network::{

@@ -3,15 +3,16 @@
 use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
 
 /// Variables and values, complete or still collecting.
-pub(crate) struct Vocabulary {
+pub struct Vocabulary {
     /// Whether the document declares its variables, so that only their values count.
-    pub(crate) is_complete: bool,
-    pub(crate) variables: Vec<Variable>,
+    pub is_complete: bool,
+    /// Those declared, or those met so far.
+    pub variables: Vec<Variable>,
 }
 
 impl Vocabulary {
     /// The literal of a printed condition: `X`, `X=V`, `X in {V, W}`, and `not(…)` of these.
-    pub(crate) fn literal(&mut self, text: &str) -> Option<Literal> {
+    pub fn literal(&mut self, text: &str) -> Option<Literal> {
         let (positive, is_negated) = match text.strip_prefix("not(").and_then(|inner| inner.strip_suffix(')'))
         {
             Some(inner) => (inner, true),

@@ -10,7 +10,7 @@ use kirk::{Options, Stats};
 use tpn::Network;
 use tpn::compile::{Top, compile};
 use tpn::families::{Family, families};
-use tpn::interchange::Source;
+use interchange::Source;
 
 use super::instance::Instance;
 use super::{Answer, Verdict, aries, best, verdict};

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context as _;
+use interchange::Source;
 use mission::geojson::{self, Frame};
 use serde_json::{Value, json};
-use tpn::interchange::Source;
 
 use crate::input::read_text;
 use crate::output::{Format, YES, document, exit, print_json, print_text, print_verbatim};

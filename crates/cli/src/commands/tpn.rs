@@ -4,9 +4,9 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use clap::ValueEnum;
+use interchange::Source;
 use serde_json::json;
 use tpn::Network;
-use tpn::interchange::Source;
 
 use crate::diagnostics::print_problems;
 use crate::load::{Loaded, Target};
@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Notation::Dot => print_verbatim(&tpn::text::to_dot(network))?,
         Notation::Svg => print_verbatim(&drawing(network))?,
         Notation::Ptpn => {
-            print_verbatim(&tpn::ptpn::write(network).context("this network cannot be a pTPN")?)?;
+            print_verbatim(&interchange::ptpn::write(network).context("this network cannot be a pTPN")?)?;
         }
         Notation::Rmpl => return print_rmpl(&loaded, network, args.format),
         Notation::PlanSchema => print_json(&plan_schema(&loaded, network)?)?,
@@ -91,7 +91,7 @@ fn plan_schema(loaded: &Loaded, network: &Network) -> anyhow::Result<serde_json:
     {
         return Ok(read.to_json());
     }
-    Ok(tpn::plan_schema::write(network))
+    Ok(interchange::plan_schema::write(network))
 }
 
 /// The network as a mission's text, or what keeps it from being one.
@@ -103,7 +103,7 @@ fn print_rmpl(loaded: &Loaded, network: &Network, format: Format) -> anyhow::Res
         remarks.extend(read.not_honoured().iter().map(|said| format!("Not honoured: {said}.")));
         (nodes, arcs) = (read.node_uids, read.arc_uids);
     }
-    match (tpn::rmpl_text::write(network, &remarks), format) {
+    match (interchange::rmpl_text::write(network, &remarks), format) {
         (Ok(text), Format::Text) => print_verbatim(&text)?,
         (Ok(text), Format::Json) => print_json(&document("rmpl", &loaded.problems, json!({ "rmpl": text })))?,
         (Err(obstacle), format) => {

@@ -2,9 +2,9 @@
 
 use crate::support::{network, options};
 use exact::{Bound, Time};
+use interchange::Source;
 use kirk::{Search, Status, Unlimited, Unplannable};
 use tpn::generate::{Recipe, Tightness, mission};
-use tpn::interchange::Source;
 use tpn::{Network, Window};
 
 /// The network as another tool would give it.

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
+use interchange::is_network_file;
 use mission::review::Record;
 use mission::review::rules::RULES_FORMAT;
 use mission::{Request, Response, Snapshot};
 use rmpl::Span;
 use smol_str::SmolStr;
 use text_editing::TextCommand;
-use tpn::interchange::is_network_file;
 
 use crate::command::Command;
 use crate::host::{FileKind, HostEvent, Save};

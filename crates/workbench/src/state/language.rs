@@ -1,10 +1,10 @@
 //! What the language crate knows about the text, kept up to date with every edit.
 
+use interchange::is_network_text;
 use rmpl::control::{ParsedControl, is_control_text};
 use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
 use rmpl::{Parse, Span};
 use text_editing::{Document, difference};
-use tpn::interchange::is_network_text;
 use tpn::{OccurrenceKind, Plan};
 
 mod data_notation;

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use interchange::is_network_file;
 use mission::{Request, Snapshot};
 use smol_str::SmolStr;
 use terrain::format::{FileFormat, attach_label, image_of_label, refusal};
-use tpn::interchange::is_network_file;
 
 use crate::Dialog;
 use crate::host::{FileKind, Save};

@@ -1,8 +1,8 @@
 //! Turning the network of another tool into a mission in RMPL, and writing networks for other tools.
 
-use tpn::interchange::is_plandev_text;
-use tpn::ptpn::{self, is_ptpn};
-use tpn::{plan_schema, rmpl_text};
+use interchange::is_plandev_text;
+use interchange::ptpn::{self, is_ptpn};
+use interchange::{plan_schema, rmpl_text};
 
 use crate::command::Availability;
 use crate::state::{AppState, Effect, ToastKind};

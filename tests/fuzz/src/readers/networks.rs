@@ -2,11 +2,11 @@
 
 use std::sync::{Arc, LazyLock};
 
+use interchange::Source;
+use interchange::plan_schema::Document;
 use mission::Snapshot;
 use stnu::{Document as Uncertain, Layout, check};
 use tpn::Network;
-use tpn::interchange::Source;
-use tpn::plan_schema::Document;
 
 use super::{NOTHING, Outcome, Reader, magnitude, nothing, read, refused, text_of};
 
@@ -71,10 +71,10 @@ pub(super) const PTPN: Reader = Reader {
 };
 
 fn ptpn(input: &[u8]) -> Outcome {
-    match tpn::ptpn::read(&text_of(input)) {
+    match interchange::ptpn::read(&text_of(input)) {
         Ok(document) => {
             let said = document.not_honoured().join(" ");
-            let is_written = tpn::ptpn::write(&document.network).is_ok();
+            let is_written = interchange::ptpn::write(&document.network).is_ok();
             read(&format!("{said} {is_written} {}", magnitude(document.network.nodes.len())))
         }
         Err(reason) => refused(&reason.to_string()),
@@ -89,7 +89,7 @@ fn networks(input: &[u8]) -> Outcome {
     };
     let said = source.not_honoured().join(" ");
     let network = Arc::new(source.into_network());
-    let written = tpn::plan_schema::write(&network);
+    let written = interchange::plan_schema::write(&network);
     assert!(Document::parse(&written.to_string()).is_ok(), "what is written can be read");
     let mut left = 200;
     let mut stop = || {

@@ -7,7 +7,7 @@ use rmpl::program::LabelMode;
 use serde_json::{Map, Value, json};
 
 use super::BETWEEN_THREADS;
-use crate::network::{ArcId, ArcKind, BlockKind, Extent, Network, NodeId};
+use tpn::network::{ArcId, ArcKind, BlockKind, Extent, Network, NodeId};
 
 /// Writes `network` in plan-schema JSON.
 ///

@@ -9,11 +9,11 @@ use serde_json::{Map, Value};
 use smol_str::SmolStr;
 
 use super::{BETWEEN_THREADS, Document, PlanSchemaError};
-use crate::network::{
+use tpn::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
     NodeId, Occurrence, OccurrenceId, OccurrenceKind, Role,
 };
-use crate::vocabulary::Vocabulary;
+use tpn::vocabulary::Vocabulary;
 
 /// Reads the network that `network-id` names.
 pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaError> {

@@ -11,7 +11,7 @@ use super::Obstacle;
 use super::blocks::{Blocks, Event, Form, Wrap};
 use super::names::{Names, valid};
 use super::series_parallel::Item;
-use crate::network::{ArcId, Label, Network, OccurrenceKind, ValueSet, Variable};
+use tpn::network::{ArcId, Label, Network, OccurrenceKind, ValueSet, Variable};
 
 /// Blocks nest no deeper in a text, or in one that is written out (SPEC 1.7).
 const DEEPEST: usize = 120;

@@ -11,7 +11,7 @@ mod write;
 
 use exact::Bound;
 
-use crate::network::{ArcId, ArcKind, EventEnd, Extent, Network, NodeId};
+use tpn::network::{ArcId, ArcKind, EventEnd, Extent, Network, NodeId};
 
 /// What keeps a network from being written in RMPL.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -107,7 +107,7 @@ fn refuse_what_has_no_words(network: &Network) -> Result<(), Obstacle> {
             &format!("has the condition `{}` at one instant only", label.text),
         ));
     }
-    let on_path = |node: &crate::network::Node| {
+    let on_path = |node: &tpn::network::Node| {
         node.events.iter().any(|event| matches!(event.end, EventEnd::PathVertex { .. }))
     };
     match network.nodes.iter().position(on_path) {

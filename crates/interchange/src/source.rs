@@ -2,11 +2,11 @@
 
 use serde_json::Value;
 
-use crate::network::Network;
-use crate::network_json::{NetworkError, network_from_json};
 use crate::plan_schema::{Document, PlanSchemaError};
 use crate::plandev::{self, PlanDevError};
 use crate::ptpn::{self, PtpnError, is_ptpn};
+use tpn::network::Network;
+use tpn::network_json::{NetworkError, network_from_json};
 
 /// Why a file is no network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 pub use edn::EdnError;
 pub use write::write;
 
-use crate::network::Network;
+use tpn::network::Network;
 
 /// Why a file is no network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

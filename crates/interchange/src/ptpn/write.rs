@@ -7,7 +7,7 @@ use rmpl::program::LabelMode;
 
 use super::guard::{Guard, TooManyTerms};
 use super::{NAMESPACE, PtpnError};
-use crate::network::{Arc, ArcKind, Network, NodeId};
+use tpn::network::{Arc, ArcKind, Network, NodeId};
 
 /// The network as `RMPyL` writes one: primitives and assertions as episodes, all other arcs as temporal constraints, and each
 /// decision as a decision variable whose values are the numbers of its alternatives from 1. Conditions that are asked of one
@@ -197,7 +197,7 @@ fn simple(text: &str) -> Option<(&str, &str)> {
 }
 
 fn left_out(network: &Network) -> Vec<String> {
-    let is_written = |label: &&crate::network::Label| {
+    let is_written = |label: &&tpn::network::Label| {
         label.mode == LabelMode::Ask
             && is_act(&network.arcs[label.arc.index()])
             && simple(&label.text).is_some()

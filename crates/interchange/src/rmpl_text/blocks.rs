@@ -7,7 +7,7 @@ use exact::{Bound, Time};
 
 use super::Obstacle;
 use super::series_parallel::{Item, Tree, is_bound};
-use crate::network::{ArcId, ArcKind, Network, NodeId, OccurrenceKind};
+use tpn::network::{ArcId, ArcKind, Network, NodeId, OccurrenceKind};
 
 /// A nested network, and how it is written.
 pub(super) struct Blocks {

@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Obstacle;
-use crate::network::{ArcId, ArcKind, Network, NodeId};
+use tpn::network::{ArcId, ArcKind, Network, NodeId};
 
 /// A network as nested sequences.
 pub(super) struct Tree {
