@@ -8,10 +8,13 @@ use std::sync::Arc;
 use acceptance::mission::compile;
 use acceptance::missions::missions;
 use exact::Time;
+use kirk::Search as SearchKind;
 use kirk::{Constraint, CycleMember, Event, ExpansionLimit, Options, Search};
-use mission::review::{Fate, review};
-use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
+use link::{Request, Response, Update};
+use mission::{Core, CoreHost};
+use review::{Fate, review};
 use rmpl::program::LabelMode;
+use snapshot::{Goal, Snapshot};
 use tpn::{ArcId, ArcKind, LabelId, Network, Top};
 use workbench::state::search::wording;
 

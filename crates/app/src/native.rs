@@ -20,7 +20,8 @@ use std::{
 
 use egui::Context;
 use etcetera::BaseStrategy as _;
-use mission::{Core, CoreHost, Job, Link, LinkEvent, Request, Response, Transport};
+use link::{Job, Link, LinkEvent, Request, Response, Transport};
+use mission::{Core, CoreHost};
 use workbench::host::{FileKind, Host, HostEvent, ShelfContent, ShelfRequest, StorageError};
 
 /// A window's surroundings.
@@ -36,7 +37,7 @@ pub struct NativeHost {
 /// What threads tell the window.
 enum News {
     /// What a core says, by its number.
-    Core(u32, mission::News),
+    Core(u32, link::News),
     Happened(HostEvent),
 }
 
@@ -302,11 +303,11 @@ impl Transport for CoreThreads {
 /// Does jobs until nobody can ask for more, or one of them panics: what a panic leaves behind is not to be trusted.
 fn run_core(requests: &Receiver<Request>, mut host: ThreadHost) {
     let mut core = Core::default();
-    host.tell(mission::News::Ready);
+    host.tell(link::News::Ready);
     for request in requests {
         match catch_unwind(AssertUnwindSafe(|| core.handle(request, &mut host))) {
-            Ok(()) => host.tell(mission::News::Finished),
-            Err(cause) => return host.tell(mission::News::Failed(panic_message(cause.as_ref()))),
+            Ok(()) => host.tell(link::News::Finished),
+            Err(cause) => return host.tell(link::News::Failed(panic_message(cause.as_ref()))),
         }
     }
 }
@@ -325,7 +326,7 @@ struct ThreadHost {
 }
 
 impl ThreadHost {
-    fn tell(&self, news: mission::News) {
+    fn tell(&self, news: link::News) {
         // Nobody listens any more when the window was closed meanwhile.
         let _ = self.outside.send(News::Core(self.core, news));
         self.wake.request_repaint();
@@ -340,13 +341,13 @@ impl CoreHost for ThreadHost {
     fn is_superseded(&mut self) -> bool {
         if self.told.elapsed() > ALIVE {
             self.told = Instant::now();
-            self.tell(mission::News::Alive);
+            self.tell(link::News::Alive);
         }
         self.superseded.load(Ordering::Relaxed)
     }
 
     fn answer(&mut self, response: Response) {
-        self.tell(mission::News::Answer(response));
+        self.tell(link::News::Answer(response));
     }
 }
 
@@ -418,7 +419,9 @@ fn key_of(file_name: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use mission::{Goal, SearchKind, Update};
+    use kirk::Search as SearchKind;
+    use link::Update;
+    use snapshot::Goal;
     use workbench::host::ShelfNews;
 
     use super::*;

@@ -8,9 +8,9 @@ use std::io::{IsTerminal as _, Write as _};
 use annotate_snippets::{
     AnnotationKind, Level, Renderer, Snippet, normalize_untrusted_str, renderer::DEFAULT_TERM_WIDTH,
 };
-use mission::Problem;
 use rmpl::files::Files;
 use rmpl::{LineIndex, Severity};
+use snapshot::Problem;
 
 /// Characters of a line on each side of a place that are looked at. The renderer shows what fits a line of a terminal,
 /// and says where it has left something out.

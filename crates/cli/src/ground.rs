@@ -4,9 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use mission::{Grounds, MapKey};
+use mission::Grounds;
 use rmpl::Diagnostic;
 use rmpl::program::World;
+use snapshot::MapKey;
 use terrain::Terrain;
 use terrain::format::{FileFormat, attach_label, image_of_label};
 

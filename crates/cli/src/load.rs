@@ -6,9 +6,9 @@ use std::time::Instant;
 use anyhow::Context as _;
 use exact::{Bound, Time};
 use interchange::Source;
-use mission::{Goal, Problem};
 use rmpl::diagnostics::network;
 use rmpl::program::Program;
+use snapshot::{Goal, Problem};
 use tpn::Network;
 
 use crate::input::{read_mission, read_text};

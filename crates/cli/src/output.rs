@@ -5,9 +5,9 @@ use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
 use clap::ValueEnum;
-use mission::Problem;
 use rmpl::Severity;
 use serde_json::{Map, Value, json};
+use snapshot::Problem;
 
 /// Done, and the answer is yes.
 pub const YES: u8 = 0;

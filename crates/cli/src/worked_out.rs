@@ -4,7 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
+use kirk::Search as SearchKind;
+use link::{Request, Response, Update};
+use mission::{Core, CoreHost};
+use snapshot::{Goal, Snapshot};
 use terrain::Terrain;
 
 use crate::deadline::{Deadline, TimeIsUp, Undecided};
@@ -40,7 +43,7 @@ pub fn work_out(target: &Target, seed: u64, deadline: Deadline) -> anyhow::Resul
 fn work_out_network(name: String, source: &str, deadline: Deadline) -> anyhow::Result<WorkedOut> {
     let (network, problems) = read_network(&name, source)?;
     let snapshot =
-        Snapshot::of_network(source.into(), Arc::new(network), problems, &mut || deadline.is_over());
+        mission::planned_network(source.into(), Arc::new(network), problems, &mut || deadline.is_over());
     if let Some(planning) = &snapshot.planning {
         deadline.check(&planning.outcome)?;
     }

@@ -1,8 +1,9 @@
-//! Networks in the formats of other tools, read and written: plan-schema, pTPN and the plans of `PlanDev`; and a network as
-//! the text of a mission.
+//! The formats of other tools, read and written: networks as plan-schema, pTPN and plans of `PlanDev`, a network as the text
+//! of a mission, and places and obstacles of `GeoJSON`.
 //!
 //! Our own JSON is `tpn::network_json`. Nothing here decides what a network means.
 
+pub mod geojson;
 pub mod plan_schema;
 pub mod plandev;
 pub mod ptpn;

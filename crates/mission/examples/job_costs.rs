@@ -8,13 +8,12 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use executive::model_based::{Options, Run, StepInput};
-use mission::control_run::Input;
-use mission::wire::{Reader, Writer};
-use mission::{
-    Control, ControlRun, ControlStanding, Core, CoreHost, Goal, PathGrowth, Request, Response, Snapshot,
-    Update, read_control,
-};
+use link::control_run::Input;
+use link::wire::{Reader, Writer};
+use link::{ControlRun, ControlStanding, PathGrowth, Request, Response, Update};
+use mission::{Control, Core, CoreHost, read_control};
 use motion::PlannerKind;
+use snapshot::{Goal, Snapshot};
 use tpn::generate::{Recipe, Tightness, mission};
 
 /// The core's host: measures, and passes answers on as bytes.
@@ -210,9 +209,9 @@ fn growth() {
             update: update.clone(),
             traverse: traverse.clone(),
             leg: 0,
-            planners: vec![mission::WantedPlanner {
+            planners: vec![link::WantedPlanner {
                 planner,
-                held_search: mission::ContentKey::default(),
+                held_search: snapshot::ContentKey::default(),
                 held: 0,
             }],
         };

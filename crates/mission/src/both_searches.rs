@@ -6,29 +6,6 @@ use tpn::Network;
 
 use crate::core::CoreHost;
 
-/// The two searches of a revision's network, with the paths that its plan needs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BothSearches {
-    /// The revision of the text.
-    pub revision: u64,
-    /// The chronological search, then the one directed by conflicts.
-    pub searches: [Searched; 2],
-}
-
-/// One search, recorded.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Searched {
-    /// How it searched.
-    pub search: Search,
-    /// How it ended; [`Status::Limit`] when it was stopped because it took too long.
-    pub status: Status,
-    /// How much work it was.
-    pub stats: Stats,
-    /// How long it took in milliseconds, recording included, by the host's clock.
-    pub millis: f64,
-    pub trace: Trace,
-}
-
 /// Alternatives after which a search of a network with one node would be stopped. Larger networks take longer for each,
 /// and get less in proportion.
 const MAX_WORK: u64 = 20_000_000;

@@ -149,11 +149,6 @@ pub(crate) fn record(network: &mut Network, route: &Route, length_m: f64) {
     }
 }
 
-/// Metres as numbers that plans are weighed by: to the millimetre, rounded up.
-pub(crate) fn rounded_up(length_m: f64) -> Option<Rational> {
-    Rational::from_f64_up(length_m, 1000)
-}
-
 fn movement(network: &Network, program: &Program, occurrence: OccurrenceId) -> Option<Movement> {
     let moving = traverse::moving(program, &network.occurrences[occurrence.index()])?;
     let name = format_smolstr!("{}.at", moving.vehicles.first()?);

@@ -8,10 +8,9 @@ use std::sync::Arc;
 use exact::Time;
 use motion::{Formation, Path};
 use nalgebra::{Point2, distance};
+use snapshot::{Keyframe, VehicleMotion};
 use terrain::ConfigurationSpace;
 use tpn::OccurrenceId;
-
-use crate::snapshot::{Keyframe, VehicleMotion};
 
 /// One traverse with times: who drives which way, from when to when.
 #[derive(Clone, Debug)]

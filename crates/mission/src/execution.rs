@@ -17,6 +17,8 @@ use rmpl::program::Program;
 use rmpl::spans::Spans as _;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
+use snapshot::SimulatedDrive;
+use snapshot::{Traverse, VehicleMotion};
 use tpn::{Network, OccurrenceKind, Plan, Supply, Window};
 
 use crate::ground::Grounds;
@@ -24,42 +26,8 @@ use crate::nature::{self, Nature};
 use crate::planning::{self, Planned, Problem};
 use crate::program_executor::ProgramExecutor;
 use crate::programs::Programs;
-use crate::simulation::{self, Courses, Driving, SimulatedDrive};
-use crate::snapshot::{Traverse, VehicleMotion};
+use crate::simulation::{self, Courses, Driving};
 use crate::traverse::Paths;
-
-/// A run of a mission.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Execution {
-    /// The revision of the text that was executed.
-    pub revision: u64,
-    /// What went otherwise than planned.
-    #[serde(with = "crate::json_text")]
-    pub script: Script,
-    /// What happened, in order.
-    #[serde(with = "crate::json_text")]
-    pub log: Vec<Entry>,
-    pub ending: Ending,
-    /// The plans that were executed, one after the other; there is at least one.
-    pub plans: Vec<Executed>,
-    /// The traverses as they were driven, in order of departure.
-    pub drives: Vec<SimulatedDrive>,
-}
-
-/// A plan that was executed until the run ended or planned again.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Executed {
-    /// When it was made.
-    pub from: Time,
-    /// Its network, with its paths; what was known by then of durations is in it, what had happened is in `times`.
-    pub network: Arc<Network>,
-    pub plan: Plan,
-    /// When each node happened, up to the end of the run.
-    pub times: Vec<Option<Time>>,
-    pub traverses: Vec<Traverse>,
-    /// Where the vehicles are over time: as it happened, and as planned for what did not happen.
-    pub motions: Vec<VehicleMotion>,
-}
 
 /// A run with what replanning found.
 pub struct Ran {
@@ -249,25 +217,6 @@ impl Execution {
             })
             .collect();
         Self { revision, script, log: ran.outcome.log, ending: ran.outcome.ending, plans, drives: ran.drives }
-    }
-
-    /// Moves all places through an edit of the text that left the mission as it is.
-    pub(crate) fn follow(&mut self, edit: &Edit) {
-        for executed in &mut self.plans {
-            Arc::make_mut(&mut executed.network).follow(edit);
-        }
-    }
-
-    /// The plan that was followed at `time`, and its number from 0.
-    pub fn plan_at(&self, time: f64) -> Option<(usize, &Executed)> {
-        let is_made = |plan: &&Executed| plan.from.to_f64() <= time + 1e-9;
-        let at = self.plans.iter().take_while(is_made).count().max(1) - 1;
-        Some((at, self.plans.get(at)?))
-    }
-
-    /// When the last entry of the log was written.
-    pub fn end(&self) -> Time {
-        self.log.last().map(|entry| entry.time).unwrap_or_default()
     }
 }
 

@@ -9,10 +9,9 @@ use rmpl::program::{ObstacleShape, TerrainDecl, World};
 use rmpl::{Code, Diagnostic};
 use sha2::{Digest as _, Sha256};
 use smol_str::SmolStr;
+use snapshot::MapKey;
 use terrain::format::ImportOptions;
 use terrain::{ConfigurationSpace, GridFrame, Obstacle, Terrain};
-
-use crate::snapshot::MapKey;
 
 /// How many free spaces are kept: one for each vehicle model of the present text and of the one before it.
 const MAX_SPACES: usize = 8;
@@ -38,26 +37,6 @@ pub struct FreeSpace {
 
 /// Metres of room beyond the margin that a path keeps where that makes it little longer.
 const ROOM_M: [f64; 2] = [1.5, 0.5];
-
-/// The clearance of a map for one kind of vehicle, as a picture over the ground.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ClearanceOverlay {
-    /// Where the cells lie.
-    pub frame: GridFrame,
-    /// Metres from a vehicle's rim and margin to the nearest obstacle, row by row from the south; negative where it
-    /// can't be, infinite on a map without obstacles.
-    pub clearance_m: Vec<f32>,
-}
-
-impl ClearanceOverlay {
-    /// For vehicles of `model` among the obstacles of `world`. Linear in the number of cells: keep it while the map,
-    /// the obstacles and the model stay the same.
-    pub fn new(map: &Terrain, world: &World, model: &VehicleModel) -> Self {
-        let shapes: Vec<Obstacle> = world.obstacles.iter().map(|it| obstacle(&it.shape)).collect();
-        let space = model.configuration_space(map, &shapes);
-        Self { frame: *space.frame(), clearance_m: space.clearance_map_m() }
-    }
-}
 
 struct Imported {
     version: u32,
@@ -194,16 +173,4 @@ fn extent(world: &World) -> Option<(Point2<f64>, Point2<f64>)> {
     let mut places = world.locations.iter().map(|location| Point2::from(location.position_m));
     let first = places.next()?;
     Some(places.fold((first, first), |(low, high), place| (low.inf(&place), high.sup(&place))))
-}
-
-/// A declared obstacle as the terrain knows it.
-pub fn obstacle(shape: &ObstacleShape) -> Obstacle {
-    match shape {
-        ObstacleShape::Circle { center_m, radius_m } => {
-            Obstacle::Circle { center_m: (*center_m).into(), radius_m: *radius_m }
-        }
-        ObstacleShape::Polygon { corners_m } => {
-            Obstacle::Polygon { corners_m: corners_m.iter().copied().map(Point2::from).collect() }
-        }
-    }
 }

@@ -11,13 +11,13 @@ use exact::{Bound, Time};
 use kirk::{Options, Stats, Status};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
+use tpn::worth;
 use tpn::{Choice, Network, OccurrenceId, Plan};
 
 use crate::departures::Departures;
 use crate::ground::Grounds;
 use crate::planning::{self, Inserted, Planned, Problem};
 use crate::traverse::{self, Paths, Route};
-use crate::worth;
 
 /// A plan beside the first one, with its own paths.
 #[derive(Clone, Debug)]
@@ -25,14 +25,6 @@ pub struct Listed {
     /// The network with the paths of its traverses, and with its choices alone.
     pub network: Arc<Network>,
     pub plan: Plan,
-}
-
-/// A plan that would be listed if it could be driven.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LeftOut {
-    pub choices: Vec<Choice>,
-    /// Why it cannot be driven, for the author.
-    pub reason: String,
 }
 
 /// Ways to drive that are looked at, at most: each combination of choices and ways of all its traverses is one.

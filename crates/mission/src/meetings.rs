@@ -10,12 +10,12 @@ use exact::Rational;
 use kirk::Options;
 use rmpl::program::{Change, ObstacleShape};
 use smol_str::format_smolstr;
+use snapshot::{SeparationViolation, VehicleMotion};
+use tpn::worth;
 use tpn::{Network, NodeId, OccurrenceId, Plan, Resource, ResourceId, Supply, Use};
 
 use crate::planning::{self, Planned, Problem};
 use crate::separation;
-use crate::snapshot::{SeparationViolation, VehicleMotion};
-use crate::worth;
 
 /// Orders that are tried for one mission, at most.
 const MAX_TRIES: usize = 12;
@@ -30,14 +30,6 @@ const PLACE_STEP_M: f64 = 0.25;
 
 /// Where the paths of traverses may not go, because other vehicles are there then.
 pub type KeepOuts = BTreeMap<OccurrenceId, Vec<ObstacleShape>>;
-
-/// What the order of two traverses that would meet is called, as a resource that the mission does not have.
-const WAY: &str = "way#";
-
-/// Whether a resource is the order of two traverses that would meet.
-pub fn is_way(resource: &Resource) -> bool {
-    resource.name.starts_with(WAY)
-}
 
 /// `planned`, or a plan of the same mission in which fewer vehicles come too near each other.
 pub(crate) fn kept_apart(

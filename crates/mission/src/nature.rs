@@ -6,9 +6,8 @@ use exact::{Overflow, Time};
 use executive::world::{abort_name, natures_ranges};
 use plant::Random;
 use smol_str::SmolStr;
+use snapshot::robustness::Distribution;
 use tpn::{Network, Occurrence};
-
-use crate::robustness::Distribution;
 
 /// How nature chooses durations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

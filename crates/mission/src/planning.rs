@@ -15,11 +15,17 @@ use kirk::{Constraint, CycleMember, Options, Outcome, Reason, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
 use rmpl::Diagnostic;
 use rmpl::program::{Change, Program, World};
+use snapshot::standing;
+use snapshot::{
+    Keyframe, Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
+};
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
+use tpn::worth;
+use tpn::worth::rounded_up;
 use tpn::{ArcId, ArcKind, Choice, Network, OccurrenceId, Plan, Supply};
 
-use crate::departures::{self, Departures, rounded_up};
+use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
 use crate::ground::{FreeSpace, Grounds};
 use crate::listing::{self, Listed};
@@ -27,12 +33,7 @@ use crate::meetings::{self, KeepOuts};
 use crate::programs::{self, Programs};
 use crate::separation;
 use crate::simulation::nearest_free;
-use crate::snapshot::{
-    Keyframe, Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
-};
-use crate::standing;
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
-use crate::worth;
 
 /// What to plan and how.
 #[derive(Clone, Copy)]
@@ -622,38 +623,6 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
         });
         network.nodes[start.index()].out_arcs.push(id);
         network.nodes[end.index()].in_arcs.push(id);
-    }
-}
-
-/// Tells of a blocked traverse what blocks it, instead of the contradiction that stands for it.
-pub(crate) fn name_blocked(outcome: &mut Outcome, network: &Network, undrivable: &[Undrivable]) {
-    let Some(failure) = &mut outcome.failure else { return };
-    for reason in &mut failure.reasons {
-        name_blocked_in(reason, network, undrivable);
-    }
-    failure.relaxations.retain(|relaxation| {
-        network.arcs.get(relaxation.arc.index()).is_some_and(|arc| arc.kind != ArcKind::Path)
-    });
-}
-
-/// Tells a reason that is about a traverse without a way as what it is.
-pub(crate) fn name_blocked_in(reason: &mut Reason, network: &Network, undrivable: &[Undrivable]) {
-    let arc = |member: &CycleMember| {
-        let (Constraint::Lower(arc) | Constraint::Upper(arc)) = member.constraint else { return None };
-        network.arcs.get(arc.index())
-    };
-    let mut members = reason.cycle.iter().map(arc);
-    let blocked = members.clone().flatten().filter(|arc| arc.kind == ArcKind::Path).find_map(|arc| {
-        // A traverse that only its own bounds leave no time for is in conflict with nothing else.
-        let is_alone = members.all(|other| other.is_some_and(|other| other.occurrence == arc.occurrence));
-        undrivable
-            .iter()
-            .find(|traverse| Some(traverse.occurrence) == arc.occurrence && (traverse.leg > 0 || is_alone))
-    });
-    if let Some(traverse) = blocked {
-        let occurrence = &network.occurrences[traverse.occurrence.index()];
-        reason.message = format!("{} can't be driven {}", occurrence.name, traverse.reason);
-        reason.spans = occurrence.span.into_iter().collect();
     }
 }
 

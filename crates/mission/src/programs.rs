@@ -7,14 +7,13 @@ use exact::Time;
 use executive::Disturbance;
 use executive::model_based::{ControlledPlant, System};
 use plant::{ComponentId, Model};
+use review::TimeRange;
+use review::distances::Distances;
 use rmpl::control::Name as ControlName;
 use rmpl::program::{Name, PrimitiveDecl, Program, Runs};
 use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::SmolStr;
 use tpn::{Network, NodeId, Occurrence, OccurrenceKind, Plan};
-
-use crate::review::TimeRange;
-use crate::review::distances::Distances;
 
 /// The programs of a mission, by the activity that runs each and what it hands over.
 #[derive(Clone, Debug, Default)]

@@ -11,12 +11,13 @@ use rmpl::program::{ControlDecl, Program, Runs};
 use rmpl::spans::{Spans as _, difference};
 use rmpl::{Diagnostic, Edit, Parse, Severity};
 use smol_str::SmolStr;
+use snapshot::ContentKey;
+use snapshot::Goal;
+use snapshot::content::{Keyed, Keys};
 use tpn::{Network, Top};
 
-use crate::content::{ContentKey, Keyed, Keys};
 use crate::network_text::NetworkText;
 use crate::programs::Programs;
-use crate::request::Goal;
 
 /// What an edit came to.
 #[derive(Clone, Debug, PartialEq)]

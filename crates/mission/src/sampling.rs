@@ -13,6 +13,8 @@ use motion::Path;
 use plant::Random;
 use rmpl::program::{Controllability, LabelMode, Program};
 use smol_str::SmolStr;
+use snapshot::robustness::{Breaks, Distribution, Faults, Incident, Others, Rocks, Traverses};
+use snapshot::{RobustnessSettings, Tally, Uncertainty};
 use tpn::{ArcId, Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::execution::{self, Ran};
@@ -21,9 +23,6 @@ use crate::nature::{self, Nature};
 use crate::planning::{Planned, Problem};
 use crate::program_executor::ProgramExecutor;
 use crate::programs::Programs;
-use crate::robustness::{
-    Breaks, Distribution, Faults, Incident, Others, RobustnessSettings, Rocks, Tally, Traverses, Uncertainty,
-};
 use crate::simulation::{self, Courses, Driving};
 use crate::traverse::Paths;
 

@@ -3,16 +3,10 @@
 use motion::TimedPoint;
 use rmpl::program::World;
 use rmpl::{Code, Diagnostic};
+use snapshot::{SeparationViolation, VehicleMotion};
 use tpn::Network;
 
 use crate::driving::Drive;
-use crate::snapshot::{SeparationViolation, VehicleMotion};
-
-/// The warning of a separation violation.
-pub const CODE: Code = Code("W-ENCOUNTER");
-
-/// Room between vehicles beyond their radii, in metres: what a formation keeps and what others have to.
-pub const GAP_M: f64 = 1.0;
 
 /// Vehicles that don't drive together and come nearer than the sum of their radii and [`GAP_M`], at the earliest
 /// schedule. A vehicle that has not begun to move or has stopped is where it is.
@@ -43,18 +37,6 @@ pub fn violations(drives: &[Drive], motions: &[VehicleMotion], world: &World) ->
         }
     }
     found
-}
-
-/// Whether a vehicle is in the air, above all that is on the ground.
-pub fn flies(world: &World, vehicle: u32) -> bool {
-    let model = world.vehicles.get(vehicle as usize).and_then(|it| motion::vehicle_model(&it.model.text));
-    model.is_some_and(|model| matches!(model.drive, motion::Drive::Flight { .. }))
-}
-
-/// A vehicle's circumradius in metres.
-pub fn radius_m(world: &World, vehicle: u32) -> f64 {
-    let model = world.vehicles.get(vehicle as usize).and_then(|it| motion::vehicle_model(&it.model.text));
-    model.map_or(0.5, |model| model.circumradius_m)
 }
 
 /// Tells the author, at the traverse of the second vehicle.

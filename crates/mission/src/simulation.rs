@@ -20,67 +20,18 @@ use nalgebra::Point2;
 use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
+use snapshot::{Keyframe, VehicleMotion};
 use terrain::{Obstacle, Terrain};
 use tpn::{EventRef, Network, OccurrenceId};
 
 use self::seen::SeenMap;
 use self::trip::Trip;
-pub(crate) use self::way::nearest_free;
 use crate::driving::Drive;
 use crate::ground;
 use crate::planning::{self, Planned, Problem};
-use crate::snapshot::{Keyframe, VehicleMotion};
 use crate::traverse::{self, Route};
 
-/// A traverse as it was driven.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SimulatedDrive {
-    pub occurrence: OccurrenceId,
-    /// When it started, in mission units.
-    pub start: Time,
-    /// How long it took until the last vehicle was there; absent if it never was.
-    pub duration: Option<Time>,
-    /// The vehicles, the leader first.
-    pub vehicles: Vec<SimulatedVehicle>,
-    /// How often another way was looked for.
-    pub reroutes: u32,
-    /// The least distance of a vehicle's rim from anything it could touch, in metres; infinite in an empty world.
-    pub least_clearance_m: f64,
-}
-
-/// One vehicle's part in it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SimulatedVehicle {
-    /// Index into the program's world.
-    pub vehicle: u32,
-    /// What it did, in order of time.
-    pub frames: Vec<DriveFrame>,
-}
-
-/// A vehicle at one moment of its drive.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct DriveFrame {
-    /// In mission units from the start of the mission.
-    pub time: f64,
-    /// Metres east and north.
-    pub position_m: Point2<f64>,
-    /// Radians counter-clockwise from east.
-    pub heading_rad: f64,
-    /// Metres per second.
-    pub speed_mps: f64,
-    /// Where the rays of its range sensor met something, in metres.
-    pub rays_m: Vec<Point2<f32>>,
-    /// Where it meant to drive next, from where it was: along its path, or around what it had seen.
-    pub plan_m: Vec<Point2<f32>>,
-}
-
-impl SimulatedVehicle {
-    /// What it was doing at `time`, in mission units; `None` before it set out.
-    pub fn at(&self, time: f64) -> Option<&DriveFrame> {
-        let after = self.frames.partition_point(|frame| frame.time <= time);
-        self.frames.get(after.checked_sub(1)?)
-    }
-}
+pub(crate) use self::way::nearest_free;
 
 /// A traverse with all that driving it takes.
 struct Course {
@@ -102,7 +53,7 @@ impl Courses {
         let Some(plan) = planned.planning.outcome.plans.first() else { return };
         let world = &program.world;
         for route in traverse::routes(&planned.network, program, plan, &[]) {
-            let is_its = |traverse: &&crate::Traverse| traverse.occurrence == route.occurrence;
+            let is_its = |traverse: &&snapshot::Traverse| traverse.occurrence == route.occurrence;
             let traverse = planned.traverses.iter().find(is_its);
             let space = planned.spaces.iter().find(|(occurrence, _)| *occurrence == route.occurrence);
             let (Some(traverse), Some((_, space))) = (traverse, space) else { continue };

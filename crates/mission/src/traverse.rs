@@ -11,13 +11,13 @@ use nalgebra::{Point2, distance};
 use rmpl::Span;
 use rmpl::program::{Moves, Name, Per, Program, World};
 use smol_str::SmolStr;
+use snapshot::Leg;
+use snapshot::standing;
 use terrain::{ConfigurationSpace, Terrain};
 use tpn::{Network, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
 use crate::separation;
-use crate::snapshot::Leg;
-use crate::standing;
 
 /// A traverse of a plan: who drives, and through which places.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,26 +116,6 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
         routes.push(route);
     }
     routes
-}
-
-/// What a call of a traverse moves.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Moving<'program> {
-    /// The clause of the primitive.
-    pub moves: &'program Moves,
-    /// The vehicles by name, parameters replaced by the arguments of the call; the first leads.
-    pub vehicles: Vec<SmolStr>,
-}
-
-/// What `occurrence` moves, if it is a traverse.
-pub fn moving<'program>(program: &'program Program, occurrence: &Occurrence) -> Option<Moving<'program>> {
-    let primitive = program.primitives.iter().find(|it| it.name.text == occurrence.activity)?;
-    let moves = primitive.moves.as_ref()?;
-    let named = |vehicle: &Name| {
-        let formal = primitive.formals.iter().position(|formal| formal.text == vehicle.text);
-        formal.and_then(|at| occurrence.arguments.get(at)).unwrap_or(&vehicle.text).clone()
-    };
-    Some(Moving { moves, vehicles: moves.vehicles.iter().map(named).collect() })
 }
 
 fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
@@ -415,21 +395,6 @@ fn find_leg(
         points_m: motion::simplify(space, &path, CORNER_EXTRA_M).points_m,
         samples: statistics.samples,
     })
-}
-
-/// The length of a path in metres.
-pub fn length_m(points_m: &[Point2<f64>]) -> f64 {
-    points_m.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
-}
-
-/// The points of all legs, each waypoint once.
-pub fn joined(legs: &[Leg]) -> Path {
-    let mut points: Vec<Point2<f64>> = Vec::new();
-    for leg in legs {
-        let repeated = usize::from(!points.is_empty());
-        points.extend(leg.points_m.iter().skip(repeated));
-    }
-    Path::new(points)
 }
 
 /// The steepest slope along a path, in radians, looked at twice per cell.

@@ -43,7 +43,7 @@ pub use fine_world::FineWorld;
 pub use formation::Formation;
 pub use leg::{Leg, LegFailure, find_shortest_path, plan_leg, plan_legs};
 pub use nearest::PointTree;
-pub use path::Path;
+pub use path::{Path, length_m};
 pub use range_sensor::{RangeScan, RangeSensor};
 pub use search::{
     Event, Failure, Growth, PlannerKind, Query, Search, SearchResult, Settings, Statistics, find_path,

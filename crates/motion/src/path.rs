@@ -24,7 +24,7 @@ impl Path {
 
     /// The length in the plane in metres.
     pub fn length_m(&self) -> f64 {
-        self.segments().map(|(a, b)| distance(&a, &b)).sum()
+        length_m(&self.points_m)
     }
 
     /// The least clearance along the path in metres ([`ConfigurationSpace::segment_clearance_m`]); `None` when the path
@@ -56,6 +56,11 @@ impl Path {
         }
         self.points_m.last().map(|&last| (last, self.points_m.len().saturating_sub(2)))
     }
+}
+
+/// The length of a polyline in metres.
+pub fn length_m(points_m: &[Point2<f64>]) -> f64 {
+    points_m.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
 }
 
 /// The point at a share of the way from one point to another; exactly the ends at 0 and 1.

@@ -9,8 +9,8 @@ use std::{
 };
 
 use js_sys::Uint8Array;
-use mission::wire::{self, Reader};
-use mission::{Job, Link, LinkEvent, News, Request, Transport};
+use link::wire::{self, Reader};
+use link::{Job, Link, LinkEvent, News, Request, Transport};
 use wasm_bindgen::prelude::*;
 use workbench::host::HostEvent;
 

@@ -1,7 +1,7 @@
 //! The app's surroundings in a page.
 
 use js_sys::Uint8Array;
-use mission::Request;
+use link::Request;
 use wasm_bindgen::prelude::*;
 use web_sys::{Location, MediaQueryList, Storage, Window};
 use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};

@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 
-use mission::Snapshot;
+use snapshot::Snapshot;
 use theme::Tokens;
 use workbench::command::{CommandSender, ViewAction};
 use workbench::state::AppState;

@@ -2,8 +2,8 @@
 
 use editor::Severity;
 use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
-use mission::Problem;
 use rmpl::Span;
+use snapshot::Problem;
 use text_editing::{EditKind, TextCommand};
 use theme::icon;
 use theme::space;

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use mission::review::record::{Act, Entry, LineKey, Rate, short};
-use mission::review::since::{LineChange, TextChange};
-use mission::review::{PlanStatus, Present, Record, Review, Since, Standing, Status, since, standing};
+use review::record::{Act, Entry, LineKey, Rate, short};
+use review::since::{LineChange, TextChange};
+use review::{PlanStatus, Present, Record, Review, Since, Standing, Status, since, standing};
 
 use crate::Document;
 use crate::escape::escaped;
@@ -154,7 +154,7 @@ fn text(changes: &[TextChange]) -> String {
 }
 
 fn line(change: &LineChange) -> Vec<String> {
-    let section = change.section().map(mission::review::Section::title).unwrap_or_default();
+    let section = change.section().map(review::Section::title).unwrap_or_default();
     vec![section.to_owned(), escaped(&change.sentence())]
 }
 
@@ -171,7 +171,7 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
         return String::new();
     }
     let withdrawn = record.withdrawn();
-    let numbers: Vec<&str> = record.entries().iter().map(mission::review::sealed::Sealed::digest).collect();
+    let numbers: Vec<&str> = record.entries().iter().map(review::sealed::Sealed::digest).collect();
     let number = |digest: &str| numbers.iter().position(|it| *it == digest).map_or(0, |index| index + 1);
     let rows = record.entries().iter().enumerate().map(|(index, entry)| {
         let of = entry.act.of().map(|of| format!(" entry {}", number(of))).unwrap_or_default();

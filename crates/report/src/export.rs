@@ -3,11 +3,11 @@
 //! is of, how that stands with its board, and which events somebody has pinned.
 
 use exact::{Bound, Time};
-use mission::Snapshot;
-use mission::review::PlanStatus;
-use mission::review::schedule::{Scheduled, scheduled, slack};
+use review::PlanStatus;
+use review::schedule::{Scheduled, scheduled, slack};
 use rmpl::program::TimeUnit;
 use serde_json::{Map, Value, json};
+use snapshot::Snapshot;
 use tpn::{Network, NodeId, Occurrence, OccurrenceKind, Plan, Window};
 
 use crate::calendar::Calendar;
@@ -15,7 +15,7 @@ use crate::calendar::Calendar;
 /// What is said of a schedule beside its times.
 #[derive(Clone, Copy, Debug)]
 pub struct About<'a> {
-    /// What was planned: see [`mission::review::content_hash`].
+    /// What was planned: see [`review::content_hash`].
     pub content_hash: &'a str,
     /// How it stands with its board.
     pub status: PlanStatus,
@@ -216,7 +216,7 @@ pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
             row.end.latest.readable(),
             unit(snapshot),
             about.status.name(),
-            mission::review::record::short(content_hash)
+            review::record::short(content_hash)
         );
         write("BEGIN:VEVENT");
         write(&format!("UID:{}-{content_hash}@enroute", row.occurrence.0));

@@ -1,10 +1,10 @@
 //! The places, obstacles and paths of a mission as `GeoJSON` (RFC 7946).
 
-use mission::Snapshot;
-use mission::geojson::{FRAME, Projection};
+use interchange::geojson::{FRAME, Projection};
 use nalgebra::Point2;
 use rmpl::program::ObstacleShape;
 use serde_json::{Value, json};
+use snapshot::Snapshot;
 
 /// The corners of a circle, which `GeoJSON` does not have.
 const CIRCLE_CORNERS: u32 = 64;

@@ -1,10 +1,10 @@
 //! The review report: one HTML file that needs nothing else, prints well and reads without scripts.
 
 use data_encoding::BASE64;
-use mission::review::{Record, Review, Status};
-use mission::{Robustness, Snapshot};
+use review::{Record, Review, Status};
 use rmpl::program::TimeUnit;
 use sha2::{Digest as _, Sha256};
+use snapshot::{Robustness, Snapshot};
 use terrain::Terrain;
 
 use crate::escape::escaped;

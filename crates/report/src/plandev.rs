@@ -4,14 +4,14 @@
 use exact::Time;
 use interchange::plandev::DURATION;
 use jiff::Timestamp;
-use mission::Snapshot;
+use review::schedule::scheduled;
 use rmpl::program::{Program, TimeUnit};
 use serde_json::{Map, Value, json};
+use snapshot::Snapshot;
 use tpn::{Occurrence, OccurrenceKind};
 
 use crate::calendar::Calendar;
 use crate::export::About;
-use mission::review::schedule::scheduled;
 
 /// The plan under the name of its scenario, as version 2 of `PlanDev`'s transfer format. `None` without a plan or a calendar,
 /// or beyond what microseconds can count.

@@ -1,9 +1,9 @@
 //! The tables of a report: one for each section of the review.
 
 use exact::Bound;
-use mission::Robustness;
-use mission::review::record::LineKey;
-use mission::review::{Alternative, EventReview, Line, Record, Review, Section, Status};
+use review::record::LineKey;
+use review::{Alternative, EventReview, Line, Record, Review, Section, Status};
+use snapshot::Robustness;
 use tpn::{Levels, Supply};
 
 use crate::board;

@@ -4,10 +4,13 @@ mod paper;
 
 use std::sync::Arc;
 
-use mission::review::record::{Act, LineKey, Subject, Who};
-use mission::review::{PlanStatus, Record, Review, Section, review};
-use mission::{Core, CoreHost, Goal, Request, Response, SearchKind, Snapshot, Update};
+use kirk::Search as SearchKind;
+use link::{Request, Response, Update};
+use mission::{Core, CoreHost};
+use review::record::{Act, LineKey, Subject, Who};
+use review::{PlanStatus, Record, Review, Section, review};
 use rmpl::program::TimeUnit;
+use snapshot::{Goal, Snapshot};
 use terrain::Terrain;
 
 use crate::calendar::Calendar;

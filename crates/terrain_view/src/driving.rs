@@ -1,9 +1,9 @@
 //! Vehicles under way in a run: what their range sensors see, and where they mean to drive next.
 
 use glam::{Vec2, Vec3};
-use mission::{DriveFrame, Execution};
 use motion::RangeSensor;
 use nalgebra::Point2;
+use snapshot::{DriveFrame, Execution};
 
 use crate::scene::{self, SceneInput, cased_line, faded, place};
 use crate::shapes::Shapes;

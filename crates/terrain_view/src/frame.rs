@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect};
 use glam::Vec3;
-use mission::Snapshot;
+use snapshot::Snapshot;
 use terrain::Terrain;
 use theme::Tokens;
 use workbench::state::AppState;

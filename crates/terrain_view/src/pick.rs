@@ -2,8 +2,8 @@
 
 use egui::{Pos2, Rect};
 use glam::{Vec2, Vec3};
-use mission::Snapshot;
 use rmpl::program::ObstacleShape;
+use snapshot::Snapshot;
 use workbench::state::{AppState, Selection};
 
 use crate::camera::Camera;

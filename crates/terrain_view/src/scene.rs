@@ -1,9 +1,9 @@
 //! What stands and lies on the ground: obstacles, locations, search trees, paths, trails, vehicles, and what a tool has.
 
 use glam::{Vec2, Vec3};
-use mission::Snapshot;
 use nalgebra::Point2;
 use rmpl::program::{ObstacleShape, VehicleDecl, World};
+use snapshot::Snapshot;
 use workbench::state::Selection;
 use workbench::state::growth::Growth;
 
@@ -54,7 +54,7 @@ pub struct SceneInput<'a> {
     /// In mission units.
     pub time: f64,
     /// The run that is shown, if one is.
-    pub run: Option<&'a mission::Execution>,
+    pub run: Option<&'a snapshot::Execution>,
     /// What is selected in all panels.
     pub selection: &'a Selection,
     /// What the pointer is over in some panel.
@@ -125,10 +125,10 @@ pub fn vehicle_pose(snapshot: &Snapshot, vehicle: usize, time: f64) -> Option<(V
         return Some((place(position), smooth_heading(motion, time).unwrap_or(heading as f32)));
     }
     // Vehicles that share a start stand beside each other.
-    let start_m = mission::standing::start_m(&snapshot.program, vehicle)?;
+    let start_m = snapshot::standing::start_m(&snapshot.program, vehicle)?;
     let world = &snapshot.program.world;
     let start = &world.vehicles.get(vehicle)?.start.text;
-    let slots = mission::standing::start_slots(&snapshot.program);
+    let slots = snapshot::standing::start_slots(&snapshot.program);
     // Those that drive off together are drawn behind each other.
     let is_with =
         |other: &usize| world.vehicles[*other].start.text == *start && slots[*other] == slots[vehicle];
@@ -138,10 +138,10 @@ pub fn vehicle_pose(snapshot: &Snapshot, vehicle: usize, time: f64) -> Option<(V
 
 /// The direction in which a moving vehicle turns its nose: it takes corners of its path over a short way, as wheels do.
 /// `None` where it stands still.
-fn smooth_heading(motion: &mission::VehicleMotion, time: f64) -> Option<f32> {
+fn smooth_heading(motion: &snapshot::VehicleMotion, time: f64) -> Option<f32> {
     const HALF_WAY_M: f64 = 0.7;
     let at = |time: f64| motion.at(time).map(|(position, _)| place(position));
-    let seconds = |frame: &mission::Keyframe| frame.time.to_f64();
+    let seconds = |frame: &snapshot::Keyframe| frame.time.to_f64();
     let after = motion.keyframes.partition_point(|frame| seconds(frame) <= time);
     let (before, next) = (motion.keyframes.get(after.checked_sub(1)?)?, motion.keyframes.get(after)?);
     let way_m = place(before.position_m).distance(place(next.position_m));

@@ -16,6 +16,7 @@ pub mod selection;
 mod spans;
 pub mod text;
 pub mod vocabulary;
+pub mod worth;
 
 pub use compile::{Top, assumed, compile, compile_scenarios, merge_diagnostics};
 pub use network::{

@@ -4,7 +4,7 @@
 //! app never touches a thread, a file or a clock itself. [`Remote`] is the other direction: how a host page, a test
 //! or a window drives the app; it mirrors `window.enroute` (DESIGN 4.3).
 
-use mission::{Request, Response};
+use link::{Request, Response};
 use serde_json::Value;
 #[cfg(test)]
 use ts_rs::TS;

@@ -3,7 +3,7 @@
 //! A window around it calls [`Session::begin_frame`], sends commands by [`Session::apply`], shows the state, and ends
 //! by [`Session::end_frame`]; without a window, the same calls run the whole app.
 
-use mission::{Request, Update};
+use link::{Request, Update};
 use serde_json::Value;
 
 use crate::command::{self, Command};

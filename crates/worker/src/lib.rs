@@ -5,8 +5,9 @@
 use std::panic;
 
 use js_sys::Uint8Array;
-use mission::wire::{self, Writer};
-use mission::{Core, CoreHost, Response};
+use link::Response;
+use link::wire::{self, Writer};
+use mission::{Core, CoreHost};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -58,7 +59,7 @@ impl PlanningCore {
         Self { core: Core::default(), page: Page { host, writer: Writer::default(), told_millis: 0.0 } }
     }
 
-    /// Does one job, given as the bytes of a [`mission::Request`]; answers go out while it works.
+    /// Does one job, given as the bytes of a [`link::Request`]; answers go out while it works.
     pub fn handle(&mut self, request: &[u8]) -> Result<(), JsError> {
         let request = wire::read_request(request)?;
         self.page.told_millis = performance_now();

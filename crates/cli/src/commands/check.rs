@@ -5,9 +5,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context as _;
-use mission::{Goal, Paths, Problem, planning};
+use mission::{Paths, planning};
 use rmpl::program::World;
 use serde_json::json;
+use snapshot::{Goal, Problem};
 
 use crate::deadline::{Deadline, TimeLimit};
 use crate::diagnostics::print_problems;

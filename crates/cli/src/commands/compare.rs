@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mission::compare::{Change, Comparison, Side, compare};
-use mission::review::Record;
-use mission::review::record::is_record;
-use mission::{Goal, Problem};
+use review::Record;
+use review::compare::{Change, Comparison, Side, compare};
+use review::record::is_record;
 use serde_json::{Value, json};
+use snapshot::{Goal, Problem};
 use tpn::Window;
 
 use crate::deadline::TimeLimit;

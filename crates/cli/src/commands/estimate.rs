@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context as _, anyhow};
-use mission::Problem;
 use plant::{Belief, EstimateError, Model, State, conflicts, update_best, update_exact};
 use serde::Deserialize;
 use serde_json::{Value, json};
+use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::{read_json, read_text};

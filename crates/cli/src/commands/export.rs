@@ -6,11 +6,11 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use clap::ValueEnum;
-use mission::geojson::{EARTH_RADIUS_M, Projection};
-use mission::review::record::Runs;
-use mission::review::{PlanStatus, Present, content_hash, review, standing};
+use interchange::geojson::{EARTH_RADIUS_M, Projection};
 use report::calendar::Calendar;
 use report::export;
+use review::record::Runs;
+use review::{PlanStatus, Present, content_hash, review, standing};
 use serde_json::{Value, json};
 
 use crate::commands::import::{parse_degrees, parse_radius};
@@ -144,7 +144,7 @@ impl Args {
     }
 }
 
-fn calendar(epoch: &str, snapshot: &mission::Snapshot) -> anyhow::Result<Calendar> {
+fn calendar(epoch: &str, snapshot: &snapshot::Snapshot) -> anyhow::Result<Calendar> {
     Calendar::new(epoch, snapshot.program.options.time_unit).with_context(|| {
         format!("--epoch wants a date such as 2004-01-25 or 2004-01-25T05:05:00Z, not `{epoch}`")
     })

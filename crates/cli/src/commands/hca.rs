@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use clap::ValueEnum;
 use hca::{Automaton, Element, Vocabulary};
-use mission::Problem;
 use serde_json::{Value, json};
+use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::read_text;

@@ -1,8 +1,8 @@
 //! A plan held against the flight rules that are in its mission's own language (SPEC 16.1), as `enroute plan --rules` tells.
 
 use mission::planning::Planned;
-use mission::review::flight_rule::{Finding, Outcome, Stretch, evaluate_plan};
-use mission::review::{FlightRules, Line, MissionRule, Status};
+use review::flight_rule::{Finding, Outcome, Stretch, evaluate_plan};
+use review::{FlightRules, Line, MissionRule, Status};
 use rmpl::program::Program;
 use serde_json::{Value, json};
 

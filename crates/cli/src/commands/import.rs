@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use interchange::Source;
-use mission::geojson::{self, Frame};
+use interchange::geojson::{self, Frame};
 use serde_json::{Value, json};
 
 use crate::input::read_text;

@@ -11,13 +11,14 @@ use anyhow::Context as _;
 use clap::ValueEnum;
 use exact::{Bound, Time};
 use kirk::{Failure, Options, Outcome, Search, Stats, Status};
-use mission::paths_json::{separation_violations_json, traverses_json};
 use mission::planning::{self, Planned};
-use mission::{Paths, Planning, Problem, repairs};
+use mission::{Paths, repairs};
 use rmpl::LineIndex;
 use rmpl::files::Files;
 use rmpl::program::Program;
 use serde_json::{Value, json};
+use snapshot::paths_json::{separation_violations_json, traverses_json};
+use snapshot::{Planning, Problem};
 use tpn::{Levels, Network, Supply};
 
 use crate::commands::held_rules::HeldRules;

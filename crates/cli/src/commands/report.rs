@@ -4,12 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context as _;
-use mission::review::record::Runs;
-use mission::review::{
-    FlightRules, Line, Present, Record, Review, Section, Status, TimeRange, review, standing,
-};
-use mission::{Robustness, RobustnessSettings};
+use review::record::Runs;
+use review::{FlightRules, Line, Present, Record, Review, Section, Status, TimeRange, review, standing};
 use serde_json::{Value, json};
+use snapshot::{Robustness, RobustnessSettings};
 
 use crate::deadline::{TimeLimit, Undecided};
 use crate::diagnostics::print_problems;

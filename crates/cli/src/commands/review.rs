@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use mission::review::record::{Entry, RecordError, Runs, short};
-use mission::review::{PlanStatus, Present, Record, Standing, review, standing};
+use review::record::{Entry, RecordError, Runs, short};
+use review::{PlanStatus, Present, Record, Standing, review, standing};
 use serde_json::{Value, json};
 
 use crate::deadline::{TimeLimit, Undecided};

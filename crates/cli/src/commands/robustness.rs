@@ -6,12 +6,13 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use anyhow::{Context as _, bail, ensure};
+use mission::Paths;
 use mission::planning::{self, Problem};
-use mission::robustness::Traverses;
 use mission::sampling::Sampler;
-use mission::{Paths, RobustnessSettings, Tally, Uncertainty};
 use rmpl::program::Program;
 use serde::{Deserialize, Serialize};
+use snapshot::robustness::Traverses;
+use snapshot::{RobustnessSettings, Tally, Uncertainty};
 
 use crate::deadline::{TimeIsUp, TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
@@ -186,7 +187,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     }
     limit.answered();
     let map = ground.as_ref().map(|(key, _)| key);
-    let mission = mission::review::content_hash(&loaded.source, map, &target.goal()?, args.path_seed);
+    let mission = review::content_hash(&loaded.source, map, &target.goal()?, args.path_seed);
     let shards = vec![format!("{}/{}", args.shard.part, args.shard.of)];
     let settings = Settings { runs: args.runs, seed: args.seed, uncertainty };
     Ok(Ok(Line::new(mission, settings, shards, tally)))

@@ -9,8 +9,8 @@ use anyhow::{anyhow, bail};
 use executive::model_based::{
     Estimation, Options, ProgramTally, Run, StepInput, StepRecord, System, Trials, run_seed, sample,
 };
-use mission::Problem;
 use serde_json::{Map, Value, json};
+use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::read_text;

@@ -5,11 +5,12 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use executive::{Ending, Entry, Happening, Script};
+use mission::Paths;
 use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
-use mission::{DriveFrame, Paths, Problem as Found, SimulatedDrive};
 use rmpl::program::Program;
 use serde_json::{Value, json};
+use snapshot::{DriveFrame, Problem as Found, SimulatedDrive};
 use tpn::Network;
 
 use crate::deadline::{TimeLimit, Undecided};

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use hca::{Estimate, Trace, Vocabulary};
-use mission::Problem;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use smol_str::SmolStr;
+use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::{read_json, read_text};

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::anyhow;
-use mission::Problem;
 use rmpl::{Code, Diagnostic, Span};
 use serde_json::{Map, Value, json};
+use snapshot::Problem;
 use stn::{Inconsistency, Overflow, PointId, Stn, Window};
 use stnu::{Document, ParseError};
 

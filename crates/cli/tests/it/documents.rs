@@ -131,8 +131,8 @@ fn every_command_that_plans_stops_at_its_time_limit() {
 
 /// The history of a board that approved the mission, as a file; what was approved is taken from a report.
 fn approved_history(name: &str) -> (PathBuf, String) {
-    use mission::review::record::{Act, LineKey, Record, Subject, Who};
-    use mission::review::{FlightRules, Section};
+    use review::record::{Act, LineKey, Record, Subject, Who};
+    use review::{FlightRules, Section};
     let output = enroute(&["report", SMALL, "--format", "json"]);
     let report: Value = serde_json::from_str(&written(&output)).expect("JSON");
     let text = |member: &str| report[member].as_str().expect("a text").to_owned();
@@ -154,7 +154,7 @@ fn approved_history(name: &str) -> (PathBuf, String) {
     let source = std::fs::read_to_string(root().join(SMALL)).expect("the mission");
     let subject = Subject {
         source,
-        goal: mission::Goal::Default,
+        goal: snapshot::Goal::Default,
         seed: 0,
         rules: FlightRules::default(),
         counts: [0; 3],

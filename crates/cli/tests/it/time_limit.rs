@@ -66,7 +66,7 @@ fn what_is_too_hard_for_the_time_limit_is_said_to_be_undecided() {
     let easy = &written("easy.rmpl", "scenario Easy[0,10] = { delay[0,5] }\n");
     let observed = &written("observed.json", "{}");
     let plan = &written("plan.json", r#"{ "choices": {}, "windows": {} }"#);
-    let record = &written("record.json", &mission::review::record::Record::new("hard").to_json());
+    let record = &written("record.json", &review::record::Record::new("hard").to_json());
     let page = &written("report.html", "as it was");
     for arguments in [
         &["check", mission][..],

@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use executive::model_based::{Estimation, Estimator, Options, Run, System};
 use hca::Automaton;
+use link::control_run::{Input, Moment};
+use link::{ControlProgram, ControlRun, ControlStanding};
+use link::{Response, Update};
 use rmpl::spans::Spans as _;
+use snapshot::Problem;
 
 use super::{ContentKey, Core, CoreHost, Keys, Snapshot, Stage, Timings};
 use crate::control::Control;
-use crate::control_run::{
-    ControlProgram, ControlRun, ControlStanding, Input, Moment, moment_of_run, moments_of_automaton,
-};
-use crate::problem::Problem;
-use crate::request::{Response, Update};
+use crate::moments::{control_program, moment_of_run, moments_of_automaton};
 
 /// The run that was asked for last.
 pub(super) struct Session {
@@ -86,7 +86,7 @@ impl Session {
             run: self.key,
             program: self.program,
             // The program travels only once.
-            content: (wanted.held_program != self.program).then(|| ControlProgram::of(&self.control)),
+            content: (wanted.held_program != self.program).then(|| control_program(&self.control)),
             first: if holds_run { wanted.held as usize } else { 0 },
         };
         match (&mut self.run, &self.control) {

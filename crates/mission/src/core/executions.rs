@@ -5,8 +5,7 @@ use std::sync::Arc;
 
 use executive::Script;
 use rmpl::Edit;
-
-use crate::execution::Execution;
+use snapshot::Execution;
 
 /// Runs that are kept: those before are rarely gone back to.
 const MAX_RUNS: usize = 8;

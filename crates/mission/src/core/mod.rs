@@ -11,18 +11,19 @@ mod running;
 
 use std::sync::Arc;
 
+use interchange::geojson;
+use link::{Request, Response, Update};
+use review::MissionRule;
+use snapshot::Problem;
+use snapshot::content::{Keyed, Keys};
+use snapshot::{ContentKey, PartKeys};
+use snapshot::{MapKey, Snapshot, Stage, Timings};
 use terrain::Terrain;
 
 use crate::both_searches;
-use crate::content::{ContentKey, Keyed, Keys, PartKeys};
 use crate::control::ControlTexts;
-use crate::geojson;
 use crate::ground::Grounds;
-use crate::problem::Problem;
 use crate::reading::{Followed, Reading};
-use crate::request::{Request, Response, Update};
-use crate::review::{self, MissionRule};
-use crate::snapshot::{MapKey, Snapshot, Stage, Timings};
 use crate::traverse::Paths;
 
 /// What the core needs from where it runs.

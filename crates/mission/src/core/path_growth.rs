@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use link::Response;
+use link::path_growth::MAX_SAMPLES;
+use link::{GrowthStanding, PathGrowth, WantedPlanner};
 use motion::{PlannerKind, Query, Settings, TracedSearch};
 use terrain::ConfigurationSpace;
 
 use super::{ContentKey, Core, CoreHost};
-use crate::path_growth::{GrowthStanding, MAX_SAMPLES, PathGrowth, WantedPlanner};
-use crate::request::Response;
 
 /// A search that was asked for last.
 pub(super) struct Session {
@@ -57,7 +58,7 @@ impl Core {
     fn task_of(&mut self, wanted: &PathGrowth, host: &mut dyn CoreHost) -> Option<Task> {
         let evaluated = self.evaluate(&wanted.update, host)?.ok()?;
         let network = &evaluated.planned.network;
-        let has_name = |traverse: &&crate::snapshot::Traverse| {
+        let has_name = |traverse: &&snapshot::Traverse| {
             let occurrence = network.occurrences.get(traverse.occurrence.index());
             occurrence.is_some_and(|occurrence| occurrence.name == wanted.traverse)
         };

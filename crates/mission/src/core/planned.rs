@@ -4,9 +4,11 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use kirk::Options;
+use link::Update;
 use rmpl::Edit;
 use rmpl::program::Program;
 use rmpl::spans::Spans as _;
+use snapshot::{MapKey, Planning, SeparationViolation, Snapshot, Traverse, VehicleMotion};
 use terrain::Terrain;
 use tpn::{Network, Plan};
 
@@ -14,8 +16,6 @@ use super::executions::Executions;
 use super::{ContentKey, Core, CoreHost, Keyed, Keys, Reading, TRACE_EVENTS};
 use crate::planning::{self, Planned};
 use crate::repairs;
-use crate::request::Update;
-use crate::snapshot::{MapKey, Planning, SeparationViolation, Snapshot, Traverse, VehicleMotion};
 
 /// What the last planned request led to, and what it depended on.
 pub(super) struct Last {

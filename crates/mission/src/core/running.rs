@@ -3,19 +3,21 @@
 use std::sync::Arc;
 
 use executive::Script;
+use link::ProgramChance;
+use link::{Response, Update};
 use rmpl::program::Program;
+use snapshot::Execution;
+use snapshot::MapKey;
+use snapshot::{RobustnessSettings, Tally, Uncertainty};
 use terrain::Terrain;
 use tpn::Network;
 
 use super::{Core, CoreHost};
-use crate::execution::{self, Execution};
+use crate::execution;
 use crate::planning::{self, Planned};
-use crate::program_chance::{self, ProgramChance};
+use crate::program_chance;
 use crate::programs::Programs;
-use crate::request::{Response, Update};
-use crate::robustness::{RobustnessSettings, Tally, Uncertainty};
 use crate::sampling::Sampler;
-use crate::snapshot::MapKey;
 
 /// A plan made ready for runs with chance, and what it belongs to.
 pub(super) struct Sampled {

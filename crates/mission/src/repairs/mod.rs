@@ -10,11 +10,11 @@ use std::sync::Arc;
 
 use kirk::Options;
 use rmpl::{Edit, Fix};
+use snapshot::Goal;
 
 use crate::ground::Grounds;
 use crate::planning::{self, Planned, Problem};
 use crate::reading;
-use crate::request::Goal;
 use crate::traverse::Paths;
 
 /// Changes that are planned at most; each takes a planning.

@@ -1,10 +1,11 @@
 //! Whole days, as operators plan them: proven to be the best, kept by the checker, robust in simulation.
 
-use crate::support::Mission;
 use exact::Time;
 use kirk::Options;
-use mission::robustness::{RobustnessSettings, Tally, Uncertainty};
 use mission::sampling::Sampler;
+use snapshot::{RobustnessSettings, Tally, Uncertainty};
+
+use crate::support::Mission;
 
 const SOL: &str = include_str!("../../../../assets/missions/sol.rmpl");
 const FLEET: &str = include_str!("../../../../assets/missions/fleet.rmpl");

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use exact::{Bound, Time};
-use mission::{Core, CoreHost, Goal, Request, Response, Snapshot, Stage, Update};
+use link::{Request, Response, Update};
+use mission::{Core, CoreHost};
+use snapshot::{Goal, Snapshot, Stage};
 use tpn::NodeId;
 
 /// Keeps the answers.
@@ -11,7 +13,7 @@ use tpn::NodeId;
 struct Collected {
     snapshots: Vec<Arc<Snapshot>>,
     maps: usize,
-    comparisons: Vec<Arc<mission::BothSearches>>,
+    comparisons: Vec<Arc<link::BothSearches>>,
 }
 
 impl CoreHost for Collected {
@@ -42,7 +44,7 @@ fn ask(core: &mut Core, collected: &mut Collected, source: &str) -> Arc<Snapshot
         revision: collected.snapshots.len() as u64,
         source: source.into(),
         goal: Goal::Default,
-        search: mission::SearchKind::Chronological,
+        search: kirk::Search::Chronological,
         seed: 1,
         trace: false,
     });
@@ -158,7 +160,7 @@ fn an_answer_with_a_recorded_search_survives_the_way_to_the_page() {
         revision: 1,
         source: include_str!("../../../../assets/missions/backjump.rmpl").into(),
         goal: Goal::Default,
-        search: mission::SearchKind::Chronological,
+        search: kirk::Search::Chronological,
         seed: 1,
         trace: true,
     };
@@ -178,7 +180,7 @@ fn both_searches_of_a_mission_are_recorded_for_comparison() {
         revision: 7,
         source: include_str!("../../../../assets/missions/backjump.rmpl").into(),
         goal: Goal::Default,
-        search: mission::SearchKind::ConflictDirected,
+        search: kirk::Search::ConflictDirected,
         seed: 1,
         trace: false,
     };
@@ -186,8 +188,8 @@ fn both_searches_of_a_mission_are_recorded_for_comparison() {
     core.handle(Request::CompareSearches(update), &mut collected);
     let comparison = collected.comparisons.pop().expect("it is answered");
     let [chronological, directed] = &comparison.searches;
-    assert_eq!(chronological.search, mission::SearchKind::Chronological);
-    assert_eq!(directed.search, mission::SearchKind::ConflictDirected);
+    assert_eq!(chronological.search, kirk::Search::Chronological);
+    assert_eq!(directed.search, kirk::Search::ConflictDirected);
     // The lesson of this mission: sixteen combinations of the later choices are tried in vain, or one.
     assert!(chronological.stats.backtracks > 8 * directed.stats.backtracks);
     for searched in &comparison.searches {

@@ -1,11 +1,13 @@
 //! Cooperative exploration, from the text to the end of the run: vehicles that drive, a blimp that flies, a map that they
 //! share, and a path that is closed while they are on it.
 
-use crate::support::Mission;
 use executive::{Disturbance, Ending, Happening, Script};
-use mission::execution::{self, Execution};
-use mission::robustness::{RobustnessSettings, Tally, Uncertainty};
+use mission::execution;
 use mission::sampling::Sampler;
+use snapshot::Execution;
+use snapshot::{RobustnessSettings, Tally, Uncertainty};
+
+use crate::support::Mission;
 
 const EXPLORATION: &str = include_str!("../../../../assets/missions/exploration.rmpl");
 

@@ -1,6 +1,6 @@
 //! Places and obstacles of `GeoJSON`: declarations that the language reads, in the right places.
 
-use mission::geojson::{EARTH_RADIUS_M, Frame, Projection, declarations};
+use interchange::geojson::{EARTH_RADIUS_M, Frame, Projection, declarations};
 use nalgebra::Point2;
 use rmpl::program::{ObstacleShape, World};
 use serde_json::{Value, json};
@@ -85,7 +85,7 @@ fn polygon(rings: &Value) -> Value {
 }
 
 fn covers(world: &World, point: [f64; 2]) -> bool {
-    world.obstacles.iter().any(|it| mission::ground::obstacle(&it.shape).contains(point.into()))
+    world.obstacles.iter().any(|it| snapshot::ground::obstacle(&it.shape).contains(point.into()))
 }
 
 #[test]

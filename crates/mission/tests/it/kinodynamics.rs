@@ -37,7 +37,7 @@ fn least_s(planned: &Planned) -> f64 {
 fn a_kinodynamic_way_takes_as_long_as_turning_and_stopping_within_the_limits() {
     let (free, limited) = (plan("", ""), plan("kinodynamic", ""));
     assert_eq!(free.traverses[0].legs, limited.traverses[0].legs, "the way is the same");
-    let path = mission::traverse::joined(&limited.traverses[0].legs);
+    let path = snapshot::joined(&limited.traverses[0].legs);
     assert!(path.points_m.len() > 3, "it leads around the obstacle");
     let limits = DriveLimits::of(vehicle_model("ATRV").expect("it is known"));
     let slower = DriveLimits { speed_mps: 0.6, half_track_m: 0.0, ..limits };

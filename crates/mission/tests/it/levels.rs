@@ -1,13 +1,15 @@
 //! States and levels in simulation (SPEC 10, 11, 15): metres that are really driven count, and what the world changes is
 //! followed from the text of a mission to the record of its run.
 
-use crate::support::Mission;
 use exact::{Rational, Time};
 use executive::{Disturbance, Ending, Happening, Script};
-use mission::Goal;
-use mission::execution::{self, Execution};
+use mission::execution;
 use mission::programs::Programs;
 use nalgebra::distance;
+use snapshot::Execution;
+use snapshot::Goal;
+
+use crate::support::Mission;
 
 /// Executes a mission's plan.
 fn run(source: &str, disturbances: &[Disturbance]) -> Execution {

@@ -1,12 +1,13 @@
 //! What nature chooses, in simulation and in many runs (SPEC 13.2): within its ranges a controllable plan never fails.
 
-use crate::support::Mission;
 use exact::Time;
 use executive::{Disturbance, Ending, Happening, Script};
 use mission::execution::{self, Ran};
-use mission::robustness::Distribution;
 use mission::sampling::Sampler;
-use mission::{RobustnessSettings, Tally, Uncertainty};
+use snapshot::robustness::Distribution;
+use snapshot::{RobustnessSettings, Tally, Uncertainty};
+
+use crate::support::Mission;
 
 /// What the tests do with a mission.
 trait Runs {

@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
-use mission::review::Review;
-use mission::{Core, CoreHost, Execution, Goal, Problem, Request, Response, Snapshot, Stage, Update};
+use link::{Request, Response, Update};
+use mission::{Core, CoreHost};
+use review::Review;
+use snapshot::{Execution, Goal, Problem, Snapshot, Stage};
 
 #[derive(Default)]
 struct Answers {
     snapshot: Option<Arc<Snapshot>>,
     review: Option<Arc<Review>>,
     execution: Option<Arc<Execution>>,
-    tally: Option<mission::Tally>,
+    tally: Option<snapshot::Tally>,
 }
 
 impl CoreHost for Answers {
@@ -130,7 +132,7 @@ fn what_alternatives_that_were_not_taken_would_have_brought_holds_up_no_run() {
     // Both activities end at one node; nature may draw a duration for either.
     let both = CHOICE.replace(r#""delay-activity", "end-node""#, r#""activity", "name": "Rest", "end-node""#);
     let settings =
-        mission::RobustnessSettings { runs: 20, seed: 3, uncertainty: mission::Uncertainty::default() };
+        snapshot::RobustnessSettings { runs: 20, seed: 3, uncertainty: snapshot::Uncertainty::default() };
     let mut core = Core::default();
     let snapshot = shown(&mut core, 1, &both);
     let (network, plan) = (snapshot.network.as_ref().expect("a network"), snapshot.plan().expect("a plan"));

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use exact::{Bound, Time};
 use mission::planning::{self, Planned, Problem};
-use mission::{Goal, Grounds, Paths};
+use mission::{Grounds, Paths};
 use nalgebra::{Point2, distance};
 use rmpl::program::{Program, World};
+use snapshot::Goal;
 use terrain::{CellState, Occupancy, Terrain};
 use tpn::ArcKind;
 
@@ -63,7 +64,7 @@ impl Answer {
         let map = self.map.as_ref().expect("there is ground");
         let model = motion::vehicle_model(model).expect("it is known");
         let shapes: Vec<_> =
-            self.program.world.obstacles.iter().map(|it| mission::ground::obstacle(&it.shape)).collect();
+            self.program.world.obstacles.iter().map(|it| snapshot::ground::obstacle(&it.shape)).collect();
         let occupancy = Occupancy::of_terrain(map, &shapes, &model.traversability(map));
         let frame = *occupancy.frame();
         let states = occupancy.states().iter().enumerate();
@@ -408,7 +409,7 @@ fn the_clearance_overlay_is_negative_exactly_where_the_vehicle_cannot_be() {
     let world: &World = &answer.program.world;
     let map = answer.map.as_ref().expect("there is ground");
     let model = motion::vehicle_model("ATRV").expect("known");
-    let overlay = mission::ClearanceOverlay::new(map, world, model);
+    let overlay = snapshot::ClearanceOverlay::new(map, world, model);
     let (squares, half) = answer.occupied("ATRV");
     assert_eq!(overlay.clearance_m.len(), overlay.frame.cell_count());
     for index in (0..overlay.clearance_m.len()).step_by(1999) {

@@ -6,7 +6,8 @@ use exact::Time;
 use executive::{Disturbance, Ending, Happening, Script};
 use mission::execution::{self, Ran};
 use mission::planning::{self, Problem};
-use mission::{Goal, Grounds, Paths};
+use mission::{Grounds, Paths};
+use snapshot::Goal;
 use tpn::Network;
 
 const ORBIT: &str = include_str!("../../../../assets/missions/orbit.rmpl");

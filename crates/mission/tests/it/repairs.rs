@@ -1,9 +1,11 @@
 //! What is offered where there is no plan: changes of the text, each of which gives one.
 
-use crate::support::Mission;
 use kirk::Options;
-use mission::{Goal, Grounds, Paths, repairs};
+use mission::{Grounds, Paths, repairs};
 use rmpl::Fix;
+use snapshot::Goal;
+
+use crate::support::Mission;
 
 /// What is offered for a mission without a plan. Each is applied and planned again here.
 fn offered(source: &str) -> Vec<Fix> {

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use exact::Time;
 use mission::planning::{self, Planned, Problem};
-use mission::robustness::{Distribution, Faults, Incident, Others, Rocks, Traverses};
 use mission::sampling::Sampler;
-use mission::{Goal, Grounds, Paths, RobustnessSettings, Tally, Uncertainty};
+use mission::{Grounds, Paths};
 use rmpl::program::Program;
+use snapshot::robustness::{Distribution, Faults, Incident, Others, Rocks, Traverses};
+use snapshot::{Goal, RobustnessSettings, Tally, Uncertainty};
 use tpn::Network;
 
 struct Mission {

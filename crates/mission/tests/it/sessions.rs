@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use exact::Time;
 use executive::{Disturbance, Script};
-use mission::control_run::{Input, Moment};
-use mission::review::{Review, plan_hash};
-use mission::wire::{Reader, Writer};
-use mission::{
-    ContentKey, ControlProgram, ControlRun, ControlStanding, Core, CoreHost, Execution, Goal, GrowthStanding,
-    PathGrowth, Request, Response, Snapshot, Stage, Update, WantedPlanner,
+use link::control_run::{Input, Moment};
+use link::wire::{Reader, Writer};
+use link::{
+    ControlProgram, ControlRun, ControlStanding, GrowthStanding, PathGrowth, Request, Response, Update,
+    WantedPlanner,
 };
+use mission::{Core, CoreHost};
+use review::{Review, plan_hash};
+use snapshot::{ContentKey, Execution, Goal, Snapshot, Stage};
 
 /// Collects answers; gives up after so many looks.
 #[derive(Default)]
@@ -394,7 +396,7 @@ fn walked(core: &mut Core, revision: u64, source: &str, duration: i64) -> Arc<Ex
         revision,
         source: source.into(),
         goal: Goal::Default,
-        search: mission::SearchKind::default(),
+        search: kirk::Search::default(),
         seed: 1,
         trace: false,
     };

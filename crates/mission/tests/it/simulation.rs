@@ -1,12 +1,14 @@
 //! Vehicles that drive their traverses in simulation: past what the map does not show, late where that costs time, and
 //! with consequences for the plan.
 
-use crate::support::Mission;
 use exact::Time;
 use executive::{Disturbance, Ending, Happening, Script};
-use mission::SimulatedDrive;
-use mission::execution::{self, Execution};
+use mission::execution;
 use nalgebra::{Point2, distance};
+use snapshot::Execution;
+use snapshot::SimulatedDrive;
+
+use crate::support::Mission;
 
 const ENROUTE: &str = include_str!("../../../../assets/missions/enroute.rmpl");
 const DETOUR: &str = include_str!("../../../../assets/missions/detour.rmpl");

@@ -68,7 +68,7 @@ fn vehicles_that_drive_together_keep_formation_and_one_place() {
     );
     let slots: Vec<usize> = {
         let program = rmpl::parse(&format!("{WORLD}primitive Convoy(to) moves R1, R2;")).program();
-        mission::standing::start_slots(&program)
+        snapshot::standing::start_slots(&program)
     };
     assert_eq!(slots, [0, 0, 1, 2]);
     assert_apart(&places(&planned, 0.0), 4);

@@ -1,7 +1,7 @@
 //! What differs, one row each: the sign and the word of the change, the name, and what it was and is.
 
 use egui::{Align2, Pos2, Rect, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo};
-use mission::compare::{Comparison, Difference};
+use review::compare::{Comparison, Difference};
 use theme::icon;
 use theme::space;
 use workbench::command::CommandSender;

@@ -3,7 +3,7 @@
 use display::{ColorRole, Dash, Stroke};
 use egui::{Role, Sense, StrokeKind, Ui, WidgetInfo};
 use layout::list::map::{MapFrame, MapPath, extent_m, map_list};
-use mission::compare::{Comparison, Way};
+use review::compare::{Comparison, Way};
 use theme::space;
 
 use crate::Context;

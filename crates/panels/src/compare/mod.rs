@@ -7,9 +7,9 @@ mod timeline;
 use std::sync::Arc;
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
-use mission::Snapshot;
-use mission::compare::{Change, Comparison, Side, compare};
-use mission::review::since::{TextChange, text_changes};
+use review::compare::{Change, Comparison, Side, compare};
+use review::since::{TextChange, text_changes};
+use snapshot::Snapshot;
 use theme::icon::Icon;
 use theme::{Tokens, space, strong};
 use workbench::command::{Command, CommandSender};

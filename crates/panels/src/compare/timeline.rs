@@ -3,7 +3,7 @@
 use display::DisplayList;
 use egui::{Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo};
 use layout::list::timeline::{PAIR_HEIGHTS, PairRow, Track, pair_bar, pair_list};
-use mission::compare::{Comparison, Row, Subject, windows_text};
+use review::compare::{Comparison, Row, Subject, windows_text};
 use theme::icon;
 use theme::space;
 use tpn::Window;
@@ -132,7 +132,7 @@ fn show_row(ui: &Ui, context: &Context<'_>, row: &Row, rect: Rect, commands: &mu
 
 fn words(row: &Row) -> String {
     let text = |windows: Option<[Window; 2]>| windows.map(windows_text);
-    let change = row.change.map_or("the same", mission::compare::Change::name);
+    let change = row.change.map_or("the same", review::compare::Change::name);
     let times = match (text(row.before), text(row.after)) {
         (Some(before), Some(after)) if before != after => format!("{before}, now {after}"),
         (_, Some(only)) | (Some(only), None) => only,

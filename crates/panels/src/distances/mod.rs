@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo};
 use kirk::CycleMember;
-use mission::Snapshot;
+use snapshot::Snapshot;
 use theme::space;
 use tpn::{ArcId, Network, NodeId, Plan};
 use workbench::PanelKind;

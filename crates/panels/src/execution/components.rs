@@ -2,10 +2,10 @@
 
 use egui::{ComboBox, DragValue, RichText, Ui};
 use executive::Disturbance;
-use mission::ContentKey;
 use mission::programs::Programs;
 use num_traits::ToPrimitive as _;
 use smol_str::SmolStr;
+use snapshot::ContentKey;
 use workbench::command::{Command, CommandSender};
 use workbench::state::execution::{ExecutionCommand, Pending};
 use workbench::state::playback::number;

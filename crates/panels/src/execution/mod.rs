@@ -9,7 +9,7 @@ mod now;
 mod vehicles;
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
-use mission::Execution;
+use snapshot::Execution;
 use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Status;

@@ -8,8 +8,7 @@ use layout::list::network_before::{NetworkChanges, changes_list};
 use layout::overlay::{causal_links, negative_cycle, orderings, threats, windows};
 use layout::timeline::before::Before;
 use layout::{NetworkDrawing, NetworkState, Options, OverlayCurve, TextShape};
-
-use mission::{ContentKey, Planning, Snapshot};
+use snapshot::{ContentKey, Planning, Snapshot};
 use tpn::{BlockId, BlockKind, Network, NodeId, Plan};
 use workbench::state::search::View;
 use workbench::state::selection::node_name;
@@ -40,7 +39,7 @@ pub(super) struct Drawn {
     /// Problems at their places.
     pub(super) marks: Vec<Mark>,
     /// The revision and stage of the problems.
-    marked: Option<(u64, mission::Stage)>,
+    marked: Option<(u64, snapshot::Stage)>,
     /// The pins whose windows are shown; `None` while windows are not kept up to date.
     pins: Option<u64>,
     /// The windows of the plan, while they are shown.

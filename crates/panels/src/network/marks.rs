@@ -3,8 +3,8 @@
 use display::Point;
 use egui::{Align2, FontId, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
 use layout::NetworkDrawing;
-use mission::Snapshot;
 use rmpl::{Severity, Span};
+use snapshot::Snapshot;
 use theme::Tokens;
 use tpn::{ArcId, Network, NodeId, OccurrenceKind};
 use workbench::command::{Command, CommandSender};

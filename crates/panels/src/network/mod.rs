@@ -21,7 +21,7 @@ use std::sync::Arc;
 use display::Point;
 use egui::{CursorIcon, InputState, Key, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo, vec2};
 use layout::{BlockForm, Item, NetworkDrawing, OverlayCurve, OverlayKind, Progress};
-use mission::Snapshot;
+use snapshot::Snapshot;
 use tpn::{BlockId, Network, NodeId, Plan};
 use workbench::command::{Command, CommandSender, ViewAction};
 use workbench::state::search::Focus;

@@ -2,8 +2,9 @@
 
 use egui::{RichText, Ui};
 use exact::Rational;
-use mission::{Planning, worth};
+use snapshot::Planning;
 use theme::icon::{self, Icon};
+use tpn::worth;
 use tpn::{Levels, Network, Plan, Supply};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;

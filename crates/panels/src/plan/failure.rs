@@ -2,7 +2,7 @@
 
 use egui::{Frame, Margin, RichText, Stroke, Ui};
 use kirk::{FailureKind, GAP_LABEL, Reason, Status};
-use mission::Planning;
+use snapshot::Planning;
 use text_editing::EditKind;
 use theme::icon::{self, Icon};
 use theme::space;

@@ -174,7 +174,7 @@ fn show_step(ui: &mut Ui, context: &Context<'_>, view: &workbench::state::search
     });
 }
 
-fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &mission::Planning) {
+fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &snapshot::Planning) {
     let tokens = context.tokens;
     let stats = planning.outcome.stats;
     ui.horizontal_wrapped(|ui| match &planning.verdict {

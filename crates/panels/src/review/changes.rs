@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{RichText, Ui};
-use mission::Snapshot;
-use mission::review::record::Rate;
-use mission::review::since::TextChange;
-use mission::review::{Review, Since, since};
+use review::record::Rate;
+use review::since::TextChange;
+use review::{Review, Since, since};
+use snapshot::Snapshot;
 use theme::strong;
 use workbench::command::{Command, CommandSender};
 use workbench::state::compare::CompareCommand;
@@ -80,7 +80,7 @@ impl Changes {
                 .lines
                 .iter()
                 .map(|line| {
-                    let section = line.section().map(mission::review::Section::title).unwrap_or_default();
+                    let section = line.section().map(review::Section::title).unwrap_or_default();
                     format!("{section}: {}", line.sentence())
                 })
                 .collect();
@@ -142,7 +142,7 @@ fn plan(ui: &mut Ui, context: &Context<'_>, since: &Since, commands: &mut Comman
         Some(plan) if plan.is_same() => {}
         Some(plan) => {
             let lines: Vec<String> =
-                plan.differences.iter().map(mission::compare::Difference::sentence).collect();
+                plan.differences.iter().map(review::compare::Difference::sentence).collect();
             list(ui, context, &format!("Plan: {}", plan.summary()), &lines);
             if ui.button("Compare the plans").clicked() {
                 commands.send(Command::Compare(CompareCommand::WithApproved));

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo};
 use exact::Bound;
-use mission::review::{EventReview, Section};
+use review::{EventReview, Section};
 use theme::space;
 use workbench::command::CommandSender;
 use workbench::state::playback::bound;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use egui::{Button, Frame, Margin, RichText, Ui};
-use mission::review::record::{Act, Entry, short};
+use review::record::{Act, Entry, short};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};

@@ -1,9 +1,9 @@
 //! The lines of the checklist, and where they lead.
 
 use egui::Ui;
-use mission::Snapshot;
-use mission::review::record::LineKey;
-use mission::review::{Fate, Line, Section, Status};
+use review::record::LineKey;
+use review::{Fate, Line, Section, Status};
+use snapshot::Snapshot;
 use tpn::{CausalLink, DecisionId, LabelId, Ordering};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;

@@ -15,8 +15,8 @@ mod verdict;
 use std::collections::{BTreeMap, BTreeSet};
 
 use egui::{Frame, Margin, ScrollArea, Ui};
-use mission::review::record::{Entry, LineKey};
-use mission::review::{Review, Section, Status};
+use review::record::{Entry, LineKey};
+use review::{Review, Section, Status};
 use theme::icon::Icon;
 use theme::{Tokens, space};
 use workbench::command::{Command, CommandSender};

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use egui::{Button, ComboBox, Frame, Margin, RichText, TextEdit, Ui};
-use mission::review::record::{Act, Entry, LineKey};
-use mission::review::{Line, Section, Standing};
+use review::record::{Act, Entry, LineKey};
+use review::{Line, Section, Standing};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};

@@ -1,7 +1,7 @@
 //! How robust the plan is, as many runs with chance found; before they were made, how to make them.
 
 use egui::{Button, Ui};
-use mission::Robustness;
+use snapshot::Robustness;
 use workbench::command::{self, CommandSender};
 
 use super::row;

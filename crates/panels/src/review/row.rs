@@ -3,7 +3,7 @@
 use egui::{
     Align2, Color32, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
 };
-use mission::review::Status;
+use review::Status;
 use theme::icon::{self, Icon};
 use theme::{space, strong_family};
 use tpn::Network;

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use exact::{Rational, Time};
-use mission::review::board::{MAX_APPROVALS, MAX_SEATS, Seat};
-use mission::review::flight_rule::{self, MissionRule, Outcome};
-use mission::review::{FlightRules, SuccessRate};
+use review::board::{MAX_APPROVALS, MAX_SEATS, Seat};
+use review::flight_rule::{self, MissionRule, Outcome};
+use review::{FlightRules, SuccessRate};
 use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::review::ReviewCommand;

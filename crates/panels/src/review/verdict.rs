@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{Frame, Margin, RichText, Ui};
-use mission::review::{PlanStatus, Review, Standing, Status};
+use review::{PlanStatus, Review, Standing, Status};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};

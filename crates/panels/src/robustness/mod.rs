@@ -2,8 +2,8 @@
 
 use egui::accesskit;
 use egui::{DragValue, Grid, ProgressBar, RichText, ScrollArea, Ui};
-use mission::Robustness;
-use mission::robustness::{Others, Traverses};
+use snapshot::Robustness;
+use snapshot::robustness::{Others, Traverses};
 use theme::{size, space, strong, structure};
 use workbench::command::{Command, CommandSender};
 use workbench::state::chance::{ChanceCommand, MAX_RUNS};
@@ -81,7 +81,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 }
 
 /// Whether nature chooses by chance, or against the plan.
-fn natures(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncertainty) {
+fn natures(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Uncertainty) {
     let network = context.state.shown().and_then(|shown| shown.network.as_deref());
     if network.is_none_or(|network| network.arcs.iter().all(|arc| !arc.is_contingent)) {
         return;
@@ -93,7 +93,7 @@ fn natures(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncert
 }
 
 /// Whether vehicles drive, and past how many rocks.
-fn driving(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncertainty) {
+fn driving(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Uncertainty) {
     if context.state.shown().is_none_or(|shown| shown.traverses.is_empty()) {
         return;
     }
@@ -113,8 +113,8 @@ fn driving(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncert
 }
 
 /// How likely each condition is to be withdrawn while it should hold.
-fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut mission::Uncertainty) {
-    use mission::robustness::{Distribution, Incident};
+fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Uncertainty) {
+    use snapshot::robustness::{Distribution, Incident};
     let Some(snapshot) = context.state.shown() else { return };
     let Some((network, plan)) = snapshot.network.as_deref().zip(snapshot.plan()) else { return };
     Grid::new("conditions").num_columns(2).show(ui, |ui| {

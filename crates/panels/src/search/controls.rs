@@ -1,7 +1,7 @@
 //! The rows of controls above the search tree: stepping, playing, breakpoints, and which search runs.
 
 use egui::{Button, ComboBox, RichText, Slider, Ui};
-use mission::SearchKind;
+use kirk::Search as SearchKind;
 use theme::icon::{self, Icon};
 use theme::space;
 use workbench::PanelKind;

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use egui::{Rect, RichText, Sense, Shape, Stroke, Ui, pos2, vec2};
+use kirk::Search as SearchKind;
 use kirk::{TreeChoice, TreeNodeId, TreeStatus};
-use mission::SearchKind;
 use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};

@@ -15,8 +15,8 @@ mod tree;
 use std::collections::BTreeSet;
 
 use egui::{RichText, Ui, UiBuilder};
+use kirk::Search as SearchKind;
 use kirk::TreeNodeId;
-use mission::SearchKind;
 use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};

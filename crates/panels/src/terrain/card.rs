@@ -2,8 +2,8 @@
 
 use egui::{Frame, Pos2, Rect, RichText, Sense, Ui, UiBuilder, pos2, vec2};
 use glam::Vec2;
-use mission::{Snapshot, Traverse};
 use rmpl::program::TimeUnit;
+use snapshot::{Snapshot, Traverse};
 use theme::icon::{self, Icon};
 use theme::{size, space, strong};
 use workbench::command::{Command, CommandSender};

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use mission::{MapKey, Snapshot};
 use rmpl::program::ObstacleShape;
 use smol_str::SmolStr;
+use snapshot::{MapKey, Snapshot};
 use terrain::Terrain;
 use workbench::state::Selection;
 use workbench::state::growth::obstacles;

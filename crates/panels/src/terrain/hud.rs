@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, pos2, vec2};
 use glam::{Vec2, Vec3};
-use mission::Snapshot;
+use snapshot::Snapshot;
 use terrain_view::camera::Camera;
 use terrain_view::decal::AMPLE_M;
 use terrain_view::ground::Ground;

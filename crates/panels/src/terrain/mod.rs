@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use egui::{CursorIcon, Rect, Response, RichText, Sense};
 use glam::Vec2;
-use mission::Snapshot;
+use snapshot::Snapshot;
 use terrain::Terrain;
 use terrain_view::camera::Camera;
 use terrain_view::flight::Flight;

@@ -2,7 +2,7 @@
 
 use egui::Response;
 use glam::Vec3;
-use mission::Snapshot;
+use snapshot::Snapshot;
 use terrain_view::camera::Camera;
 use terrain_view::flight::Flight;
 use terrain_view::{pick, scene};

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use mission::{MapKey, Snapshot};
 use rmpl::program::ObstacleShape;
+use snapshot::{MapKey, Snapshot};
 use terrain::Terrain;
 use terrain_view::decal::{ClearanceMap, Decal};
 use terrain_view::gpu::TerrainImage;

@@ -1,7 +1,7 @@
 //! The row above the image: what is shown, where the camera is, and the tools.
 
 use egui::Ui;
-use mission::Snapshot;
+use snapshot::Snapshot;
 use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};

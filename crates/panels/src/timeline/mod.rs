@@ -22,9 +22,9 @@ use egui::{
 };
 use layout::list::timeline::{LinkCurve, Standing, TimelineState, timeline_list};
 use layout::timeline::{Bar, Chart, Row, RowKind, state, times};
-use mission::Snapshot;
-use mission::review::Review;
+use review::Review;
 use smol_str::SmolStr;
+use snapshot::Snapshot;
 use tpn::{LabelId, Network, Plan};
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender, ViewAction};
@@ -36,10 +36,11 @@ use workbench::workspace::Workspace;
 use self::bounds::BoundDrag;
 use self::handle::Pinned;
 use self::overview::Silhouette;
-pub(crate) use self::paint::drawn;
 use self::paint::{Painting, ROW_HEIGHT};
 use self::view::TimeView;
 use crate::{Context, Panel, show_empty};
+
+pub(crate) use self::paint::drawn;
 
 /// The timeline.
 pub struct TimelinePanel {

@@ -2,8 +2,8 @@
 
 use display::Theme;
 use layout::list::map::{MapFrame, MapPath, Relief, extent_m, map_list, path_stroke};
-use mission::Snapshot;
 use nalgebra::{Point2, Vector3};
+use snapshot::Snapshot;
 use terrain::Terrain;
 
 use super::sheet::{Figure, Medium};

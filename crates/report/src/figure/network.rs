@@ -5,9 +5,9 @@ use display::Theme;
 use layout::list::network_before::{NetworkChanges, changes_list};
 use layout::timeline::before::Before;
 use layout::{BlockForm, NetworkDrawing, Options, OverlayCurve, OverlayKind, Room};
-use mission::Snapshot;
-use mission::review::record::Subject;
-use mission::review::{Review, Section, Status};
+use review::record::Subject;
+use review::{Review, Section, Status};
+use snapshot::Snapshot;
 use tpn::{LabelId, Network, NodeId, Plan};
 
 use super::sheet::{Figure, HEIGHT, Medium, WIDTH};

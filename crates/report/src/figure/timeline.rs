@@ -11,12 +11,12 @@ use layout::list::timeline::{
 use layout::timeline::before::Before;
 use layout::timeline::rule::{RuleBand, RuleStanding, RuleTrack};
 use layout::timeline::{Bar, Chart, ChartOptions, Grouping, RowKind};
-use mission::Snapshot;
-use mission::compare::Side;
-use mission::review::record::Subject;
-use mission::review::{Review, Stretch};
+use review::compare::Side;
+use review::record::Subject;
+use review::{Review, Stretch};
 use rmpl::program::TimeUnit;
 use smol_str::{SmolStr, format_smolstr};
+use snapshot::Snapshot;
 use tpn::{Network, Plan};
 
 use super::sheet::{Figure, HEIGHT, Medium, WIDTH};
@@ -177,7 +177,7 @@ fn drawn(
 /// The rules of the mission that a review has held its plan against, as the timeline draws them.
 pub fn rule_tracks(review: &Review) -> Vec<RuleTrack> {
     let lines = review.rules.rules.iter().zip(&review.mission_rules);
-    let track = |(rule, line): (&mission::review::MissionRule, &mission::review::Line)| {
+    let track = |(rule, line): (&review::MissionRule, &review::Line)| {
         let finding = review.findings.iter().find(|it| it.rule == rule.rule)?;
         let bands = |stretches: &[Stretch], standing: RuleStanding| {
             let band = |it: &Stretch| RuleBand { times: [it.from.to_f64(), it.to.to_f64()], standing };

@@ -4,9 +4,10 @@ pub mod chord;
 mod registry;
 mod specs;
 
-use mission::{Goal, SearchKind};
+use kirk::Search as SearchKind;
 use rmpl::{Edit, Span};
 use smol_str::SmolStr;
+use snapshot::Goal;
 use text_editing::{EditKind, Find, TextCommand};
 
 use crate::Dialog;

@@ -1,7 +1,7 @@
 //! The head of a lesson: what its mission is, and how it is planned.
 
+use kirk::Search as SearchKind;
 use markdown::Head;
-use mission::SearchKind;
 
 use super::{Expectation, Lesson, LessonError, LessonMission, LessonSearch, entries};
 use crate::mission_file;

@@ -14,8 +14,8 @@ mod show;
 
 use std::sync::Arc;
 
+use kirk::Search as SearchKind;
 use markdown::{Block, Content, Document, plain};
-use mission::SearchKind;
 
 use crate::mission_file;
 

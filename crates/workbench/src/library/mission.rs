@@ -4,8 +4,8 @@
 
 use std::sync::Arc;
 
-use mission::review::Record;
-use mission::review::record::RecordError;
+use review::Record;
+use review::record::RecordError;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use smol_str::SmolStr;

@@ -4,8 +4,8 @@ mod address;
 mod keeper;
 mod page_state;
 
-use mission::review::Record;
-use mission::review::record::RecordError;
+use review::Record;
+use review::record::RecordError;
 
 use crate::host::Host;
 use crate::state::review::{Aside, ReviewState};

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use interchange::is_network_file;
-use mission::review::Record;
-use mission::review::rules::RULES_FORMAT;
-use mission::{Request, Response, Snapshot};
+use link::{Request, Response};
+use review::Record;
+use review::rules::RULES_FORMAT;
 use rmpl::Span;
 use smol_str::SmolStr;
+use snapshot::Snapshot;
 use text_editing::TextCommand;
 
 use crate::command::Command;
@@ -497,7 +498,7 @@ impl AppState {
         self.pins = Pins::default();
         self.time_range = None;
         self.playback = playback::Playback { rate: self.playback.rate, ..Default::default() };
-        self.settings.plan.goal = mission::Goal::Default;
+        self.settings.plan.goal = snapshot::Goal::Default;
         self.scroll_to(Span::new(0, 0), false);
         self.dialog = None;
     }

@@ -9,15 +9,17 @@ use std::sync::Arc;
 
 use executive::model_based::run_seed;
 use hca::VariableId;
-use mission::{ContentKey, ControlRun, ControlStanding};
+use link::{ControlRun, ControlStanding};
 use plant::ComponentId;
 use smol_str::SmolStr;
+use snapshot::ContentKey;
 use text_editing::Document;
-
-pub use mission::control_run::{ControlProgram as Program, Input, Moment, PlantMoment};
 
 use crate::mission_file;
 use crate::state::program_chance::ProgramChanceState;
+
+pub use link::ControlProgram as Program;
+pub use link::control_run::{Input, Moment, PlantMoment};
 
 /// The program of the text, if it is one, and its run.
 #[derive(Debug, Default)]
@@ -471,7 +473,7 @@ mod tests {
         fn answer(&mut self) {
             while let Some(wanted) = self.state.take_request(&self.document) {
                 let mut answers = Answers::default();
-                self.core.handle(mission::Request::RunControl(wanted), &mut answers);
+                self.core.handle(link::Request::RunControl(wanted), &mut answers);
                 for standing in answers.0 {
                     self.state.take(standing);
                 }
@@ -499,8 +501,8 @@ mod tests {
             false
         }
 
-        fn answer(&mut self, response: mission::Response) {
-            if let mission::Response::ControlRun(standing) = response {
+        fn answer(&mut self, response: link::Response) {
+            if let link::Response::ControlRun(standing) = response {
                 self.0.push(*standing);
             }
         }
@@ -619,8 +621,8 @@ mod tests {
         state.state.apply(AutomatonCommand::Step(1));
         let later = state.state.take_request(&state.document).expect("it is asked for");
         let mut answers = Answers::default();
-        state.core.handle(mission::Request::RunControl(earlier), &mut answers);
-        state.core.handle(mission::Request::RunControl(later), &mut answers);
+        state.core.handle(link::Request::RunControl(earlier), &mut answers);
+        state.core.handle(link::Request::RunControl(later), &mut answers);
         let [first, second] = <[_; 2]>::try_from(answers.0).expect("each is answered once");
         state.state.take(first);
         assert_eq!(state.at(), 0);

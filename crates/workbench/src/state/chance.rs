@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use mission::review::content_hash;
-use mission::{Request, Response, Robustness, RobustnessSettings, Tally, Uncertainty};
+use link::{Request, Response};
+use review::content_hash;
+use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
 use super::{AppState, ToastKind};
 
@@ -56,7 +57,7 @@ impl ChanceState {
         self.running = None;
     }
 
-    /// What the runs of this content came to: see [`mission::review::content_hash`].
+    /// What the runs of this content came to: see [`review::content_hash`].
     pub fn of_content(&self, content_hash: &str) -> Option<Arc<Robustness>> {
         self.of_content.iter().find(|(of, _)| of == content_hash).map(|(_, found)| Arc::clone(found))
     }

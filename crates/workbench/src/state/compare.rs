@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
-use mission::compare::Side;
-use mission::review::Record;
-use mission::review::record::{Subject, is_record};
-use mission::{Goal, Request, SearchKind, Snapshot, Update};
+use kirk::Search as SearchKind;
+use link::{Request, Update};
+use review::Record;
+use review::compare::Side;
+use review::record::{Subject, is_record};
 use serde_json::Value;
+use snapshot::{Goal, Snapshot};
 
 use crate::state::{AppState, Effect, ToastKind};
 

@@ -1,8 +1,8 @@
 //! Documents that are written from the open mission: the report, and schedules for other tools.
 
-use mission::review::PlanStatus;
 use report::calendar::Calendar;
 use report::export;
+use review::PlanStatus;
 
 use crate::state::{AppState, Effect, ToastKind};
 

@@ -1,16 +1,16 @@
 //! The files of the open mission, which are edited as one text (`rmpl::files`): adding, naming and removing them.
 
-use mission::Problem;
-use mission::problem::TextFix;
 use rmpl::files::{self, Files, MARK};
 use rmpl::program::ImportDecl;
 use rmpl::{Edit, Span};
 use smol_str::SmolStr;
+use snapshot::Problem;
+use snapshot::TextFix;
+use text_editing::Caret;
 
 use crate::library::MAIN_TEXT;
 use crate::state::networks::network_ending;
 use crate::state::{AppState, ToastKind};
-use text_editing::Caret;
 
 /// Something that concerns the files of the open mission.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -135,7 +135,7 @@ impl Language {
 }
 
 /// What planning found out, for hovering over the text.
-pub fn evaluation(snapshot: &mission::Snapshot) -> Evaluation {
+pub fn evaluation(snapshot: &snapshot::Snapshot) -> Evaluation {
     let Some(network) = snapshot.network.as_deref() else { return Evaluation::default() };
     let invocations = network
         .occurrences

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use interchange::is_network_file;
-use mission::{Request, Snapshot};
+use link::Request;
 use smol_str::SmolStr;
+use snapshot::Snapshot;
 use terrain::format::{FileFormat, attach_label, image_of_label, refusal};
 
 use crate::Dialog;

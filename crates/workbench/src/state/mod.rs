@@ -34,10 +34,17 @@ pub mod toast;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use mission::{MapKey, Snapshot};
 use rmpl::Span;
 use smol_str::SmolStr;
+use snapshot::{MapKey, Snapshot};
 use text_editing::Document;
+
+use crate::library::{Library, MissionId, MissionKind};
+use crate::mission_file;
+use crate::state::editor::Reveal;
+use crate::state::settings::ThemeChoice;
+use crate::workspace::{Arrangement, Workspace};
+use crate::{Dialog, PanelEffect, PanelEffects, PanelKind};
 
 pub use apply::Effect;
 pub use editor::EditorState;
@@ -48,13 +55,6 @@ pub use selection::Selection;
 pub use settings::{PlanSettings, Settings, Views};
 pub use snapshots::{Snapshots, Status};
 pub use toast::{Toast, ToastKind, Toasts};
-
-use crate::library::{Library, MissionId, MissionKind};
-use crate::mission_file;
-use crate::state::editor::Reveal;
-use crate::state::settings::ThemeChoice;
-use crate::workspace::{Arrangement, Workspace};
-use crate::{Dialog, PanelEffect, PanelEffects, PanelKind};
 
 /// The state of the app. Only commands change it ([`AppState::apply`]).
 #[derive(Debug)]

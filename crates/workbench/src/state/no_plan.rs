@@ -1,10 +1,10 @@
 //! That there is no plan, as problems of the text: at what each reason names, with the changes that would give a plan.
 
-use mission::Snapshot;
-use mission::problem::{Problem, TextFix};
 use rmpl::files::Files;
 use rmpl::{LineIndex, Severity, Span};
 use smol_str::SmolStr;
+use snapshot::Snapshot;
+use snapshot::{Problem, TextFix};
 
 /// The code of these problems; the Plan panel explains them.
 pub const NO_PLAN: &str = "E-NOPLAN";

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use exact::Time;
 use executive::{Course, PinnedPlan};
-use mission::{Planning, Snapshot};
+use snapshot::{Planning, Snapshot};
 use tpn::{Network, NodeId, OccurrenceKind, Plan};
 
 use crate::state::selection::node_name;

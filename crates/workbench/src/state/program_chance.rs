@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use executive::model_based::ProgramTally;
-use mission::{ProgramChance, Request, Response};
+use link::{ProgramChance, Request, Response};
 
 use super::automaton::{AutomatonState, FaultSeed, Program, ProgramPart};
 use super::{AppState, Effect, ToastKind};

@@ -8,12 +8,14 @@ mod board;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use kirk::Search as SearchKind;
 use layout::timeline::before::Before;
 use layout::timeline::rule::RuleTrack;
-use mission::review::record::Act;
-use mission::review::{FlightRules, Record, Review, content_hash, plan_hash};
-use mission::{Request, Robustness, SearchKind, Snapshot, Stage, Update};
+use link::{Request, Update};
+use review::record::Act;
+use review::{FlightRules, Record, Review, content_hash, plan_hash};
 use smol_str::SmolStr;
+use snapshot::{Robustness, Snapshot, Stage};
 
 use crate::state::{AppState, Effect, PlanSettings, ToastKind};
 

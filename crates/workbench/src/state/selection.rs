@@ -3,11 +3,11 @@
 //! A selection holds ids of one network. When a new network arrives, [`Selection::carried`] finds the same thing in it
 //! by name.
 
-use mission::Snapshot;
 use rmpl::Span;
 use rmpl::program::World;
 use serde_json::{Value, json};
 use smol_str::SmolStr;
+use snapshot::Snapshot;
 use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering};
 
 /// The one thing that is selected in all panels.

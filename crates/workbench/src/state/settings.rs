@@ -1,8 +1,9 @@
 //! What is remembered between runs: appearance, how to plan, and what each panel shows.
 
+use kirk::Search as SearchKind;
 use layout::timeline::{ChartOptions, Grouping};
-use mission::{Goal, SearchKind};
 use serde::{Deserialize, Serialize};
+use snapshot::Goal;
 
 use crate::state::lesson::Learned;
 

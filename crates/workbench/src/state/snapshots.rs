@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use mission::problem::Problem;
-use mission::{Snapshot, Stage};
 use rmpl::Severity;
+use snapshot::Problem;
+use snapshot::{Snapshot, Stage};
 
 use crate::state::files::offer_files;
 use crate::state::no_plan;

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use mission::MapKey;
 use nalgebra::Point2;
 use rmpl::Span;
 use smol_str::SmolStr;
+use snapshot::MapKey;
 use terrain::Terrain;
 use text_editing::{Caret, EditKind};
 

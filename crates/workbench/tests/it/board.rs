@@ -1,14 +1,15 @@
 //! A board at work: from a draft to an approval over one edit, through files, tabs, reloads and what was tampered with.
 
-use crate::support;
 use std::rc::Rc;
 
-use crate::support::App;
-use mission::review::Record;
+use review::Record;
 use serde_json::{Value, json};
 use workbench::command::Command;
 use workbench::host::{FileKind, Remote as _};
 use workbench::state::review::ReviewCommand;
+
+use crate::support;
+use crate::support::App;
 
 /// The open mission, reviewed, before a board of two roles.
 fn before_the_board() -> App {

@@ -33,7 +33,7 @@ fn what_is_counted_of_a_search_is_the_same_wherever_it_stands() {
         let mut app = start();
         app.run(Command::ShowWorkspace(Workspace::Teach));
         app.run(Command::SetSource(source));
-        for search in mission::SearchKind::ALL {
+        for search in kirk::Search::ALL {
             app.run(Command::SetSearch(search));
             let name = format!("{name}, {search:?}");
             let state = app.session.state();

@@ -185,8 +185,8 @@ fn the_best_plan_so_far_is_kept_when_looking_for_a_better_one_is_stopped() {
     let mut snapshot = planned.session.state().shown().expect("it is planned").as_ref().clone();
     let mut app = at_work();
     snapshot.revision = app.json()["revision"].as_u64().expect("a number");
-    snapshot.stage = mission::Stage::Improving;
-    let answer = mission::Response::Snapshot(std::sync::Arc::new(snapshot));
+    snapshot.stage = snapshot::Stage::Improving;
+    let answer = link::Response::Snapshot(std::sync::Arc::new(snapshot));
     app.world.news.borrow_mut().push_back(HostEvent::Answer(answer));
     app.settle();
     assert_eq!(app.json()["status"], "working", "a better one may come");

@@ -1,9 +1,7 @@
 //! What is said of a mission is true of the present one: of its text, its plan, and no other.
 
-use crate::support;
-use crate::support::App;
-use mission::Response;
-use mission::review::review;
+use link::Response;
+use review::review;
 use serde_json::{Value, json};
 use workbench::command::{Command, EditorCommand};
 use workbench::host::{FileKind, HostEvent, Remote as _};
@@ -11,6 +9,9 @@ use workbench::state::no_plan::NO_PLAN;
 use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
 use workbench::workspace::Workspace;
+
+use crate::support;
+use crate::support::App;
 
 /// A mission without a plan: a wait of 8 minutes in one of 5.
 const TOO_LONG: &str = "scenario S[0,5] = {\n    delay[8,9]\n}\n";

@@ -4,11 +4,11 @@ use std::sync::LazyLock;
 
 use exact::Time;
 use executive::{Observations, Script};
-use mission::Uncertainty;
 use mission::programs::Programs;
-use mission::review::{FlightRules, Record};
+use review::{FlightRules, Record};
 use serde::Deserialize as _;
 use serde_json::Value;
+use snapshot::Uncertainty;
 use tpn::{NodeId, Plan};
 
 use super::missions::{example, shared_network};
@@ -40,8 +40,11 @@ pub(super) const PLACES: Reader = Reader {
 };
 
 fn places(input: &[u8]) -> Outcome {
-    match mission::geojson::declarations("site.geojson", &text_of(input), &mission::geojson::Frame::default())
-    {
+    match interchange::geojson::declarations(
+        "site.geojson",
+        &text_of(input),
+        &interchange::geojson::Frame::default(),
+    ) {
         Ok(lines) => {
             let parse = rmpl::parse(&lines);
             assert!(parse.diagnostics().is_empty(), "{lines}");

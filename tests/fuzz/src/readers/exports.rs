@@ -3,13 +3,15 @@
 
 use std::sync::Arc;
 
+use interchange::geojson::Projection;
 use interchange::{Source, is_network_text};
 use interchange::{plan_schema, ptpn, rmpl_text};
-use mission::geojson::Projection;
-use mission::review::{PlanStatus, Record, content_hash, review};
-use mission::{Core, Goal, Request, Snapshot};
+use link::Request;
+use mission::Core;
 use report::calendar::Calendar;
 use report::export::{self, About, CSV_COLUMNS};
+use review::{PlanStatus, Record, content_hash, review};
+use snapshot::{Goal, Snapshot};
 
 use super::missions::{Bounded, WORDS, last_snapshot, update_of};
 use super::{NOTHING, Outcome, Reader, magnitude, nothing, read, refused, text_of};

@@ -3,15 +3,16 @@
 use std::sync::{Arc, LazyLock};
 
 use executive::Script;
-use mission::review::flight_rule;
-use mission::snapshot::Stage;
-use mission::{
-    Core, CoreHost, Goal, Request, Response, RobustnessSettings, SearchKind, Snapshot, Uncertainty, Update,
-};
+use kirk::Search as SearchKind;
+use link::{Request, Response, Update};
+use mission::{Core, CoreHost};
+use review::flight_rule;
 use rmpl::editor::{self, Evaluation};
 use rmpl::program::Program;
 use rmpl::syntax::SyntaxNode;
 use rmpl::{Edit, Span, format, parse};
+use snapshot::Stage;
+use snapshot::{Goal, RobustnessSettings, Snapshot, Uncertainty};
 use tpn::Network;
 use verify::{Rule, Violation};
 

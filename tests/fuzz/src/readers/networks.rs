@@ -4,7 +4,7 @@ use std::sync::{Arc, LazyLock};
 
 use interchange::Source;
 use interchange::plan_schema::Document;
-use mission::Snapshot;
+use snapshot::Snapshot;
 use stnu::{Document as Uncertain, Layout, check};
 use tpn::Network;
 
@@ -165,7 +165,7 @@ pub(super) const PLANS: Reader = Reader {
 /// A mission with links.
 static NETWORK: LazyLock<Network> = LazyLock::new(|| {
     let program = rmpl::parse(include_str!("../../../../assets/missions/causal-links.rmpl")).program();
-    mission::compile(&program, &mission::Goal::Default, &mut Vec::new()).expect("the example")
+    mission::compile(&program, &snapshot::Goal::Default, &mut Vec::new()).expect("the example")
 });
 
 fn plans(input: &[u8]) -> Outcome {

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use kirk::Options;
 use mission::planning::{self, Planned, Problem};
-use mission::{Goal, Grounds, Paths};
+use mission::{Grounds, Paths};
 use rmpl::program::Program;
+use snapshot::Goal;
 use tpn::Network;
 
 /// A mission without errors.

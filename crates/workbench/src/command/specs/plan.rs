@@ -10,7 +10,7 @@ use crate::state::search::SearchCommand;
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("plan.chronological", "Search chronologically", Group::Plan, &[], Scope::Everywhere, |_| {
-        Command::SetSearch(mission::SearchKind::Chronological)
+        Command::SetSearch(kirk::Search::Chronological)
     }),
     plain(
         "plan.conflictDirected",
@@ -18,10 +18,10 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Group::Plan,
         &[],
         Scope::Everywhere,
-        |_| Command::SetSearch(mission::SearchKind::ConflictDirected),
+        |_| Command::SetSearch(kirk::Search::ConflictDirected),
     ),
     plain("plan.bestFirst", "Search best first", Group::Plan, &[], Scope::Everywhere, |_| {
-        Command::SetSearch(mission::SearchKind::BestFirst)
+        Command::SetSearch(kirk::Search::BestFirst)
     }),
     plain("plan.compare", "Compare both searches", Group::Plan, &[], Scope::Everywhere, |state| {
         Command::Search(SearchCommand::Compare(!state.search.compares()))
@@ -39,6 +39,6 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     }),
     called("plan.scenario", "Choose what to plan", Group::Plan, |_, arguments| {
         let name = text_argument(arguments, "name")?;
-        Ok(Command::SetGoal(mission::Goal::Scenario(name.into())))
+        Ok(Command::SetGoal(snapshot::Goal::Scenario(name.into())))
     }),
 ];

@@ -1,7 +1,7 @@
 //! Judging and comparing plans, and documents about them.
 
-use mission::review::record::{Act, LineKey};
-use mission::review::{FlightRules, Section};
+use review::record::{Act, LineKey};
+use review::{FlightRules, Section};
 use serde_json::Value;
 
 use super::arguments::text_argument;

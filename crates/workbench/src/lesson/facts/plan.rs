@@ -1,7 +1,7 @@
 //! The text, its network, the plan, and why there is none.
 
 use exact::{Bound, Time};
-use mission::Snapshot;
+use snapshot::Snapshot;
 use tpn::{Levels, Network, OccurrenceKind, Plan, Window};
 
 use super::super::expression::Value;
@@ -21,7 +21,7 @@ pub(super) const FACTS: &[Fact] = &[
         truth(state.status() == Status::NoPlan)
     }),
     fact("errors", Of::Nothing, "how many errors the text has", |state, _| {
-        let is_error = |it: &&mission::Problem| it.severity == rmpl::Severity::Error;
+        let is_error = |it: &&snapshot::Problem| it.severity == rmpl::Severity::Error;
         count(latest(state)?.problems.iter().filter(is_error).count())
     }),
     fact(
@@ -170,7 +170,7 @@ pub(super) const FACTS: &[Fact] = &[
         |state, name| {
             let snapshot = fresh(state)?;
             let network = network(state)?;
-            let is_meant = |it: &&mission::Traverse| {
+            let is_meant = |it: &&snapshot::Traverse| {
                 name.is_empty()
                     || network.occurrences.get(it.occurrence.index()).is_some_and(|it| it.name == name)
             };
@@ -221,14 +221,14 @@ pub(super) fn fresh(state: &AppState) -> Option<&Snapshot> {
     state
         .shown()
         .map(AsRef::as_ref)
-        .filter(|shown: &&Snapshot| shown.revision == revision && shown.stage == mission::Stage::Complete)
+        .filter(|shown: &&Snapshot| shown.revision == revision && shown.stage == snapshot::Stage::Complete)
 }
 
 /// The answer to the present text, also if it does not compile.
 fn latest(state: &AppState) -> Option<&Snapshot> {
     let revision = state.document.revision();
     let latest = state.snapshots.latest()?;
-    (latest.revision == revision && latest.stage == mission::Stage::Complete).then_some(latest)
+    (latest.revision == revision && latest.stage == snapshot::Stage::Complete).then_some(latest)
 }
 
 pub(super) fn network(state: &AppState) -> Option<&Network> {

@@ -1,7 +1,7 @@
 //! The recorded search and the step of it that is looked at.
 
 use kirk::Event;
-use mission::SearchKind;
+use kirk::Search as SearchKind;
 
 use super::{Fact, Of, count, fact, plan, time, truth, words};
 use crate::lesson::{StepKind, Value};

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
 use executive::{Actor, Course, Disturbance, Ending, Entry, Happening};
-use mission::Snapshot;
 use serde::Serialize;
 use serde_json::{Value, json};
+use snapshot::Snapshot;
 use tpn::Network;
 use tpn::plan_json::plan_to_json;
 #[cfg(test)]

@@ -15,11 +15,11 @@ mod typescript;
 
 use std::collections::BTreeMap;
 
-use mission::paths_json::traverses_json;
-use mission::{Problem, Snapshot};
 use rmpl::diagnostic::Severity;
 use serde::Serialize;
 use serde_json::{Value, json};
+use snapshot::paths_json::traverses_json;
+use snapshot::{Problem, Snapshot};
 use tpn::Network;
 use tpn::plan_json::plan_to_json;
 #[cfg(test)]
@@ -245,7 +245,7 @@ impl PageState {
             bound: planning.and_then(|planning| planning.outcome.bound).map(|bound| json!(bound)),
             verdict: planning.and_then(|planning| planning.verdict.as_ref()).map(verdict),
             failure: network.zip(failure).map(|(network, failure)| {
-                let ways_out = planning.map(mission::Planning::ways_out).unwrap_or_default();
+                let ways_out = planning.map(snapshot::Planning::ways_out).unwrap_or_default();
                 failure_of(network, failure, ways_out)
             }),
             lesson: lesson::lessons(state),

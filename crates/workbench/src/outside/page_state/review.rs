@@ -1,7 +1,7 @@
 //! The review of the mission.
 
-use mission::review::record::{Act, Entry, LineKey};
-use mission::review::{FlightRules, Line, PlanStatus, Present, Record, Section, Status};
+use review::record::{Act, Entry, LineKey};
+use review::{FlightRules, Line, PlanStatus, Present, Record, Section, Status};
 use serde::Serialize;
 #[cfg(test)]
 use ts_rs::TS;
@@ -183,7 +183,7 @@ pub(super) fn review(state: &AppState) -> Review {
         items: shown.map(|(review, _)| items(review, record)).unwrap_or_default(),
         plan_status: standing.as_ref().map(|standing| standing.status),
         board: standing.iter().flat_map(|standing| &standing.seats).map(seat).collect(),
-        blockers: standing.as_ref().map(mission::review::Standing::blockers).unwrap_or_default(),
+        blockers: standing.as_ref().map(review::Standing::blockers).unwrap_or_default(),
         signed: signed(state),
         comments: comments(record),
         history: history(record),
@@ -193,7 +193,7 @@ pub(super) fn review(state: &AppState) -> Review {
     }
 }
 
-fn seat(seat: &mission::review::board::Approvals<'_>) -> BoardSeat {
+fn seat(seat: &review::board::Approvals<'_>) -> BoardSeat {
     let given = seat.given.iter().map(|entry| entry.by.clone()).collect();
     BoardSeat { role: seat.role.to_owned(), wanted: seat.wanted, given }
 }
@@ -219,7 +219,7 @@ fn signed(state: &AppState) -> Option<SignOff> {
 }
 
 fn comments(record: &Record) -> Vec<ReviewComment> {
-    let open = mission::review::board::open_comments(record);
+    let open = review::board::open_comments(record);
     let comment = |entry: &Entry| {
         let Act::Comment { about, text } = &entry.act else { return None };
         Some(ReviewComment {
@@ -253,7 +253,7 @@ fn history(record: &Record) -> Vec<HistoryEntry> {
     record.entries().iter().map(entry).collect()
 }
 
-fn items(review: &mission::review::Review, record: &Record) -> Vec<ReviewItem> {
+fn items(review: &review::Review, record: &Record) -> Vec<ReviewItem> {
     let acknowledged = record.acknowledgements();
     let by = |section: Section, line: &Line| {
         let entry = (line.status == Status::Attention)

@@ -1,7 +1,7 @@
 //! What is done on the terrain, and where the vehicles are.
 
-use mission::Snapshot;
 use serde::Serialize;
+use snapshot::Snapshot;
 #[cfg(test)]
 use ts_rs::TS;
 

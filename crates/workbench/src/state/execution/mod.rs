@@ -10,9 +10,10 @@ use std::sync::Arc;
 
 use exact::{Rational, Time};
 use executive::{Disturbance, Entry, Script};
-use mission::{Execution, Request, Response, Snapshot, Update};
+use link::{Request, Response, Update};
 use nalgebra::Point2;
 use serde_json::{Value, json};
+use snapshot::{Execution, Snapshot};
 
 use super::terrain::Tool;
 use super::{AppState, Effect, PlanSettings, ToastKind, playback};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use exact::{Bound, Time};
 use executive::{Observations, Progress};
 use kirk::{Outcome, Stats, Status};
-use mission::{Executed, PartKeys, Planning, Snapshot};
+use snapshot::{Executed, PartKeys, Planning, Snapshot};
 use tpn::{EventEnd, EventRef, Network, NodeId, OccurrenceId, OccurrenceKind, Plan, Window};
 
 use super::has_come;

@@ -8,17 +8,18 @@ mod wording;
 
 use std::sync::Arc;
 
-use mission::request::Update;
-use mission::{GrowthStanding, PathGrowth, Snapshot};
+use link::Update;
+use link::{GrowthStanding, PathGrowth};
 use motion::{GrowthStep, PlannerKind};
 use rmpl::program::World;
 use smol_str::SmolStr;
+use snapshot::Snapshot;
 use terrain::Obstacle;
 use tpn::OccurrenceId;
 
-pub use search::{Counts, LastSample, Search, Standing};
-
 use crate::state::Selection;
+
+pub use search::{Counts, LastSample, Search, Standing};
 
 /// The growth that is looked at, if one is.
 #[derive(Clone, Debug, Default)]
@@ -281,7 +282,7 @@ impl Growth {
         }
     }
 
-    fn start(&mut self, input: &GrowthInput<'_>, traverse: &mission::Traverse, leg: usize) -> Option<Shown> {
+    fn start(&mut self, input: &GrowthInput<'_>, traverse: &snapshot::Traverse, leg: usize) -> Option<Shown> {
         let leg = leg.min(traverse.legs.len().checked_sub(1)?);
         let way = &traverse.legs[leg];
         let searches = match self.planners {
@@ -365,10 +366,10 @@ impl Shown {
 
 /// The obstacles of a world for path planning.
 pub fn obstacles(world: &World) -> Vec<Obstacle> {
-    world.obstacles.iter().map(|it| mission::ground::obstacle(&it.shape)).collect()
+    world.obstacles.iter().map(|it| snapshot::ground::obstacle(&it.shape)).collect()
 }
 
-fn named_traverse<'a>(snapshot: &'a Snapshot, name: &str) -> Option<&'a mission::Traverse> {
+fn named_traverse<'a>(snapshot: &'a Snapshot, name: &str) -> Option<&'a snapshot::Traverse> {
     let network = snapshot.network.as_deref()?;
     snapshot
         .traverses

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use mission::{ContentKey, GrowthStanding, WantedPlanner};
+use link::{GrowthStanding, WantedPlanner};
 use motion::{GrowthStep, GrowthTrace, PlannerKind};
 use nalgebra::Point2;
+use snapshot::ContentKey;
 
 /// A search for the path of a leg.
 #[derive(Clone, Debug)]
@@ -164,7 +165,7 @@ impl Search {
             samples,
             vertices: (trace.roots_m.len() + trace.grown(samples as usize).count()) as u32,
             checks: steps.map(|step| step.checks).sum(),
-            length_m: trace.path_m(samples as usize).map(mission::traverse::length_m),
+            length_m: trace.path_m(samples as usize).map(motion::length_m),
         }
     }
 

@@ -48,7 +48,7 @@ impl Shown {
             text.push_str(&format!(" By it, {} shorter to reach.", are(step.rewired.len())));
         }
         if let Some(path_m) = &step.path_m {
-            text.push_str(&format!(" There is a way of {:.1}\u{a0}m.", mission::traverse::length_m(path_m)));
+            text.push_str(&format!(" There is a way of {:.1}\u{a0}m.", motion::length_m(path_m)));
         }
         Some(text)
     }

@@ -1,6 +1,6 @@
 //! Doing what a stop shows: panels, workspace, step, selection, camera, time.
 
-use mission::SearchKind;
+use kirk::Search as SearchKind;
 
 use crate::PanelKind;
 use crate::command::ViewAction;
@@ -66,7 +66,7 @@ impl AppState {
     /// Whether everything that a stop can show has been worked out.
     fn is_ready_for_stop(&self) -> bool {
         let Some(latest) = self.snapshots.latest() else { return false };
-        if latest.revision != self.document.revision() || latest.stage != mission::Stage::Complete {
+        if latest.revision != self.document.revision() || latest.stage != snapshot::Stage::Complete {
             return false;
         }
         if self.automaton.is_control() {

@@ -1,8 +1,8 @@
 //! What people of the board do: comment, acknowledge, resolve, approve and take back. Each is an entry of the history.
 
-use mission::review::board::open_comments;
-use mission::review::record::{Act, Runs, Subject, Who};
-use mission::review::{Present, Standing, standing};
+use review::board::open_comments;
+use review::record::{Act, Runs, Subject, Who};
+use review::{Present, Standing, standing};
 use serde_json::Value;
 use tpn::plan_json::plan_to_json;
 

@@ -10,9 +10,11 @@ pub mod wording;
 
 use std::sync::Arc;
 
+use kirk::Search as SearchKind;
 use kirk::{Event, ReplayStep, Trace, TreeNodeId};
-use mission::{BothSearches, SearchKind, Snapshot, Stage};
+use link::BothSearches;
 use serde::{Deserialize, Serialize};
+use snapshot::{Snapshot, Stage};
 use tpn::{Network, Plan};
 
 pub use counts::Counts;

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use kirk::Search as SearchKind;
 use kirk::{Replay, ReplayStep, Trace};
-use mission::{BothSearches, SearchKind, Searched, Snapshot};
+use link::{BothSearches, Searched};
+use snapshot::Snapshot;
 use tpn::{Network, NodeId, Plan, Window};
 
 /// A recorded search with the network it was recorded on.

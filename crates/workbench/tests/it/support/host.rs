@@ -4,7 +4,8 @@ use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
-use mission::{Core, CoreHost, Request, Response};
+use link::{Request, Response};
+use mission::{Core, CoreHost};
 use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 
 /// How the shelf of a world does.

@@ -62,7 +62,7 @@ impl App {
     /// Makes so many runs with chance.
     pub fn sample(&mut self, runs: u64, seed: u64) {
         let settings = self.session.state().chance.settings.clone();
-        let settings = mission::RobustnessSettings { runs, seed, ..settings };
+        let settings = snapshot::RobustnessSettings { runs, seed, ..settings };
         self.run(Command::Chance(ChanceCommand::Set(Box::new(settings))));
         self.run(Command::Chance(ChanceCommand::Start));
         for _ in 0..runs {

@@ -1,0 +1,21 @@
+//! Between whoever shows a mission and the core that plans it: requests and answers as data, the jobs that they are, the
+//! queue and the rules by which jobs replace each other, and the bytes that travel.
+//!
+//! No thread, worker or clock is here: a [`Transport`] has them.
+
+pub mod both_searches;
+pub mod control_run;
+pub mod job;
+mod link;
+pub mod path_growth;
+mod program_chance;
+pub mod request;
+pub mod wire;
+
+pub use self::link::{Link, LinkEvent, News, Transport};
+pub use both_searches::{BothSearches, Searched};
+pub use control_run::{ControlProgram, ControlRun, ControlStanding};
+pub use job::{Job, JobId, Kind};
+pub use path_growth::{GrowthStanding, PathGrowth, WantedPlanner};
+pub use program_chance::ProgramChance;
+pub use request::{Request, Response, Update};

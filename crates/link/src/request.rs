@@ -1,0 +1,176 @@
+//! What the core is asked, and what it answers; both cross to a worker as bytes.
+
+use std::sync::Arc;
+
+use exact::{Bound, Time};
+use review::{MissionRule, Review};
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
+use snapshot::Execution;
+use snapshot::{MapKey, Snapshot};
+use snapshot::{RobustnessSettings, Tally};
+
+use crate::BothSearches;
+use crate::ProgramChance;
+use crate::{ControlRun, ControlStanding};
+use crate::{GrowthStanding, PathGrowth};
+
+/// Something that the core is asked to compute.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Request {
+    /// Compile and plan a text; a later one supersedes an earlier one that is still under way.
+    Update(Update),
+    /// Execute the plan of a text in the simulated world.
+    Execute {
+        /// The text and how it is planned.
+        update: Update,
+        /// What goes otherwise than planned.
+        #[serde(with = "snapshot::json_text")]
+        script: executive::Script,
+    },
+    /// Execute the plan of a text many times, with chance: the runs from one number on. The answer says how far it got.
+    Sample {
+        /// The text and how it is planned.
+        update: Update,
+        /// What is left to chance.
+        settings: RobustnessSettings,
+        /// The first run, from 0.
+        from: u64,
+    },
+    /// Run a control program many times, its components failing by chance: the runs from one number on. The answer says
+    /// how far it got.
+    SampleProgram {
+        /// The revision of the text.
+        revision: u64,
+        /// The whole text.
+        source: Arc<str>,
+        /// What the runs are.
+        chance: ProgramChance,
+        /// The first run, from 0.
+        from: u64,
+    },
+    /// Review the plan of a text: see [`review`].
+    Review {
+        /// The text and how it is planned.
+        update: Update,
+        /// The rules of the mission to hold the plan against.
+        rules: Vec<MissionRule>,
+    },
+    /// Plan another text than the open one, to compare with: answered once, when it is done.
+    Evaluate {
+        /// Comes back with the answer.
+        token: u64,
+        /// The other text.
+        update: Update,
+    },
+    /// Makes a map file available to `terrain "name"` declarations.
+    ImportMap {
+        /// The name that the declaration uses.
+        name: SmolStr,
+        bytes: Vec<u8>,
+    },
+    /// Searches the network of a text in both ways, recorded and measured, for showing side by side.
+    CompareSearches(Update),
+    /// Run a control program: see [`crate::control_run`].
+    RunControl(ControlRun),
+    /// Search for a path, sample by sample: see [`crate::path_growth`].
+    GrowPath(PathGrowth),
+}
+
+/// A text to compile and plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Update {
+    /// Counts the edits of the text; every answer says which revision it belongs to.
+    pub revision: u64,
+    /// The whole text.
+    pub source: Arc<str>,
+    pub goal: Goal,
+    /// How to search.
+    pub search: kirk::Search,
+    /// Seeds path planning.
+    pub seed: u64,
+    /// Whether to record the search for stepping through it.
+    pub trace: bool,
+}
+
+/// An answer of the core.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Response {
+    /// The state of a revision; a revision is answered more than once as its stages complete.
+    Snapshot(Arc<Snapshot>),
+    /// The review of a revision.
+    Review {
+        /// The revision of the text.
+        revision: u64,
+        /// What was found.
+        review: Arc<Review>,
+    },
+    /// Another text, planned.
+    Evaluated {
+        /// That of the request.
+        token: u64,
+        /// The other text's last snapshot.
+        snapshot: Arc<Snapshot>,
+    },
+    /// The ground of the missions that name `key`; sent once, before the first snapshot that refers to it.
+    Map { key: MapKey, map: Arc<terrain::Terrain> },
+    /// A run of a mission.
+    Execution(Arc<Execution>),
+    /// A mission cannot be executed.
+    NotExecuted {
+        /// The revision of its text.
+        revision: u64,
+        reason: String,
+    },
+    /// Some of many runs of a mission.
+    Sampled {
+        /// The revision of its text.
+        revision: u64,
+        /// What was left to chance.
+        settings: Box<RobustnessSettings>,
+        /// The first of these runs.
+        from: u64,
+        /// How they went; as many as there was time for, at least one.
+        tally: Tally,
+    },
+    /// Some of many runs of a control program.
+    ProgramSampled {
+        /// The revision of its text.
+        revision: u64,
+        /// What the runs are.
+        chance: ProgramChance,
+        /// The first of these runs.
+        from: u64,
+        /// How they went, as many as there was time for, at least one; or why there can be none.
+        tally: Result<executive::model_based::ProgramTally, String>,
+    },
+    /// How a control program's run stands.
+    ControlRun(Box<ControlStanding>),
+    /// How far the search for a path has come.
+    PathGrowth(Box<GrowthStanding>),
+    /// The two searches of a revision.
+    Searches(Arc<BothSearches>),
+    /// A map file was read; texts that name it find it from now on.
+    MapAccepted {
+        /// The name it has.
+        name: SmolStr,
+        /// Columns and rows.
+        cells: [u32; 2],
+        /// How many cells have no data.
+        no_data_cells: u64,
+    },
+    /// A map file could not be read.
+    MapRejected {
+        /// The name it was to have.
+        name: SmolStr,
+        /// Why, for the person who chose the file.
+        reason: String,
+    },
+    /// A file held places and obstacles instead of a map (`GeoJSON`).
+    PlacesRead {
+        /// The name of the file.
+        name: SmolStr,
+        /// Declarations in the language.
+        lines: String,
+    },
+}

@@ -1,0 +1,200 @@
+//! The lines about what lasts and what is limited: states, the movements of vehicles, and resources with their margins
+//! (SPEC 10, 11). The independent checker examines all of it, and a line has passed only if the checker finds the plan
+//! valid.
+
+use exact::Rational;
+use rmpl::program::LabelMode;
+use serde::{Deserialize, Serialize};
+use snapshot::Planning;
+use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply};
+
+use super::lines::Places;
+use super::{Line, Status};
+
+/// A resource, and how much of it a plan leaves in every schedule.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResourceReview {
+    /// How far it is used, and what is left.
+    pub line: Line,
+    pub name: String,
+    /// How much of it there is.
+    pub supply: Supply,
+    /// How far the plan uses it, over all schedules.
+    pub levels: Levels,
+    /// What stays free of a reusable resource, and above the least level of a reservoir.
+    pub spare: Rational,
+    /// What stays free below the greatest level of a reservoir.
+    pub room: Option<Rational>,
+}
+
+/// What the lines are made from.
+pub(super) struct DemandLines<'input> {
+    pub(super) network: &'input Network,
+    pub(super) plan: &'input Plan,
+    pub(super) places: &'input Places<'input>,
+    /// How everything stands that the checker examines.
+    pub(super) status: Status,
+}
+
+/// Whatever the checker examines has passed only where it finds the plan valid.
+pub(super) fn status_by_checker(planning: &Planning) -> Status {
+    match &planning.verdict {
+        Some(verdict) if verdict.valid => Status::Passed,
+        Some(_) => Status::Failed,
+        None => Status::Attention,
+    }
+}
+
+impl DemandLines<'_> {
+    /// What requirements rest on, the values of each state in their order, and the movements of each vehicle.
+    pub(super) fn states(&self) -> Vec<Line> {
+        let mut lines: Vec<Line> = self.requirements().into_iter().collect();
+        for (index, variable) in self.network.variables.iter().enumerate() {
+            if !variable.is_lasting {
+                continue;
+            }
+            let changes = self.changes(index);
+            lines.extend(match variable.name.strip_suffix(".at") {
+                Some(vehicle) => self.movements(vehicle, &changes),
+                None => self.values(&variable.name, &changes),
+            });
+        }
+        lines
+    }
+
+    /// Resources with a name, each with its margins.
+    pub(super) fn resources(&self) -> Vec<ResourceReview> {
+        let all = self.network.resources.iter().zip(&self.plan.levels);
+        all.filter(|(resource, _)| !resource.name.contains('#'))
+            .filter_map(|(resource, &levels)| self.resource(resource, levels))
+            .collect()
+    }
+
+    fn requirements(&self) -> Option<Line> {
+        let is_lasting = |link: &&tpn::CausalLink| self.network.is_lasting(link.ask);
+        let count = self.plan.causal_links.iter().filter(is_lasting).count();
+        let text = match count {
+            0 => return None,
+            1 => "the one requirement of a state rests on a change that holds".to_owned(),
+            _ => format!("every requirement of a state rests on a change that holds: {count} requirements"),
+        };
+        Some(self.places.line(self.status, text, None, Vec::new(), Vec::new()))
+    }
+
+    /// What the plan makes of a variable that keeps its value, from first to last.
+    fn changes(&self, variable: usize) -> Vec<LabelId> {
+        let labels = self.network.labels.iter().enumerate();
+        let told = labels.filter(|(_, label)| {
+            label.literal.variable.index() == variable
+                && label.mode == LabelMode::Tell
+                && self.plan.selected_arcs.get(label.arc.index()) == Some(&true)
+        });
+        let mut changes: Vec<LabelId> = told.map(|(index, _)| LabelId::from_index(index)).collect();
+        let earliest = |node: NodeId| {
+            self.plan.windows.get(node.index()).copied().flatten().map(|window| window.earliest)
+        };
+        changes.sort_by_key(|&label| {
+            let is_first = self.network.labels[label.index()].extent == Extent::Initial;
+            (!is_first, earliest(self.network.interval(label).0), earliest(self.network.ready(label)))
+        });
+        changes
+    }
+
+    fn owner(&self, label: LabelId) -> Option<&str> {
+        let owner = self.network.labels[label.index()].owner?;
+        Some(self.network.occurrences.get(owner.index())?.name.as_str())
+    }
+
+    fn values(&self, name: &str, changes: &[LabelId]) -> Option<Line> {
+        let value = |label: LabelId| {
+            let text = self.network.labels[label.index()].text.as_str();
+            let value = text.strip_prefix(name).and_then(|rest| rest.strip_prefix('='));
+            value.unwrap_or(text).to_owned()
+        };
+        let steps: Vec<String> = changes
+            .iter()
+            .map(|&label| match self.owner(label) {
+                Some(owner) => format!("{} ({owner})", value(label)),
+                None => value(label),
+            })
+            .collect();
+        let text = match steps.as_slice() {
+            [] => return None,
+            [only] => format!("{name} stays {only}"),
+            [first, rest @ ..] => format!("{name} is {first}, then {}", rest.join(", then ")),
+        };
+        Some(self.line_of(text, changes, Vec::new()))
+    }
+
+    fn movements(&self, vehicle: &str, changes: &[LabelId]) -> Option<Line> {
+        let movements: Vec<String> =
+            changes.iter().filter_map(|&label| self.owner(label)).map(str::to_owned).collect();
+        let text = match movements.as_slice() {
+            [] => return None,
+            [only] => format!("{vehicle} makes one movement: {only}"),
+            several => format!(
+                "{vehicle} makes {} movements, one after the other: {}",
+                several.len(),
+                several.join(", ")
+            ),
+        };
+        let changes: Vec<LabelId> =
+            changes.iter().copied().filter(|&label| self.owner(label).is_some()).collect();
+        Some(self.line_of(text, &changes, movements))
+    }
+
+    fn line_of(&self, text: String, changes: &[LabelId], names: Vec<String>) -> Line {
+        let names = if names.is_empty() {
+            changes.iter().filter_map(|&label| self.owner(label)).map(str::to_owned).collect()
+        } else {
+            names
+        };
+        let span = changes.first().and_then(|label| self.network.labels[label.index()].span);
+        let nodes = changes.iter().map(|&label| self.network.ready(label)).collect();
+        self.places.line(self.status, text, span, names, nodes)
+    }
+
+    fn resource(&self, resource: &Resource, levels: Levels) -> Option<ResourceReview> {
+        let name = resource.name.as_str();
+        let (text, spare, room) = match (resource.supply, levels) {
+            (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
+                let spare = capacity.checked_sub(peak)?;
+                let [capacity, peak] = [capacity, peak].map(Rational::readable);
+                let text = match spare {
+                    _ if spare.is_positive() => {
+                        format!(
+                            "of {name}, at most {peak} of {capacity} are used at a time, {} to spare",
+                            spare.readable()
+                        )
+                    }
+                    _ if spare.is_zero() => {
+                        format!("of {name}, all {capacity} are used at a time, none to spare")
+                    }
+                    _ => format!("of {name}, {peak} are used at a time, and there are {capacity}"),
+                };
+                (text, spare, None)
+            }
+            (Supply::Reservoir { least, greatest, .. }, Levels::Range { low, high }) => {
+                let (spare, room) = (low.checked_sub(least)?, greatest.checked_sub(high)?);
+                let [low, high] = [low, high].map(Rational::readable);
+                let [least, greatest] = [least, greatest].map(Rational::readable);
+                let above = if spare.is_zero() {
+                    format!("down to its least level {least}")
+                } else {
+                    format!("{} above its least level {least}", spare.readable())
+                };
+                let below = if room.is_zero() {
+                    format!("up to its greatest {greatest}")
+                } else {
+                    format!("{} below its greatest {greatest}", room.readable())
+                };
+                (format!("{name} stays between {low} and {high}: {above}, {below}"), spare, Some(room))
+            }
+            _ => return None,
+        };
+        let is_short = spare.is_negative() || room.is_some_and(Rational::is_negative);
+        let status = if is_short { Status::Failed } else { self.status };
+        let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());
+        Some(ResourceReview { line, name: name.to_owned(), supply: resource.supply, levels, spare, room })
+    }
+}

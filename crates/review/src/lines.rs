@@ -1,0 +1,324 @@
+//! The checklist of a snapshot.
+
+use rmpl::diagnostics::exogenous;
+use rmpl::files::Files;
+use rmpl::program::{Controllability, TimeUnit};
+use rmpl::{LineIndex, Severity, Span};
+use snapshot::Goal;
+use snapshot::{Planning, Snapshot, Stage};
+use tpn::{ArcKind, Network, NodeId};
+
+use super::demand_lines::status_by_checker;
+use super::plan_lines::PlanLines;
+use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
+
+/// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` says so, the alternatives that have
+/// not been looked at yet are left as [`super::Fate::NotExamined`].
+///
+/// Alternatives that the plan does not take are planned once more each, so this takes as long as planning does, times
+/// the number of alternatives; it is meant to be asked for, not to follow every edit.
+pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut() -> bool) -> Review {
+    let places = Places::new(&snapshot.source);
+    let mut review = Review {
+        content_hash: content_hash(&snapshot.source, snapshot.map.as_ref(), goal, seed),
+        plan_hash: plan_hash(snapshot),
+        rules: FlightRules::default(),
+        unit: unit(snapshot).to_owned(),
+        status: Status::Passed,
+        plan: plan_section(snapshot, &places),
+        choices: Vec::new(),
+        causal_links: Vec::new(),
+        conflicts: Vec::new(),
+        states: Vec::new(),
+        resources: Vec::new(),
+        durations: Vec::new(),
+        events: Vec::new(),
+        traverses: Vec::new(),
+        separation_violations: separation_violations(snapshot, &places),
+        runs_programs: snapshot.program.primitives.iter().any(|primitive| primitive.runs.is_some()),
+        robustness: None,
+        findings: Vec::new(),
+        mission_rules: Vec::new(),
+        warnings: warnings(snapshot, &places),
+    };
+    if let Some(mut lines) = PlanLines::new(snapshot, &places) {
+        review.choices = lines.choices(stop);
+        review.causal_links = lines.causal_links();
+        review.conflicts = lines.conflicts();
+        review.states = lines.demands().states();
+        review.resources = lines.demands().resources();
+        review.durations = lines.durations();
+        review.events = lines.events();
+        review.traverses = lines.traverses();
+    }
+    review.judge(&FlightRules::default(), None);
+    review
+}
+
+/// What a mission counts time in.
+pub(super) fn unit(snapshot: &Snapshot) -> &'static str {
+    match snapshot.program.options.time_unit {
+        TimeUnit::Minute => "min",
+        TimeUnit::Second => "s",
+    }
+}
+
+/// Makes lines that know where in the text they lead.
+pub(super) struct Places<'source> {
+    source: &'source str,
+    index: LineIndex,
+    files: Files,
+}
+
+impl<'source> Places<'source> {
+    fn new(source: &'source str) -> Self {
+        Self { source, index: LineIndex::new(source), files: Files::of(source) }
+    }
+
+    pub(super) fn line(
+        &self,
+        status: Status,
+        text: String,
+        span: Option<Span>,
+        names: Vec<String>,
+        nodes: Vec<NodeId>,
+    ) -> Line {
+        let line_number = span.map(|span| self.files.line_column(self.source, &self.index, span.start).line);
+        Line { span, line_number, names, nodes, ..Line::new(status, text) }
+    }
+
+    fn plain(&self, status: Status, text: impl Into<String>) -> Line {
+        self.line(status, text.into(), None, Vec::new(), Vec::new())
+    }
+}
+
+fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let Some(network) = &snapshot.network else {
+        return vec![places.plain(Status::Failed, "the text has errors, so there is no plan")];
+    };
+    let Some(planning) = &snapshot.planning else {
+        let why = match snapshot.stage {
+            Stage::Compiled | Stage::Improving => "planning has not finished",
+            Stage::Complete => "nothing was planned",
+        };
+        return vec![places.plain(Status::Failed, why)];
+    };
+    let mut lines = if planning.outcome.plans.is_empty() {
+        failure(planning, network, places)
+    } else {
+        let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
+        lines.extend(emptiness(planning, network, places));
+        lines.extend(controllability(planning, network, places));
+        lines.extend(natures(planning, network, places));
+        lines.extend(verdict(planning, places));
+        lines.extend(assumptions(snapshot, places));
+        lines.extend(worth(planning, network, places));
+        lines
+    };
+    lines.extend(undrivable(planning, network, places));
+    lines
+}
+
+/// That the plan does nothing, which somebody who approves it should know.
+fn emptiness(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+    let plan = planning.outcome.plans.first()?;
+    let does_something = network.arcs.iter().zip(&plan.selected_arcs).any(|(arc, &is_selected)| {
+        is_selected && matches!(arc.kind, ArcKind::Activity | ArcKind::Assertion | ArcKind::Path)
+    });
+    let text = "nothing is done in this plan: it has no activity and asserts nothing";
+    (!does_something).then(|| places.plain(Status::Attention, text))
+}
+
+/// Whether the plan withstands what nature chooses, in the checker's word; nothing if nature chooses nothing (SPEC 13.1).
+fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+    let plan = planning.outcome.plans.first()?;
+    let natures = network.occurrences.iter().filter_map(|occurrence| {
+        let id = occurrence.arc?;
+        let arc = &network.arcs[id.index()];
+        let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
+        (arc.is_contingent && is_selected).then_some((occurrence, arc))
+    });
+    let (mut names, mut nodes, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+    for (occurrence, arc) in natures {
+        names.push(occurrence.name.to_string());
+        nodes.push(occurrence.end);
+        ranges.push(format!("{} [{}, {}]", occurrence.name, arc.lower.readable(), arc.upper.readable()));
+    }
+    if names.is_empty() {
+        return None;
+    }
+    let ranges = match ranges.as_slice() {
+        [shown @ .., last] if ranges.len() > MAX_RANGES => {
+            format!("{}, … {last}", shown[..MAX_RANGES - 1].join(", "))
+        }
+        all => all.join(", "),
+    };
+    let (status, text) = match (network.controllability, status_by_checker(planning)) {
+        (Controllability::None, _) => (
+            Status::Attention,
+            format!(
+                "the plan chooses durations that are nature's, as `option controllability = none` says: {ranges}"
+            ),
+        ),
+        (_, status @ (Status::Attention | Status::Failed)) => {
+            (status, format!("that the plan withstands what nature chooses is not confirmed: {ranges}"))
+        }
+        (Controllability::Strong, status) => {
+            (status, format!("one schedule suits whatever nature chooses (strongly controllable): {ranges}"))
+        }
+        (Controllability::Dynamic, status) => (
+            status,
+            format!(
+                "whatever nature chooses, as it is observed, the plan can be executed to its end (dynamically controllable): {ranges}"
+            ),
+        ),
+    };
+    Some(places.line(status, text, None, names, nodes))
+}
+
+/// Each duration that nature chooses.
+fn natures(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
+    let Some(plan) = planning.outcome.plans.first() else { return Vec::new() };
+    let line = |occurrence: &tpn::Occurrence| {
+        let id = occurrence.arc?;
+        let arc = &network.arcs[id.index()];
+        let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
+        if !arc.is_contingent || !is_selected {
+            return None;
+        }
+        let name = occurrence.name.to_string();
+        let range = format!("{} to {}", arc.lower.readable(), arc.upper.readable());
+        let text = format!("not controlled: nature ends {name} {range} after it began");
+        let nodes = vec![occurrence.end];
+        Some(places.line(Status::Information, text, occurrence.span, vec![name], nodes))
+    };
+    network.occurrences.iter().filter_map(line).collect()
+}
+
+/// How many of nature's ranges are listed.
+const MAX_RANGES: usize = 6;
+
+/// What the world would have to do as it suits the plan (SPEC 13.3).
+fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let assumed = snapshot.problems.iter().filter(|problem| problem.code == exogenous::CODE.0);
+    let line = |problem: &snapshot::Problem| {
+        let what = problem.message.rsplit_once(": ").map_or(problem.message.as_str(), |(_, what)| what);
+        let text = format!("assumes that the world acts when it suits the plan: {what}");
+        places.line(Status::Attention, text, Some(problem.span), Vec::new(), Vec::new())
+    };
+    assumed.map(line).collect()
+}
+
+fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
+    let outcome = &planning.outcome;
+    let what = outcome.unplannable_message(network).unwrap_or_else(|| match outcome.status {
+        kirk::Status::Limit => "planning was stopped before it had an answer".to_owned(),
+        kirk::Status::NoPlan | kirk::Status::Plan | kirk::Status::Error => "there is no plan".to_owned(),
+    });
+    let mut lines = vec![places.plain(Status::Failed, what)];
+    if let Some(failure) = &planning.outcome.failure {
+        lines.extend(failure.reasons.iter().map(|reason| {
+            let names = reason.choices.iter().map(|choice| Network::decision_name(choice.decision)).collect();
+            let span = reason.spans.first().copied();
+            places.line(Status::Failed, reason.message.clone(), span, names, Vec::new())
+        }));
+        if failure.is_of_gap {
+            let text = format!("it would have a plan: {}", kirk::GAP_LABEL);
+            lines.push(places.line(Status::Attention, text, None, Vec::new(), Vec::new()));
+        }
+        lines.extend(planning.repairs.iter().map(|repair| {
+            let text = format!("it would have a plan: {}", repair.label);
+            let span = repair.edits.first().map(|edit| edit.span);
+            places.line(Status::Attention, text, span, Vec::new(), Vec::new())
+        }));
+        lines.extend(failure.relaxations.iter().map(|change| {
+            let text = format!("it would have a plan: {}", change.label);
+            places.line(Status::Attention, text, change.span, Vec::new(), Vec::new())
+        }));
+    }
+    lines
+}
+
+fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
+    match &planning.verdict {
+        Some(verdict) if verdict.valid => {
+            vec![places.plain(Status::Passed, "the independent checker finds the plan valid")]
+        }
+        Some(verdict) => verdict
+            .violations
+            .iter()
+            .map(|violation| {
+                let names = violation.events.iter().chain(&violation.intervals).cloned().collect();
+                let text = format!("the independent checker objects: {}", violation.message);
+                places.line(Status::Failed, text, None, names, Vec::new())
+            })
+            .collect(),
+        None => vec![places.plain(Status::Failed, "the plan has not been checked independently")],
+    }
+}
+
+/// What the plan is worth, as far as its mission counts anything, and whether it is known to be the best. The checker
+/// adds up the figures; that nothing is better is the planner's word, and said to be.
+fn worth(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+    let plan = planning.outcome.plans.first()?;
+    let mut text = tpn::worth::words(network, plan)?;
+    let mut status = status_by_checker(planning);
+    if let Some(standing) = tpn::worth::standing(plan) {
+        text.push_str("; ");
+        text.push_str(standing);
+    }
+    if plan.quality.is_optimal == Some(false) {
+        status = status.max(Status::Attention);
+    }
+    Some(places.plain(status, format!("the plan is worth: {text}")))
+}
+
+fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
+    let line = |traverse: &snapshot::Undrivable| {
+        let occurrence = network.occurrences.get(traverse.occurrence.index())?;
+        let name = occurrence.name.to_string();
+        let text = format!("{name} can't be driven {}, so its alternative was given up", traverse.reason);
+        let nodes = vec![occurrence.start, occurrence.end];
+        Some(places.line(Status::Attention, text, occurrence.span, vec![name], nodes))
+    };
+    planning.undrivable.iter().filter_map(line).collect()
+}
+
+fn separation_violations(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let vehicles = &snapshot.program.world.vehicles;
+    let line = |violation: &snapshot::SeparationViolation| {
+        let [first, second] = violation.vehicles.map(|vehicle| vehicles.get(vehicle as usize));
+        let (first, second) = (first?, second?);
+        let text = format!(
+            "{} and {} come within {:.1} m of each other at {:.1}, near ({:.0}, {:.0})",
+            first.name.text,
+            second.name.text,
+            violation.distance_m,
+            violation.time,
+            violation.position_m.x,
+            violation.position_m.y
+        );
+        let names = vec![first.name.text.to_string(), second.name.text.to_string()];
+        Some(places.line(Status::Attention, text, Some(first.span), names, Vec::new()))
+    };
+    snapshot.separation_violations.iter().filter_map(line).collect()
+}
+
+fn warnings(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
+    let line = |problem: &snapshot::Problem| {
+        let status = match problem.severity {
+            Severity::Error => Status::Failed,
+            Severity::Warning => Status::Attention,
+            Severity::Note => Status::Information,
+        };
+        let hint = problem.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
+        let text = format!("{}: {}{hint}", problem.code, problem.message);
+        places.line(status, text, Some(problem.span), Vec::new(), Vec::new())
+    };
+    // Separation violations and assumptions have lines of their own.
+    let has_line = |problem: &&snapshot::Problem| {
+        problem.code == snapshot::SeparationViolation::CODE.0
+            || (problem.code == exogenous::CODE.0 && snapshot.plan().is_some())
+    };
+    snapshot.problems.iter().filter(|problem| !has_line(problem)).map(line).collect()
+}

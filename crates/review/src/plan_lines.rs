@@ -1,0 +1,454 @@
+//! The lines about a plan: its choices, links, conflicts, events and traverses.
+
+use std::collections::BTreeSet;
+
+use exact::{Bound, Time};
+use motion::DriveLimits;
+use rmpl::Span;
+use rmpl::program::{Change, LabelMode};
+use snapshot::vehicle::{is_way, moving};
+use snapshot::{Planning, Snapshot, joined};
+use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceKind, Plan};
+
+use super::alternatives::{Alternative, Examiner};
+use super::demand_lines::{DemandLines, status_by_checker};
+use super::distances::Distances;
+use super::lines::{Places, unit};
+use super::schedule::slack;
+use super::{
+    ChoiceReview, ConflictReview, EventReview, Fate, Line, LinkReview, Status, TimeRange, TraverseReview,
+};
+
+/// What the lines about a plan are made from.
+pub(super) struct PlanLines<'input> {
+    snapshot: &'input Snapshot,
+    network: &'input Network,
+    planning: &'input Planning,
+    plan: &'input Plan,
+    distances: Distances,
+    places: &'input Places<'input>,
+    /// How everything stands that the checker examines.
+    checked: Status,
+}
+
+impl<'input> PlanLines<'input> {
+    /// `None` without a plan.
+    pub(super) fn new(snapshot: &'input Snapshot, places: &'input Places<'input>) -> Option<Self> {
+        let network = snapshot.network.as_deref()?;
+        let planning = snapshot.planning.as_deref()?;
+        let plan = planning.outcome.plans.first()?;
+        let distances = Distances::new(network, plan)?;
+        let checked = status_by_checker(planning);
+        Some(Self { snapshot, network, planning, plan, distances, places, checked })
+    }
+
+    /// The lines about what lasts and what is limited.
+    pub(super) const fn demands(&self) -> DemandLines<'input> {
+        DemandLines { network: self.network, plan: self.plan, places: self.places, status: self.checked }
+    }
+
+    pub(super) fn choices(&mut self, stop: &mut dyn FnMut() -> bool) -> Vec<ChoiceReview> {
+        let mut examiner =
+            Examiner::new(self.network, self.plan, &self.planning.undrivable, &self.snapshot.source);
+        let review = |&choice: &tpn::Choice| {
+            let name = Network::decision_name(choice.decision);
+            let decision = &self.network.decisions[choice.decision.index()];
+            let alternatives = examiner.alternatives(choice, stop);
+            let is_open = alternatives.iter().any(|it| it.fate == Fate::NotExamined);
+            let status = if is_open { Status::Attention } else { Status::Passed };
+            let text = choice_text(&name, &alternatives);
+            let nodes = vec![decision.node];
+            let line = self.places.line(status, text, decision.span, vec![name.clone()], nodes);
+            ChoiceReview { line, name, alternatives }
+        };
+        self.plan.choices.iter().map(review).collect()
+    }
+
+    pub(super) fn causal_links(&mut self) -> Vec<LinkReview> {
+        let links = &self.plan.causal_links;
+        let pairs: Vec<(NodeId, NodeId)> = links
+            .iter()
+            .flat_map(|link| {
+                let ((ask_start, ask_end), (tell_start, tell_end)) =
+                    (self.network.interval(link.ask), self.network.interval(link.tell));
+                if self.network.is_lasting(link.ask) {
+                    // What lasts holds until the next change.
+                    let until = self.next_change(link.tell).map_or(self.network.end, |(start, _)| start);
+                    return [(self.network.ready(link.tell), ask_start), (ask_end, until)];
+                }
+                [(tell_start, ask_start), (ask_end, tell_end)]
+            })
+            .collect();
+        let ranges = self.distances.between(&pairs);
+        let review = |(link, ranges): (&tpn::CausalLink, &[Option<TimeRange>])| {
+            let [lead, margin] = *ranges else { return None };
+            let (lead, margin) = (lead?, margin?);
+            let (ask, tell) = (self.network.label_name(link.ask), self.network.label_name(link.tell));
+            let (status, text) = if self.network.is_lasting(link.ask) {
+                let text = self.lasting_link_text(*link, lead, margin);
+                (self.checked, text)
+            } else {
+                let text = format!(
+                    "{} provides {} and outlasts it by {}",
+                    interval_text(&tell),
+                    interval_text(&ask),
+                    self.range_text(margin)
+                );
+                (self.checked, text)
+            };
+            let is_lasting = self.network.is_lasting(link.ask);
+            let (start, end) = self.network.interval(link.ask);
+            let names = vec![ask.clone(), tell.clone()];
+            let line = self.places.line(status, text, self.label_span(link.ask), names, vec![start, end]);
+            Some(LinkReview { line, ask, tell, lead, margin, is_lasting })
+        };
+        links.iter().zip(ranges.chunks(2)).filter_map(review).collect()
+    }
+
+    /// Who makes a state what somebody needs, how long before, and who changes it after.
+    fn lasting_link_text(&self, link: tpn::CausalLink, lead: TimeRange, margin: TimeRange) -> String {
+        let owner_of = |label: LabelId| {
+            let owner = self.network.labels[label.index()].owner?;
+            Some(self.network.occurrences.get(owner.index())?.name.as_str())
+        };
+        let told = &self.network.labels[link.tell.index()];
+        let (value, lead) = (&told.text, self.range_text(lead));
+        let needs = owner_of(link.ask).unwrap_or("the mission");
+        let before = match (told.extent, owner_of(link.tell)) {
+            (Extent::Effect, Some(owner)) => format!("{owner} sets {value} {lead} before {needs} needs it"),
+            (Extent::Initial, _) | (_, None) => {
+                format!("{value} holds from the start, {lead} before {needs} needs it")
+            }
+            (_, Some(owner)) => format!("{owner} makes {value} hold {lead} before {needs} needs it"),
+        };
+        let after = match self.next_change(link.tell).map(|(_, next)| owner_of(next)) {
+            None => "nothing changes it afterwards".to_owned(),
+            Some(next) if next == Some(needs) => format!("{needs} itself changes it then"),
+            Some(next) => {
+                let margin = self.range_text(margin);
+                format!("{} changes it {margin} after that need", next.unwrap_or("the mission"))
+            }
+        };
+        format!("{before}; {after}")
+    }
+
+    pub(super) fn conflicts(&mut self) -> Vec<ConflictReview> {
+        let mut conflicts = self.ordered_labels();
+        conflicts.extend(self.ordered_uses());
+        conflicts
+    }
+
+    fn ordered_labels(&mut self) -> Vec<ConflictReview> {
+        let (plan, network) = (self.plan, self.network);
+        let orders: Vec<&tpn::Ordering> = plan.telling_order(network).collect();
+        let added: BTreeSet<&tpn::Ordering> = plan.orderings_added.iter().collect();
+        let pairs: Vec<(NodeId, NodeId)> = orders
+            .iter()
+            .map(|order| (network.interval(order.first).1, network.interval(order.then).0))
+            .collect();
+        let gaps = self.distances.between(&pairs);
+        let review =
+            |((order, gap), (end, start)): ((&&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
+                let gap = (*gap)?;
+                let (first, then) = (network.label_name(order.first), network.label_name(order.then));
+                let is_added = added.contains(order);
+                let by = if is_added {
+                    "the planner has put them in this order"
+                } else {
+                    "the program's own bounds keep them in this order"
+                };
+                let text = format!(
+                    "{} is over {} before {} begins; {by}",
+                    interval_text(&first),
+                    self.range_text(gap),
+                    interval_text(&then)
+                );
+                let names = vec![first.clone(), then.clone()];
+                let span = self.label_span(order.first);
+                let line = self.places.line(self.checked, text, span, names, vec![*end, *start]);
+                Some(ConflictReview { line, first, then, gap, is_added, is_of_uses: false })
+            };
+        orders.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
+    }
+
+    /// The uses of resources that planning had to put in order, the parts of `unordered` blocks among them.
+    fn ordered_uses(&mut self) -> Vec<ConflictReview> {
+        let (plan, network) = (self.plan, self.network);
+        let event = |used: tpn::UseId, is_first: bool| {
+            let used = &network.uses[used.index()];
+            match (used.change, is_first) {
+                (Change::Uses, true) | (Change::Produces, _) => used.end,
+                (Change::Uses, false) | (Change::Consumes, _) => used.start,
+            }
+        };
+        let pairs: Vec<(NodeId, NodeId)> = plan
+            .uses_ordered
+            .iter()
+            .map(|order| (event(order.first, true), event(order.then, false)))
+            .collect();
+        let gaps = self.distances.between(&pairs);
+        let review =
+            |((order, gap), (end, start)): ((&tpn::UseOrdering, &Option<TimeRange>), &(NodeId, NodeId))| {
+                let gap = (*gap)?;
+                let (first, then) = (network.use_name(order.first), network.use_name(order.then));
+                let used = &network.uses[order.first.index()];
+                let resource = &network.resources[used.resource.index()];
+                let why = if is_way(resource) {
+                    "so that they do not meet".to_owned()
+                } else if resource.name.contains('#') {
+                    "as parts of one `unordered`".to_owned()
+                } else {
+                    format!("for the sake of {}", resource.name)
+                };
+                let owner = |used: tpn::UseId| {
+                    let owner = network.uses[used.index()].owner?;
+                    Some(network.occurrences.get(owner.index())?.name.to_string())
+                };
+                let (earlier, later) = (
+                    owner(order.first).unwrap_or_else(|| first.clone()),
+                    owner(order.then).unwrap_or_else(|| then.clone()),
+                );
+                let text = format!(
+                    "{earlier} comes {} before {later}; the planner has put them in this order {why}",
+                    self.range_text(gap)
+                );
+                let line =
+                    self.places.line(self.checked, text, used.span, vec![earlier, later], vec![*end, *start]);
+                Some(ConflictReview { line, first, then, gap, is_added: true, is_of_uses: true })
+            };
+        plan.uses_ordered.iter().zip(&gaps).zip(&pairs).filter_map(review).collect()
+    }
+
+    /// The first change of a variable that comes after `label`, and when it begins.
+    fn next_change(&self, label: LabelId) -> Option<(NodeId, LabelId)> {
+        let earliest = |node: NodeId| {
+            self.plan.windows.get(node.index()).copied().flatten().map(|window| window.earliest)
+        };
+        let is_told = |other: LabelId| self.network.labels[other.index()].mode == LabelMode::Tell;
+        let after =
+            self.plan.conflict_order.iter().filter(|order| order.first == label && is_told(order.then));
+        let after = after.map(|order| (self.network.interval(order.then).0, order.then));
+        after.min_by_key(|&(start, then)| (earliest(start), earliest(self.network.ready(then))))
+    }
+
+    /// The activities of which the plan can use only a part of what is declared.
+    pub(super) fn durations(&mut self) -> Vec<Line> {
+        let network = self.network;
+        let declared: Vec<(&tpn::Occurrence, Time, Bound)> = network
+            .occurrences
+            .iter()
+            .filter(|occurrence| occurrence.kind == OccurrenceKind::Primitive)
+            .filter_map(|occurrence| {
+                let id = occurrence.arc?;
+                let arc = &network.arcs[id.index()];
+                let is_selected = self.plan.selected_arcs.get(id.index()) == Some(&true);
+                // Of what nature chooses a plan has to leave everything.
+                let is_own = is_selected && !network.is_uncertain(id);
+                is_own.then_some((occurrence, arc.lower, arc.upper))
+            })
+            .collect();
+        let pairs: Vec<(NodeId, NodeId)> = declared.iter().map(|(it, ..)| (it.start, it.end)).collect();
+        let used = self.distances.between(&pairs);
+        let line =
+            |(&(occurrence, lower, upper), used): (&(&tpn::Occurrence, Time, Bound), &Option<TimeRange>)| {
+                let used = (*used)?;
+                let (is_later, is_earlier) = (used.least > lower, used.greatest < upper);
+                if !is_later && !is_earlier {
+                    return None;
+                }
+                let name = occurrence.name.to_string();
+                let declared = match upper {
+                    Bound::Finite(upper) => format!("[{},{}]", lower.readable(), upper.readable()),
+                    Bound::Infinite => format!("{} or any time longer", lower.readable()),
+                };
+                let text = format!(
+                    "{name} is declared to take {declared}, and the plan holds only if it takes {}",
+                    self.range_text(used)
+                );
+                let nodes = vec![occurrence.start, occurrence.end];
+                // Whoever is early can wait; whoever is late breaks the plan. Where no end was declared, nobody promised
+                // one that is taken away.
+                let is_cut = is_earlier && upper != Bound::Infinite;
+                let status = if is_cut { Status::Attention } else { Status::Information };
+                Some(self.places.line(status, text, occurrence.span, vec![name], nodes))
+            };
+        declared.iter().zip(&used).filter_map(line).collect()
+    }
+
+    pub(super) fn events(&self) -> Vec<EventReview> {
+        let mut events: Vec<(bool, EventReview)> = Vec::new();
+        for (index, node) in self.network.nodes.iter().enumerate() {
+            let Some(window) = self.plan.windows.get(index).copied().flatten() else { continue };
+            for &event in &node.events {
+                let name = self.network.event_name(event);
+                let earliest = window.earliest.readable();
+                let text = match window.latest {
+                    Bound::Infinite => format!("{name} may happen at any time from {earliest} on"),
+                    Bound::Finite(latest) if latest == window.earliest => {
+                        format!("{name} happens at {earliest}, without slack")
+                    }
+                    latest @ Bound::Finite(_) => {
+                        format!("{name} may happen from {earliest} to {}", latest.readable())
+                    }
+                };
+                let span = self.network.occurrences[event.occurrence.index()].span;
+                let nodes = vec![NodeId::from_index(index)];
+                let line = self.places.line(Status::Information, text, span, vec![name.clone()], nodes);
+                let is_vertex = matches!(event.end, EventEnd::PathVertex { .. });
+                events.push((is_vertex, EventReview { line, name, window, slack: slack(window) }));
+            }
+        }
+        // Points of a path follow the events that they lie between.
+        events.sort_by(|(left_vertex, left), (right_vertex, right)| {
+            let key = |event: &EventReview| (event.slack, event.window.earliest);
+            (key(left), left_vertex).cmp(&(key(right), right_vertex))
+        });
+        events.into_iter().map(|(_, event)| event).collect()
+    }
+
+    pub(super) fn traverses(&mut self) -> Vec<TraverseReview> {
+        let pairs: Vec<(NodeId, NodeId)> = self
+            .snapshot
+            .traverses
+            .iter()
+            .map(|traverse| {
+                let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+                (occurrence.start, occurrence.end)
+            })
+            .collect();
+        let durations = self.distances.between(&pairs);
+        let review = |(traverse, duration): (&snapshot::Traverse, &Option<TimeRange>)| {
+            Some(self.traverse(traverse, (*duration)?))
+        };
+        self.snapshot.traverses.iter().zip(&durations).filter_map(review).collect()
+    }
+
+    fn traverse(&self, traverse: &snapshot::Traverse, duration: TimeRange) -> TraverseReview {
+        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+        let name = occurrence.name.to_string();
+        let vehicles: Vec<String> = traverse
+            .vehicles
+            .iter()
+            .filter_map(|&vehicle| self.snapshot.program.world.vehicles.get(vehicle as usize))
+            .map(|vehicle| vehicle.name.text.to_string())
+            .collect();
+        let clearance_m = traverse.clearance_m.is_finite().then_some(traverse.clearance_m);
+        let needed_s = self.needed_s(traverse);
+        let unit_s = self.snapshot.program.options.time_unit.seconds() as f64;
+        let is_too_short =
+            needed_s.is_some_and(|needed_s| duration.least.to_f64() * unit_s < needed_s - 1e-3);
+        let status = match clearance_m {
+            Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
+            _ if is_too_short => Status::Failed,
+            _ => Status::Passed,
+        };
+        let slope_limit_rad = self.slope_limit_rad(traverse);
+        let clearance = match clearance_m {
+            Some(clearance_m) => format!("{clearance_m:.2} m clear of obstacles"),
+            None => "no obstacle near".to_owned(),
+        };
+        let limits = match needed_s {
+            Some(needed_s) if is_too_short => {
+                format!(", too short for the limits of its vehicles, which need {needed_s:.1} s")
+            }
+            Some(_) => ", within the limits of its vehicles".to_owned(),
+            None => String::new(),
+        };
+        let text = format!(
+            "{name}: {:.1} m in {}{limits}, {clearance}, slope up to {:.1}°",
+            traverse.length_m,
+            self.range_text(duration),
+            traverse.slope_max_rad.to_degrees()
+        );
+        let mut names = vec![name.clone()];
+        names.extend(vehicles.iter().cloned());
+        let nodes = vec![occurrence.start, occurrence.end];
+        TraverseReview {
+            line: self.places.line(status, text, occurrence.span, names, nodes),
+            occurrence: traverse.occurrence,
+            name,
+            vehicles,
+            places: traverse.legs.iter().map(|leg| leg.to.to_string()).collect(),
+            length_m: traverse.length_m,
+            duration,
+            clearance_m,
+            slope_max_rad: traverse.slope_max_rad,
+            slope_limit_rad,
+        }
+    }
+
+    /// How long the vehicles of a kinodynamic traverse take at least for its way on flat ground, in seconds: driven state by
+    /// state within their limits, which shares nothing with how its durations were planned.
+    fn needed_s(&self, traverse: &snapshot::Traverse) -> Option<f64> {
+        let program = &self.snapshot.program;
+        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+        let moving = moving(program, occurrence).filter(|moving| moving.moves.is_kinodynamic)?;
+        let vehicles =
+            traverse.vehicles.iter().filter_map(|&vehicle| program.world.vehicles.get(vehicle as usize));
+        let models = vehicles.filter_map(|vehicle| motion::vehicle_model(&vehicle.model.text));
+        let mut limits = models.map(DriveLimits::of).reduce(DriveLimits::of_both)?;
+        // How fast a traverse may be is no limit of its wheels in a turn.
+        (limits.turn_rate_rps, limits.half_track_m) = (limits.turn_rate_in_place_rps(), 0.0);
+        if let Some((_, greatest)) = moving.moves.speed_mps {
+            limits.speed_mps = limits.speed_mps.min(greatest.to_f64());
+        }
+        let path = joined(&traverse.legs);
+        let (from, to) = path.segments().find(|(from, to)| from != to)?;
+        let heading_rad = libm::atan2(to.y - from.y, to.x - from.x);
+        Some(motion::drive_path(&path, heading_rad, &limits).duration_s())
+    }
+
+    /// What all vehicles of a traverse can climb.
+    fn slope_limit_rad(&self, traverse: &snapshot::Traverse) -> Option<f64> {
+        let vehicles = &self.snapshot.program.world.vehicles;
+        let grades = traverse.vehicles.iter().filter_map(|&vehicle| {
+            let model = motion::vehicle_model(&vehicles.get(vehicle as usize)?.model.text)?;
+            match model.drive {
+                motion::Drive::SkidSteer { greatest_grade, .. } => Some(greatest_grade),
+                motion::Drive::Flight { .. } => None,
+            }
+        });
+        grades.reduce(f64::min).map(libm::atan)
+    }
+
+    /// How long something takes, with its unit.
+    fn range_text(&self, range: TimeRange) -> String {
+        let unit = unit(self.snapshot);
+        let least = range.least.readable();
+        match range.greatest {
+            Bound::Infinite => format!("at least {least} {unit}"),
+            Bound::Finite(greatest) if greatest == range.least => format!("{least} {unit}"),
+            greatest @ Bound::Finite(_) => format!("{least} to {} {unit}", greatest.readable()),
+        }
+    }
+
+    fn label_span(&self, label: LabelId) -> Option<Span> {
+        self.network.labels[label.index()].span
+    }
+}
+
+/// What was taken, and rather than what.
+fn choice_text(name: &str, alternatives: &[Alternative]) -> String {
+    const MAX_NAMED: usize = 3;
+    let taken = alternatives.iter().find(|it| it.fate == Fate::Taken).map_or("nothing", |it| &it.name);
+    let others: Vec<&str> =
+        alternatives.iter().filter(|it| it.fate != Fate::Taken).map(|it| it.name.as_str()).collect();
+    match others.len() {
+        0 => format!("{name} takes {taken}, its only alternative"),
+        1..=MAX_NAMED => format!("{name} takes {taken} rather than {}", others.join(" or ")),
+        count => format!("{name} takes {taken} rather than one of {count} others"),
+    }
+}
+
+/// An interval as people call it: `Tell(PATH1=OK)#1`, or the condition and the activity it belongs to.
+fn interval_text(name: &str) -> String {
+    let Some((condition, owner)) = name.split_once('@') else { return name.to_owned() };
+    if owner.starts_with("Tell(") || owner.starts_with("Ask(") {
+        return owner.to_owned();
+    }
+    let inside = condition.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
+    if condition.starts_with("Set(") {
+        return format!("the change to {} by {owner}", inside.unwrap_or(condition));
+    }
+    format!("{} during {owner}", inside.unwrap_or(condition))
+}

@@ -1,0 +1,370 @@
+//! The Enroute mission, reviewed: the figures are those of SPEC 3.6.
+
+use std::sync::Arc;
+
+use exact::{Bound, Time};
+use kirk::Search as SearchKind;
+use link::{Request, Response, Update};
+use mission::{Core, CoreHost};
+use snapshot::{Goal, Snapshot};
+
+use super::{Fate, Review, Section, Status, TimeRange, content_hash, review};
+
+pub(super) const SCENARIO: &str = include_str!("../../../tests/conformance/t01_enroute_scenario.rmpl");
+pub(super) const MISSION: &str = include_str!("../../../assets/missions/enroute.rmpl");
+
+#[derive(Default)]
+struct Answers(Option<Arc<Snapshot>>);
+
+impl CoreHost for Answers {
+    fn now_millis(&self) -> f64 {
+        0.0
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        false
+    }
+
+    fn answer(&mut self, response: Response) {
+        if let Response::Snapshot(snapshot) = response {
+            self.0 = Some(snapshot);
+        }
+    }
+}
+
+pub(super) fn snapshot(source: &str) -> Arc<Snapshot> {
+    let update = Update {
+        revision: 1,
+        source: source.into(),
+        goal: Goal::Default,
+        search: SearchKind::default(),
+        seed: 0,
+        trace: false,
+    };
+    let mut answers = Answers::default();
+    Core::default().handle(Request::Update(update), &mut answers);
+    answers.0.expect("an update is always answered")
+}
+
+pub(super) fn reviewed(source: &str) -> Review {
+    review(&snapshot(source), &Goal::Default, 0, &mut || false)
+}
+
+fn range(least: i64, greatest: i64) -> TimeRange {
+    TimeRange { least: Time::from(least), greatest: Bound::Finite(Time::from(greatest)) }
+}
+
+#[test]
+fn the_enroute_plan_exists_and_is_verified() {
+    let review = reviewed(SCENARIO);
+    let statuses: Vec<Status> = review.plan.iter().map(|line| line.status).collect();
+    assert_eq!(statuses[..2], [Status::Passed; 2]);
+    // Permission comes when the plan wants it: the paper's mission leaves it to the planner.
+    assert!(review.plan[2..].iter().all(|line| line.text.starts_with("assumes ")), "{review:?}");
+    assert!(review.status < Status::Failed, "{review:?}");
+}
+
+#[test]
+fn a_review_crosses_to_the_page_unharmed() {
+    for source in [SCENARIO, MISSION, "scenario S[0,10] = { Nothing-Here( }"] {
+        let review = reviewed(source);
+        let bytes = postcard::to_allocvec(&review).expect("an answer can be written");
+        assert_eq!(postcard::from_bytes::<Review>(&bytes).as_ref(), Ok(&review));
+    }
+}
+
+#[test]
+fn path_2_is_impossible_because_nothing_asserts_its_condition() {
+    let review = reviewed(SCENARIO);
+    let [choice] = review.choices.as_slice() else { panic!("one choice: {:?}", review.choices) };
+    assert_eq!(choice.alternatives[0].fate, Fate::Taken);
+    let Fate::Impossible { reason, .. } = &choice.alternatives[1].fate else {
+        panic!("{:?}", choice.alternatives[1])
+    };
+    assert!(reason.contains("PATH2") && reason.contains("nothing asserts it"), "{reason}");
+}
+
+#[test]
+fn an_alternative_that_would_do_as_well_is_said_to() {
+    let both = include_str!("../../../tests/conformance/t03_enroute_both_paths.rmpl");
+    let review = reviewed(both);
+    assert_eq!(review.choices[0].alternatives[0].fate, Fate::Taken);
+    assert_eq!(review.choices[0].alternatives[1].fate, Fate::AlsoPossible);
+}
+
+#[test]
+fn an_alternative_of_a_best_plan_says_what_it_would_come_to() {
+    let review = reviewed(
+        "primitive Near()[5,5] rewards 3; primitive Far()[20,20] rewards 10;
+         scenario S[0,30] = { choose { Near(), Far() }; optional Near() } objective maximize reward, minimize end;",
+    );
+    assert_eq!(review.choices[0].alternatives[1].fate, Fate::Taken);
+    let sentences: Vec<String> =
+        review.choices.iter().flat_map(|it| &it.alternatives).map(|it| it.fate.sentence()).collect();
+    assert_eq!(
+        sentences,
+        [
+            "not taken: with it and the choices before it reward 6, end 10 at best",
+            "taken",
+            "taken",
+            "not taken: with it and the choices before it reward 10, end 20 at best"
+        ]
+    );
+}
+
+#[test]
+fn the_path_1_condition_outlasts_the_drive_by_up_to_45_minutes() {
+    let review = reviewed(SCENARIO);
+    let [link] = review.causal_links.as_slice() else { panic!("one link: {:?}", review.causal_links) };
+    assert_eq!(
+        (link.ask.as_str(), link.tell.as_str()),
+        ("Ask(PATH1=OK)@Group-Traverse-Path#1", "Tell(PATH1=OK)@Tell(PATH1=OK)#1")
+    );
+    // Event 4 is in [10,55] and event 14 at 10; event 15 is at 460 and event 5 in [415,460].
+    assert_eq!((link.lead, link.margin), (range(0, 45), range(0, 45)));
+}
+
+#[test]
+fn the_wait_is_over_1_to_185_minutes_before_permission() {
+    let review = reviewed(SCENARIO);
+    let [conflict] = review.conflicts.as_slice() else { panic!("one pair: {:?}", review.conflicts) };
+    assert!(conflict.first.contains("Group-Wait#1") && conflict.then.contains("Tell(PROCEED=OK)"));
+    assert_eq!(conflict.gap, range(1, 185));
+    assert!(conflict.is_added);
+}
+
+#[test]
+fn events_come_with_their_windows_the_tightest_first() {
+    let review = reviewed(SCENARIO);
+    let slacks: Vec<Bound> = review.events.iter().map(|event| event.slack).collect();
+    assert!(slacks.is_sorted(), "{slacks:?}");
+    let window = |name: &str| {
+        let event = review.events.iter().find(|event| event.name == name);
+        let window = event.unwrap_or_else(|| panic!("no {name}")).window;
+        (window.earliest, window.latest)
+    };
+    let expected = |least: i64, greatest: i64| {
+        let TimeRange { least, greatest } = range(least, greatest);
+        (least, greatest)
+    };
+    assert_eq!(window("Group-Traverse-Path#1.start"), expected(10, 55));
+    assert_eq!(window("Group-Wait#1.end"), expected(415, 514));
+    assert_eq!(window("Group-Transmit#1.end"), expected(415, 462));
+    assert_eq!(window("Tell(PROCEED=OK)#1.start"), expected(460, 600));
+    assert_eq!(window("scenario#1.end"), expected(660, 800));
+}
+
+#[test]
+fn a_traverse_is_reviewed_with_its_way() {
+    let review = reviewed(MISSION);
+    let [traverse] = review.traverses.as_slice() else { panic!("one traverse: {:?}", review.traverses) };
+    assert_eq!(traverse.vehicles, ["Rover1", "Rover2"]);
+    assert_eq!(traverse.places, ["PATH1_1", "PATH1_2", "PATH1_3", "TAI_POS"]);
+    // The way is at least as long as the straight lines between its places.
+    let straight_m: f64 = [[24.0, 52.0], [44.0, 120.0], [64.0, 214.0], [176.0, 252.0], [256.0, 238.0]]
+        .windows(2)
+        .map(|pair: &[[f64; 2]]| {
+            let (east, north) = (pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+            (east * east + north * north).sqrt()
+        })
+        .sum();
+    assert!(traverse.length_m >= straight_m - 1e-6, "{} < {straight_m}", traverse.length_m);
+    assert_eq!(traverse.duration, range(405, 450));
+    assert!(traverse.clearance_m.is_none_or(|clearance_m| clearance_m >= 0.0));
+}
+
+#[test]
+fn a_mission_without_a_plan_says_why_and_what_would_help() {
+    let review = reviewed(&SCENARIO.replace("PATH1=OK [450,450]", "PATH1=OK [400,400]"));
+    assert_eq!(review.status, Status::Failed);
+    assert!(review.plan.iter().any(|line| line.text == "there is no plan"), "{:?}", review.plan);
+    assert!(review.plan.iter().any(|line| line.text.contains("PATH1=OK") && line.span.is_some()));
+    assert!(review.events.is_empty());
+}
+
+#[test]
+fn a_time_that_does_not_fit_is_said_to_with_its_event() {
+    let huge = "46116860184273*100000";
+    let source =
+        format!("scenario S = {{ delay[{huge},{huge}]; delay[{huge},{huge}]; delay[{huge},{huge}] }}");
+    let review = reviewed(&source);
+    let line = &review.plan[0];
+    assert_eq!(line.status, Status::Failed);
+    // Two of the delays fit: only the third one's end is too late.
+    assert!(line.text.ends_with("that of delay#3.end"), "{}", line.text);
+}
+
+#[test]
+fn errors_of_the_text_fail_the_review_at_their_line() {
+    let review = reviewed("scenario S[0,10] = { Nothing-Here( }");
+    assert_eq!(review.status, Status::Failed);
+    let line = review.warnings.first().expect("the error");
+    assert_eq!((line.status, line.line_number), (Status::Failed, Some(1)));
+}
+
+#[test]
+fn every_line_of_the_plan_leads_to_its_place() {
+    let review = reviewed(SCENARIO);
+    for section in [Section::Choices, Section::CausalLinks, Section::Conflicts, Section::Events] {
+        for line in review.lines(section) {
+            assert!(!line.names.is_empty() && !line.nodes.is_empty(), "{line:?}");
+        }
+    }
+    let link = &review.causal_links[0].line;
+    let text = link.span.and_then(|span| SCENARIO.get(span.range())).unwrap_or_default();
+    assert!(text.contains("PATH1"), "{text}");
+}
+
+#[test]
+fn the_hash_follows_text_map_and_seed() {
+    let map = snapshot::MapKey { asset: "a".into(), cell_mm: 600, origin_mm: [0, 0], version: 0 };
+    let moved = snapshot::MapKey { origin_mm: [1, 0], ..map.clone() };
+    let hashes = [
+        content_hash("text", Some(&map), &Goal::Default, 0),
+        content_hash("text ", Some(&map), &Goal::Default, 0),
+        content_hash("text", Some(&moved), &Goal::Default, 0),
+        content_hash("text", None, &Goal::Default, 0),
+        content_hash("text", Some(&map), &Goal::Default, 1),
+        content_hash("text", Some(&map), &Goal::Scenario("S".into()), 0),
+    ];
+    for (index, hash) in hashes.iter().enumerate() {
+        assert_eq!(hash.len(), 64);
+        assert!(!hashes[..index].contains(hash), "{hashes:?}");
+    }
+    assert_eq!(reviewed(SCENARIO), reviewed(SCENARIO));
+}
+
+pub(super) const LASTING: &str = "state ARM : { IN, OUT } = IN;
+resource Battery 0..100 = 60;
+resource Power capacity 3;
+primitive Deploy()[4,8] requires ARM=IN sets ARM=OUT consumes Battery 50 uses Power 2;
+primitive Dig()[5,9] requires ARM=OUT uses Power 1;
+primitive Charge()[10,20] produces Battery 40 costs 7;
+scenario S[0,100] = { Deploy(); Dig(); Charge() }";
+
+fn texts(review: &Review, section: Section) -> Vec<String> {
+    review.lines(section).iter().map(|line| line.text.clone()).collect()
+}
+
+#[test]
+fn states_and_resources_are_reviewed_with_their_margins() {
+    let review = reviewed(LASTING);
+    assert_eq!(
+        texts(&review, Section::States),
+        [
+            "every requirement of a state rests on a change that holds: 2 requirements",
+            "ARM is IN, then OUT (Deploy#1)",
+        ]
+    );
+    assert_eq!(
+        texts(&review, Section::Resources),
+        [
+            "Battery stays between 10 and 60: 10 above its least level 0, 40 below its greatest 100",
+            "of Power, at most 2 of 3 are used at a time, 1 to spare",
+        ]
+    );
+    assert!(
+        texts(&review, Section::Plan).contains(&"the plan is worth: cost 7".to_owned()),
+        "{:?}",
+        review.plan
+    );
+    assert_eq!(review.status, Status::Passed, "{review:?}");
+    assert_eq!(
+        texts(&review, Section::CausalLinks),
+        [
+            "ARM=IN holds from the start, 0 min before Deploy#1 needs it; Deploy#1 itself changes it then",
+            "Deploy#1 sets ARM=OUT 0 min before Dig#1 needs it; nothing changes it afterwards",
+        ]
+    );
+}
+
+/// The review of a mission's plan, had the checker said this of it.
+pub(super) fn reviewed_with(source: &str, verdict: Option<verify::Verdict>) -> Review {
+    let snapshot = snapshot(source);
+    let planning = snapshot.planning.as_deref().expect("it was planned").clone();
+    let planning = snapshot::Planning { verdict, ..planning };
+    let changed = Snapshot { planning: Some(Arc::new(planning)), ..(*snapshot).clone() };
+    review(&changed, &Goal::Default, 0, &mut || false)
+}
+
+pub(super) fn refused() -> verify::Verdict {
+    verify::Verdict { valid: false, violations: Vec::new() }
+}
+
+#[test]
+fn nothing_about_states_and_resources_has_passed_on_the_planner_s_word() {
+    for (verdict, status) in [(None, Status::Attention), (Some(refused()), Status::Failed)] {
+        let review = reviewed_with(LASTING, verdict);
+        for section in [Section::States, Section::Resources, Section::CausalLinks] {
+            let lines = review.lines(section);
+            assert!(!lines.is_empty() && lines.iter().all(|line| line.status == status), "{lines:?}");
+        }
+    }
+}
+
+#[test]
+fn that_a_plan_withstands_nature_has_not_passed_on_the_planner_s_word() {
+    let source = "primitive Drive() contingent [20,40]; scenario S[0,60] = { Drive(); delay }";
+    for (verdict, status) in [(None, Status::Attention), (Some(refused()), Status::Failed)] {
+        let review = reviewed_with(source, verdict);
+        let line = review.plan.iter().find(|line| line.names == ["Drive#1"]).expect("nature chooses");
+        assert_eq!(line.status, status, "{line:?}");
+        assert!(line.text.contains("is not confirmed"), "{line:?}");
+    }
+}
+
+#[test]
+fn a_vehicle_s_movements_come_one_after_the_other() {
+    let review = reviewed(
+        "location BASE (0, 0); location ROCK (10, 0);
+         vehicle R1 : ATRV-Jr at BASE;
+         primitive Drive(to)[1,90] moves R1;
+         scenario S[0,500] = { Drive(ROCK); Drive(BASE) }",
+    );
+    let lines = texts(&review, Section::States);
+    let wanted = "R1 makes 2 movements, one after the other: Drive#1, Drive#2".to_owned();
+    assert!(lines.contains(&wanted), "{lines:?} {:?}", review.plan);
+}
+
+/// The line of a mission's review that begins so.
+fn line(source: &str, start: &str) -> Option<(Status, String)> {
+    let review = reviewed(source);
+    let found = review.plan.iter().find(|line| line.text.starts_with(start));
+    found.map(|line| (line.status, line.text.clone()))
+}
+
+#[test]
+fn what_nature_chooses_has_the_first_line_of_its_own() {
+    let drive = |option: &str, most: i64| {
+        format!(
+            "{option} primitive Drive() contingent [20,40]; primitive Dig()[5,5];
+             scenario S[0,{most}] = {{ Drive(); delay; Dig() }}"
+        )
+    };
+    let (status, text) = line(&drive("", 60), "whatever nature chooses").expect("nature chooses");
+    assert_eq!(status, Status::Passed);
+    assert!(text.ends_with("Drive#1 [20, 40]"), "{text}");
+    // A schedule that does not look is harder to find, and here the drive's end is what the delay waits for.
+    assert!(line(&drive("option controllability = strong;", 60), "one schedule suits").is_some());
+    // What is planned as if nature did not choose is never passed.
+    let none = line(&drive("option controllability = none;", 44), "the plan chooses durations");
+    assert_eq!(none.expect("it is said").0, Status::Attention);
+    // And what nature can break has no plan.
+    assert!(line(&drive("", 44), "whatever").is_none());
+    assert!(line(&drive("", 44), "there is no plan").is_some());
+    assert!(line(SCENARIO, "whatever").is_none(), "the paper's mission leaves nothing to nature");
+}
+
+#[test]
+fn what_a_plan_assumes_is_for_attention() {
+    let storm = |delay: &str| {
+        format!(
+            "var DUST : {{CLEAR, STORM}}; primitive Survey()[20,30];
+             scenario S[0,200] = {{ {{ delay; do {{ Survey() }} watching DUST=STORM }}, {{ delay {delay}; DUST=STORM [10,10] }} }}"
+        )
+    };
+    let (status, text) = line(&storm("[5,100]"), "assumes").expect("the plan moves the storm");
+    assert_eq!(status, Status::Attention);
+    assert!(text.contains("[5,100]"), "{text}");
+    assert!(line(&storm("contingent [5,100]"), "assumes").is_none());
+}

@@ -1,0 +1,101 @@
+//! Where vehicles stand that are at one location at the same time (SPEC 10.3): the first at the location itself, others
+//! around it, so that none stands inside another.
+//!
+//! Vehicles that start together and are moved together by one traverse keep formation and count as one here. Those that fly
+//! are above those that drive, and neither makes the other go aside.
+
+use nalgebra::{Point2, Vector2};
+use rmpl::program::Program;
+
+use crate::vehicle;
+
+/// Places on the first ring around a location; each further ring has so many more.
+const ON_FIRST_RING: usize = 6;
+/// Metres more than vehicles need to keep apart.
+const ROOM_M: f64 = 0.1;
+
+/// The place that each vehicle has where it starts: 0 for the location itself.
+pub fn start_slots(program: &Program) -> Vec<usize> {
+    let vehicles = &program.world.vehicles;
+    let drive_together = |one: usize, other: usize| {
+        let names = [one, other].map(|vehicle| &vehicles[vehicle].name.text);
+        let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
+        moves
+            .into_iter()
+            .any(|moves| names.iter().all(|name| moves.vehicles.iter().any(|it| it.text == **name)))
+    };
+    let mut slots: Vec<usize> = Vec::with_capacity(vehicles.len());
+    for (vehicle, declared) in vehicles.iter().enumerate() {
+        let flies = |vehicle: usize| vehicle::flies(&program.world, vehicle as u32);
+        let before = || {
+            let starts_here = |other: &usize| vehicles[*other].start.text == declared.start.text;
+            (0..vehicle).filter(starts_here).filter(move |&other| flies(other) == flies(vehicle))
+        };
+        let group = before().find(|&other| drive_together(other, vehicle));
+        let free = before().map(|other| slots[other] + 1).max().unwrap_or(0);
+        slots.push(group.map_or(free, |group| slots[group]));
+    }
+    slots
+}
+
+/// Metres between places at one location, of the vehicles that fly or of those that do not: twice the room that any two of
+/// them need, so that one can drive between two others, and room for what follows them in formation.
+pub fn spacing_m(program: &Program, fly: bool) -> f64 {
+    let world = &program.world;
+    let all = (0..world.vehicles.len() as u32).filter(|&vehicle| vehicle::flies(world, vehicle) == fly);
+    let mut widest: Vec<f64> = all.map(|vehicle| vehicle::radius_m(world, vehicle)).collect();
+    widest.sort_by(f64::total_cmp);
+    let two: f64 = widest.iter().rev().take(2).sum();
+    let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
+    let most = moves.map(|moves| moves.vehicles.len()).max().unwrap_or(1).max(1);
+    2.0 * (two + vehicle::GAP_M + ROOM_M) * most as f64
+}
+
+/// The place with a number at a location. Rings lie a spacing apart, and so do the places on each.
+pub fn place_m(location_m: Point2<f64>, slot: usize, spacing_m: f64) -> Point2<f64> {
+    let (mut ring, mut at) = (0, slot);
+    while at >= (ON_FIRST_RING * ring).max(1) {
+        at -= (ON_FIRST_RING * ring).max(1);
+        ring += 1;
+    }
+    if ring == 0 {
+        return location_m;
+    }
+    // The corners of a hexagon, south first, and places between them.
+    let high = 0.75_f64.sqrt();
+    let corners = [(0.0, -1.0), (high, -0.5), (high, 0.5), (0.0, 1.0), (-high, 0.5), (-high, -0.5)]
+        .map(|(east, north)| Vector2::new(east, north));
+    let (corner, part) = (at / ring, (at % ring) as f64 / ring as f64);
+    let (from, to) = (corners[corner % ON_FIRST_RING], corners[(corner + 1) % ON_FIRST_RING]);
+    location_m + (from + (to - from) * part) * (spacing_m * ring as f64)
+}
+
+/// Where a vehicle stands before it first moves, in metres; `None` if its start is not declared.
+pub fn start_m(program: &Program, vehicle: usize) -> Option<Point2<f64>> {
+    let start = &program.world.vehicles.get(vehicle)?.start.text;
+    let location = program.world.locations.iter().find(|location| location.name.text == *start)?;
+    let slot = start_slots(program).get(vehicle).copied().unwrap_or(0);
+    let spacing_m = spacing_m(program, vehicle::flies(&program.world, vehicle as u32));
+    Some(place_m(location.position_m.into(), slot, spacing_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::distance;
+
+    use super::*;
+
+    #[test]
+    fn places_at_one_location_are_a_spacing_apart() {
+        let location = Point2::new(10.0, -4.0);
+        let places: Vec<Point2<f64>> = (0..37).map(|slot| place_m(location, slot, 2.0)).collect();
+        assert_eq!(places[0], location);
+        for (index, place) in places.iter().enumerate() {
+            for other in &places[..index] {
+                assert!(distance(place, other) > 2.0 - 1e-9, "{place} and {other}");
+            }
+        }
+        // Three rings.
+        assert!(places.iter().all(|place| distance(place, &location) < 6.0 + 1e-9));
+    }
+}
