@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use executive::model_based::{Run, StepInput, StepRecord};
-use hca::{Automaton, Estimate, Marking, Stepper, TraceStep, VariableId};
+use executive::model_based::{StepInput, StepRecord};
+use hca::{Automaton, Marking, TraceStep};
 use plant::{Belief, Commands, Model, State};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;

@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use exact::{Bound, Time};
 use review::{MissionRule, Review};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use snapshot::Execution;
-use snapshot::{MapKey, Snapshot};
+use snapshot::{Goal, MapKey, Snapshot};
 use snapshot::{RobustnessSettings, Tally};
 
 use crate::BothSearches;

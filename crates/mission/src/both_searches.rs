@@ -1,7 +1,7 @@
 //! Both searches of one network, recorded and measured, for showing side by side.
 
-use kirk::{Options, Search, Stats, Status, Trace};
-use serde::{Deserialize, Serialize};
+use kirk::{Options, Search, Stats};
+use link::{BothSearches, Searched};
 use tpn::Network;
 
 use crate::core::CoreHost;

@@ -2,11 +2,13 @@
 //! many metres it drives. Before a path is known that is the straight line, at the greatest speed; what a path says holds
 //! for every plan with that leg.
 
+use snapshot::vehicle;
 use std::collections::BTreeMap;
 
 use exact::{Rational, Time};
 use rmpl::program::Program;
 use smol_str::{SmolStr, format_smolstr};
+use tpn::worth::rounded_up;
 use tpn::{Departure, Distance, Extent, LabelId, Network, OccurrenceId, ValueId};
 
 use crate::traverse::{self, Route};
@@ -150,7 +152,7 @@ pub(crate) fn record(network: &mut Network, route: &Route, length_m: f64) {
 }
 
 fn movement(network: &Network, program: &Program, occurrence: OccurrenceId) -> Option<Movement> {
-    let moving = traverse::moving(program, &network.occurrences[occurrence.index()])?;
+    let moving = vehicle::moving(program, &network.occurrences[occurrence.index()])?;
     let name = format_smolstr!("{}.at", moving.vehicles.first()?);
     let is_arrival = |label: &&tpn::Label| {
         label.owner == Some(occurrence)

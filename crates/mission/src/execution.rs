@@ -9,16 +9,12 @@ use std::sync::Arc;
 use exact::{Bound, Rational, Time};
 use executive::world::natures_ranges;
 use executive::{
-    ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Facts, PlanError, Replanner, RunOutcome, Script,
-    Stage, World, run_stage,
+    ActivityExecutor, AsPlanned, Disturbance, Facts, PlanError, Replanner, RunOutcome, Script, Stage, World,
+    run_stage,
 };
-use rmpl::Edit;
 use rmpl::program::Program;
-use rmpl::spans::Spans as _;
-use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
-use snapshot::SimulatedDrive;
-use snapshot::{Traverse, VehicleMotion};
+use snapshot::{Executed, Execution, SimulatedDrive};
 use tpn::{Network, OccurrenceKind, Plan, Supply, Window};
 
 use crate::ground::Grounds;
@@ -185,38 +181,43 @@ fn check_level(network: &Network, resource: &SmolStr, level: Rational) -> Result
     }
 }
 
-impl Execution {
-    /// What a run of `planned` under `script` comes to.
-    pub fn new(revision: u64, script: Script, program: &Program, planned: &Planned, ran: Ran) -> Self {
-        let last_times = ran.outcome.last().times.clone();
-        let none = Facts::default();
-        let replanned = ran.replanned.iter().map(|(facts, planned)| (facts, planned));
-        let all_planned = std::iter::once((&none, planned)).chain(replanned);
-        let last_facts = ran.replanned.last().map_or(0, |(facts, _)| facts.num_world_events());
-        let last_times = &last_times[..last_times.len() - last_facts];
-        let plans = ran
-            .outcome
-            .plans
-            .into_iter()
-            .zip(all_planned)
-            .map(|(executed, (facts, planned))| {
-                let (network, plan) = without_facts(facts, &executed.network, executed.plan);
-                let shared = network.nodes.len().min(last_times.len());
-                let times: Vec<Option<Time>> = executed
-                    .times
-                    .iter()
-                    .take(network.nodes.len())
-                    .enumerate()
-                    .map(|(index, &time)| time.or_else(|| last_times[..shared].get(index).copied().flatten()))
-                    .collect();
-                let as_run = with_times(&plan, &times);
-                let traverses = planned.traverses.clone();
-                let mut motions = planning::motions_of(program, &network, &as_run, planned);
-                simulation::put_into(&mut motions, &ran.drives);
-                Executed { from: executed.from, network, plan, times, traverses, motions }
-            })
-            .collect();
-        Self { revision, script, log: ran.outcome.log, ending: ran.outcome.ending, plans, drives: ran.drives }
+/// What a run of `planned` under `script` comes to.
+pub fn executed(revision: u64, script: Script, program: &Program, planned: &Planned, ran: Ran) -> Execution {
+    let last_times = ran.outcome.last().times.clone();
+    let none = Facts::default();
+    let replanned = ran.replanned.iter().map(|(facts, planned)| (facts, planned));
+    let all_planned = std::iter::once((&none, planned)).chain(replanned);
+    let last_facts = ran.replanned.last().map_or(0, |(facts, _)| facts.num_world_events());
+    let last_times = &last_times[..last_times.len() - last_facts];
+    let plans = ran
+        .outcome
+        .plans
+        .into_iter()
+        .zip(all_planned)
+        .map(|(executed, (facts, planned))| {
+            let (network, plan) = without_facts(facts, &executed.network, executed.plan);
+            let shared = network.nodes.len().min(last_times.len());
+            let times: Vec<Option<Time>> = executed
+                .times
+                .iter()
+                .take(network.nodes.len())
+                .enumerate()
+                .map(|(index, &time)| time.or_else(|| last_times[..shared].get(index).copied().flatten()))
+                .collect();
+            let as_run = with_times(&plan, &times);
+            let traverses = planned.traverses.clone();
+            let mut motions = planning::motions_of(program, &network, &as_run, planned);
+            simulation::put_into(&mut motions, &ran.drives);
+            Executed { from: executed.from, network, plan, times, traverses, motions }
+        })
+        .collect();
+    Execution {
+        revision,
+        script,
+        log: ran.outcome.log,
+        ending: ran.outcome.ending,
+        plans,
+        drives: ran.drives,
     }
 }
 

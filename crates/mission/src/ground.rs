@@ -120,7 +120,7 @@ impl Grounds {
             self.spaces.push(found);
             return space;
         }
-        let shapes: Vec<Obstacle> = wanted.obstacles.iter().map(obstacle).collect();
+        let shapes: Vec<Obstacle> = wanted.obstacles.iter().map(snapshot::ground::obstacle).collect();
         let exact = model.configuration_space(map, &shapes);
         let wider = |room_m: f64| Arc::new(exact.with_radius_m(exact.radius_m() + room_m));
         let space = FreeSpace { roomy: ROOM_M.map(wider).into(), exact: Arc::new(exact) };

@@ -4,13 +4,14 @@
 //! The plans are found with what is known of movements without paths, as lower bounds: no plan that can be driven is missed.
 //! Plans with the same choices and the same ways share one planning again.
 
+use snapshot::vehicle;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::{Bound, Time};
 use kirk::{Options, Stats, Status};
-use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
+use snapshot::LeftOut;
 use tpn::worth;
 use tpn::{Choice, Network, OccurrenceId, Plan};
 
@@ -33,7 +34,7 @@ const MAX_WAYS: usize = 64;
 /// Whether the plans that `problem` asks for are listed here: those of missions that move vehicles over ground.
 pub(crate) fn is_listing(problem: &Problem<'_>) -> bool {
     let options = &problem.options;
-    let is_moving = |occurrence| traverse::moving(problem.program, occurrence).is_some();
+    let is_moving = |occurrence| vehicle::moving(problem.program, occurrence).is_some();
     (options.all || options.best > 1)
         && problem.ground.is_some()
         && problem.facts.is_none()
@@ -196,7 +197,7 @@ impl Listing<'_, '_> {
         }
         let length_m = inserted
             .values()
-            .filter_map(|it| Some(traverse::joined(it.legs.as_ref().ok()?).length_m()))
+            .filter_map(|it| Some(snapshot::joined(it.legs.as_ref().ok()?).length_m()))
             .sum();
         let is_valid = |plan: &Plan| {
             let own = traverse::routes(&with_paths, self.problem.program, plan, &[]);

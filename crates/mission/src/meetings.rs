@@ -3,6 +3,7 @@
 //!
 //! What has time for neither stays as it is, with its warning.
 
+use snapshot::vehicle;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -10,12 +11,12 @@ use exact::Rational;
 use kirk::Options;
 use rmpl::program::{Change, ObstacleShape};
 use smol_str::format_smolstr;
+use snapshot::vehicle::{WAY, is_way};
 use snapshot::{SeparationViolation, VehicleMotion};
 use tpn::worth;
 use tpn::{Network, NodeId, OccurrenceId, Plan, Resource, ResourceId, Supply, Use};
 
 use crate::planning::{self, Planned, Problem};
-use crate::separation;
 
 /// Orders that are tried for one mission, at most.
 const MAX_TRIES: usize = 12;
@@ -148,8 +149,8 @@ fn places(
     let world = &problem.program.world;
     let of = |party: Party<'_>| motions.iter().find(|motion| motion.vehicle == party.vehicle);
     let (Some(goes_m), Some(stays_m)) = (of(goes), of(stays)) else { return Vec::new() };
-    let radius_m = separation::radius_m(world, stays.vehicle) + separation::GAP_M + SPARE_M;
-    let safety_m = radius_m + separation::radius_m(world, goes.vehicle);
+    let radius_m = vehicle::radius_m(world, stays.vehicle) + vehicle::GAP_M + SPARE_M;
+    let safety_m = radius_m + vehicle::radius_m(world, goes.vehicle);
     let violation = stays.violation;
     let end = |motion: &VehicleMotion| motion.keyframes.last().map_or(0.0, |frame| frame.time.to_f64());
     let last = end(goes_m).max(end(stays_m));

@@ -9,6 +9,8 @@ use smol_str::SmolStr;
 use snapshot::robustness::Distribution;
 use tpn::{Network, Occurrence};
 
+use crate::draws::draw;
+
 /// How nature chooses durations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Nature {
@@ -39,7 +41,7 @@ pub(crate) fn choose(
         .map(|(name, [lower, upper])| {
             let takes = match nature {
                 Nature::Adversary => upper,
-                Nature::Chance => Distribution::Uniform(lower, upper).draw(&mut aborting)?,
+                Nature::Chance => draw(Distribution::Uniform(lower, upper), &mut aborting)?,
             };
             Ok((name, takes))
         })
@@ -49,7 +51,7 @@ pub(crate) fn choose(
             Nature::Adversary => [lower, upper][random.below(2) as usize],
             Nature::Chance => {
                 let distribution = named(occurrence).unwrap_or(Distribution::Uniform(lower, upper));
-                distribution.draw(&mut random)?
+                draw(distribution, &mut random)?
             }
         };
         Ok((occurrence.name.clone(), duration))

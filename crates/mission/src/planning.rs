@@ -3,6 +3,7 @@
 //! Inserted paths only add constraints. So when every traverse of a plan has its paths, that plan is the first plan of
 //! the network with all paths, though none were computed for alternatives that the search never selects (SPEC 7.3).
 
+use snapshot::vehicle;
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -11,10 +12,11 @@ use std::sync::Arc;
 use exact::{Bound, Rational, Time};
 use executive::Facts;
 use executive::facts::StandingPlace;
-use kirk::{Constraint, CycleMember, Options, Outcome, Reason, Stats, Status};
+use kirk::{Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
 use rmpl::Diagnostic;
 use rmpl::program::{Change, Program, World};
+use snapshot::blocked::name_blocked;
 use snapshot::standing;
 use snapshot::{
     Keyframe, Leg, MapKey, PathFigures, Planning, SeparationViolation, Traverse, Undrivable, VehicleMotion,
@@ -330,7 +332,7 @@ fn order_movements(
             is_new = true;
             let legs = legs(problem, ground, grounds, paths, route);
             let least = legs.as_ref().ok().and_then(|legs| least_duration(problem, route, legs));
-            let length_m = legs.as_ref().ok().map(|legs| traverse::joined(legs).length_m());
+            let length_m = legs.as_ref().ok().map(|legs| snapshot::joined(legs).length_m());
             departures.learn(route, least, length_m.and_then(rounded_up));
             is_drivable &= legs.is_ok();
             if legs.is_err() {
@@ -359,7 +361,7 @@ fn order_movements(
             }
             // Where none is found, the vehicles may stand at other spots in a plan: that asks by itself.
             if let Ok(legs) = legs(problem, ground, grounds, paths, &route) {
-                let length_m = traverse::joined(&legs).length_m();
+                let length_m = snapshot::joined(&legs).length_m();
                 departures.learn(&route, least_duration(problem, &route, &legs), rounded_up(length_m));
             }
         }
@@ -488,7 +490,7 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
         .unwrap_or_else(|_| problem.network.as_ref().clone());
     for (&occurrence, traverse) in inserted {
         match &traverse.legs {
-            Ok(legs) => count_metres(&mut network, occurrence, traverse::joined(legs).length_m()),
+            Ok(legs) => count_metres(&mut network, occurrence, snapshot::joined(legs).length_m()),
             Err(_) => block(&mut network, occurrence),
         }
     }
@@ -646,13 +648,13 @@ fn conclude(
             let described = Arc::make_mut(&mut network);
             for route in &routes {
                 if let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) {
-                    departures::record(described, route, traverse::joined(legs).length_m());
+                    departures::record(described, route, snapshot::joined(legs).length_m());
                 }
             }
         }
         for route in routes {
             let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) else { continue };
-            let path = traverse::joined(legs);
+            let path = snapshot::joined(legs);
             let space = grounds.space(key, map, world, route.model);
             traverses.push(Traverse {
                 occurrence: route.occurrence,
@@ -741,7 +743,7 @@ pub fn motions_of(
             let is_its = |traverse: &&Traverse| traverse.occurrence == route.occurrence;
             let traverse = planned.traverses.iter().find(is_its)?;
             let (_, space) = planned.spaces.iter().find(|(occurrence, _)| *occurrence == route.occurrence)?;
-            drive(&program.world, network, plan, route, traverse::joined(&traverse.legs), space)
+            drive(&program.world, network, plan, route, snapshot::joined(&traverse.legs), space)
         })
         .collect();
     driving::motions(&drives)
@@ -749,10 +751,10 @@ pub fn motions_of(
 
 /// Room between the centres of vehicles that drive together, in metres.
 fn spacing_m(world: &World, vehicles: &[usize]) -> f64 {
-    let radii = |vehicle: &usize| separation::radius_m(world, *vehicle as u32);
+    let radii = |vehicle: &usize| vehicle::radius_m(world, *vehicle as u32);
     let mut widest: Vec<f64> = vehicles.iter().map(radii).collect();
     widest.sort_by(f64::total_cmp);
-    widest.iter().rev().take(2).sum::<f64>() + separation::GAP_M
+    widest.iter().rev().take(2).sum::<f64>() + vehicle::GAP_M
 }
 
 pub(crate) fn drive(

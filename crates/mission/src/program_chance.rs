@@ -1,10 +1,9 @@
 //! Many runs of a control program whose components fail by chance, made by the core a few at a time.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use executive::model_based::{Options, ProgramTally, StepInput, System, Trials, sample};
-use serde::{Deserialize, Serialize};
+use link::ProgramChance;
 use smol_str::SmolStr;
 
 use crate::control::{Control, read_control};

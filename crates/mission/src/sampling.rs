@@ -4,19 +4,19 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exact::{Bound, Overflow, Time};
+use exact::{Bound, Time};
 use executive::world::natures_ranges;
 use executive::{
     ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World,
 };
-use motion::Path;
 use plant::Random;
 use rmpl::program::{Controllability, LabelMode, Program};
 use smol_str::SmolStr;
-use snapshot::robustness::{Breaks, Distribution, Faults, Incident, Others, Rocks, Traverses};
+use snapshot::robustness::{Breaks, Distribution, Faults, Incident, Others, Rocks, Traverses, base};
 use snapshot::{RobustnessSettings, Tally, Uncertainty};
 use tpn::{ArcId, Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
+use crate::draws::{self, PER_UNIT};
 use crate::execution::{self, Ran};
 use crate::ground::Grounds;
 use crate::nature::{self, Nature};
@@ -25,9 +25,6 @@ use crate::program_executor::ProgramExecutor;
 use crate::programs::Programs;
 use crate::simulation::{self, Courses, Driving};
 use crate::traverse::Paths;
-
-/// Draws are multiples of this part of a unit.
-const PER_UNIT: u32 = 1000;
 
 /// A plan made ready for many runs with chance.
 pub struct Sampler {
@@ -152,22 +149,22 @@ impl Sampler {
         let mut random = Random::new(run_seed(seed, number));
         let mut drawn = Vec::new();
         for (activity, distribution) in &self.durations {
-            let duration = distribution.draw(&mut random)?;
+            let duration = draws::draw(*distribution, &mut random)?;
             drawn.push(Disturbance::Duration { activity: activity.clone(), duration });
         }
         for (condition, incident) in &self.late {
-            if let Some(at) = incident.draw(&mut random)? {
+            if let Some(at) = draws::incident(incident, &mut random)? {
                 drawn.push(Disturbance::Late { condition: condition.clone(), at });
             }
         }
         for (condition, incident) in &self.withdrawn {
-            if let Some(at) = incident.draw(&mut random)? {
+            if let Some(at) = draws::incident(incident, &mut random)? {
                 drawn.push(Disturbance::Withdrawn { condition: condition.clone(), at });
             }
         }
         let ways = self.courses.iter().flat_map(Courses::ways);
         for (path, place_ends_m) in ways {
-            drawn.extend(self.rocks.draw(path, place_ends_m, &mut random));
+            drawn.extend(draws::rocks(&self.rocks, path, place_ends_m, &mut random));
         }
         Ok(drawn)
     }
@@ -378,159 +375,4 @@ fn incidents(
             Some((occurrence.name.clone(), *incident))
         })
         .collect()
-}
-
-/// The name without its count.
-fn base(name: &str) -> &str {
-    name.rsplit_once('#').map_or(name, |(base, _)| base)
-}
-
-impl Uncertainty {
-    /// A name of whose times it says something that is no distribution.
-    pub fn unsound(&self) -> Option<&SmolStr> {
-        let durations = self.durations.iter();
-        let incidents = self.late.iter().chain(&self.withdrawn).map(|(name, incident)| (name, &incident.at));
-        durations.chain(incidents).find(|(_, distribution)| !distribution.is_sound()).map(|(name, _)| name)
-    }
-
-    /// What is wrong with it for the mission of `network`, if something is.
-    pub fn problem(&self, network: &Network) -> Option<String> {
-        let unknown = self.unknown_names(network);
-        if !unknown.is_empty() {
-            return Some(format!("no activity or condition is called {}", unknown.join(", ")));
-        }
-        if let Some(name) = self.unsound() {
-            return Some(format!(
-                "what is said of {name} is no distribution: its numbers must not fall, and not be below 0"
-            ));
-        }
-        let mut incidents = self.late.iter().chain(&self.withdrawn);
-        if let Some((name, it)) = incidents.find(|(_, it)| !(0.0..=1.0).contains(&it.probability)) {
-            return Some(format!("the probability of {name} is from 0 to 1, and not {}", it.probability));
-        }
-        let rocks = "rocks have lengths from 0 on, and the least radius comes first";
-        (!self.rocks.is_sound()).then(|| rocks.to_owned())
-    }
-
-    /// The names in it that nothing in `network` has.
-    pub fn unknown_names(&self, network: &Network) -> Vec<SmolStr> {
-        let is_known = |name: &SmolStr, kind: OccurrenceKind| {
-            network.occurrences.iter().any(|occurrence| {
-                occurrence.kind == kind
-                    && (occurrence.name == *name
-                        || occurrence.activity == *name
-                        || base(&occurrence.name) == *name)
-            })
-        };
-        let is_natures = |name: &SmolStr| {
-            natures_ranges(network)
-                .any(|(it, _)| it.name == *name || it.activity == *name || base(&it.name) == *name)
-        };
-        let activities = self.durations.keys();
-        let activities =
-            activities.filter(|name| !is_known(name, OccurrenceKind::Primitive) && !is_natures(name));
-        let conditions = self
-            .late
-            .keys()
-            .chain(self.withdrawn.keys())
-            .filter(|name| !is_known(name, OccurrenceKind::Assertion));
-        activities.chain(conditions).cloned().collect()
-    }
-}
-
-impl Incident {
-    fn draw(&self, random: &mut Random) -> Result<Option<Time>, Overflow> {
-        // Both are always drawn, so that a probability can be changed without changing the rest of a run.
-        let chance = unit(random);
-        let at = self.at.draw(random)?;
-        Ok((chance < self.probability).then_some(at))
-    }
-}
-
-impl Rocks {
-    /// Rocks about a path, none of them on a place that the path leads to. As much is drawn for each that might lie there as
-    /// for one that does.
-    fn draw(&self, path: &Path, place_ends_m: &[f64], random: &mut Random) -> Vec<Disturbance> {
-        const ROOM_M: f64 = 3.0;
-        let count = random.below(u64::from(self.most) + 1);
-        let length_m = path.length_m();
-        let mut rocks = Vec::new();
-        for number in 0..u64::from(self.most) {
-            let along_m = unit(random) * length_m;
-            let aside_m = (2.0 * unit(random) - 1.0) * self.aside;
-            let [least, greatest] = self.radius;
-            let radius = least + (greatest - least) * unit(random);
-            let mut places_m = place_ends_m.iter().copied().chain([0.0]);
-            if number >= count || places_m.any(|end_m| (end_m - along_m).abs() < radius + ROOM_M) {
-                continue;
-            }
-            let Some((place, segment)) = path.point_at(along_m) else { continue };
-            let Some((from, to)) = path.segments().nth(segment) else { continue };
-            let (east, north) = (to[0] - from[0], to[1] - from[1]);
-            let length = (east * east + north * north).sqrt().max(1e-9);
-            let (x, y) = (place[0] - north / length * aside_m, place[1] + east / length * aside_m);
-            rocks.push(Disturbance::Obstacle { at: Time::ZERO, x, y, radius, low: false });
-        }
-        rocks
-    }
-}
-
-/// A number from 0 up to 1.
-fn unit(random: &mut Random) -> f64 {
-    (random.next_bits() >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-impl Distribution {
-    /// What it draws is this and whole parts of a unit.
-    fn least(self) -> Time {
-        match self {
-            Self::Fixed(least) | Self::Uniform(least, _) | Self::Triangular(least, ..) => least,
-            Self::Normal(..) => Time::ZERO,
-        }
-    }
-
-    /// Draws a time; an error if it does not fit.
-    pub fn draw(self, random: &mut Random) -> Result<Time, Overflow> {
-        let least = self.least();
-        let after = |time: Time| time.checked_sub(least).ok_or(Overflow);
-        let offset = match self {
-            Self::Fixed(_) => Some(Time::ZERO),
-            Self::Uniform(_, most) => {
-                let steps = after(most)?.whole_parts(PER_UNIT).ok_or(Overflow)?.max(0) as u64;
-                Time::new(random.below(steps.saturating_add(1)) as i64, i64::from(PER_UNIT))
-            }
-            Self::Triangular(_, likely, most) => {
-                let (width, peak) = (after(most)?.to_f64(), after(likely)?.to_f64());
-                let share = unit(random);
-                let offset = if width <= 0.0 {
-                    0.0
-                } else if share * width < peak {
-                    (share * width * peak).sqrt()
-                } else {
-                    width - ((1.0 - share) * width * (width - peak)).sqrt()
-                };
-                Time::from_f64_nearest(offset, PER_UNIT)
-            }
-            Self::Normal(mean, deviation) => {
-                let (radius, angle) = (1.0 - unit(random), unit(random));
-                let normal =
-                    (-2.0 * libm::log(radius)).sqrt() * libm::cos(2.0 * std::f64::consts::PI * angle);
-                let drawn = mean.to_f64() + deviation.to_f64() * normal;
-                Time::from_f64_nearest(drawn, PER_UNIT).map(|drawn| drawn.max(Time::ZERO))
-            }
-        };
-        offset.and_then(|offset| least.checked_add(offset)).ok_or(Overflow)
-    }
-
-    /// Whether it can be drawn from: in order, and not below 0.
-    pub fn is_sound(&self) -> bool {
-        match *self {
-            Self::Fixed(time) => !time.is_negative(),
-            Self::Uniform(least, most) => !least.is_negative() && least <= most,
-            Self::Triangular(least, likely, most) => {
-                !least.is_negative() && least <= likely && likely <= most
-            }
-            Self::Normal(mean, deviation) => !mean.is_negative() && !deviation.is_negative(),
-        }
-    }
 }

@@ -1,8 +1,9 @@
 //! Separation violations: vehicles of different traverses that come too near each other, with time and place.
 
 use motion::TimedPoint;
+use rmpl::Diagnostic;
 use rmpl::program::World;
-use rmpl::{Code, Diagnostic};
+use snapshot::vehicle::{GAP_M, flies, radius_m};
 use snapshot::{SeparationViolation, VehicleMotion};
 use tpn::Network;
 
@@ -70,7 +71,7 @@ pub fn warnings(
                 place.y,
                 violation.time
             );
-            Some(Diagnostic::warning(CODE, span, message).with_hint(
+            Some(Diagnostic::warning(SeparationViolation::CODE, span, message).with_hint(
                 "give one of them time to wait or to go around the other; vehicles of one traverse keep formation",
             ))
         })

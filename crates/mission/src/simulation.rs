@@ -18,16 +18,14 @@ use executive::{ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, H
 use motion::FineWorld;
 use nalgebra::Point2;
 use rmpl::program::Program;
-use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
-use snapshot::{Keyframe, VehicleMotion};
+use snapshot::{DriveFrame, Keyframe, SimulatedDrive, SimulatedVehicle, VehicleMotion};
 use terrain::{Obstacle, Terrain};
 use tpn::{EventRef, Network, OccurrenceId};
 
 use self::seen::SeenMap;
 use self::trip::Trip;
 use crate::driving::Drive;
-use crate::ground;
 use crate::planning::{self, Planned, Problem};
 use crate::traverse::{self, Route};
 
@@ -57,11 +55,11 @@ impl Courses {
             let traverse = planned.traverses.iter().find(is_its);
             let space = planned.spaces.iter().find(|(occurrence, _)| *occurrence == route.occurrence);
             let (Some(traverse), Some((_, space))) = (traverse, space) else { continue };
-            let path = traverse::joined(&traverse.legs);
+            let path = snapshot::joined(&traverse.legs);
             let mut leg_ends_m = Vec::new();
             let mut along_m = 0.0;
             for leg in &traverse.legs {
-                along_m += traverse::length_m(&leg.points_m);
+                along_m += motion::length_m(&leg.points_m);
                 leg_ends_m.push(along_m);
             }
             if let Some(drive) = planning::drive(world, &planned.network, plan, &route, path, space) {
@@ -122,7 +120,8 @@ impl<'run> Driving<'run> {
         seed: u64,
     ) -> Self {
         let declared = &problem.program.world.obstacles;
-        let obstacles: Vec<Obstacle> = declared.iter().map(|it| ground::obstacle(&it.shape)).collect();
+        let obstacles: Vec<Obstacle> =
+            declared.iter().map(|it| snapshot::ground::obstacle(&it.shape)).collect();
         let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
         let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
         let seen = SeenMap::default();

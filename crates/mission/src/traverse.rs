@@ -1,23 +1,24 @@
 //! Which activities of a plan are traverses, from where to where they drive, and the paths that they take.
 
+use snapshot::vehicle;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::Rational;
 use executive::facts::StandingPlace;
-use motion::{DriveLimits, Path, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
+use motion::{DriveLimits, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::{Point2, distance};
 use rmpl::Span;
-use rmpl::program::{Moves, Name, Per, Program, World};
+use rmpl::program::{Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
 use snapshot::standing;
+use snapshot::vehicle::{Moving, moving};
 use terrain::{ConfigurationSpace, Terrain};
-use tpn::{Network, Occurrence, OccurrenceId, OccurrenceKind, Plan};
+use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
-use crate::separation;
 
 /// A traverse of a plan: who drives, and through which places.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +57,7 @@ const ON_THE_WAY: usize = usize::MAX;
 pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[StandingPlace]) -> Vec<Route> {
     let world = &program.world;
     let spacings_m = [false, true].map(|fly| standing::spacing_m(program, fly));
-    let flies = |vehicle: usize| separation::flies(world, vehicle as u32);
+    let flies = |vehicle: usize| vehicle::flies(world, vehicle as u32);
     let spacing_m = |vehicle: usize| spacings_m[usize::from(flies(vehicle))];
     let starts = world.vehicles.iter().zip(standing::start_slots(program)).enumerate();
     let mut positions: Vec<Option<Waypoint>> = starts

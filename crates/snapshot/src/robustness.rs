@@ -7,8 +7,10 @@ use std::collections::BTreeMap;
 
 use exact::Time;
 use executive::model_based::wilson_interval;
+use executive::world::natures_ranges;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
+use tpn::{Network, OccurrenceKind};
 
 /// What is left to chance. Activities and conditions are named by occurrence (`Drill#2`) or, for all their occurrences,
 /// without the count (`Drill`, `Tell(LIGHT)`).
@@ -255,4 +257,84 @@ impl Robustness {
     pub const fn is_complete(&self) -> bool {
         self.tally.runs >= self.settings.runs
     }
+}
+
+impl Uncertainty {
+    /// A name of whose times it says something that is no distribution.
+    pub fn unsound(&self) -> Option<&SmolStr> {
+        let durations = self.durations.iter();
+        let incidents = self.late.iter().chain(&self.withdrawn).map(|(name, incident)| (name, &incident.at));
+        durations.chain(incidents).find(|(_, distribution)| !distribution.is_sound()).map(|(name, _)| name)
+    }
+
+    /// What is wrong with it for the mission of `network`, if something is.
+    pub fn problem(&self, network: &Network) -> Option<String> {
+        let unknown = self.unknown_names(network);
+        if !unknown.is_empty() {
+            return Some(format!("no activity or condition is called {}", unknown.join(", ")));
+        }
+        if let Some(name) = self.unsound() {
+            return Some(format!(
+                "what is said of {name} is no distribution: its numbers must not fall, and not be below 0"
+            ));
+        }
+        let mut incidents = self.late.iter().chain(&self.withdrawn);
+        if let Some((name, it)) = incidents.find(|(_, it)| !(0.0..=1.0).contains(&it.probability)) {
+            return Some(format!("the probability of {name} is from 0 to 1, and not {}", it.probability));
+        }
+        let rocks = "rocks have lengths from 0 on, and the least radius comes first";
+        (!self.rocks.is_sound()).then(|| rocks.to_owned())
+    }
+
+    /// The names in it that nothing in `network` has.
+    pub fn unknown_names(&self, network: &Network) -> Vec<SmolStr> {
+        let is_known = |name: &SmolStr, kind: OccurrenceKind| {
+            network.occurrences.iter().any(|occurrence| {
+                occurrence.kind == kind
+                    && (occurrence.name == *name
+                        || occurrence.activity == *name
+                        || base(&occurrence.name) == *name)
+            })
+        };
+        let is_natures = |name: &SmolStr| {
+            natures_ranges(network)
+                .any(|(it, _)| it.name == *name || it.activity == *name || base(&it.name) == *name)
+        };
+        let activities = self.durations.keys();
+        let activities =
+            activities.filter(|name| !is_known(name, OccurrenceKind::Primitive) && !is_natures(name));
+        let conditions = self
+            .late
+            .keys()
+            .chain(self.withdrawn.keys())
+            .filter(|name| !is_known(name, OccurrenceKind::Assertion));
+        activities.chain(conditions).cloned().collect()
+    }
+}
+
+impl Distribution {
+    /// What it draws is this and whole parts of a unit.
+    pub fn least(self) -> Time {
+        match self {
+            Self::Fixed(least) | Self::Uniform(least, _) | Self::Triangular(least, ..) => least,
+            Self::Normal(..) => Time::ZERO,
+        }
+    }
+
+    /// Whether it can be drawn from: in order, and not below 0.
+    pub fn is_sound(&self) -> bool {
+        match *self {
+            Self::Fixed(time) => !time.is_negative(),
+            Self::Uniform(least, most) => !least.is_negative() && least <= most,
+            Self::Triangular(least, likely, most) => {
+                !least.is_negative() && least <= likely && likely <= most
+            }
+            Self::Normal(mean, deviation) => !mean.is_negative() && !deviation.is_negative(),
+        }
+    }
+}
+
+/// The name without its count.
+pub fn base(name: &str) -> &str {
+    name.rsplit_once('#').map_or(name, |(base, _)| base)
 }

@@ -6,7 +6,6 @@ use executive::Script;
 use link::ProgramChance;
 use link::{Response, Update};
 use rmpl::program::Program;
-use snapshot::Execution;
 use snapshot::MapKey;
 use snapshot::{RobustnessSettings, Tally, Uncertainty};
 use terrain::Terrain;
@@ -66,7 +65,7 @@ impl Core {
                 .ok_or_else(|| NO_PLAN.to_owned())?
                 .map(|ran| {
                     let (program, planned) = (&evaluated.program, &evaluated.planned);
-                    let run = Arc::new(Execution::new(revision, script, program, planned, ran));
+                    let run = Arc::new(execution::executed(revision, script, program, planned, ran));
                     self.last.iter_mut().for_each(|last| last.executions.keep(Arc::clone(&run)));
                     run
                 })

@@ -1,5 +1,6 @@
 //! One traverse as it is driven, from its start until its last vehicle is there or none can go on.
 
+use snapshot::vehicle;
 use std::collections::BTreeMap;
 
 use exact::{Rational, Time};
@@ -16,7 +17,7 @@ use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 use super::seen::{SeenMap, is_blocked};
 use super::way::{nearest_free, rest_of, until};
 use super::{Course, DriveFrame, Driving, SimulatedVehicle};
-use crate::{driving, separation};
+use crate::driving;
 
 /// Frames are kept this far apart, in metres and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
@@ -120,7 +121,7 @@ impl<'a> Trip<'a> {
             .collect();
         let seconds = |time: Time| (time.to_f64() - start) * unit_s;
         // What stands on the ground is below those that fly, and who flies is above those that drive.
-        let flies = |vehicle: u32| separation::flies(world, vehicle);
+        let flies = |vehicle: u32| vehicle::flies(world, vehicle);
         let is_flight = drive.vehicles.iter().all(|&vehicle| flies(vehicle));
         let mut coming: Vec<(f64, Obstacle, bool)> = Vec::new();
         let mut slow = Vec::new();
@@ -153,7 +154,7 @@ impl<'a> Trip<'a> {
             if drive.vehicles.contains(&vehicle) || flies(vehicle) != is_flight {
                 continue;
             }
-            let radius_m = separation::radius_m(world, vehicle);
+            let radius_m = vehicle::radius_m(world, vehicle);
             let moving =
                 driving.drives.iter().rev().flat_map(|it| &it.vehicles).find(|it| it.vehicle == vehicle);
             let moving = moving.filter(|it| it.frames.last().is_some_and(|last| last.time > start));

@@ -152,7 +152,7 @@ fn draws_keep_to_their_distribution() {
     let mut mean = |distribution: Distribution| {
         let draws: Vec<f64> = (0..4000)
             .map(|_| {
-                let time = distribution.draw(&mut random).expect("a small time");
+                let time = mission::draws::draw(distribution, &mut random).expect("a small time");
                 time.to_f64()
             })
             .collect();

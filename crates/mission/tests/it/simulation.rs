@@ -20,7 +20,7 @@ fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
     mission.with_plan((kirk::Options::default(), 1), |problem, planned, grounds, paths| {
         let ran = execution::execute(problem, &planned, &script, grounds, paths);
         let ran = ran.expect("there is a plan").expect("its times fit");
-        Execution::new(1, script.clone(), &mission.program, &planned, ran)
+        mission::execution::executed(1, script.clone(), &mission.program, &planned, ran)
     })
 }
 

@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 use smol_str::{SmolStr, format_smolstr};
 
+pub(crate) use mission::joined;
 pub use mission::{
     FORMAT, MAIN_TEXT, MapFile, Mission, MissionError, MissionId, MissionKind, TextFile, Version,
 };
-pub(crate) use snapshot::joined;
 pub use template::{TEMPLATES, Template, template};
 
 use mission::split;

@@ -4,7 +4,6 @@ use std::sync::{Arc, LazyLock};
 
 use interchange::Source;
 use interchange::plan_schema::Document;
-use snapshot::Snapshot;
 use stnu::{Document as Uncertain, Layout, check};
 use tpn::Network;
 
@@ -96,7 +95,7 @@ fn networks(input: &[u8]) -> Outcome {
         left -= 1;
         left <= 0
     };
-    let snapshot = Snapshot::of_network(text.into(), Arc::clone(&network), Vec::new(), &mut stop);
+    let snapshot = mission::planned_network(text.into(), Arc::clone(&network), Vec::new(), &mut stop);
     let plan = snapshot.plan();
     if let Some(plan) = plan {
         let plan = tpn::plan_json::plan_to_json(&network, plan);
