@@ -3,7 +3,7 @@
 use exact::{Bound, Time};
 use tpn::{ArcId, Network};
 
-/// No path.
+/// The distance where there is no path.
 pub const FAR: i64 = i64::MAX / 4;
 
 /// A distance matrix closed under the triangle inequality.

@@ -16,7 +16,7 @@ impl Kind {
     pub const STATES: Self = Self { has_states: true, has_resources: false };
     /// Resources without states.
     pub const RESOURCES: Self = Self { has_states: false, has_resources: true };
-    /// Both.
+    /// Both states and resources.
     pub const BOTH: Self = Self { has_states: true, has_resources: true };
 }
 

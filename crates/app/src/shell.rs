@@ -25,7 +25,7 @@ use crate::layouts::Layouts;
 use crate::pressed::take_pressed;
 use crate::toasts;
 
-/// The app.
+/// The front end: draws the workbench's state and passes on what the user does.
 pub struct Enroute {
     session: Session,
     panels: Panels,
@@ -76,7 +76,7 @@ impl Enroute {
         self.session.state()
     }
 
-    /// The host.
+    /// What runs around the app: clock, files, storage and the planning core.
     pub fn host_mut(&mut self) -> &mut dyn Host {
         self.session.host_mut()
     }

@@ -29,11 +29,10 @@ pub struct Target {
     pub bounds: Option<String>,
 }
 
-/// A file, read.
+/// A mission's files as they were read.
 pub struct Loaded {
     /// Its name, for messages.
     pub name: String,
-    /// Its text.
     pub source: String,
     /// What is wrong with it.
     pub problems: Vec<Problem>,

@@ -78,17 +78,17 @@ impl Rect {
         Self { min: center.shifted(-radius, -radius), max: center.shifted(radius, radius) }
     }
 
-    /// Width.
+    /// From its left to its right side.
     pub fn width(self) -> f64 {
         self.max.x - self.min.x
     }
 
-    /// Height.
+    /// From its upper to its lower side.
     pub fn height(self) -> f64 {
         self.max.y - self.min.y
     }
 
-    /// The middle.
+    /// The point in the middle.
     pub fn center(self) -> Point {
         self.min.lerp(self.max, 0.5)
     }

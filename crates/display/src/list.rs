@@ -101,7 +101,7 @@ pub enum Fill {
     Hatched(Color),
 }
 
-/// A line.
+/// How a line is drawn: color, width and pattern.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     pub color: Color,
@@ -185,7 +185,7 @@ impl DisplayList {
         self.starts.push(self.items.len() as u32);
     }
 
-    /// Adds a line.
+    /// Adds a line of straight and curved pieces.
     pub fn path(&mut self, start: Point, pieces: &[Piece], end: PathEnd, stroke: Stroke) -> &mut Item {
         let run = self.run(pieces.iter().copied());
         self.push(Shape::Path { start, pieces: run, end }, None, Some(stroke))
@@ -232,7 +232,7 @@ impl DisplayList {
         self.push(Shape::Circle { center, radius }, fill, stroke)
     }
 
-    /// Adds a text.
+    /// Adds a text on top of what there is.
     pub fn write(&mut self, text: Text) -> &mut Item {
         let place = self.texts.len() as u32;
         self.texts.push(text);
@@ -274,12 +274,12 @@ impl DisplayList {
         self.pieces.get(first..first + run.count as usize).unwrap_or(&[])
     }
 
-    /// A text.
+    /// The text of a [`Shape::Text`].
     pub fn text(&self, place: u32) -> &Text {
         &self.texts[place as usize]
     }
 
-    /// All texts.
+    /// All texts, in the order in which they were added.
     pub fn texts(&self) -> &[Text] {
         &self.texts
     }
@@ -342,7 +342,7 @@ impl Item {
 }
 
 impl Detail {
-    /// At all zooms.
+    /// Drawn at all zooms.
     pub const ALWAYS: Self = Self { from: 0.0, to: f32::INFINITY };
 
     /// From this zoom on.
@@ -363,7 +363,7 @@ impl Detail {
 }
 
 impl Fill {
-    /// Its colour.
+    /// The color, with or without a pattern.
     pub const fn color(self) -> Color {
         match self {
             Self::Solid(color) | Self::Hatched(color) => color,

@@ -15,9 +15,7 @@ pub struct Rational {
 }
 
 impl Rational {
-    /// Nought.
     pub const ZERO: Self = Self::from_integer(0);
-    /// One.
     pub const ONE: Self = Self::from_integer(1);
 
     /// A whole number.
@@ -95,7 +93,7 @@ impl Rational {
         i64::try_from((numerator * i128::from(parts)).div_euclid(denominator)).ok()
     }
 
-    /// The sum.
+    /// The sum, or `None` if it overflows.
     pub fn checked_add(self, other: Self) -> Option<Self> {
         if self.denominator == 1 && other.denominator == 1 {
             return self.numerator.checked_add(other.numerator).map(Self::from_integer);
@@ -113,7 +111,7 @@ impl Rational {
         Self::from_wide(a * d - c * b, b * d)
     }
 
-    /// The product.
+    /// The product, or `None` if it overflows.
     pub fn checked_mul(self, other: Self) -> Option<Self> {
         let ((a, b), (c, d)) = (self.wide(), other.wide());
         Self::from_wide(a * c, b * d)

@@ -15,7 +15,7 @@ pub struct Time(Rational);
 impl Time {
     /// The start, and no time at all.
     pub const ZERO: Self = Self(Rational::ZERO);
-    /// One unit.
+    /// One unit of time.
     pub const ONE: Self = Self(Rational::ONE);
 
     /// So many units.
@@ -68,7 +68,7 @@ impl Time {
         self.0.is_integer()
     }
 
-    /// The sum.
+    /// The sum, or `None` if it overflows.
     pub fn checked_add(self, other: Self) -> Option<Self> {
         self.0.checked_add(other.0).map(Self)
     }

@@ -124,7 +124,7 @@ pub struct Composite {
     pub span: Span,
 }
 
-/// A transition.
+/// A transition from a location to what it starts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Transition {
     /// The location that it leaves.
@@ -155,12 +155,12 @@ impl Automaton {
     /// The program as a whole.
     pub const ROOT: CompositeId = CompositeId(0);
 
-    /// A location.
+    /// The location of this id, if the automaton has it.
     pub fn location(&self, id: LocationId) -> Option<&Location> {
         self.locations.get(id.0 as usize)
     }
 
-    /// A composite.
+    /// The composite of this id, if the automaton has it.
     pub fn composite(&self, id: CompositeId) -> Option<&Composite> {
         self.composites.get(id.0 as usize)
     }

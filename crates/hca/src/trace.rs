@@ -57,7 +57,7 @@ impl TraceStep {
     }
 }
 
-/// A whole run.
+/// A run from the first step to the last.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Trace {
     /// One entry per estimate used, and one for the marking after the last.

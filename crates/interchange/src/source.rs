@@ -88,7 +88,7 @@ impl Source {
         }
     }
 
-    /// The network.
+    /// The network that was read, whatever the format.
     pub fn into_network(self) -> Network {
         match self {
             Self::Enroute(network) => *network,

@@ -151,7 +151,7 @@ pub enum Status {
     Error,
 }
 
-/// The answer.
+/// The answer to a planning problem: plans, or why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// How planning ended.

@@ -35,7 +35,7 @@ pub struct NetworkDrawing {
     pub(crate) index: SpatialIndex<Shape>,
 }
 
-/// An event.
+/// Where an event of the network is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeShape {
     pub id: NodeId,

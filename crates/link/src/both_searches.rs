@@ -23,6 +23,5 @@ pub struct Searched {
     pub stats: Stats,
     /// How long it took in milliseconds, recording included, by the host's clock.
     pub millis: f64,
-    /// What it did.
     pub trace: Trace,
 }

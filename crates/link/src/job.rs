@@ -150,7 +150,7 @@ impl fmt::Display for Kind {
 }
 
 impl Request {
-    /// Its kind.
+    /// The kind of request that the job makes.
     pub const fn kind(&self) -> Kind {
         match self {
             Self::Update(_) => Kind::Update,

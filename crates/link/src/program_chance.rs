@@ -13,7 +13,6 @@ pub struct ProgramChance {
     pub plant: Option<Arc<str>>,
     /// How many runs.
     pub runs: u64,
-    /// Seeds chance.
     pub seed: u64,
     /// A run that has not ended after so many steps has not reached its end.
     pub most_steps: u32,

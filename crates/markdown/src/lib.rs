@@ -9,7 +9,7 @@ mod run;
 
 pub use run::{Run, Style, plain};
 
-/// A text, read.
+/// A Markdown text as a tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Document {
     /// What stands between `---` lines at the very top, without them.

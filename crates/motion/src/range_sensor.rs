@@ -30,7 +30,7 @@ impl RangeSensor {
     };
 }
 
-/// One sweep.
+/// What a range sensor measures in one sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RangeScan {
     /// Where it was taken, in metres.

@@ -14,7 +14,7 @@ use crate::trajectory::{DriveLimits, Trajectory, drive_path};
 use crate::tree::Tree;
 use crate::vehicle::VEHICLE_MODELS;
 
-/// The planners.
+/// The path planners by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum PlannerKind {
     /// One tree from the start (`LaValle` 1998, SPEC 7.2).

@@ -83,7 +83,7 @@ pub struct MotionState {
 }
 
 impl MotionState {
-    /// At rest.
+    /// A vehicle that stands at this place.
     pub const fn at_rest(position_m: Point2<f64>, heading_rad: f64) -> Self {
         Self { position_m, heading_rad, speed_mps: 0.0, turn_rate_rps: 0.0 }
     }

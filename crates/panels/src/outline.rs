@@ -10,7 +10,6 @@ use workbench::command::{Command, CommandSender, EditorCommand};
 
 use crate::{Context, Panel, keyboard_navigation, show_empty};
 
-/// The outline.
 #[derive(Default)]
 pub struct OutlinePanel {}
 

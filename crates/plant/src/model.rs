@@ -67,7 +67,7 @@ pub struct Transition {
     pub span: Span,
 }
 
-/// A fault.
+/// A fault that a component may have, with its probability.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault {
     /// The mode that it enters.
@@ -110,7 +110,7 @@ pub struct Commands(pub Vec<u8>);
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Observation(pub BTreeMap<VariableId, u8>);
 
-/// A plant.
+/// The model of a plant: its components, variables and constraints.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Model {
     pub components: Vec<Component>,
@@ -127,7 +127,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// A component.
+    /// The component of this id, if the plant has it.
     pub fn component(&self, id: ComponentId) -> Option<&Component> {
         self.components.get(id.0 as usize)
     }

@@ -64,7 +64,7 @@ impl Planner {
         &self.order
     }
 
-    /// The model.
+    /// The model that the policies are for.
     pub const fn model(&self) -> &Arc<Model> {
         &self.model
     }

@@ -217,7 +217,6 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// Of a content.
     pub fn new(content_hash: &str, found: &Robustness) -> Self {
         let Robustness { settings: RobustnessSettings { runs, seed, uncertainty }, tally } = found.clone();
         Self { content_hash: content_hash.to_owned(), runs, seed, uncertainty, tally }

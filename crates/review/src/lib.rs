@@ -292,7 +292,7 @@ impl Section {
         Self::Warnings,
     ];
 
-    /// The heading.
+    /// The heading over the section.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Plan => "Plan",

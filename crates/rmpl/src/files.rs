@@ -61,7 +61,7 @@ impl Files {
         Self { files }
     }
 
-    /// All of them.
+    /// All files, in the order of the mission.
     pub fn all(&self) -> &[File] {
         &self.files
     }

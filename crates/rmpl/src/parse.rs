@@ -96,7 +96,7 @@ impl Parse {
         parse
     }
 
-    /// The text.
+    /// The text that was parsed.
     pub fn text(&self) -> &str {
         &self.text
     }

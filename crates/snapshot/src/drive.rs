@@ -8,7 +8,6 @@ use tpn::OccurrenceId;
 /// A traverse as it was driven.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedDrive {
-    /// The activity.
     pub occurrence: OccurrenceId,
     /// When it started, in mission units.
     pub start: Time,

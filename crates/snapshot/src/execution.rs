@@ -23,7 +23,6 @@ pub struct Execution {
     /// What happened, in order.
     #[serde(with = "crate::json_text")]
     pub log: Vec<Entry>,
-    /// How it ended.
     pub ending: Ending,
     /// The plans that were executed, one after the other; there is at least one.
     pub plans: Vec<Executed>,
@@ -38,7 +37,6 @@ pub struct Executed {
     pub from: Time,
     /// Its network, with its paths; what was known by then of durations is in it, what had happened is in `times`.
     pub network: Arc<Network>,
-    /// The plan.
     pub plan: Plan,
     /// When each node happened, up to the end of the run.
     pub times: Vec<Option<Time>>,

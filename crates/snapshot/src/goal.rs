@@ -16,7 +16,6 @@ pub enum Goal {
     Scenario(SmolStr),
     /// An activity, with the bounds of its invocation.
     Activity {
-        /// Its name.
         name: SmolStr,
         /// Least duration.
         lower: Time,

@@ -84,7 +84,6 @@ pub struct Undrivable {
 /// A plan that would be listed if it could be driven.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
-    /// Its choices.
     pub choices: Vec<Choice>,
     /// Why it cannot be driven, for the author.
     pub reason: String,

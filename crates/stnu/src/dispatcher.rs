@@ -125,7 +125,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
         &self.form
     }
 
-    /// The present.
+    /// The present time, in ticks.
     pub const fn now(&self) -> i64 {
         self.now
     }

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// A time point.
+/// Names a time point of a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PointId(pub u32);
 

@@ -116,7 +116,7 @@ impl Document {
         }
     }
 
-    /// The text.
+    /// The whole text.
     pub fn text(&self) -> &str {
         &self.text
     }

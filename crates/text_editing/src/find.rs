@@ -3,7 +3,7 @@
 use regex::{Regex, RegexBuilder};
 use rmpl::{Edit, Span};
 
-/// The find bar.
+/// What the find bar looks for, and how.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Find {
     /// What is looked for.

@@ -20,7 +20,7 @@ impl Shift {
         Self { start: prefix, removed: old.len() - prefix - suffix, inserted: new.len() - prefix - suffix }
     }
 
-    /// No change.
+    /// The change that changes nothing.
     pub const NONE: Self = Self { start: 0, removed: 0, inserted: 0 };
 
     /// Where a span of the old text is in the new one; `None` if all of it was replaced.

@@ -4,7 +4,7 @@ use egui::{Color32, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, U
 
 use crate::{Tokens, space};
 
-/// A sign.
+/// The signs on buttons and labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
     /// A sun: the light theme.

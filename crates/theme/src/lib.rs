@@ -41,7 +41,7 @@ pub mod size {
     pub const SMALL: f32 = 11.0;
     /// Everything else.
     pub const BODY: f32 = 13.0;
-    /// Code.
+    /// Code in prose and in the editor.
     pub const CODE: f32 = 13.0;
     /// Titles of dialogs and sections.
     pub const TITLE: f32 = 15.0;

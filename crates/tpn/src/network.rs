@@ -58,7 +58,7 @@ id! {
     ValueId;
     /// A block of the program's structure.
     BlockId;
-    /// A resource.
+    /// A resource of the network.
     ResourceId;
     /// One use of a resource by one activity or block.
     UseId;
@@ -109,7 +109,7 @@ pub struct Network {
     pub controllability: Controllability,
 }
 
-/// An event.
+/// A node: the events that happen at one time, or a point between them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Node {
     pub role: Role,
@@ -470,7 +470,7 @@ pub struct Occurrence {
     pub span: Option<Span>,
 }
 
-/// What occurs.
+/// What an occurrence is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OccurrenceKind {

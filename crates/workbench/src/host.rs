@@ -129,7 +129,6 @@ pub enum HostEvent {
         kind: FileKind,
         /// Its name, without folders.
         name: String,
-        /// All of it.
         bytes: Vec<u8>,
         /// What [`Host::keep_file`] knows the file by, where the host can write to it.
         token: Option<u32>,
@@ -164,23 +163,15 @@ pub type ShelfContent = Vec<(String, Vec<u8>)>;
 pub enum ShelfRequest {
     /// Keep bytes under a key.
     Write {
-        /// The key.
         key: String,
-        /// What to keep.
         bytes: Vec<u8>,
         /// Comes back with the answer.
         token: i64,
     },
     /// Tell what is kept under a key.
-    Read {
-        /// The key.
-        key: String,
-    },
+    Read { key: String },
     /// Drop what is kept under a key.
-    Remove {
-        /// The key.
-        key: String,
-    },
+    Remove { key: String },
 }
 
 /// What the shelf answers.
@@ -190,7 +181,6 @@ pub enum ShelfNews {
     Opened(Result<ShelfContent, StorageError>),
     /// A request to write was carried out, or could not be.
     Written {
-        /// The key.
         key: String,
         /// What came with the request.
         token: i64,
@@ -199,7 +189,6 @@ pub enum ShelfNews {
     },
     /// What is kept under a key, if anything.
     Read {
-        /// The key.
         key: String,
         /// What is kept there.
         outcome: Result<Option<Vec<u8>>, StorageError>,
@@ -229,7 +218,6 @@ pub enum FileKind {
     Map,
     /// What reviewers said and signed, or another JSON document.
     Json,
-    /// A lesson.
     Lesson,
     /// A mission, a saved plan or a signed review, to compare the open mission with.
     Comparison,
@@ -332,7 +320,6 @@ pub enum RemoteError {
     /// The command cannot be used with these arguments.
     #[error("the command \"{command}\" cannot be used like this: {reason}")]
     BadArguments {
-        /// The command.
         command: String,
         /// What is wrong with the arguments.
         reason: String,
@@ -340,7 +327,6 @@ pub enum RemoteError {
     /// The command cannot be used now.
     #[error("the command \"{command}\" cannot be used now: {reason}")]
     Unavailable {
-        /// The command.
         command: String,
         /// What it waits for.
         reason: String,
@@ -368,7 +354,7 @@ pub enum RefusalCode {
 }
 
 impl RefusalCode {
-    /// The name.
+    /// The name that programs read.
     pub const fn name(self) -> &'static str {
         match self {
             Self::NotReady => "not-ready",

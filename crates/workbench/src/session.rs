@@ -82,12 +82,12 @@ impl Session {
         &mut self.state
     }
 
-    /// The host.
+    /// What runs around the workbench: clock, files, storage and the planning core.
     pub fn host(&self) -> &dyn Host {
         self.host.as_ref()
     }
 
-    /// The host.
+    /// The same, to be told something.
     pub fn host_mut(&mut self) -> &mut dyn Host {
         self.host.as_mut()
     }

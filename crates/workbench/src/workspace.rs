@@ -28,7 +28,7 @@ pub enum Arrangement {
 }
 
 impl Arrangement {
-    /// All of them.
+    /// All arrangements, those of workspaces first.
     pub const ALL: [Self; 6] = [
         Self::Of(Workspace::Author),
         Self::Of(Workspace::Teach),

@@ -49,7 +49,7 @@ impl ControlledPlant {
         Self { planner: Arc::new(Planner::new(&model)), model }
     }
 
-    /// The plant.
+    /// The model of the plant.
     pub fn model(&self) -> &Model {
         &self.model
     }

@@ -36,7 +36,7 @@ pub struct AutomatonDrawing {
     pub texts: Vec<AutomatonText>,
 }
 
-/// A composite.
+/// Where a composite is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CompositeShape {
     pub id: CompositeId,
@@ -57,7 +57,7 @@ pub struct LocationShape {
     pub is_start: bool,
 }
 
-/// A transition.
+/// Where a transition is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TransitionShape {
     pub id: TransitionId,

@@ -37,7 +37,7 @@ pub struct Chart {
     pub horizon: f64,
 }
 
-/// A row.
+/// A row of the timeline, with the bars in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub kind: RowKind,

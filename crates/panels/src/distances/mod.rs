@@ -23,7 +23,6 @@ use super::{Context, Panel, show_empty};
 use arrange::{Arranged, arrange};
 use graph::{DistanceGraph, Selected};
 
-/// The panel.
 #[derive(Default)]
 pub struct DistancesPanel {
     shows_matrix: bool,

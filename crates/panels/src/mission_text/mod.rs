@@ -17,7 +17,6 @@ use crate::{Context, Panel};
 
 pub use keyboard::{editor_id, typed_text};
 
-/// The editor.
 #[derive(Default)]
 pub struct EditorPanel {
     editor: Editor,

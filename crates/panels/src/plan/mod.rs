@@ -17,7 +17,6 @@ use crate::{Context, Panel, show_empty};
 /// Lists of more rows are made as far as they are on screen.
 const LONG_LIST: usize = 60;
 
-/// The plan.
 #[derive(Default)]
 pub struct PlanPanel {
     windows: windows::WindowTable,

@@ -25,7 +25,6 @@ use workbench::state::review::ReviewCommand;
 
 use crate::{Context, Panel, show_empty};
 
-/// The review.
 #[derive(Default)]
 pub struct ReviewPanel {
     /// The sections that are folded.

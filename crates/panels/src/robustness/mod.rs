@@ -12,7 +12,6 @@ use crate::one_line::cut_to;
 use crate::plan::section;
 use crate::{Context, Panel, show_empty};
 
-/// The panel.
 #[derive(Default)]
 pub struct RobustnessPanel;
 

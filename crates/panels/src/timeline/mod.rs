@@ -42,7 +42,6 @@ use crate::{Context, Panel, show_empty};
 
 pub(crate) use self::paint::drawn;
 
-/// The timeline.
 pub struct TimelinePanel {
     view: Option<TimeView>,
     /// Whether the view keeps showing everything; ends when the user moves it.

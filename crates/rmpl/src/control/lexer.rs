@@ -40,7 +40,6 @@ impl TokenKind {
     }
 }
 
-/// One token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Token {
     pub kind: TokenKind,

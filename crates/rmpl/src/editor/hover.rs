@@ -48,7 +48,7 @@ pub struct EventWindow {
     pub latest: Bound,
 }
 
-/// What to show.
+/// What the editor shows about the place under the pointer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hover {
     /// What it is about.

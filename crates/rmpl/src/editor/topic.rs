@@ -41,7 +41,7 @@ pub enum Topic {
 }
 
 impl Topic {
-    /// Every part.
+    /// Every topic, in the order of the reference.
     pub const ALL: [Self; 15] = [
         Self::Declarations,
         Self::Options,

@@ -89,7 +89,7 @@ impl<'a> SyntaxNode<'a> {
         self.tree.nodes.get(self.index as usize).copied().unwrap_or(nothing)
     }
 
-    /// What it is.
+    /// The kind of node or token.
     pub fn kind(self) -> SyntaxKind {
         self.raw().kind
     }
@@ -107,7 +107,7 @@ impl<'a> SyntaxNode<'a> {
         Span::new(self.base + start, self.base + end)
     }
 
-    /// Its text.
+    /// The source text, with what lies between its tokens.
     pub fn text(self) -> &'a str {
         let span = self.span();
         self.text.get((span.start - self.base) as usize..(span.end - self.base) as usize).unwrap_or("")

@@ -19,11 +19,9 @@ pub struct Modifiers {
 }
 
 impl Modifiers {
-    /// Nothing.
     pub const NONE: Self = Self { command: false, shift: false, alt: false };
     /// Ctrl, or ⌘ on a Mac.
     pub const COMMAND: Self = Self { command: true, ..Self::NONE };
-    /// Shift.
     pub const SHIFT: Self = Self { shift: true, ..Self::NONE };
     /// Alt, or ⌥ on a Mac.
     pub const ALT: Self = Self { alt: true, ..Self::NONE };

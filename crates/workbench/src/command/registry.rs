@@ -26,7 +26,7 @@ pub struct CommandSpec {
     pub build: Build,
 }
 
-/// The menus.
+/// The menus, each with the commands that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Group {
     /// Missions and files.

@@ -26,7 +26,7 @@ macro_rules! lessons {
     };
 }
 
-/// All chapters.
+/// The chapters of the course, in order.
 pub const COURSE: &[Chapter] = &[
     Chapter {
         title: "The language",

@@ -11,7 +11,7 @@ pub struct Glossary {
     pub terms: Vec<Term>,
 }
 
-/// A term.
+/// A term with its explanation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Term {
     /// What it is called: the usual form first, then others that stand in prose.

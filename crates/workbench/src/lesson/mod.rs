@@ -104,7 +104,7 @@ impl LessonError {
 }
 
 impl LessonMission {
-    /// The text.
+    /// The Markdown text of the lesson.
     pub fn source(&self) -> &str {
         match self {
             Self::Example(name) => mission_file::example(name).map_or("", |example| example.source),

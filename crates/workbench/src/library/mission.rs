@@ -88,7 +88,7 @@ pub struct Version {
     pub texts: Vec<TextFile>,
 }
 
-/// A mission.
+/// A mission that the library keeps: texts, maps and versions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {
     /// What tells it apart.

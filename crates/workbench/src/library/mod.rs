@@ -21,7 +21,7 @@ pub use template::{TEMPLATES, Template, template};
 
 use mission::split;
 
-/// What is open.
+/// What the user has open.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Open {
     /// A text that is no mission of the library unless it is edited.
@@ -73,7 +73,7 @@ pub struct Unreadable {
     pub bytes: Arc<[u8]>,
 }
 
-/// The missions.
+/// The user's missions, and which of them is open.
 #[derive(Debug)]
 pub struct Library {
     missions: Vec<Mission>,
@@ -137,7 +137,7 @@ impl Library {
         self.missions.iter_mut().find(|mission| mission.id == *id)
     }
 
-    /// What is open.
+    /// What the user has open.
     pub fn open(&self) -> &Open {
         &self.open
     }

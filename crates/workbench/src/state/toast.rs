@@ -1,6 +1,6 @@
 //! Short messages that go away by themselves.
 
-/// A message.
+/// A short message that appears for a moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toast {
     /// What it is about.

@@ -29,13 +29,9 @@ pub enum Key {
 pub struct Modifiers(pub(super) u8);
 
 impl Modifiers {
-    /// None.
     pub const NONE: Self = Self(0);
-    /// Alt.
     pub const ALT: Self = Self(1);
-    /// Control.
     pub const CONTROL: Self = Self(2);
-    /// Shift.
     pub const SHIFT: Self = Self(8);
 
     /// Whether a key pressed with these still types a character.

@@ -33,7 +33,7 @@ fn texts_below(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// All texts of the repository, with their paths below the root.
-fn texts() -> Vec<(PathBuf, String)> {
+pub(crate) fn texts() -> Vec<(PathBuf, String)> {
     let root = root();
     let mut paths = Vec::new();
     for place in PLACES {

@@ -1,5 +1,7 @@
 //! The integration tests of `xtask`, in one program: each module is about one thing.
 
 mod citations;
+mod documentation;
+mod names;
 mod policy;
 mod repository;

@@ -45,7 +45,7 @@ impl PartialEq for Fact {
     }
 }
 
-/// Every fact.
+/// Every fact that a question can ask for.
 pub fn all() -> impl Iterator<Item = &'static Fact> {
     [plan::FACTS, search::FACTS, path::FACTS, program::FACTS].into_iter().flatten()
 }

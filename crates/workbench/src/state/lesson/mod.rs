@@ -45,7 +45,7 @@ pub enum LessonCommand {
     Leave,
 }
 
-/// The lessons.
+/// The lesson that is open, and the answers given so far.
 #[derive(Debug, Default)]
 pub struct LessonState {
     open: Option<Arc<Lesson>>,

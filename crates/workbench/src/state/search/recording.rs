@@ -45,7 +45,7 @@ impl Recording {
         })
     }
 
-    /// The network.
+    /// The network that was searched.
     pub fn network(&self) -> &Arc<Network> {
         &self.network
     }

@@ -1,0 +1,187 @@
+//! What documents name is there: paths, items of crates, the crates themselves, and the Rust version.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use xtask::process::root;
+
+use crate::citations::texts;
+use crate::repository::{LAYERS, everything_below, sources};
+
+/// The folders of the repository whose files documents name by their whole path.
+const FOLDERS: [&str; 9] =
+    [".ci/", ".github/", "assets/", "bench/", "crates/", "docs/", "examples/", "tests/", "web/"];
+
+/// The documents about the repository, and not those that are its tests.
+fn documents() -> impl Iterator<Item = (PathBuf, String)> {
+    texts().into_iter().filter(|(path, _)| {
+        path.extension().is_some_and(|extension| extension == "md")
+            && !["tests/suite", "tests/conformance", "assets", "CHANGELOG.md"]
+                .iter()
+                .any(|other| path.starts_with(other))
+    })
+}
+
+/// What stands between backticks in the prose of a Markdown text.
+fn code_words(markdown: &str) -> Vec<&str> {
+    let mut is_code = false;
+    let mut found = Vec::new();
+    for line in markdown.lines() {
+        if line.trim_start().starts_with("```") {
+            is_code = !is_code;
+        } else if !is_code {
+            found.extend(line.split('`').skip(1).step_by(2));
+        }
+    }
+    found
+}
+
+/// The part of a word that names a path of this repository, up to the first part in capitals, which stands for any name.
+fn path_of(word: &str) -> Option<String> {
+    let is_path =
+        word.contains('/') && word.chars().all(|it| it.is_ascii_alphanumeric() || "._-/".contains(it));
+    let is_source = Path::new(word).extension().is_some_and(|extension| extension == "rs");
+    let is_ours = is_source || FOLDERS.iter().any(|folder| word.starts_with(folder));
+    let is_placeholder = |part: &&str| part.len() > 1 && part.chars().all(|it| it.is_ascii_uppercase());
+    (is_path && is_ours)
+        .then(|| word.split('/').take_while(|part| !is_placeholder(part)).collect::<Vec<_>>().join("/"))
+}
+
+/// The folders that a path may be below: of the repository, or of the sources of a crate.
+fn bases() -> Vec<PathBuf> {
+    let crates = fs::read_dir(root().join("crates")).expect("the crates").flatten().map(|entry| entry.path());
+    [root(), root().join("crates"), root().join("tests")]
+        .into_iter()
+        .chain(crates.flat_map(|path| [path.join("src"), path]))
+        .collect()
+}
+
+#[test]
+fn paths_are_told_from_other_words() {
+    assert_eq!(path_of("tests/fuzz/broken/NAME"), Some("tests/fuzz/broken".to_owned()));
+    assert_eq!(path_of("syntax/lexer.rs"), Some("syntax/lexer.rs".to_owned()));
+    for other in ["40/2", "enroute-mission/1", "mod.rs", "a + b/c", "target/fuzz"] {
+        assert_eq!(path_of(other), None, "{other}");
+    }
+}
+
+#[test]
+fn every_path_that_a_document_names_exists() {
+    let bases = bases();
+    let mut count = 0;
+    let mut wrong = Vec::new();
+    for (document, text) in documents() {
+        for path in code_words(&text).into_iter().filter_map(path_of) {
+            count += 1;
+            if !bases.iter().any(|base| base.join(&path).exists()) {
+                wrong.push(format!("{}: {path}", document.display()));
+            }
+        }
+    }
+    assert!(count > 50, "only {count} paths were found");
+    assert!(wrong.is_empty(), "there are no such files:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_item_that_a_document_names_is_in_its_crate() {
+    let mut words: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
+    for (name, _) in LAYERS {
+        let folder = root().join("crates").join(name).join("src");
+        // A module may be named by its file alone.
+        let mut found: BTreeSet<String> = BTreeSet::new();
+        for source in sources(&folder) {
+            let text = fs::read_to_string(&source).expect("a source");
+            found.extend(text.split(|it: char| !it.is_alphanumeric() && it != '_').map(str::to_owned));
+        }
+        words.insert(name, found);
+    }
+    let mut count = 0;
+    let mut wrong = Vec::new();
+    for (document, text) in documents() {
+        for word in code_words(&text) {
+            let mut parts = word.split("::");
+            let Some(known) = parts.next().and_then(|name| words.get(name)) else { continue };
+            for part in parts {
+                count += 1;
+                if !known.contains(part) {
+                    wrong.push(format!("{}: {word}", document.display()));
+                }
+            }
+        }
+    }
+    assert!(count > 10, "only {count} items were found");
+    assert!(wrong.is_empty(), "there are no such items:\n{}", wrong.join("\n"));
+}
+
+fn manifest() -> toml::Table {
+    let text = fs::read_to_string(root().join("Cargo.toml")).expect("the manifest of the workspace");
+    text.parse().expect("a manifest is TOML")
+}
+
+#[test]
+fn every_crate_is_in_every_list_of_crates() {
+    let folders: BTreeSet<String> = fs::read_dir(root().join("crates"))
+        .expect("the crates")
+        .flatten()
+        .filter(|entry| entry.path().join("Cargo.toml").is_file())
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    let layers: BTreeSet<String> = LAYERS.iter().map(|(name, _)| (*name).to_owned()).collect();
+    assert_eq!(layers, folders, "the layers in {}", file!());
+
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("the architecture");
+    let layers: BTreeMap<&str, &[&str]> = LAYERS.iter().copied().collect();
+    let mut described = BTreeSet::new();
+    for row in text.lines().filter(|line| line.starts_with("| `")) {
+        let columns: Vec<&str> = row.trim_matches('|').split('|').collect();
+        let [names, _, on] = columns[..] else { continue };
+        let names = code_words(names);
+        described.extend(names.iter().map(|&name| name.to_owned()));
+        if on.trim() == "all above" {
+            continue;
+        }
+        // What the row names, and what that builds on, is what the crate may use.
+        let on = code_words(on);
+        let with_below = |on: &[&str]| -> BTreeSet<String> {
+            let below = on.iter().flat_map(|&on| everything_below(on, &layers).into_iter().chain([on]));
+            below.map(str::to_owned).collect()
+        };
+        let allowed: Vec<&str> = names.iter().flat_map(|name| layers[name]).copied().collect();
+        assert_eq!(with_below(&on), with_below(&allowed), "ARCHITECTURE.md, {names:?}");
+    }
+    assert_eq!(described, folders, "the crates in ARCHITECTURE.md");
+
+    let manifest = manifest();
+    for (name, dependency) in manifest["workspace"]["dependencies"].as_table().expect("dependencies") {
+        if let Some(path) = dependency.get("path").and_then(toml::Value::as_str) {
+            assert_eq!(path, format!("crates/{name}"));
+            assert!(folders.contains(name), "Cargo.toml: there is no {path}");
+        }
+    }
+    // Other workspaces may name the crates as well; a profile for a crate that is gone builds nothing.
+    let lock = fs::read_to_string(root().join("Cargo.lock")).expect("the lock file");
+    for (profile, settings) in manifest["profile"].as_table().expect("profiles") {
+        let packages = settings.get("package").and_then(toml::Value::as_table);
+        for name in packages.into_iter().flat_map(toml::Table::keys).filter(|name| *name != "*") {
+            assert!(
+                lock.contains(&format!("\nname = \"{name}\"\n")),
+                "profile {profile}: there is no {name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_place_names_the_same_rust_version() {
+    let manifest = manifest();
+    let version = manifest["workspace"]["package"]["rust-version"].as_str().expect("a version");
+    for (document, named) in [
+        ("README.md", format!("({version} or later")),
+        ("CONTRIBUTING.md", format!("({version} or later")),
+        ("bench/peers/Cargo.toml", format!("rust-version = \"{version}\"")),
+    ] {
+        let text = fs::read_to_string(root().join(document)).expect("a document");
+        assert!(text.contains(&named), "{document} does not name Rust {version}");
+    }
+}
