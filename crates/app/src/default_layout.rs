@@ -261,6 +261,17 @@ mod tests {
     use super::*;
 
     #[test]
+    fn every_panel_has_a_place_in_a_default_layout_of_each_size() {
+        for size in [SizeClass::Wide, SizeClass::Narrow] {
+            let layouts = Arrangement::ALL.map(|arrangement| default_layout(arrangement, size));
+            for panel in PanelKind::ALL {
+                let has_place = layouts.iter().any(|layout| layout.tiles.find_pane(&panel).is_some());
+                assert!(has_place, "{panel:?} is in no default layout, {size:?}");
+            }
+        }
+    }
+
+    #[test]
     fn a_kept_layout_that_is_no_tree_or_leaves_no_room_is_not_used() {
         let tree = default_layout(Arrangement::ALL[0], SizeClass::Wide);
         let text = to_text(&tree).expect("a layout has a text");

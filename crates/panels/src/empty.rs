@@ -27,23 +27,13 @@ pub fn show_empty(ui: &mut Ui, context: &Context<'_>, text: &str) {
 /// Says above a panel that draws a mission that this is not the mission which is written now. While that is worked out,
 /// which mostly is a moment, nothing is said.
 pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
-    let draws_mission = matches!(
-        panel,
-        PanelKind::Plan
-            | PanelKind::Timeline
-            | PanelKind::Terrain
-            | PanelKind::Distances
-            | PanelKind::Search
-            | PanelKind::Strategy
-            | PanelKind::Robustness
-    );
     let now = match context.state.status() {
         Status::Broken => "what is written now has errors",
         Status::Empty => "there is nothing to plan in what is written now",
         Status::Undecided => "what is written now is not worked out",
         _ => return,
     };
-    if !draws_mission || !context.is_stale || context.snapshot.is_none() {
+    if !panel.is_marked_when_stale() || !context.is_stale || context.snapshot.is_none() {
         return;
     }
     let color = context.tokens.warning;

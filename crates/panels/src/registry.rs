@@ -1,4 +1,4 @@
-//! The panels by kind. A new panel is added here.
+//! The panels by kind.
 
 use std::collections::BTreeMap;
 

@@ -5,7 +5,6 @@ use std::sync::LazyLock;
 use markdown::{Block, Content, Document, anchor, plain};
 use rmpl::editor::Topic;
 
-use crate::PanelKind;
 use crate::lesson::Glossary;
 use crate::state::no_plan::NO_PLAN;
 
@@ -160,27 +159,6 @@ pub const fn about_topic(topic: Topic) -> (&'static str, &'static str) {
     ("language", section)
 }
 
-/// The page and the section that tell about a panel.
-pub const fn about_panel(panel: PanelKind) -> (&'static str, &'static str) {
-    match panel {
-        PanelKind::Editor | PanelKind::Outline => ("language", ""),
-        PanelKind::Problems => ("diagnostics", ""),
-        PanelKind::Network => ("network", ""),
-        PanelKind::Plan => ("specification", "5-planning"),
-        PanelKind::Timeline => ("timeline", ""),
-        PanelKind::Terrain => ("terrain", ""),
-        PanelKind::Search => ("specification", "54-the-order-of-the-search-and-completeness"),
-        PanelKind::Distances => ("specification", "61-the-dispatchable-form"),
-        PanelKind::Strategy => ("controllability", "on-screen"),
-        PanelKind::Automaton => ("control-programs", "on-screen"),
-        PanelKind::Review | PanelKind::Compare => ("reviews", ""),
-        PanelKind::Execution => ("simulation", ""),
-        PanelKind::Robustness => ("robustness", ""),
-        PanelKind::Lesson => ("lessons", ""),
-        PanelKind::Manual => ("glossary", ""),
-    }
-}
-
 /// The places where all words of `query` stand in one block, whatever their case: headings first, then glossary entries,
 /// then the rest, in the order of the pages. Linear in the manual.
 pub fn search(query: &str) -> Vec<Found> {
@@ -287,11 +265,12 @@ fn visit_links(blocks: &[Block], visit: &mut dyn FnMut(&str)) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::PanelKind;
 
     #[test]
     fn every_page_of_a_panel_and_every_code_has_its_section() {
         for panel in PanelKind::ALL {
-            let (name, section) = about_panel(panel);
+            let (name, section) = panel.manual();
             let page = page_named(name).unwrap_or_else(|| panic!("no page {name} for {panel:?}"));
             assert!(
                 section.is_empty() || page.document.heading(section).is_some(),

@@ -1,111 +1,105 @@
-//! The kinds of panel, by name: what each shows is in the crate `app`.
+//! The kinds of panel, in one table: names, titles, pages of the manual. What each shows is in the crate `panels`.
 
 use serde::{Deserialize, Serialize};
 
-/// The kinds of panel. A layout holds at most one of each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum PanelKind {
-    Editor,
+/// Declares the kinds of panel, so that none is left out of what is true of all.
+macro_rules! panel_kinds {
+    ($(
+        $(#[$comment:meta])*
+        $kind:ident: $name:literal, $title:literal, $page:literal $section:literal $(, $property:ident)*;
+    )*) => {
+        /// The kinds of panel. A layout holds at most one of each.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum PanelKind {
+            $($(#[$comment])* $kind,)*
+        }
+
+        impl PanelKind {
+            /// All of them, as the menu lists them.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$kind),*];
+
+            const fn entry(self) -> Entry {
+                match self {
+                    $(Self::$kind => Entry {
+                        name: $name,
+                        title: $title,
+                        manual: ($page, $section),
+                        properties: &[$(Property::$property),*],
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+/// What is true of a kind of panel.
+struct Entry {
+    name: &'static str,
+    title: &'static str,
+    manual: (&'static str, &'static str),
+    properties: &'static [Property],
+}
+
+/// What is true of some kinds of panel.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Property {
+    /// It has a view that can be zoomed and fitted.
+    Zoomable,
+    /// It draws the mission as planned, and is marked while what it draws is of an earlier text.
+    MarkedWhenStale,
+}
+
+// Kind: name in commands, title on screen, page and section of the manual, and what else is true of it.
+panel_kinds! {
+    Editor: "editor", "Mission text", "language" "";
     /// What the text declares.
-    Outline,
+    Outline: "outline", "Outline", "language" "";
     /// What is wrong with it.
-    Problems,
+    Problems: "problems", "Problems", "diagnostics" "";
     /// The temporal plan network.
-    Network,
+    Network: "network", "Network", "network" "", Zoomable;
     /// Choices, windows, links, orderings and the verdict, or why there is no plan.
-    Plan,
+    Plan: "plan", "Plan", "specification" "5-planning", MarkedWhenStale;
     /// The activities over time.
-    Timeline,
+    Timeline: "timeline", "Timeline", "timeline" "", Zoomable, MarkedWhenStale;
     /// The ground and the vehicles.
-    Terrain,
+    Terrain: "terrain", "Terrain", "terrain" "", Zoomable, MarkedWhenStale;
     /// The search that found the plan.
-    Search,
+    Search: "search", "Search", "specification" "54-the-order-of-the-search-and-completeness", Zoomable, MarkedWhenStale;
     /// The distances between the events of the plan, or of the step that is looked at.
-    Distances,
+    Distances: "distances", "Distances", "specification" "61-the-dispatchable-form", Zoomable, MarkedWhenStale;
     /// A run against nature, whose durations are chosen one by one.
-    Strategy,
+    Strategy: "strategy", "Against nature", "controllability" "on-screen", MarkedWhenStale;
     /// The run of a control program.
-    Automaton,
+    Automaton: "automaton", "Automaton", "control-programs" "on-screen", Zoomable;
     /// The checklist of the review, comments and approvals.
-    Review,
+    Review: "review", "Review", "reviews" "";
     /// Two plans side by side.
-    Compare,
+    Compare: "compare", "Compare", "reviews" "";
     /// The run of a mission.
-    Execution,
+    Execution: "execution", "Execution", "simulation" "";
     /// Many runs of it with chance.
-    Robustness,
+    Robustness: "robustness", "Robustness", "robustness" "", MarkedWhenStale;
     /// A lesson beside what it is about.
-    Lesson,
-    Manual,
+    Lesson: "lesson", "Lesson", "lessons" "";
+    Manual: "manual", "Manual", "glossary" "";
 }
 
 impl PanelKind {
-    /// All of them, as the menu lists them.
-    pub const ALL: [Self; 17] = [
-        Self::Editor,
-        Self::Outline,
-        Self::Problems,
-        Self::Network,
-        Self::Plan,
-        Self::Timeline,
-        Self::Terrain,
-        Self::Search,
-        Self::Distances,
-        Self::Strategy,
-        Self::Automaton,
-        Self::Review,
-        Self::Compare,
-        Self::Execution,
-        Self::Robustness,
-        Self::Lesson,
-        Self::Manual,
-    ];
-
     /// Its name on screen.
     pub const fn title(self) -> &'static str {
-        match self {
-            Self::Editor => "Mission text",
-            Self::Outline => "Outline",
-            Self::Problems => "Problems",
-            Self::Network => "Network",
-            Self::Plan => "Plan",
-            Self::Timeline => "Timeline",
-            Self::Terrain => "Terrain",
-            Self::Search => "Search",
-            Self::Distances => "Distances",
-            Self::Strategy => "Against nature",
-            Self::Automaton => "Automaton",
-            Self::Review => "Review",
-            Self::Compare => "Compare",
-            Self::Execution => "Execution",
-            Self::Robustness => "Robustness",
-            Self::Lesson => "Lesson",
-            Self::Manual => "Manual",
-        }
+        self.entry().title
     }
 
     /// Its name in commands.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Editor => "editor",
-            Self::Outline => "outline",
-            Self::Problems => "problems",
-            Self::Network => "network",
-            Self::Plan => "plan",
-            Self::Timeline => "timeline",
-            Self::Terrain => "terrain",
-            Self::Search => "search",
-            Self::Distances => "distances",
-            Self::Strategy => "strategy",
-            Self::Automaton => "automaton",
-            Self::Review => "review",
-            Self::Compare => "compare",
-            Self::Execution => "execution",
-            Self::Robustness => "robustness",
-            Self::Lesson => "lesson",
-            Self::Manual => "manual",
-        }
+        self.entry().name
+    }
+
+    /// The page of the manual that tells about it, and the section, which is empty for the whole page.
+    pub const fn manual(self) -> (&'static str, &'static str) {
+        self.entry().manual
     }
 
     /// The panel of this name.
@@ -114,10 +108,12 @@ impl PanelKind {
     }
 
     /// Whether it has a view that can be zoomed and fitted.
-    pub const fn is_zoomable(self) -> bool {
-        matches!(
-            self,
-            Self::Network | Self::Timeline | Self::Terrain | Self::Search | Self::Distances | Self::Automaton
-        )
+    pub fn is_zoomable(self) -> bool {
+        self.entry().properties.contains(&Property::Zoomable)
+    }
+
+    /// Whether it draws the mission as planned, and is marked while what is drawn is of an earlier text.
+    pub fn is_marked_when_stale(self) -> bool {
+        self.entry().properties.contains(&Property::MarkedWhenStale)
     }
 }

@@ -90,7 +90,7 @@ impl AppState {
             ManualCommand::About(panel) => {
                 let about_text = self.about_text(panel);
                 let (page, section) = about_text.unwrap_or_else(|| {
-                    let (page, section) = manual::about_panel(panel);
+                    let (page, section) = panel.manual();
                     (page, section.to_owned())
                 });
                 return self.apply_to_manual(ManualCommand::Open(page, section));

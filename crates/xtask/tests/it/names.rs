@@ -185,3 +185,33 @@ fn every_place_names_the_same_rust_version() {
         assert!(text.contains(&named), "{document} does not name Rust {version}");
     }
 }
+
+#[test]
+fn every_panel_is_in_each_place_that_its_recipe_names() {
+    let recipes = fs::read_to_string(root().join("CONTRIBUTING.md")).expect("the recipes");
+    let (_, recipe) = recipes.split_once("\n### A panel\n").expect("a recipe for a panel");
+    let recipe = recipe.split("\n### ").next().unwrap_or_default();
+    let places: Vec<String> = code_words(recipe)
+        .into_iter()
+        .filter_map(path_of)
+        .filter(|path| root().join(path).is_file())
+        .collect();
+    assert_eq!(places.len(), 3, "{places:?}");
+    let read = |place: &String| fs::read_to_string(root().join(place)).expect("a source");
+    // The table of kinds: `Kind: "name", "title", …;`.
+    let table = read(&places[0]);
+    let kinds: Vec<&str> = table
+        .lines()
+        .filter_map(|line| line.trim().split_once(": \""))
+        .map(|(kind, _)| kind)
+        .filter(|kind| kind.chars().all(char::is_alphanumeric))
+        .collect();
+    assert!(kinds.len() > 10 && kinds.contains(&"Timeline"), "{kinds:?}");
+    for place in &places {
+        let text = read(place);
+        let words: BTreeSet<&str> = text.split(|it: char| !it.is_alphanumeric()).collect();
+        for kind in &kinds {
+            assert!(words.contains(kind), "{place} does not name the panel {kind}");
+        }
+    }
+}
