@@ -94,7 +94,7 @@ fn observations(input: &[u8]) -> Outcome {
 /// Scripts of what disturbs a run.
 pub(super) const DISTURBANCES: Reader = Reader {
     name: "disturbances",
-    seeds: &["crates/cli/tests/*.json"],
+    seeds: &[],
     words: &[
         "\"disturbances\"",
         "\"kind\"",

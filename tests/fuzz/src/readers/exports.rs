@@ -19,12 +19,7 @@ use super::{NOTHING, Outcome, Reader, magnitude, nothing, read, refused, text_of
 /// Missions and networks with a plan, written in every way.
 pub(super) const EXPORTS: Reader = Reader {
     name: "exports",
-    seeds: &[
-        "assets/missions/*.rmpl",
-        "tests/conformance/t*.rmpl",
-        "tests/fuzz/corpus/networks/*",
-        "tests/fuzz/corpus/ptpn/*",
-    ],
+    seeds: &["assets/missions/*.rmpl", "tests/fuzz/corpus/networks/*", "tests/fuzz/corpus/ptpn/*"],
     words: WORDS,
     mend: nothing,
     exercise: exports,

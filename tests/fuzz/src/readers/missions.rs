@@ -125,7 +125,7 @@ fn texts(input: &[u8]) -> Outcome {
 /// disturbs them and many times by chance, within bounds. Plans that are given hold against the checker.
 pub(super) const PLANNED: Reader = Reader {
     name: "missions-planned",
-    seeds: &["assets/missions/*.rmpl", "tests/conformance/t*.rmpl", "tests/conformance/*.rmpl"],
+    seeds: &["assets/missions/*.rmpl", "tests/conformance/*.rmpl"],
     words: WORDS,
     mend: nothing,
     exercise: planned,

@@ -93,6 +93,15 @@ fn files(folder: &Path, ending: &str) -> Vec<Vec<u8>> {
     paths.iter().filter_map(|path| fs::read(path).ok()).collect()
 }
 
+/// What the files hold that a pattern names: one file, or `folder/*ending`, below the root of the repository.
+fn matching(pattern: &str) -> Vec<Vec<u8>> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    match pattern.split_once('*') {
+        Some((folder, ending)) => files(&root.join(folder), ending),
+        None => fs::read(root.join(pattern)).into_iter().collect(),
+    }
+}
+
 impl Reader {
     /// What once broke it.
     pub fn broken(&self) -> Vec<Vec<u8>> {
@@ -101,20 +110,8 @@ impl Reader {
 
     /// Files of its kind.
     pub fn seeds(&self) -> Vec<Vec<u8>> {
-        let mut found = files(&own_folder("corpus").join(self.name), "");
-        for seeds in self.seeds {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(seeds);
-            match seeds.split_once('*') {
-                Some((folder, ending)) => {
-                    found.extend(files(
-                        &Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder),
-                        ending,
-                    ));
-                }
-                None => found.extend(fs::read(path)),
-            }
-        }
-        found
+        let own = files(&own_folder("corpus").join(self.name), "");
+        own.into_iter().chain(self.seeds.iter().flat_map(|pattern| matching(pattern))).collect()
     }
 }
 
@@ -160,4 +157,18 @@ fn signature(words: &str) -> u64 {
 /// How large something is, roughly.
 fn magnitude(count: usize) -> char {
     char::from(b'a' + (usize::BITS - count.leading_zeros()) as u8 % 26)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pattern_names_a_file() {
+        for reader in READERS {
+            for pattern in reader.seeds {
+                assert!(!matching(pattern).is_empty(), "{}: nothing is named {pattern}", reader.name);
+            }
+        }
+    }
 }
