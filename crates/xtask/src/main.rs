@@ -2,6 +2,7 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command line talks to its user")]
 
 mod bench;
+mod lines;
 mod serve;
 mod shot;
 mod test;
@@ -37,6 +38,12 @@ enum Task {
     Disturb(Disturbances),
     /// Gives mutated inputs to every reader of other people's data, and prints what came of it, reader by reader.
     Fuzz(Fuzzing),
+    /// Counts the lines of each crate, without its tests.
+    Lines {
+        /// Another copy of the repository, to compare with.
+        #[arg(long)]
+        root: Option<PathBuf>,
+    },
     /// Takes a picture of the built page in headless Chromium.
     Shot(shot::Options),
 }
@@ -105,6 +112,7 @@ fn main() -> ExitCode {
         Task::Fuzz(fuzzing) => process::run(
             process::cargo().args(["run", "--quiet", "--package", "fuzz", "--"]).args(fuzzing.arguments),
         ),
+        Task::Lines { root } => lines::print(&root.unwrap_or_else(process::root)),
         Task::Shot(options) => shot::run(&options),
     };
     match outcome {
