@@ -37,7 +37,7 @@ pub struct Reader {
     pub cost: u64,
 }
 
-/// All readers.
+/// All readers, in the order of the table that a long run prints.
 pub const READERS: &[Reader] = &[
     missions::TEXTS,
     missions::PLANNED,
