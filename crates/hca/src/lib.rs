@@ -21,6 +21,6 @@ pub use automaton::{
 pub use compile::{Compilation, compile, compile_text};
 pub use knowledge::Estimate;
 pub use marking::Marking;
-pub use step::{Quiet, StepObserver, Stepper};
+pub use step::{StepObserver, Stepper, Unobserved};
 pub use trace::{Trace, TraceStep, trace};
 pub use vocabulary::{Variable, VariableId, Vocabulary};

@@ -6,7 +6,7 @@ use crate::automaton::{Automaton, CompositeId, CompositeKind, LocationId, TestId
 use crate::knowledge::Estimate;
 use crate::marking::{Marking, bits};
 
-/// Is told what happens in a step; [`Quiet`] costs nothing.
+/// Is told what happens in a step; [`Unobserved`] costs nothing.
 pub trait StepObserver {
     /// The maintenance of a composite failed: everything below it was dropped.
     fn preempted(&mut self, _composite: CompositeId) {}
@@ -20,9 +20,9 @@ pub trait StepObserver {
 
 /// Observes nothing.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Quiet;
+pub struct Unobserved;
 
-impl StepObserver for Quiet {}
+impl StepObserver for Unobserved {}
 
 /// A composite whose maintenance is checked, or a sequence to move on, with what that needs at hand.
 #[derive(Clone, Debug)]
@@ -120,7 +120,7 @@ impl Stepper {
     /// Takes one step under the estimate at its end.
     #[inline]
     pub fn step(&mut self, estimate: &Estimate) {
-        self.step_observed(std::slice::from_ref(estimate), &mut Quiet);
+        self.step_observed(std::slice::from_ref(estimate), &mut Unobserved);
     }
 
     /// Takes one step when the plant is known to be in one of several states: what is true in all of them is known.

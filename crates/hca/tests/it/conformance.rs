@@ -141,7 +141,7 @@ fn what_is_true_in_all_possible_states_is_known() {
     let mut stepper = hca::Stepper::new(&automaton);
     stepper.step_observed(
         &[automaton.estimate([("c", "on")]), automaton.estimate([("c", "off")])],
-        &mut hca::Quiet,
+        &mut hca::Unobserved,
     );
     assert_eq!(automaton.labels(stepper.marking()), ["assert x=a", "when c=on"]);
 }
