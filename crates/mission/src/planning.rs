@@ -536,9 +536,9 @@ fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraverseP
 
 /// What the segments of a leg take; `heading` is how the leader faces before it.
 fn timings(route: &Route, leg: &Leg, map: &Terrain, heading: Option<f64>) -> Vec<SegmentTiming> {
-    let [least_mps, greatest_mps] = [route.speed_mps.0, route.speed_mps.1].map(Rational::to_f64);
+    let [min_mps, max_mps] = [route.speed_mps.0, route.speed_mps.1].map(Rational::to_f64);
     let path = motion::Path::new(leg.points_m.clone());
-    let speeds = SpeedLimits { least_mps, greatest_mps };
+    let speeds = SpeedLimits { min_mps, max_mps };
     match &route.limits {
         Some(limits) => motion::time_path_within(&path, map, route.model, speeds, (limits, heading)),
         None => motion::time_path(&path, map, route.model, speeds),

@@ -24,9 +24,9 @@ struct Disc {
 
 impl FineWorld {
     /// The rocks of a map from a diameter in metres on, also those too small for the map, and declared obstacles.
-    pub fn new(terrain: &Terrain, obstacles: &[Obstacle], least_rock_m: f64) -> Self {
+    pub fn new(terrain: &Terrain, obstacles: &[Obstacle], min_rock_m: f64) -> Self {
         let mut world = Self::default();
-        for rock in terrain.rocks().iter().filter(|rock| rock.diameter_m >= least_rock_m) {
+        for rock in terrain.rocks().iter().filter(|rock| rock.diameter_m >= min_rock_m) {
             world.add(&Obstacle::Circle { center_m: rock.center_m, radius_m: 0.5 * rock.diameter_m });
         }
         for obstacle in obstacles {

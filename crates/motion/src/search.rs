@@ -50,7 +50,7 @@ pub struct Settings {
     /// The probability with which the goal is the sample (p).
     pub goal_bias: f64,
     /// How many samples are drawn at most (N).
-    pub greatest_samples: u32,
+    pub max_samples: u32,
     /// How many samples RRT* draws after its first path to shorten it.
     pub improving_samples: u32,
     /// What the vehicle of the kinodynamic planner can do.
@@ -66,7 +66,7 @@ impl Settings {
             planner,
             step_m: 6.0,
             goal_bias: 0.05,
-            greatest_samples: 50_000,
+            max_samples: 50_000,
             improving_samples: 3_000,
             limits: DriveLimits::of(&VEHICLE_MODELS[0]),
             seed: 1,
@@ -294,7 +294,7 @@ impl Search {
             }
             _ => true,
         });
-        satisfied || samples >= self.settings.greatest_samples
+        satisfied || samples >= self.settings.max_samples
     }
 
     /// The best path so far.

@@ -12,9 +12,9 @@ use crate::vehicle::{Drive, VehicleModel};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedLimits {
     /// 0 when the vehicle may stop: a segment then has no greatest duration.
-    pub least_mps: f64,
+    pub min_mps: f64,
     /// Must be positive.
-    pub greatest_mps: f64,
+    pub max_mps: f64,
 }
 
 /// What one segment of a path takes.
@@ -30,9 +30,9 @@ pub struct SegmentTiming {
     /// below the greatest speed; none where they do not.
     pub slope_speed_mps: Option<f64>,
     /// Least duration in milliseconds, rounded up.
-    pub least_millis: u64,
+    pub min_millis: u64,
     /// Greatest duration in milliseconds, rounded up and never below the least; none when the vehicle may stop.
-    pub greatest_millis: Option<u64>,
+    pub max_millis: Option<u64>,
 }
 
 /// The time in milliseconds for a length at a speed, rounded up. A millionth of a millisecond of rounding in the
@@ -72,15 +72,15 @@ pub fn time_path_within(
             let next = libm::atan2(ahead.y, ahead.x);
             let turn = heading.map_or(std::f64::consts::PI, |heading| heading_difference(heading, next));
             heading = Some(next);
-            let fastest = timing.slope_speed_mps.unwrap_or(speeds.greatest_mps);
+            let fastest = timing.slope_speed_mps.unwrap_or(speeds.max_mps);
             let seconds = limits.turn_s(turn) + limits.straight_s(timing.ground_length_m, fastest);
             if seconds <= 0.0 {
                 return timing;
             }
             let mean_mps = timing.ground_length_m / seconds;
-            let least_millis = duration_millis(timing.ground_length_m, mean_mps).unwrap_or(u64::MAX);
-            let greatest_millis = timing.greatest_millis.map(|greatest| greatest.max(least_millis));
-            SegmentTiming { slope_speed_mps: Some(mean_mps), least_millis, greatest_millis, ..timing }
+            let min_millis = duration_millis(timing.ground_length_m, mean_mps).unwrap_or(u64::MAX);
+            let max_millis = timing.max_millis.map(|greatest| greatest.max(min_millis));
+            SegmentTiming { slope_speed_mps: Some(mean_mps), min_millis, max_millis, ..timing }
         })
         .collect()
 }
@@ -95,7 +95,7 @@ fn time_segment(
     let plan_length_m = distance(&from_m, &to_m);
     let mut ground_length_m = plan_length_m;
     let mut grade = 0.0;
-    let mut slowest = speeds.greatest_mps;
+    let mut slowest = speeds.max_mps;
     if let Drive::SkidSteer { .. } = model.drive {
         // The time of a segment is the sum over pieces of different slope; an equal speed over the whole length gives
         // the same sum.
@@ -109,8 +109,8 @@ fn time_segment(
             let length = (ahead * ahead + up * up).sqrt();
             let limit = if ahead > 0.0 { model.speed_on_grade_mps(up / ahead) } else { model.speed_mps };
             ground_length_m += length;
-            is_limited |= limit < speeds.greatest_mps;
-            seconds += length / limit.min(speeds.greatest_mps);
+            is_limited |= limit < speeds.max_mps;
+            seconds += length / limit.min(speeds.max_mps);
         }
         if seconds > 0.0 && is_limited {
             slowest = ground_length_m / seconds;
@@ -121,11 +121,11 @@ fn time_segment(
             grade = (last.z - first.z) / plan_length_m;
         }
     }
-    let slope_speed_mps = (slowest < speeds.greatest_mps).then_some(slowest);
-    let least_millis = duration_millis(ground_length_m, slowest).unwrap_or(u64::MAX);
-    let greatest_millis =
-        duration_millis(ground_length_m, speeds.least_mps).map(|greatest| greatest.max(least_millis));
-    SegmentTiming { plan_length_m, ground_length_m, grade, slope_speed_mps, least_millis, greatest_millis }
+    let slope_speed_mps = (slowest < speeds.max_mps).then_some(slowest);
+    let min_millis = duration_millis(ground_length_m, slowest).unwrap_or(u64::MAX);
+    let max_millis =
+        duration_millis(ground_length_m, speeds.min_mps).map(|greatest| greatest.max(min_millis));
+    SegmentTiming { plan_length_m, ground_length_m, grade, slope_speed_mps, min_millis, max_millis }
 }
 
 #[cfg(test)]
@@ -139,11 +139,11 @@ mod tests {
         // SPEC 7.3: legs of 300, 500 and 415 m at 0.045 to 0.05 m/s.
         let terrain = Terrain::flat(GridFrame::new(2200, 4, 0.6));
         let path = Path::new([0.0, 300.0, 800.0, 1215.0].map(|east| Point2::new(east, 1.0)).to_vec());
-        let speeds = SpeedLimits { least_mps: 0.045, greatest_mps: 0.05 };
+        let speeds = SpeedLimits { min_mps: 0.045, max_mps: 0.05 };
         let timings = time_path(&path, &terrain, vehicle_model("ATRV").unwrap(), speeds);
-        let least: Vec<u64> = timings.iter().map(|timing| timing.least_millis).collect();
+        let least: Vec<u64> = timings.iter().map(|timing| timing.min_millis).collect();
         assert_eq!(least, [6_000_000, 10_000_000, 8_300_000]);
-        let greatest: Vec<u64> = timings.iter().map(|timing| timing.greatest_millis.unwrap()).collect();
+        let greatest: Vec<u64> = timings.iter().map(|timing| timing.max_millis.unwrap()).collect();
         // 111.11…, 185.185… and 153.703… minutes, rounded up to the millisecond.
         assert_eq!(greatest, [6_666_667, 11_111_112, 9_222_223]);
         assert_eq!(least.iter().sum::<u64>(), 405 * 60_000);
@@ -153,9 +153,9 @@ mod tests {
     fn a_vehicle_that_may_stop_has_no_greatest_duration() {
         let terrain = Terrain::flat(GridFrame::new(10, 10, 1.0));
         let path = Path::new(vec![Point2::new(1.0, 1.0), Point2::new(5.0, 1.0)]);
-        let speeds = SpeedLimits { least_mps: 0.0, greatest_mps: 0.8 };
+        let speeds = SpeedLimits { min_mps: 0.0, max_mps: 0.8 };
         let timing = time_path(&path, &terrain, vehicle_model("ATRV").unwrap(), speeds)[0];
-        assert_eq!((timing.least_millis, timing.greatest_millis), (5000, None));
+        assert_eq!((timing.min_millis, timing.max_millis), (5000, None));
     }
 
     #[test]
@@ -165,16 +165,15 @@ mod tests {
         let terrain = Terrain::new(frame, heights);
         let path = Path::new(vec![Point2::new(5.0, 5.0), Point2::new(25.0, 5.0)]);
         let model = vehicle_model("ATRV").unwrap();
-        let timing =
-            |greatest_mps| time_path(&path, &terrain, model, SpeedLimits { least_mps: 0.1, greatest_mps })[0];
+        let timing = |max_mps| time_path(&path, &terrain, model, SpeedLimits { min_mps: 0.1, max_mps })[0];
         let length = 20.0 * 1.04_f64.sqrt();
         assert!((timing(0.2).ground_length_m - length).abs() < 1e-4);
         assert!((timing(0.2).grade - 0.2).abs() < 1e-5);
-        assert_eq!(timing(0.2).least_millis, (length / 0.2 * 1000.0).ceil() as u64);
+        assert_eq!(timing(0.2).min_millis, (length / 0.2 * 1000.0).ceil() as u64);
         // 0.8 m/s is out of reach at a grade of 0.2 of at most 0.364.
         let reachable = model.speed_on_grade_mps(0.2);
         let expected = (length / reachable * 1000.0).ceil();
-        assert!((timing(0.8).least_millis as f64 - expected).abs() <= 1.0);
+        assert!((timing(0.8).min_millis as f64 - expected).abs() <= 1.0);
         assert!((timing(0.8).slope_speed_mps.unwrap() - reachable).abs() < 1e-6);
         assert_eq!(timing(0.2).slope_speed_mps, None);
     }

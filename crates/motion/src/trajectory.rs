@@ -254,11 +254,11 @@ pub fn drive_path(path: &Path, heading_rad: f64, limits: &DriveLimits) -> Trajec
 }
 
 /// The duration of the fastest motion over a way from rest to rest.
-fn rest_to_rest_s(way: f64, greatest_rate: f64, acceleration: f64) -> f64 {
+fn rest_to_rest_s(way: f64, max_rate: f64, acceleration: f64) -> f64 {
     if way <= 0.0 {
         return 0.0;
     }
-    let peak = greatest_rate.min((way * acceleration).sqrt());
+    let peak = max_rate.min((way * acceleration).sqrt());
     peak / acceleration + way / peak
 }
 
@@ -271,13 +271,13 @@ struct ProfileStep {
 }
 
 /// The fastest motion over a way from rest to rest: speeding up, holding, slowing down evenly.
-fn rest_to_rest(way: f64, greatest_rate: f64, acceleration: f64) -> Vec<ProfileStep> {
+fn rest_to_rest(way: f64, max_rate: f64, acceleration: f64) -> Vec<ProfileStep> {
     if way <= 0.0 {
         return Vec::new();
     }
-    let peak = greatest_rate.min((way * acceleration).sqrt());
+    let peak = max_rate.min((way * acceleration).sqrt());
     let ramp_s = peak / acceleration;
-    let total_s = rest_to_rest_s(way, greatest_rate, acceleration);
+    let total_s = rest_to_rest_s(way, max_rate, acceleration);
     let count = (total_s / Trajectory::STEP_S).ceil().max(1.0);
     let seconds = total_s / count;
     (1..=count as u64)

@@ -41,7 +41,7 @@ pub enum Drive {
         /// Wheel radius in metres.
         wheel_radius_m: f64,
         /// Greatest climb, in metres up for each metre forward.
-        greatest_grade: f64,
+        max_grade: f64,
         /// Least diameter of a rock that it can't pass over, in metres.
         rock_diameter_m: f64,
     },
@@ -74,7 +74,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
             track_m: 0.62,
             slip: 1.75,
             wheel_radius_m: 0.2,
-            greatest_grade: 0.364,
+            max_grade: 0.364,
             rock_diameter_m: 0.5,
         },
     },
@@ -93,7 +93,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
             track_m: 0.50,
             slip: 1.75,
             wheel_radius_m: 0.155,
-            greatest_grade: 0.364,
+            max_grade: 0.364,
             rock_diameter_m: 0.4,
         },
     },
@@ -126,12 +126,12 @@ impl VehicleModel {
     /// What the vehicle asks of the ground of a map.
     pub fn traversability(&self, terrain: &Terrain) -> Traversability {
         match self.drive {
-            Drive::SkidSteer { greatest_grade, rock_diameter_m, .. } => {
-                Traversability::Ground { greatest_grade, rock_diameter_m }
+            Drive::SkidSteer { max_grade, rock_diameter_m, .. } => {
+                Traversability::Ground { max_grade, rock_diameter_m }
             }
             Drive::Flight { altitude_band_m, ground_clearance_m, .. } => {
                 let lowest = terrain.height_range_m().map_or(0.0, |[low, _]| f64::from(low));
-                Traversability::Air { greatest_ground_m: lowest + altitude_band_m[1] - ground_clearance_m }
+                Traversability::Air { max_ground_m: lowest + altitude_band_m[1] - ground_clearance_m }
             }
         }
     }
@@ -147,8 +147,8 @@ impl VehicleModel {
     /// falls to half at the greatest grade, and a descent is driven as slowly as the climb.
     pub fn speed_on_grade_mps(&self, grade: f64) -> f64 {
         match self.drive {
-            Drive::SkidSteer { greatest_grade, .. } => {
-                self.speed_mps * (1.0 - 0.5 * (grade.abs() / greatest_grade).min(1.0))
+            Drive::SkidSteer { max_grade, .. } => {
+                self.speed_mps * (1.0 - 0.5 * (grade.abs() / max_grade).min(1.0))
             }
             Drive::Flight { .. } => self.speed_mps,
         }

@@ -203,11 +203,11 @@ impl<'a> Lattice<'a> {
         let place = self.places[block];
         let from = self.places[parent as usize];
         let cost_m = from.cost_m + distance(&from.point_m, &place.point_m);
-        let least_m = cost_m + distance(&place.point_m, &self.ends_m[1]);
-        if place.state == State::Open && cost_m < place.cost_m && least_m < self.bound_m {
+        let min_m = cost_m + distance(&place.point_m, &self.ends_m[1]);
+        if place.state == State::Open && cost_m < place.cost_m && min_m < self.bound_m {
             (self.places[block].cost_m, self.places[block].parent) = (cost_m, parent);
             // Lengths are not negative, and such numbers order as their bits do.
-            let rank_m = least_m + EAGERNESS * distance(&place.point_m, &self.ends_m[1]);
+            let rank_m = min_m + EAGERNESS * distance(&place.point_m, &self.ends_m[1]);
             self.open.push((Reverse(rank_m.to_bits()), Reverse(block as u32)));
         }
     }

@@ -404,7 +404,7 @@ impl<'input> PlanLines<'input> {
         let grades = traverse.vehicles.iter().filter_map(|&vehicle| {
             let model = motion::vehicle_model(&vehicles.get(vehicle as usize)?.model.text)?;
             match model.drive {
-                motion::Drive::SkidSteer { greatest_grade, .. } => Some(greatest_grade),
+                motion::Drive::SkidSteer { max_grade, .. } => Some(max_grade),
                 motion::Drive::Flight { .. } => None,
             }
         });

@@ -12,7 +12,7 @@ pub enum Traversability {
     /// It drives: obstacles, rocks, steep cells and cells without data are in its way.
     Ground {
         /// Metres up for each metre forward that it climbs at most.
-        greatest_grade: f64,
+        max_grade: f64,
         /// The least diameter in metres of a rock that it can't pass over.
         rock_diameter_m: f64,
     },
@@ -20,7 +20,7 @@ pub enum Traversability {
     /// data, where the ground could be anywhere.
     Air {
         /// The greatest height of ground, in metres above the map's datum, that it flies over.
-        greatest_ground_m: f64,
+        max_ground_m: f64,
     },
 }
 
@@ -131,15 +131,15 @@ impl Occupancy {
 
 fn ground_state(terrain: &Terrain, cell: Cell, index: usize, traversability: &Traversability) -> CellState {
     match *traversability {
-        Traversability::Ground { greatest_grade, .. } => {
-            if terrain.cell_gradient(cell).norm_squared() > greatest_grade * greatest_grade {
+        Traversability::Ground { max_grade, .. } => {
+            if terrain.cell_gradient(cell).norm_squared() > max_grade * max_grade {
                 CellState::Steep
             } else {
                 CellState::Free
             }
         }
-        Traversability::Air { greatest_ground_m } => {
-            if f64::from(terrain.heights_m()[index]) > greatest_ground_m {
+        Traversability::Air { max_ground_m } => {
+            if f64::from(terrain.heights_m()[index]) > max_ground_m {
                 CellState::High
             } else {
                 CellState::Free

@@ -250,7 +250,7 @@ mod tests {
 
     #[test]
     fn every_asset_can_be_made_and_mostly_driven_on() {
-        let rover = Traversability::Ground { greatest_grade: 0.364, rock_diameter_m: 0.5 };
+        let rover = Traversability::Ground { max_grade: 0.364, rock_diameter_m: 0.5 };
         for recipe in RECIPES {
             let terrain = asset(recipe.name).unwrap();
             let grid = Occupancy::of_terrain(&terrain, &[], &rover);

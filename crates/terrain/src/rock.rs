@@ -35,21 +35,21 @@ pub fn cumulative_rock_area(abundance: f64, diameter_m: f64) -> f64 {
     abundance * libm::exp(-(1.79 + 0.152 / abundance) * diameter_m)
 }
 
-/// Rocks of at least `least_diameter_m`, spread evenly over a grid's extent.
+/// Rocks of at least `min_diameter_m`, spread evenly over a grid's extent.
 ///
 /// The number of rocks in a class of diameters is the area that the distribution gives the class over the area of one
 /// such rock; a remainder becomes a rock with its probability.
 pub fn scatter_rocks(
     frame: &GridFrame,
     abundance: f64,
-    least_diameter_m: f64,
+    min_diameter_m: f64,
     random: &mut Random,
 ) -> Vec<Rock> {
     const CLASS_WIDTH_M: f64 = 0.05;
     const MAX_DIAMETER_M: f64 = 4.0;
     let extent = frame.extent_m();
     let mut rocks = Vec::new();
-    let mut low = least_diameter_m;
+    let mut low = min_diameter_m;
     while abundance > 0.0 && low < MAX_DIAMETER_M {
         let high = low + CLASS_WIDTH_M;
         let covered = (cumulative_rock_area(abundance, low) - cumulative_rock_area(abundance, high))

@@ -160,7 +160,7 @@ fn search(args: &Args, space: &ConfigurationSpace, run: u64) -> Run {
     let settings = Settings {
         step_m: args.step.unwrap_or(longer_side / 25.0),
         goal_bias: args.goal_bias.clamp(0.0, 1.0),
-        greatest_samples: args.samples,
+        max_samples: args.samples,
         seed,
         ..Settings::of(args.planner.kind())
     };

@@ -72,7 +72,7 @@ impl Core {
         let space = self.grounds.space(key, map, world, model).exact;
         let settings = Settings {
             seed: wanted.update.seed,
-            greatest_samples: MAX_SAMPLES,
+            max_samples: MAX_SAMPLES,
             limits: motion::DriveLimits::of(model),
             ..Settings::of(PlannerKind::Rrt)
         };

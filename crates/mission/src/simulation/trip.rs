@@ -501,7 +501,7 @@ fn way_between<const COUNT: usize>(
         let space = space.with_radius_m(model.circumradius_m + room_m);
         let settings = motion::Settings {
             seed: u64::from(seed),
-            greatest_samples: 20_000,
+            max_samples: 20_000,
             ..motion::Settings::of(PlannerKind::RrtConnect)
         };
         let start_m = nearest_free(&space, here)?;

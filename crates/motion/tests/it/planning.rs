@@ -288,7 +288,7 @@ fn ring(gap_cells: u32, radius_m: f64) -> ConfigurationSpace {
 fn an_enclosed_goal_is_proved_and_a_gap_opens_it() {
     let query = Query { start_m: Point2::new(3.0, 3.0), goal_m: Point2::new(20.0, 20.0) };
     for planner in PLANNERS {
-        let settings = Settings { greatest_samples: 20_000, step_m: 3.0, ..Settings::of(planner) };
+        let settings = Settings { max_samples: 20_000, step_m: 3.0, ..Settings::of(planner) };
         let run = |space: &ConfigurationSpace| find_path(space, query, &settings, None, &mut never);
         let closed = run(&ring(0, 0.3));
         assert_eq!(closed.path, Err(Failure::GoalEnclosed), "{planner:?}");
@@ -296,7 +296,7 @@ fn an_enclosed_goal_is_proved_and_a_gap_opens_it() {
         let open = ring(3, 0.5);
         assert_clear(&open, &run(&open).path.expect("the gap is wide enough"), "through the gap");
         // Two cells are 1 m; a vehicle 1.2 m wide does not pass, which takes the finer proof after a failed search.
-        let narrow = Settings { greatest_samples: 300, ..settings };
+        let narrow = Settings { max_samples: 300, ..settings };
         let result = find_path(&ring(2, 0.6), query, &narrow, None, &mut never);
         assert_eq!(result.path, Err(Failure::GoalEnclosed), "{planner:?}");
     }
@@ -306,7 +306,7 @@ fn an_enclosed_goal_is_proved_and_a_gap_opens_it() {
 fn running_out_of_samples_is_no_proof_and_says_how_many() {
     let query = Query { start_m: Point2::new(3.0, 3.0), goal_m: Point2::new(20.0, 20.0) };
     for planner in PLANNERS {
-        let settings = Settings { greatest_samples: 15, step_m: 1.0, ..Settings::of(planner) };
+        let settings = Settings { max_samples: 15, step_m: 1.0, ..Settings::of(planner) };
         let result = find_path(&ring(1, 0.1), query, &settings, None, &mut never);
         assert_eq!(result.path, Err(Failure::NotFound { samples: 15 }), "{planner:?}");
     }

@@ -129,12 +129,12 @@ fn the_separation_of_two_straight_ways_is_that_of_the_quadratic() {
         let slope = first[0] * change[0] + first[1] * change[1];
         let start = first[0] * first[0] + first[1] * first[1];
         let share = (-slope / square).clamp(0.0, 1.0);
-        let least_m = (square * share * share + 2.0 * slope * share + start).max(0.0).sqrt();
-        assert!((found.closest.distance_m - least_m).abs() < 1e-9, "seed {seed}: {found:?}, not {least_m}");
-        if (least_m - safety_m).abs() < 1e-6 {
+        let min_m = (square * share * share + 2.0 * slope * share + start).max(0.0).sqrt();
+        assert!((found.closest.distance_m - min_m).abs() < 1e-9, "seed {seed}: {found:?}, not {min_m}");
+        if (min_m - safety_m).abs() < 1e-6 {
             continue;
         }
-        assert_eq!(found.violation.is_some(), least_m < safety_m, "seed {seed}");
+        assert_eq!(found.violation.is_some(), min_m < safety_m, "seed {seed}");
         let Some(violation) = found.violation else {
             far += 1;
             continue;

@@ -69,7 +69,7 @@ fn states(terrain: &Terrain, traversability: &Traversability) -> Vec<CellState> 
 #[test]
 fn obstacles_and_unknown_cells_are_in_the_way_whatever_the_scale_and_the_cells_beside_them_are_not() {
     use CellState::{Free, NoData, Obstacle};
-    let ground = Traversability::Ground { greatest_grade: 0.2, rock_diameter_m: 0.3 };
+    let ground = Traversability::Ground { max_grade: 0.2, rock_diameter_m: 0.3 };
     for resolution in ["0.05", "50.0"] {
         let yaml = YAML.replace("0.050000", resolution);
         let terrain = raster(&yaml, IMAGE).expect("it is a map").into_terrain();
@@ -79,7 +79,7 @@ fn obstacles_and_unknown_cells_are_in_the_way_whatever_the_scale_and_the_cells_b
     }
     // What flies passes over obstacles, and not over what is unknown.
     let terrain = raster(YAML, IMAGE).expect("it is a map").into_terrain();
-    let air = states(&terrain, &Traversability::Air { greatest_ground_m: 20.0 });
+    let air = states(&terrain, &Traversability::Air { max_ground_m: 20.0 });
     assert_eq!(air[4..], [Free, Free, NoData, Free]);
 }
 
@@ -87,7 +87,7 @@ fn obstacles_and_unknown_cells_are_in_the_way_whatever_the_scale_and_the_cells_b
 fn obstacles_of_other_maps_are_obstacles_too() {
     let map = b"type octile\nheight 1\nwidth 4\nmap\n.@T.\n";
     let terrain = read_raster(map, &ImportOptions::default()).expect("it is a map").into_terrain();
-    let ground = Traversability::Ground { greatest_grade: 0.2, rock_diameter_m: 0.3 };
+    let ground = Traversability::Ground { max_grade: 0.2, rock_diameter_m: 0.3 };
     let (free, obstacle) = (CellState::Free, CellState::Obstacle);
     assert_eq!(states(&terrain.placed(30.0, Point2::origin()), &ground), [free, obstacle, obstacle, free]);
 }
