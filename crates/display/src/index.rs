@@ -55,10 +55,10 @@ impl<T: Copy> SpatialIndex<T> {
         Self { bounds, grids: grids.collect() }
     }
 
-    /// Calls `visit` for every shape that touches `area` and is at least `least_size` wide or high.
-    pub fn visit(&self, area: Rect, least_size: f64, visit: &mut dyn FnMut(T)) {
-        for grid in self.grids.iter().filter(|grid| grid.cell_size >= least_size && !grid.shapes.is_empty()) {
-            grid.visit(self.bounds, area, least_size, visit);
+    /// Calls `visit` for every shape that touches `area` and is at least `min_size` wide or high.
+    pub fn visit(&self, area: Rect, min_size: f64, visit: &mut dyn FnMut(T)) {
+        for grid in self.grids.iter().filter(|grid| grid.cell_size >= min_size && !grid.shapes.is_empty()) {
+            grid.visit(self.bounds, area, min_size, visit);
         }
     }
 }
@@ -98,7 +98,7 @@ impl<T: Copy> Grid<T> {
         self.row(bounds, rect.min.y) * self.columns + self.column(bounds, rect.min.x)
     }
 
-    fn visit(&self, bounds: Rect, area: Rect, least_size: f64, visit: &mut dyn FnMut(T)) {
+    fn visit(&self, bounds: Rect, area: Rect, min_size: f64, visit: &mut dyn FnMut(T)) {
         // A shape that begins up to one cell to the left or above may reach into the area.
         let (left, right) =
             (self.column(bounds, area.min.x - self.cell_size), self.column(bounds, area.max.x));
@@ -107,7 +107,7 @@ impl<T: Copy> Grid<T> {
             let first = self.starts[(row * self.columns + left) as usize] as usize;
             let last = self.starts[(row * self.columns + right) as usize + 1] as usize;
             for (rect, shape) in &self.shapes[first..last] {
-                if rect.touches(area) && rect.width().max(rect.height()) >= least_size {
+                if rect.touches(area) && rect.width().max(rect.height()) >= min_size {
                     visit(*shape);
                 }
             }

@@ -36,7 +36,7 @@ pub struct Group {
     /// Whether lines lie so close where the drawing is small that full strength would make an area of them.
     pub is_dense: bool,
     /// On the screen, lines are at least so broad and circles have at least this radius, in points.
-    pub least_size: f32,
+    pub min_size: f32,
 }
 
 /// A shape with its fill and its stroke.
@@ -301,10 +301,10 @@ impl DisplayList {
     }
 
     /// Calls `visit` with the place of every item that touches `area`, in no particular order. With an index it takes time
-    /// in proportion to what is found, and leaves out what is less than `least_size` wide and high.
-    pub fn visit(&self, area: Rect, least_size: f64, visit: &mut dyn FnMut(u32)) {
+    /// in proportion to what is found, and leaves out what is less than `min_size` wide and high.
+    pub fn visit(&self, area: Rect, min_size: f64, visit: &mut dyn FnMut(u32)) {
         if let Some(index) = &self.index {
-            index.visit(area, least_size, visit);
+            index.visit(area, min_size, visit);
             return;
         }
         let is_seen = |at: &u32| self.bounds_of(&self.items[*at as usize]).touches(area);

@@ -223,10 +223,10 @@ impl NetworkDrawing {
         Some((last.end(), last.before_end(start)))
     }
 
-    /// Calls `visit` for every shape that touches `area` and is at least `least_size` wide or high, in an order that
+    /// Calls `visit` for every shape that touches `area` and is at least `min_size` wide or high, in an order that
     /// depends on the drawing alone. Takes time in proportion to what is found, not to the drawing.
-    pub fn visit(&self, area: Rect, least_size: f64, visit: &mut dyn FnMut(Shape)) {
-        self.index.visit(area, least_size, visit);
+    pub fn visit(&self, area: Rect, min_size: f64, visit: &mut dyn FnMut(Shape)) {
+        self.index.visit(area, min_size, visit);
     }
 
     /// The index of all shapes by place.

@@ -30,9 +30,9 @@ const TRIES: usize = 4;
 /// Rows are not made shorter than this.
 const SHORTEST_ROW: f64 = 240.0;
 /// A drawing in little room is made so small.
-const LEAST_ZOOM: f64 = 0.8;
+const MIN_ZOOM: f64 = 0.8;
 /// And its texts are at least so large then, in points of the screen.
-pub const LEAST_TEXT: f64 = 11.0;
+pub const MIN_TEXT: f64 = 11.0;
 
 /// What is left of the room is tried for more detail so many times.
 const REFINEMENTS: usize = 100;
@@ -45,11 +45,11 @@ pub type Range = (BlockId, BlockId);
 /// Something is looked for in boxes inside of boxes so often before everything around it is opened.
 const MAX_OPENINGS: usize = 24;
 /// No step takes less room than this, in square units: the shortest arc, as high as the smallest node.
-const LEAST_AREA: f64 = SHORTEST_RUN * 2.0 * VERTEX_RADIUS;
+const MIN_AREA: f64 = SHORTEST_RUN * 2.0 * VERTEX_RADIUS;
 
 /// Draws a network as [`crate::network`] does, with as much detail as fits into `room` at its designed size: as it is if
 /// that fits; otherwise with long sequences in rows; otherwise with less written, and so small that the texts still are
-/// at [`LEAST_TEXT`]; otherwise with what is fine behind boxes, `focus` last of all. Of `options` what it says of rows
+/// at [`MIN_TEXT`]; otherwise with what is fine behind boxes, `focus` last of all. Of `options` what it says of rows
 /// and of the level of detail is not used.
 ///
 /// Takes time linear in the network once, and for each of a number of tries in what is drawn.
@@ -71,8 +71,8 @@ pub fn fitted(
     {
         return fitter.drawn(&found);
     }
-    let brief = options.brief(LEAST_TEXT / LEAST_ZOOM);
-    let fitter = Fitter::new(network, &contents, &brief, room, measure, LEAST_ZOOM);
+    let brief = options.brief(MIN_TEXT / MIN_ZOOM);
+    let fitter = Fitter::new(network, &contents, &brief, room, measure, MIN_ZOOM);
     let found = fitter.refined(fitter.finest(focus));
     fitter.drawn(&found)
 }
@@ -90,14 +90,14 @@ pub fn openings(
 ) -> Vec<Range> {
     let contents = Contents::new(network);
     let mut options = match room {
-        Some(_) => options.brief(LEAST_TEXT / LEAST_ZOOM),
+        Some(_) => options.brief(MIN_TEXT / MIN_ZOOM),
         None => Options { detail: Detail::default(), ..options.clone() },
     };
     let mut openings = Vec::new();
     loop {
         let tree = match room {
             Some(room) => {
-                let fitter = Fitter::new(network, &contents, &options, room, measure, LEAST_ZOOM);
+                let fitter = Fitter::new(network, &contents, &options, room, measure, MIN_ZOOM);
                 fitter.finest(focus).tree
             }
             None => tree_of(network, &contents, &options),
@@ -230,7 +230,7 @@ impl<'a> Fitter<'a> {
         let root = self.network.root.filter(|root| root.index() < self.network.blocks.len());
         let steps = root.map_or(0, |root| self.contents.steps(root));
         let is_whole = self.options.collapsed.is_empty();
-        is_whole && f64::from(steps) * LEAST_AREA > self.room.width * self.room.height
+        is_whole && f64::from(steps) * MIN_AREA > self.room.width * self.room.height
     }
 
     /// The structure of a drawing in this detail.

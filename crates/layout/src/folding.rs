@@ -36,8 +36,8 @@ pub(crate) struct Folding {
 /// A run of blocks takes one box only if each is at most this part of what a box may hold.
 const SMALL_SHARE: u32 = 4;
 /// Fewer steps than this are drawn rather than put behind a box, of an activity and of others.
-const LEAST_ACTIVITY: u32 = 2;
-const LEAST_RUN: u32 = 3;
+const MIN_ACTIVITY: u32 = 2;
+const MIN_RUN: u32 = 3;
 
 impl Folding {
     /// What is folded of a network with blocks under `root`. Takes the time of what is drawn.
@@ -137,7 +137,7 @@ impl Folder<'_> {
     fn is_folded(&self, block: BlockId) -> bool {
         let (count, ends) = (self.contents.steps(block), &self.network.blocks[block.index()]);
         let is_activity = matches!(ends.kind, BlockKind::Scope { occurrence: Some(_), .. });
-        let least = if is_activity { LEAST_ACTIVITY } else { LEAST_RUN };
+        let least = if is_activity { MIN_ACTIVITY } else { MIN_RUN };
         let is_fine = count >= least && self.zone(block).is_ok_and(|zone| count <= self.grain(zone));
         ends.start != ends.end && (is_fine || self.options.collapsed.contains(&block))
     }
@@ -156,7 +156,7 @@ impl Folder<'_> {
             count += steps;
             length += 1;
         }
-        if count >= LEAST_RUN { length.max(1) } else { 1 }
+        if count >= MIN_RUN { length.max(1) } else { 1 }
     }
 
     /// How many steps a box may hold in a place in more detail, or elsewhere.

@@ -36,7 +36,7 @@ pub use drawing::{
     ArcShape, BlockForm, BlockShape, Connector, Item, NetworkDrawing, NodeShape, Route, Shape, Slide,
     TextShape,
 };
-pub use fit::{LEAST_TEXT, Range, Room, fitted, openings};
+pub use fit::{MIN_TEXT, Range, Room, fitted, openings};
 pub use list::automaton::{AutomatonState, automaton_list};
 pub use list::network::{NetworkState, network_list};
 pub use machine::{MachineArc, MachineArcShape, MachineDrawing, machine};

@@ -24,7 +24,7 @@ pub struct Options {
     /// Conditions go on the line of the bounds up to this width, or that of the name above if it is wider.
     pub easy_line: f64,
     /// No text is smaller than this.
-    pub least_text: f64,
+    pub min_text: f64,
     /// Names longer than this are cut with an ellipsis.
     pub longest_name: f64,
     /// Space kept under events and decisions for their time windows; wider windows are written smaller.
@@ -53,17 +53,17 @@ pub struct Finer {
 impl Options {
     /// The size of a text of this role.
     pub(crate) fn text_size(&self, role: TextRole) -> f64 {
-        role.size().max(self.least_text)
+        role.size().max(self.min_text)
     }
 
-    /// The same with no more written than a drawing in little room needs, in texts of at least `least_text`.
-    pub(crate) fn brief(&self, least_text: f64) -> Self {
+    /// The same with no more written than a drawing in little room needs, in texts of at least `min_text`.
+    pub(crate) fn brief(&self, min_text: f64) -> Self {
         Self {
             arguments: false,
             zero_bounds: false,
             changes: false,
             easy_line: 200.0,
-            least_text,
+            min_text,
             ..self.clone()
         }
     }
@@ -79,7 +79,7 @@ impl Default for Options {
             zero_bounds: true,
             changes: true,
             easy_line: 130.0,
-            least_text: 0.0,
+            min_text: 0.0,
             longest_name: 260.0,
             window_width: 52.0,
         }

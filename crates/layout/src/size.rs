@@ -175,7 +175,7 @@ impl<'a> Sizes<'a> {
                 let mut size = self.of(*child);
                 let arches = self.arches(*child, arcs);
                 for arch in &arches {
-                    size.width = size.width.max(arch.least_width);
+                    size.width = size.width.max(arch.min_width);
                 }
                 size.above = arches.first().map_or(size.above, Arch::top);
                 if occurrence.is_some() {
@@ -187,7 +187,7 @@ impl<'a> Sizes<'a> {
             PartKind::Beads { arc, chain } => {
                 let mut size = self.straight(*arc, start, end);
                 let beads = self.beads(*arc, chain);
-                size.width = size.width.max(beads.least_width);
+                size.width = size.width.max(beads.min_width);
                 size.above = beads.height + VERTEX_RADIUS + TEXT_LIFT;
                 cover(ends, size)
             }
@@ -251,8 +251,8 @@ impl<'a> Sizes<'a> {
         let (rank_out, rank_in) = self.arch_ranks[chain.start as usize];
         let (rise, fall) = (arch_offset(rank_out), arch_offset(rank_in));
         let beads = f64::from(chain.end - chain.start) - 1.0;
-        let least_width = rise + fall + 2.0 * ARCH_CORNER + (beads + 1.0) * BEAD_STEP;
-        Arch { arc, height, text_height: 0.0, text_width: 0.0, rise, fall, least_width }
+        let min_width = rise + fall + 2.0 * ARCH_CORNER + (beads + 1.0) * BEAD_STEP;
+        Arch { arc, height, text_height: 0.0, text_width: 0.0, rise, fall, min_width }
     }
 
     /// The arches of a span, outermost first.
@@ -265,7 +265,7 @@ impl<'a> Sizes<'a> {
             let (rank_out, rank_in) = self.arch_ranks[at as usize];
             let (rise, fall) = (arch_offset(rank_out), arch_offset(rank_in));
             level += ARCH_GAP;
-            let least_width = rise + fall + 2.0 * ARCH_CORNER + text.width;
+            let min_width = rise + fall + 2.0 * ARCH_CORNER + text.width;
             arches.push(Arch {
                 arc,
                 height: level,
@@ -273,7 +273,7 @@ impl<'a> Sizes<'a> {
                 text_width: text.width,
                 rise,
                 fall,
-                least_width,
+                min_width,
             });
             level += lifted(text.height);
         }
@@ -294,7 +294,7 @@ pub(crate) struct Arch {
     pub(crate) rise: f64,
     /// How far left of its end it comes down.
     pub(crate) fall: f64,
-    pub(crate) least_width: f64,
+    pub(crate) min_width: f64,
 }
 
 impl Arch {

@@ -97,7 +97,7 @@ pub fn network_list(drawing: &NetworkDrawing, network: &Network, state: &Network
         .iter()
         .partition(|curve| matches!(curve.kind, OverlayKind::CausalLink | OverlayKind::Ordering));
     for (curves, crowd) in [(bundled, Some(MAX_CURVES)), (single, None)] {
-        list.begin(Group { layer: layer::OVERLAYS, crowd, least_size: 1.2, ..Group::default() });
+        list.begin(Group { layer: layer::OVERLAYS, crowd, min_size: 1.2, ..Group::default() });
         for curve in curves {
             add_curve(curve, &mut list);
         }
@@ -151,7 +151,7 @@ fn crossed_texts(drawing: &NetworkDrawing, state: &NetworkState<'_>) -> BTreeSet
 }
 
 /// What time has done to a network, over its list: how far arcs are that are under way, and dots in the events that
-/// have happened. Of the events, those in `area` that are at least `least_size` wide; all with `None`.
+/// have happened. Of the events, those in `area` that are at least `min_size` wide; all with `None`.
 pub fn progress_list(
     drawing: &NetworkDrawing,
     network: &Network,
@@ -161,7 +161,7 @@ pub fn progress_list(
 ) -> DisplayList {
     let builder = Builder { drawing, network, plan: state.plan, parts: state.parts };
     let mut list = DisplayList::new(drawing.bounds);
-    list.begin(Group { layer: layer::ELAPSED, least_size: 2.0, ..Group::default() });
+    list.begin(Group { layer: layer::ELAPSED, min_size: 2.0, ..Group::default() });
     for &(arc, fraction) in &progress.under_way {
         let is_seen = |shape: &ArcShape| area.is_none_or(|(area, _)| shape.bounds.touches(area));
         let part = drawing.arc(arc).filter(|shape| is_seen(shape));
@@ -170,9 +170,9 @@ pub fn progress_list(
         }
     }
     list.begin(Group { layer: layer::DONE, ..Group::default() });
-    let (area, least_size) = area.unwrap_or((drawing.bounds, 0.0));
+    let (area, min_size) = area.unwrap_or((drawing.bounds, 0.0));
     let mut done = Vec::new();
-    drawing.visit(area, least_size, &mut |shape| {
+    drawing.visit(area, min_size, &mut |shape| {
         let crate::Shape::Node(at) = shape else { return };
         let node = drawing.nodes[at as usize].id;
         if progress.done.binary_search(&node).is_ok() && builder.parts.shows(builder.standing(node)) {
@@ -186,7 +186,7 @@ pub fn progress_list(
         builder.node(node, &mut list);
         list.circle(node.center, style::done_radius(node.radius), Some(ColorRole::Now.into()), None);
     }
-    drawing.visit(area, least_size, &mut |shape| {
+    drawing.visit(area, min_size, &mut |shape| {
         let crate::Shape::Text(at) = shape else { return };
         let text = &drawing.texts[at as usize];
         if let (Item::Node(node), TextRole::Node) = (text.owner, text.role)
@@ -211,7 +211,7 @@ pub fn emphasis_list(
 ) -> DisplayList {
     let builder = Builder { drawing, network, plan: state.plan, parts: state.parts };
     let mut list = DisplayList::new(drawing.bounds);
-    list.begin(Group { layer: layer::EMPHASIS, least_size: 4.0, ..Group::default() });
+    list.begin(Group { layer: layer::EMPHASIS, min_size: 4.0, ..Group::default() });
     for emphasis in emphases {
         let (role, strength) = emphasis.color;
         let color = role.faint(strength);
@@ -247,7 +247,7 @@ pub fn emphasis_list(
             list.rectangle(block.rect, 6.0, None, Some(Stroke::solid(color, 1.5)));
         }
     }
-    list.begin(Group { layer: layer::OVERLAYS, least_size: 1.2, ..Group::default() });
+    list.begin(Group { layer: layer::OVERLAYS, min_size: 1.2, ..Group::default() });
     for curve in chosen {
         add_curve(curve, &mut list);
     }

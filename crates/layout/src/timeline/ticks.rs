@@ -12,7 +12,7 @@ pub struct Ticks {
 }
 
 /// Least distance of two labelled marks, in points, for short numbers.
-const LEAST_DISTANCE: f32 = 64.0;
+const MIN_DISTANCE: f32 = 64.0;
 /// Points that a digit takes, at most.
 const DIGIT_WIDTH: f32 = 8.0;
 /// Between two labels, in points.
@@ -24,7 +24,7 @@ impl Ticks {
     /// Marks at round numbers from `from` to `to` on `width` points, so far apart that their labels cannot touch.
     pub fn new(from: f64, to: f64, width: f32) -> Self {
         let span = (to - from).max(f64::MIN_POSITIVE);
-        let mut distance = LEAST_DISTANCE;
+        let mut distance = MIN_DISTANCE;
         // Finer steps need more decimals, which need more room.
         for _ in 0..4 {
             let (step, _) = round_step(span * f64::from(distance / width.max(1.0)));

@@ -40,7 +40,7 @@ impl Scene<'_> {
     pub(super) fn paint(&self, painter: &DisplayPainter<'_>, marks: Vec<Rect>) {
         let drawing = &self.drawn.drawing;
         let state = NetworkState { plan: self.plan, parts: self.options.parts(), ..NetworkState::default() };
-        let area = Some((painter.visible(), painter.least_size()));
+        let area = Some((painter.visible(), painter.min_size()));
         let progress = self.progress.map(|it| progress_list(drawing, self.network, &state, it, area));
         let step = self.focus.map(|focus| Highlight::of_focus(focus, self.network)).unwrap_or_default();
         let is_failure = self.focus.is_some_and(|focus| focus.is_failure);

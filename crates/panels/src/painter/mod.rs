@@ -85,9 +85,9 @@ impl Placement {
 struct InView(Vec<u64>);
 
 impl InView {
-    fn of(list: &DisplayList, visible: display::Rect, least_size: f64) -> Self {
+    fn of(list: &DisplayList, visible: display::Rect, min_size: f64) -> Self {
         let mut words = vec![0_u64; list.items().len().div_ceil(64)];
-        list.visit(visible, least_size, &mut |at| words[at as usize / 64] |= 1 << (at % 64));
+        list.visit(visible, min_size, &mut |at| words[at as usize / 64] |= 1 << (at % 64));
         Self(words)
     }
 
@@ -134,14 +134,14 @@ impl<'a> DisplayPainter<'a> {
     }
 
     /// What is too small to be drawn, in drawing units.
-    pub fn least_size(&self) -> f64 {
+    pub fn min_size(&self) -> f64 {
         LEAST_SHAPE / self.placement.zoom
     }
 
     /// Draws lists over each other, by their layers. Names that look for room of their own leave `taken` free.
     pub fn paint(&self, lists: &[&DisplayList], taken: Vec<Rect>) {
         let in_view: Vec<InView> =
-            lists.iter().map(|list| InView::of(list, self.visible, self.least_size())).collect();
+            lists.iter().map(|list| InView::of(list, self.visible, self.min_size())).collect();
         let all = lists.iter().zip(&in_view);
         let mut groups: Vec<_> = all
             .flat_map(|(list, in_view)| {
@@ -173,7 +173,7 @@ impl<'a> DisplayPainter<'a> {
             return;
         }
         let strength = if group.is_dense { (zoom / DENSE.0).clamp(DENSE.1, 1.0) as f32 } else { 1.0 };
-        let lines = Lines { least_width: group.least_size, strength, is_crowded };
+        let lines = Lines { least_width: group.min_size, strength, is_crowded };
         let mut level = LevelLines::default();
         let mut hatching = Mesh::default();
         for item in items {

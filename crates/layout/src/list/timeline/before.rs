@@ -3,7 +3,7 @@
 
 use display::{Anchor, ColorRole, Dash, Fit, Point, Rect, Stroke, Text, Weight};
 
-use super::{Builder, LEAST_WIDTH, SIZES};
+use super::{Builder, MIN_WIDTH, SIZES};
 use crate::timeline::before::{BarChange, Gone};
 
 impl Builder<'_> {
@@ -31,12 +31,12 @@ impl Builder<'_> {
         let middle = row.center().y;
         let [from, to] = [times[0][0], times[1][1]].map(|time| self.track.x(time));
         let line = Stroke::solid(ColorRole::TextMuted, 1.0);
-        self.list.line(Point::new(from, middle), Point::new(to.max(from + LEAST_WIDTH), middle), line);
+        self.list.line(Point::new(from, middle), Point::new(to.max(from + MIN_WIDTH), middle), line);
     }
 
     fn former(&mut self, times: [[f64; 2]; 2], row: Rect, words: &str) {
         let [from, to] = [times[0][0], times[1][1]].map(|time| self.track.x(time));
-        let place = Rect::new(from, row.min.y + 3.0, to.max(from + LEAST_WIDTH), row.max.y - 3.0);
+        let place = Rect::new(from, row.min.y + 3.0, to.max(from + MIN_WIDTH), row.max.y - 3.0);
         let dashed = Stroke::solid(ColorRole::TextMuted, 1.2).dashed(Dash::Dashed);
         self.list.rectangle(place, 3.0, None, Some(dashed));
         self.list.entitle(words.to_owned());

@@ -29,7 +29,7 @@ const INDENT: f64 = 12.0;
 /// The sign that opens and closes a row is so wide, after such a margin.
 const SIGN: (f64, f64) = (14.0, 4.0);
 /// A bar narrower than this is only a stroke.
-const LEAST_WIDTH: f64 = 3.0;
+const MIN_WIDTH: f64 = 3.0;
 /// Sizes of names, and of the numbers on the axis and of what is written in bars.
 const SIZES: [f64; 2] = [13.0, 11.0];
 /// Between words in a bar, and how much wider than measured they may be.
@@ -39,7 +39,7 @@ const WORDS_SPARE: f64 = 1.06;
 /// The width of a number of words that are left out.
 const MORE_WIDTH: f64 = 18.0;
 /// A bar with less room than this has nothing written in it.
-const LEAST_ROOM: f64 = 44.0;
+const MIN_ROOM: f64 = 44.0;
 /// From the lower edge of a row to the upper and the lower edge of what needs a value.
 const NEED_EDGES: [f64; 2] = [5.0, 2.0];
 /// With more links in view than this, they are drawn thin and faint, but for those that are chosen.
@@ -131,7 +131,7 @@ impl Track {
             BarKind::Need => {
                 let (from, to) = (self.x(bar.start[0]), self.x(bar.end[0]));
                 let [top, bottom] = NEED_EDGES.map(|edge| row.max.y - edge);
-                Rect::new(from, top, to.max(from + LEAST_WIDTH), bottom)
+                Rect::new(from, top, to.max(from + MIN_WIDTH), bottom)
             }
             BarKind::Value | BarKind::Changing => {
                 self.slot(bar, row, bar.start[0], bar.end[0].max(bar.start[0]))
@@ -406,10 +406,10 @@ impl Builder<'_> {
             (Some(label), _) => (TargetKind::Label, label.0),
             (None, occurrence) => (TargetKind::Occurrence, occurrence.map_or(u32::MAX, |it| it.0)),
         };
-        if whole.width() < LEAST_WIDTH {
+        if whole.width() < MIN_WIDTH {
             let middle = whole.center().x;
             let stroke =
-                Rect::new(middle - LEAST_WIDTH / 2.0, whole.min.y, middle + LEAST_WIDTH / 2.0, whole.max.y);
+                Rect::new(middle - MIN_WIDTH / 2.0, whole.min.y, middle + MIN_WIDTH / 2.0, whole.max.y);
             self.list.rectangle(stroke, 1.0, Some(role.mixed(0.75).into()), None).stands_for(kind, id);
             return;
         }
@@ -482,7 +482,7 @@ impl Builder<'_> {
     fn words(&mut self, bar: &Bar, whole: Rect) {
         let seen = self.track.visible;
         let (left, right) = (whole.min.x.max(seen.min.x), whole.max.x.min(seen.max.x));
-        if right - left < LEAST_ROOM || bar.kind == BarKind::Composite {
+        if right - left < MIN_ROOM || bar.kind == BarKind::Composite {
             return;
         }
         let own = bar.label.map(|_| match bar.kind {

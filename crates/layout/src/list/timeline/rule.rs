@@ -3,11 +3,11 @@
 
 use display::{Anchor, ColorRole, Fill, Fit, Rect, Stroke, Text, Weight};
 
-use super::{Builder, LEAST_WIDTH, SIZES};
+use super::{Builder, MIN_WIDTH, SIZES};
 use crate::timeline::rule::{RuleBand, RuleStanding};
 
 /// A stretch with less room than this has nothing written in it.
-const LEAST_WORD: f64 = 52.0;
+const MIN_WORD: f64 = 52.0;
 
 impl Builder<'_> {
     /// The stretches of the rule with this number, in its row.
@@ -18,7 +18,7 @@ impl Builder<'_> {
             let height = if standing == RuleStanding::Applies { 3.0 } else { 13.0 };
             let middle = row.center().y;
             let place =
-                Rect::new(from, middle - height / 2.0, to.max(from + LEAST_WIDTH), middle + height / 2.0);
+                Rect::new(from, middle - height / 2.0, to.max(from + MIN_WIDTH), middle + height / 2.0);
             match standing {
                 RuleStanding::Applies => {
                     self.list.rectangle(place, 1.0, Some(ColorRole::Tell.mixed(0.8).into()), None);
@@ -36,7 +36,7 @@ impl Builder<'_> {
             self.list.entitle(format!("{}: {}", rule.name, rule.words));
             let seen = self.track.visible;
             let (left, right) = (place.min.x.max(seen.min.x) + 5.0, place.max.x.min(seen.max.x) - 3.0);
-            if standing == RuleStanding::Broken && right - left >= LEAST_WORD {
+            if standing == RuleStanding::Broken && right - left >= MIN_WORD {
                 let inside = Rect::new(left, place.min.y, right, place.max.y);
                 let text = Text::new("broken", SIZES[1], inside).anchored(Anchor::Start, Fit::Cut);
                 self.list.write(Text { weight: Weight::Strong, ..text.colored(ColorRole::Text) });

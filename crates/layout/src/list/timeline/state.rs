@@ -5,11 +5,11 @@ use std::ops::Range;
 
 use display::{Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text, text_width_at};
 
-use super::{Builder, LEAST_WIDTH, SIZES};
+use super::{Builder, MIN_WIDTH, SIZES};
 use crate::timeline::{Bar, BarKind, state};
 
 /// A value with less room than this has nothing written in it.
-const LEAST_VALUE: f64 = 16.0;
+const MIN_VALUE: f64 = 16.0;
 
 impl Builder<'_> {
     /// A bar of a state track.
@@ -21,9 +21,9 @@ impl Builder<'_> {
         let outline = Some(Stroke::solid(color, width));
         match bar.kind {
             BarKind::Need => self.list.rectangle(place, 1.0, Some(color.into()), None),
-            _ if place.width() < LEAST_WIDTH => {
+            _ if place.width() < MIN_WIDTH => {
                 let middle = place.center().x;
-                let half = LEAST_WIDTH / 2.0;
+                let half = MIN_WIDTH / 2.0;
                 let mark = Rect::new(middle - half, place.min.y, middle + half, place.max.y);
                 self.list.rectangle(mark, 1.0, Some(role.mixed(0.75).into()), None)
             }
@@ -41,7 +41,7 @@ impl Builder<'_> {
         self.list.entitle(state::words(self.network, self.plan, bar).join("; "));
         let seen = self.track.visible;
         let (left, right) = (place.min.x.max(seen.min.x) + 5.0, place.max.x.min(seen.max.x) - 3.0);
-        if bar.kind == BarKind::Value && right - left >= LEAST_VALUE {
+        if bar.kind == BarKind::Value && right - left >= MIN_VALUE {
             let width = text_width_at(&bar.name, SIZES[1], self.measure).ceil();
             // A name that is longer than its value lasts goes on beside it, as far as nothing follows.
             let right = if right - left < width {
