@@ -61,7 +61,7 @@ pub enum TextRole {
     /// The name of an activity.
     Name,
     /// A name of less weight: a delay.
-    Quiet,
+    Muted,
     /// Bounds of a duration.
     Bounds,
     /// The range of a duration that nature chooses.
@@ -85,7 +85,7 @@ impl TextRole {
     pub const fn size(self) -> f64 {
         match self {
             Self::Name | Self::Title => 13.0,
-            Self::Quiet | Self::Node => 12.0,
+            Self::Muted | Self::Node => 12.0,
             Self::Bounds | Self::Nature | Self::Ask | Self::Tell => 11.5,
             Self::Window | Self::ZeroBounds => 11.0,
         }
@@ -95,7 +95,7 @@ impl TextRole {
     pub const fn line_height(self) -> f64 {
         match self {
             Self::Name | Self::Title => 17.0,
-            Self::Quiet => 16.0,
+            Self::Muted => 16.0,
             Self::Bounds | Self::Nature | Self::Ask | Self::Tell => 15.0,
             Self::Window => 14.0,
             Self::Node | Self::ZeroBounds => 13.0,

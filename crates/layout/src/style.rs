@@ -48,7 +48,7 @@ impl Parts {
         match role {
             TextRole::Bounds | TextRole::Nature | TextRole::ZeroBounds => self.bounds,
             TextRole::Ask | TextRole::Tell => self.conditions,
-            TextRole::Name | TextRole::Quiet => self.names,
+            TextRole::Name | TextRole::Muted => self.names,
             TextRole::Node | TextRole::Title | TextRole::Window => true,
         }
     }
@@ -139,7 +139,7 @@ pub(crate) fn text_color(role: TextRole, standing: Standing) -> ColorRole {
     }
     match role {
         TextRole::Name | TextRole::Title | TextRole::Node => ColorRole::Text,
-        TextRole::Quiet | TextRole::Bounds => ColorRole::TextMuted,
+        TextRole::Muted | TextRole::Bounds => ColorRole::TextMuted,
         TextRole::Nature => ColorRole::Nature,
         TextRole::ZeroBounds => ColorRole::TextFaint,
         TextRole::Ask => ColorRole::Ask,

@@ -203,7 +203,7 @@ fn arc_name(network: &Network, options: &Options, id: ArcId, arc: &Arc) -> Optio
     }
     match occurrence.kind {
         OccurrenceKind::Assertion | OccurrenceKind::Scope => None,
-        OccurrenceKind::Delay => Some((SmolStr::new_static("delay"), TextRole::Quiet)),
+        OccurrenceKind::Delay => Some((SmolStr::new_static("delay"), TextRole::Muted)),
         OccurrenceKind::Primitive | OccurrenceKind::Activity | OccurrenceKind::Scenario => {
             let arguments = options.arguments && !occurrence.arguments.is_empty();
             let text = if arguments {

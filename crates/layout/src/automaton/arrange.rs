@@ -205,7 +205,7 @@ impl<'a> Arranger<'a> {
             (None, CompositeKind::Parallel) => SmolStr::new_static("parallel"),
             (None, _) => return None,
         };
-        Some(Text::wrapped(&text, TextRole::Quiet, room.max(EASY_LINE), self.measure))
+        Some(Text::wrapped(&text, TextRole::Muted, room.max(EASY_LINE), self.measure))
     }
 
     /// The size of a composite and its title, which takes the width that is there.

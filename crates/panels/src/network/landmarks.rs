@@ -93,7 +93,7 @@ fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<La
         layout::Shape::Text(at) => {
             let text = &drawing.texts[at as usize];
             let is_name =
-                matches!(text.role, TextRole::Name | TextRole::Quiet | TextRole::Tell | TextRole::Title);
+                matches!(text.role, TextRole::Name | TextRole::Muted | TextRole::Tell | TextRole::Title);
             let selection = selection_of(text.owner, network);
             if is_name && text.slide.is_none() && matches!(selection, Selection::Occurrence(_)) {
                 add(text.rect, selection);
