@@ -106,40 +106,12 @@ impl Stn {
                 }
                 point = self.edges[parent as usize].to as usize;
             }
-            if self.scratch[point] == walk && self.reach[point].parent != NONE && self.closes(point) {
-                self.collect_parent_cycle(point);
+            if self.scratch[point] == walk && self.reach[point].parent != NONE {
+                self.walk.clear();
+                self.collect_cycle(point as u32, point as u32);
                 return true;
             }
         }
         false
-    }
-
-    /// Whether following parents from `point` comes back to it.
-    fn closes(&self, point: usize) -> bool {
-        let mut at = point;
-        for _ in 0..self.num_points() {
-            let parent = self.reach[at].parent;
-            if parent == NONE {
-                return false;
-            }
-            at = self.edges[parent as usize].to as usize;
-            if at == point {
-                return true;
-            }
-        }
-        false
-    }
-
-    fn collect_parent_cycle(&mut self, point: usize) {
-        self.cycle.clear();
-        let mut at = point;
-        loop {
-            let edge = self.edges[self.reach[at].parent as usize];
-            self.cycle.push(edge.describe());
-            at = edge.to as usize;
-            if at == point {
-                break;
-            }
-        }
     }
 }

@@ -16,11 +16,6 @@ pub struct DistanceMatrix {
 }
 
 impl DistanceMatrix {
-    /// Wraps a row-major square matrix. `None` if the length is not `points` squared.
-    pub fn from_rows(points: usize, distances: Vec<i64>) -> Option<Self> {
-        (distances.len() == points * points).then_some(Self { points, distances })
-    }
-
     /// The least upper bound of `to − from`, or [`INFINITE`].
     pub fn get(&self, from: PointId, to: PointId) -> i64 {
         self.distances[from.index() * self.points + to.index()]

@@ -1,50 +1,26 @@
 //! A binary heap of points by key, least key first, with stale entries left to the caller.
 
-/// Entries are `(key, point)`; equal keys come out by point, so that everything built on it is deterministic.
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Entries are `(key, point)`, the key above the point in one number, which compares in one step; equal keys come out by
+/// point, so that everything built on it is deterministic.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Heap {
-    entries: Vec<(i64, u32)>,
-}
+pub struct Heap(BinaryHeap<Reverse<i128>>);
 
 impl Heap {
-    pub(crate) fn clear(&mut self) {
-        self.entries.clear();
+    /// Takes out all entries.
+    pub fn clear(&mut self) {
+        self.0.clear();
     }
 
-    pub(crate) fn push(&mut self, key: i64, point: u32) {
-        let mut hole = self.entries.len();
-        self.entries.push((key, point));
-        while hole > 0 {
-            let parent = (hole - 1) / 2;
-            if self.entries[parent] <= (key, point) {
-                break;
-            }
-            self.entries[hole] = self.entries[parent];
-            hole = parent;
-        }
-        self.entries[hole] = (key, point);
+    /// Adds an entry.
+    pub fn push(&mut self, key: i64, point: u32) {
+        self.0.push(Reverse((i128::from(key) << u32::BITS) | i128::from(point)));
     }
 
-    pub(crate) fn pop(&mut self) -> Option<(i64, u32)> {
-        let last = self.entries.pop()?;
-        let Some(&top) = self.entries.first() else { return Some(last) };
-        let len = self.entries.len();
-        let mut hole = 0;
-        loop {
-            let mut child = 2 * hole + 1;
-            if child >= len {
-                break;
-            }
-            if child + 1 < len && self.entries[child + 1] < self.entries[child] {
-                child += 1;
-            }
-            if self.entries[child] >= last {
-                break;
-            }
-            self.entries[hole] = self.entries[child];
-            hole = child;
-        }
-        self.entries[hole] = last;
-        Some(top)
+    /// Takes out the least entry.
+    pub fn pop(&mut self) -> Option<(i64, u32)> {
+        self.0.pop().map(|Reverse(entry)| ((entry >> u32::BITS) as i64, entry as u32))
     }
 }

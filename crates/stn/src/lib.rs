@@ -19,6 +19,7 @@ mod unfolding;
 pub use dispatch::{DispatchEdge, Dispatchable, RigidComponent, dispatchable, rigid_components};
 pub use distance::{DistanceMatrix, INFINITE};
 pub use execution::{Execution, ExecutionWindows, execution_windows};
+pub use heap::Heap;
 pub use network::{Checkpoint, CycleEdge, Inconsistency, Overflow, PointId, Stn, Tag, Window};
 pub use pairs::PairDistances;
 pub use unfolding::{Refusal, Unfolding};

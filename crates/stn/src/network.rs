@@ -140,7 +140,7 @@ impl Stn {
         stn
     }
 
-    /// Adds time points until there are `points`.
+    /// Adds time points until there are `points`, or takes away the last ones, which must have no edges.
     pub fn resize(&mut self, points: usize) {
         self.first_out.resize(points, NONE);
         self.first_in.resize(points, NONE);
@@ -203,6 +203,16 @@ impl Stn {
     /// An edge, by position; `None` if it has been withdrawn.
     pub fn edge(&self, position: usize) -> Option<CycleEdge> {
         self.edges.get(position).filter(|edge| !edge.is_withdrawn).map(Edge::describe)
+    }
+
+    /// The edges that end at a point, the one inserted last first.
+    pub fn edges_into(&self, point: PointId) -> impl Iterator<Item = CycleEdge> {
+        let mut next = self.first_in[point.index()];
+        std::iter::from_fn(move || {
+            let edge = self.edges.get(next as usize)?;
+            next = edge.next_in;
+            Some(edge.describe())
+        })
     }
 
     /// The negative cycle of the last failed insertion, in order; each edge's `to` is the next one's `from`.
@@ -274,20 +284,43 @@ impl Stn {
         result
     }
 
-    /// Adds `to − from ≤ weight` and restores consistency. On failure the edge is not inserted.
+    /// Adds `to − from ≤ weight` and restores consistency. On failure nothing has changed.
     ///
     /// Takes `O(k log k + edges at k points)` time for the `k` points that must move.
     pub fn insert(&mut self, from: PointId, to: PointId, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
-        self.repair(from.0, to.0, weight, tag)?;
+        if self.rise(from.0, to.0, weight)? < 0 {
+            return self.insert_into(to, [(from, weight, tag)]);
+        }
+        self.changed.clear();
         self.push(from, to, weight, tag);
         Ok(())
     }
 
+    /// Adds `to − from ≤ weight` for several starts, each with its weight and tag, in one propagation. On failure nothing
+    /// has changed.
+    pub fn insert_into(
+        &mut self,
+        to: PointId,
+        edges: impl IntoIterator<Item = (PointId, i64, Tag)>,
+    ) -> Result<(), Inconsistency> {
+        let checkpoint = self.checkpoint();
+        for (from, weight, tag) in edges {
+            self.push(from, to, weight, tag);
+        }
+        let result = self.repair(checkpoint.0);
+        if result.is_err() {
+            self.rollback(checkpoint);
+        }
+        result
+    }
+
     /// Whether `to − from ≤ weight` could be added. The network stays as it is; if not, [`Stn::cycle`] says why.
     pub fn admits(&mut self, from: PointId, to: PointId, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
+        let checkpoint = self.checkpoint();
+        self.insert(from, to, weight, tag)?;
+        self.rollback(checkpoint);
         // The repaired potential is feasible for the edges that are there, too, but is undone: a query that moved the
         // schedule would make later answers cost differently for no reason.
-        self.repair(from.0, to.0, weight, tag)?;
         self.restore();
         Ok(())
     }
@@ -319,6 +352,7 @@ impl Stn {
     }
 
     /// Adds an edge without restoring consistency: [`Stn::settle`] must follow before anything else is asked.
+    #[inline]
     pub fn push(&mut self, from: PointId, to: PointId, weight: i64, tag: Tag) {
         let position = self.edges.len() as u32;
         let (first_out, first_in) = (&mut self.first_out[from.index()], &mut self.first_in[to.index()]);

@@ -1,9 +1,9 @@
-//! Propagation of one new edge, and the negative cycle that it closes if it contradicts.
+//! Propagation of new edges, and the negative cycle that they close if they contradict.
 //!
 //! The algorithm is Cotton and Maler's (Fast and flexible difference constraint propagation for DPLL(T), 2006): a
 //! feasible potential is repaired by a Dijkstra search that visits only the points whose potential must rise.
 
-use crate::network::{CycleEdge, Inconsistency, NONE, Overflow, PointId, Stn, Tag};
+use crate::network::{Edge, Inconsistency, NONE, Overflow, Stn};
 
 /// How propagation reaches a point.
 #[derive(Clone, Copy, Debug)]
@@ -24,32 +24,46 @@ impl Reach {
 }
 
 impl Stn {
-    /// Raises points of the schedule until the edge that is about to be inserted holds, or finds the cycle it closes.
+    /// Raises points of the schedule until the edges from `first` on hold, which all end at one point, or finds a cycle
+    /// that they close. On failure the schedule is as before; the edges stay, to be taken back.
     ///
     /// Raising what comes later is cheap where lowering is not: a plan's start has constraints with everything, so
     /// that lowering one thread of it drags along all others.
-    pub(crate) fn repair(&mut self, from: u32, to: u32, weight: i64, tag: Tag) -> Result<(), Inconsistency> {
+    pub(crate) fn repair(&mut self, first: u32) -> Result<(), Inconsistency> {
         self.changed.clear();
-        let reached = self.potential[to as usize].checked_sub(weight).ok_or(Overflow::at(from as usize))?;
-        // Kept negative, so that the heap has the point that must rise furthest first.
-        let rise = self.potential[from as usize].checked_sub(reached).ok_or(Overflow::at(from as usize))?;
-        if rise >= 0 {
-            return Ok(());
-        }
-        let new_edge = CycleEdge { from: PointId(from), to: PointId(to), weight, tag };
-        if from == to {
-            self.cycle.clear();
-            self.cycle.push(new_edge);
-            return Err(Inconsistency::NegativeCycle);
-        }
-        self.next_stamp();
-        let now = self.now;
         self.heap.clear();
         self.level.clear();
-        let start = &mut self.reach[from as usize];
-        (start.rise, start.stamp, start.parent) = (rise, now, NONE);
-        self.level.push(from);
-        let mut present = rise;
+        self.next_stamp();
+        let Some(&Edge { to: target, .. }) = self.edges.get(first as usize) else { return Ok(()) };
+        let is_one = first as usize + 1 == self.edges.len();
+        let mut present = 0;
+        for position in first..self.edges.len() as u32 {
+            let Edge { from, to, weight, .. } = self.edges[position as usize];
+            let rise = self.rise(from, to, weight)?;
+            if rise < 0 {
+                present = if is_one { rise } else { 0 };
+                self.pull((from, position), rise, present, target)?;
+            }
+        }
+        let result = self.raise(target, present);
+        if result.is_err() {
+            self.restore();
+        }
+        result
+    }
+
+    /// By how much the start of a constraint must rise for it to hold. Negative, so that the heap has the point that must
+    /// rise furthest first; not negative if it holds.
+    #[inline]
+    pub(crate) fn rise(&self, from: u32, to: u32, weight: i64) -> Result<i64, Overflow> {
+        let time = self.potential[to as usize].checked_sub(weight);
+        let rise = time.and_then(|time| self.potential[from as usize].checked_sub(time));
+        rise.ok_or(Overflow::at(from as usize))
+    }
+
+    /// Raises what must rise, what must rise furthest first: what `level` has must rise by `present`.
+    fn raise(&mut self, target: u32, mut present: i64) -> Result<(), Inconsistency> {
+        let now = self.now;
         while let Some((rise, point)) =
             self.level.pop().map(|point| (present, point)).or_else(|| self.heap.pop())
         {
@@ -59,62 +73,73 @@ impl Stn {
                 continue;
             }
             reach.done = now;
-            let potential = &mut self.potential[point as usize];
-            let old = *potential;
-            let Some(new) = old.checked_sub(rise) else {
-                self.restore();
-                return Err(Overflow::at(point as usize).into());
-            };
-            *potential = new;
+            let old = self.potential[point as usize];
+            self.potential[point as usize] = old.checked_sub(rise).ok_or(Overflow::at(point as usize))?;
             self.changed.push((point, old));
             let mut next = self.first_in[point as usize];
             while next != NONE {
-                let edge = &self.edges[next as usize];
-                let (position, source) = (next, edge.from);
-                next = edge.next_in;
-                let time = new.checked_sub(edge.weight);
-                let rise = time.and_then(|time| self.potential[source as usize].checked_sub(time));
-                let Some(rise) = rise else {
-                    self.restore();
-                    return Err(Overflow::at(source as usize).into());
-                };
-                if rise >= 0 {
-                    continue;
-                }
-                let reach = &mut self.reach[source as usize];
-                if reach.done == now || (reach.stamp == now && reach.rise <= rise) {
-                    continue;
-                }
-                (reach.rise, reach.stamp, reach.parent) = (rise, now, position);
-                if source == to {
-                    self.collect_cycle(new_edge);
-                    self.restore();
-                    return Err(Inconsistency::NegativeCycle);
-                }
-                if self.origin == Some(source) && self.hangs_on(to, source) {
-                    self.collect_cycle_through(source, new_edge);
-                    self.restore();
-                    return Err(Inconsistency::NegativeCycle);
-                }
-                // What is tightly bound rises as one piece: most points take this way past the heap.
-                if rise == present {
-                    self.level.push(source);
-                } else {
-                    self.heap.push(rise, source);
+                let Edge { from, to, weight, next_in, .. } = self.edges[next as usize];
+                let rise = self.rise(from, to, weight)?;
+                let position = std::mem::replace(&mut next, next_in);
+                if rise < 0 {
+                    self.pull((from, position), rise, present, target)?;
                 }
             }
         }
         Ok(())
     }
 
-    fn collect_cycle(&mut self, new_edge: CycleEdge) {
+    /// Notes that an edge makes its start rise while what must rise by `present` does; the new edges end at `target`.
+    #[inline]
+    fn pull(
+        &mut self,
+        (source, position): (u32, u32),
+        rise: i64,
+        present: i64,
+        target: u32,
+    ) -> Result<(), Inconsistency> {
+        let now = self.now;
+        let reach = &mut self.reach[source as usize];
+        if reach.done == now || (reach.stamp == now && reach.rise <= rise) {
+            return Ok(());
+        }
+        (reach.rise, reach.stamp, reach.parent) = (rise, now, position);
+        if (source == target || self.origin == Some(source)) && self.closes_cycle(source, target) {
+            return Err(Inconsistency::NegativeCycle);
+        }
+        // What is tightly bound rises as one piece: most points take this way past the heap.
+        if rise == present {
+            self.level.push(source);
+        } else {
+            self.heap.push(rise, source);
+        }
+        Ok(())
+    }
+
+    /// Whether the new edges, which end at `target`, close a negative cycle if `point` rises: then `cycle` has it.
+    #[cold]
+    fn closes_cycle(&mut self, point: u32, target: u32) -> bool {
+        self.walk.clear();
+        let closes = point == target || self.hangs_on(target, point);
+        if closes {
+            self.collect_cycle(point, target);
+            // The new edge first.
+            self.cycle.rotate_right(1);
+        }
+        closes
+    }
+
+    /// The walk to `point` and the parents from there to `target`.
+    pub(crate) fn collect_cycle(&mut self, mut point: u32, target: u32) {
         self.cycle.clear();
-        self.cycle.push(new_edge);
-        let mut point = new_edge.to.0;
-        while point != new_edge.from.0 {
+        self.cycle.extend(self.walk.iter().map(|&position| self.edges[position as usize].describe()));
+        loop {
             let edge = self.edges[self.reach[point as usize].parent as usize];
             self.cycle.push(edge.describe());
             point = edge.to;
+            if point == target {
+                break;
+            }
         }
     }
 
@@ -125,7 +150,6 @@ impl Stn {
         if self.reach[point as usize].done == self.now {
             return false;
         }
-        self.walk.clear();
         self.scratch.clear();
         self.scratch.push(i64::from(self.first_out[point as usize]));
         let mark = self.next_visit();
@@ -154,21 +178,6 @@ impl Stn {
             self.scratch.push(i64::from(self.first_out[target]));
         }
         false
-    }
-
-    /// The new edge, the walk from its end to the origin, and the parents from there to its start.
-    fn collect_cycle_through(&mut self, origin: u32, new_edge: CycleEdge) {
-        self.cycle.clear();
-        self.cycle.push(new_edge);
-        for &position in &self.walk {
-            self.cycle.push(self.edges[position as usize].describe());
-        }
-        let mut point = origin;
-        while point != new_edge.from.0 {
-            let edge = self.edges[self.reach[point as usize].parent as usize];
-            self.cycle.push(edge.describe());
-            point = edge.to;
-        }
     }
 
     fn next_visit(&mut self) -> u32 {

@@ -11,10 +11,12 @@
 
 use std::fmt;
 
+use stn::Inconsistency;
+
 use crate::conflict::{self, Conflict, CyclePart};
-use crate::graph::{Contradiction, Graph, Origin};
-use crate::network::{Edge, EdgeId, Link, LinkError, LinkId, Network, NetworkSize, PointId};
-use crate::reduction::{Found, Node, Search};
+use crate::graph::{Graph, Origin};
+use crate::network::{Edge, Link, LinkError, LinkId, Network, NetworkSize, PointId};
+use crate::reduction::{Found, NONE, Node, Search};
 
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +98,7 @@ impl Row {
 #[derive(Clone, Copy, Debug)]
 pub struct Checkpoint {
     size: NetworkSize,
-    arcs: usize,
+    arcs: stn::Checkpoint,
     nodes: usize,
     trail: usize,
 }
@@ -151,15 +153,15 @@ impl Checker {
     pub fn build(network: Network, stop: Stop<'_>) -> Result<Self, Refusal> {
         let mut checker = Self::new(network.num_points());
         for (id, edge) in (0..).zip(network.edges()) {
-            checker.graph.push(edge.from.0, edge.to.0, edge.weight, Origin::Edge(id));
+            checker.graph.push(edge.from, edge.to, edge.weight, Origin::Edge(id));
         }
         for (id, link) in (0..).zip(network.links()) {
-            checker.graph.push(link.activation.0, link.end.0, link.lower, Origin::Lower(id));
+            checker.graph.push(link.activation, link.end, link.lower, Origin::Lower(id));
             checker.activated[link.activation.index()].push(id);
             checker.rows.push(Row { is_stale: true, ..Row::default() });
         }
         checker.network = network;
-        if let Err(reason) = checker.graph.repair_all() {
+        if let Err(reason) = checker.graph.settle() {
             return Err(checker.refusal(reason));
         }
         checker.update(stop)?;
@@ -173,14 +175,14 @@ impl Checker {
 
     /// A schedule that keeps all ordinary constraints if every contingent link is as short as it can be.
     pub fn schedule(&self) -> &[i64] {
-        &self.graph.potential
+        self.graph.potential()
     }
 
     /// A place to come back to.
     pub fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             size: self.network.size(),
-            arcs: self.graph.arcs.len(),
+            arcs: self.graph.checkpoint(),
             nodes: self.nodes.len(),
             trail: self.trail.len(),
         }
@@ -200,7 +202,7 @@ impl Checker {
         }
         // What is up to date at a checkpoint may only have been marked since.
         self.rows.iter_mut().for_each(|row| row.is_stale = false);
-        self.graph.truncate(checkpoint.arcs);
+        self.graph.rollback(checkpoint.arcs);
         self.nodes.truncate(checkpoint.nodes);
         if checkpoint.size.points < self.network.num_points() {
             self.graph.resize(checkpoint.size.points);
@@ -252,9 +254,8 @@ impl Checker {
 
     /// Adds an arc, repairs the potential and marks the rows that it may change.
     fn extend(&mut self, edge: Edge, origin: Origin) -> Result<(), Refusal> {
-        let first = self.graph.arcs.len();
-        self.graph.push(edge.from.0, edge.to.0, edge.weight, origin);
-        self.graph.repair(first).map_err(|reason| self.refusal(reason))?;
+        let inserted = self.graph.insert(edge.to, std::iter::once((edge.from, edge.weight, origin)));
+        inserted.map_err(|reason| self.refusal(reason))?;
         for (row, link) in self.rows.iter_mut().zip(self.network.links()) {
             row.is_stale |= changes(row, link, edge.from.0, edge.to.0, edge.weight);
         }
@@ -270,7 +271,7 @@ impl Checker {
             (0..self.rows.len() as u32).filter(|link| is_stale(link, &self.rows)).collect();
         // What a link awaits mostly begins after it, and is best there first.
         stale.sort_by_key(|&link| {
-            std::cmp::Reverse(self.graph.potential[self.network.links()[link as usize].activation.index()])
+            std::cmp::Reverse(self.graph.potential()[self.network.links()[link as usize].activation.index()])
         });
         // A visit may outdate links that await the visited one; one that is done stays so.
         while !stale.is_empty() {
@@ -317,7 +318,7 @@ impl Checker {
         self.visits[link as usize] = Visit::Open;
         let row = &self.rows[link as usize];
         let awaited = if row.is_stale { Vec::new() } else { row.awaited.clone() };
-        stack.push(Frame { link, awaited, seen: 0, met: crate::graph::NONE });
+        stack.push(Frame { link, awaited, seen: 0, met: NONE });
     }
 
     /// Finds a link's row anew and bypasses its upper case, or says which links come first and where the paths from their
@@ -348,11 +349,12 @@ impl Checker {
         self.search.leave_out_known(&self.network.links()[link as usize], &self.graph);
 
         let activation = self.network.links()[link as usize].activation;
-        let first = self.graph.arcs.len();
-        for &(point, weight, node) in &self.search.bypasses {
-            self.graph.push(point, activation.0, weight, Origin::Bypass { link, node });
-        }
-        self.graph.repair(first).map_err(|reason| self.refusal(reason))?;
+        let bypasses = &self.search.bypasses;
+        let arcs = bypasses
+            .iter()
+            .map(|&(point, weight, node)| (PointId(point), weight, Origin::Bypass { link, node }));
+        let inserted = self.graph.insert(activation, arcs);
+        inserted.map_err(|reason| self.refusal(reason))?;
         for other in 0..self.rows.len() {
             let row = &mut self.rows[other];
             if row.is_stale || row.awaited.binary_search_by_key(&link, |&(awaited, _)| awaited).is_err() {
@@ -360,7 +362,7 @@ impl Checker {
             }
             let of = &self.network.links()[other];
             row.is_stale =
-                self.graph.arcs[first..].iter().any(|arc| changes(row, of, arc.from, arc.to, arc.weight));
+                bypasses.iter().any(|&(point, weight, _)| changes(row, of, point, activation.0, weight));
         }
         Ok(Vec::new())
     }
@@ -382,22 +384,17 @@ impl Checker {
         path(&self.nodes, node).map(CyclePart::Arc).collect()
     }
 
-    fn refusal(&self, reason: Contradiction) -> Refusal {
+    fn refusal(&self, reason: Inconsistency) -> Refusal {
         match reason {
-            Contradiction::NegativeCycle => {
-                self.conflict(&self.graph.cycle.iter().map(|&arc| CyclePart::Arc(arc)).collect::<Vec<_>>())
+            Inconsistency::NegativeCycle => {
+                self.conflict(&self.graph.negative_cycle().map(CyclePart::Arc).collect::<Vec<_>>())
             }
-            Contradiction::Overflow => Undecided::Overflow.into(),
+            Inconsistency::Overflow(_) => Undecided::Overflow.into(),
         }
     }
 
     fn conflict(&self, cycle: &[CyclePart]) -> Refusal {
         Refusal::Uncontrollable(conflict::unfold(&self.network, &self.graph, &self.nodes, cycle))
-    }
-
-    /// The id that the next edge gets.
-    pub fn next_edge(&self) -> EdgeId {
-        EdgeId(self.network.edges().len() as u32)
     }
 }
 

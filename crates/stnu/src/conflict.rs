@@ -113,7 +113,7 @@ fn count(graph: &Graph, nodes: &[Node], cycle: &[CyclePart]) -> Vec<Member> {
         }
     }
     while let Some((arc, times)) = arcs.pop_last() {
-        match graph.arcs[arc as usize].origin {
+        match graph.origin(arc) {
             Origin::Edge(id) => add(parts.entry(Part::Edge(EdgeId(id))).or_default(), times),
             Origin::Lower(id) => add(parts.entry(Part::Lower(LinkId(id))).or_default(), times),
             Origin::Bypass { link, node } => {
@@ -136,7 +136,7 @@ fn steps(network: &Network, graph: &Graph, nodes: &[Node], cycle: &[CyclePart]) 
         }
         let part = match part {
             CyclePart::Upper(link) => Part::Upper(LinkId(link)),
-            CyclePart::Arc(arc) => match graph.arcs[arc as usize].origin {
+            CyclePart::Arc(arc) => match graph.origin(arc) {
                 Origin::Edge(id) => Part::Edge(EdgeId(id)),
                 Origin::Lower(id) => Part::Lower(LinkId(id)),
                 Origin::Bypass { link, node } => {

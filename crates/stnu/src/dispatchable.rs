@@ -8,8 +8,9 @@
 
 use std::collections::BTreeMap;
 
+use stn::Heap;
+
 use crate::checker::{Stop, Undecided};
-use crate::heap::Heap;
 use crate::network::{Edge, LinkId, Network, PointId};
 
 /// `point` must not happen before `link` ends or this long after its activation.

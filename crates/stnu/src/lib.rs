@@ -15,7 +15,6 @@ mod dispatcher;
 mod format;
 pub mod generate;
 mod graph;
-mod heap;
 mod network;
 mod reduction;
 mod relaxation;

@@ -3,9 +3,7 @@
 
 use std::fmt;
 
-/// Names a time point of a network.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct PointId(pub u32);
+pub use stn::PointId;
 
 /// An ordinary constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -25,7 +23,7 @@ macro_rules! index {
         }
     )*};
 }
-index!(PointId, EdgeId, LinkId);
+index!(EdgeId, LinkId);
 
 /// A requirement on the executive: `to − from ≤ weight`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

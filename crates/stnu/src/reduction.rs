@@ -5,10 +5,14 @@
 //! activation that bypasses the link's upper case. Where it is not, the point at least waits for the shortest duration;
 //! only from there the search goes on (rules *relax*, *upper* and *lower* of RUL⁻).
 
+use stn::Heap;
+
 use crate::checker::Row;
-use crate::graph::{Graph, NONE, Origin};
-use crate::heap::Heap;
+use crate::graph::{Graph, Origin};
 use crate::network::Link;
+
+/// No arc, and no node.
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// Where a path to a link's end starts.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +67,8 @@ impl Search {
         is_done: &dyn Fn(u32) -> bool,
         nodes: &mut Vec<Node>,
     ) -> Option<Found> {
-        self.reach.resize(graph.potential.len(), Reach::default());
+        let potential = graph.potential();
+        self.reach.resize(potential.len(), Reach::default());
         if self.stamp == u32::MAX {
             self.reach.fill(Reach::default());
             self.stamp = 0;
@@ -75,7 +80,7 @@ impl Search {
         self.bypasses.clear();
         let first_node = nodes.len();
         let (spread, stamp) = (link.spread(), self.stamp);
-        let base = graph.potential[link.end.index()];
+        let base = potential[link.end.index()];
         self.reach[link.end.index()] = Reach { stamp, arc: NONE, node: NONE, ..Reach::default() };
         self.heap.push(0, link.end.0);
         while let Some((_, point)) = self.heap.pop() {
@@ -85,8 +90,8 @@ impl Search {
             }
             let distance = reach.distance;
             let arc = reach.arc;
-            let highest_before = graph.arcs.get(arc as usize).map(|arc| {
-                let next = self.reach[arc.to as usize];
+            let highest_before = graph.end(arc).map(|end| {
+                let next = self.reach[end.index()];
                 nodes.push(Node { arc: self.reach[point as usize].arc, next: next.node });
                 self.reach[point as usize].node = nodes.len() as u32 - 1;
                 next.highest
@@ -114,18 +119,18 @@ impl Search {
             for &other in &activated[point as usize] {
                 self.awaited.push((other, node));
             }
-            for (arc_id, arc) in graph.arcs_into(point) {
-                if arc.origin == Origin::Lower(id) {
+            for arc in graph.arcs_into(point) {
+                if arc.from == link.activation && graph.origin(arc.tag) == Origin::Lower(id) {
                     continue;
                 }
                 let reached = distance.checked_add(arc.weight)?;
-                let reach = &mut self.reach[arc.from as usize];
+                let reach = &mut self.reach[arc.from.index()];
                 if reach.stamp == stamp && (reach.is_done || reach.distance <= reached) {
                     continue;
                 }
-                let key = reached.checked_add(graph.potential[arc.from as usize].checked_sub(base)?)?;
-                *reach = Reach { distance: reached, arc: arc_id, node: NONE, stamp, ..Reach::default() };
-                self.heap.push(key, arc.from);
+                let key = reached.checked_add(potential[arc.from.index()].checked_sub(base)?)?;
+                *reach = Reach { distance: reached, arc: arc.tag, node: NONE, stamp, ..Reach::default() };
+                self.heap.push(key, arc.from.0);
             }
         }
         // What is missing can only bring points closer to the end, and so these links are awaited for certain.
@@ -154,10 +159,11 @@ impl Search {
             self.reach[point as usize].distance = weight;
             self.reach[point as usize].is_done = false;
         }
-        for (_, arc) in graph.arcs_into(link.activation.0) {
+        for arc in graph.arcs_into(link.activation.0) {
             // A lower case is no constraint.
-            let reach = &mut self.reach[arc.from as usize];
-            reach.is_done |= !matches!(arc.origin, Origin::Lower(_)) && reach.distance >= arc.weight;
+            let reach = &mut self.reach[arc.from.index()];
+            reach.is_done |=
+                reach.distance >= arc.weight && !matches!(graph.origin(arc.tag), Origin::Lower(_));
         }
         self.bypasses.retain(|&(point, ..)| !self.reach[point as usize].is_done);
     }

@@ -4,8 +4,9 @@
 //! Every end is its link's root, a point of the executive's, after a sum of durations. A constraint must hold for the
 //! worst durations, which makes it one between roots: what is left is a simple temporal network.
 
+use stn::{Inconsistency, Stn};
+
 use crate::checker::Undecided;
-use crate::graph::{Contradiction, Graph, Origin};
 use crate::network::{EdgeId, LinkId, Network, PointId};
 
 /// The answer to [`check_strong`].
@@ -19,8 +20,7 @@ pub enum StrongVerdict {
 
 /// Whether one schedule suits all that nature may choose. `O(points · edges)` at worst.
 pub fn check_strong(network: &Network) -> Result<StrongVerdict, Undecided> {
-    let mut graph = Graph::default();
-    graph.resize(network.num_points());
+    let mut roots = Stn::new(network.num_points());
     for (id, edge) in (0..).zip(network.edges()) {
         let (from, to) = (chain(network, edge.from), chain(network, edge.to));
         // Links of both chains count alike for both ends.
@@ -34,15 +34,16 @@ pub fn check_strong(network: &Network) -> Result<StrongVerdict, Undecided> {
         }
         let root =
             |point, chain: &[LinkId]| chain.last().map_or(point, |&link| network.link(link).activation);
-        graph.push(root(edge.from, &from).0, root(edge.to, &to).0, weight, Origin::Edge(id));
+        roots.push(root(edge.from, &from), root(edge.to, &to), weight, id);
     }
-    match graph.repair_all() {
+    let points: Vec<PointId> = (0..network.num_points() as u32).map(PointId).collect();
+    match roots.settle(&points) {
         Ok(()) => {
-            let mut schedule = graph.potential.clone();
-            for point in (0..network.num_points() as u32).map(PointId) {
+            let mut schedule = roots.schedule().to_vec();
+            for point in points {
                 let chain = chain(network, point);
                 let Some(&last) = chain.last() else { continue };
-                let mut time = graph.potential[network.link(last).activation.index()];
+                let mut time = roots.schedule()[network.link(last).activation.index()];
                 for &link in &chain {
                     time = time.checked_add(network.link(link).lower).ok_or(Undecided::Overflow)?;
                 }
@@ -50,17 +51,10 @@ pub fn check_strong(network: &Network) -> Result<StrongVerdict, Undecided> {
             }
             Ok(StrongVerdict::Controllable(schedule))
         }
-        Err(Contradiction::Overflow) => Err(Undecided::Overflow),
-        Err(Contradiction::NegativeCycle) => Ok(StrongVerdict::Uncontrollable(
-            graph
-                .cycle
-                .iter()
-                .filter_map(|&arc| match graph.arcs[arc as usize].origin {
-                    Origin::Edge(id) => Some(EdgeId(id)),
-                    Origin::Lower(_) | Origin::Bypass { .. } => None,
-                })
-                .collect(),
-        )),
+        Err(Inconsistency::Overflow(_)) => Err(Undecided::Overflow),
+        Err(Inconsistency::NegativeCycle) => {
+            Ok(StrongVerdict::Uncontrollable(roots.cycle().iter().map(|edge| EdgeId(edge.tag)).collect()))
+        }
     }
 }
 

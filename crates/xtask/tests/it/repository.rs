@@ -17,7 +17,7 @@ pub(crate) const LAYERS: &[(&str, &[&str])] = &[
     ("exact", &[]),
     ("rmpl", &["exact"]),
     ("stn", &[]),
-    ("stnu", &["exact"]),
+    ("stnu", &["exact", "stn"]),
     ("terrain", &[]),
     ("tpn", &["rmpl"]),
     ("interchange", &["tpn"]),
