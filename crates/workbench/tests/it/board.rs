@@ -4,16 +4,14 @@ use std::rc::Rc;
 
 use review::Record;
 use serde_json::{Value, json};
+use test_support::App;
 use workbench::command::Command;
 use workbench::host::{FileKind, Remote as _};
 use workbench::state::review::ReviewCommand;
 
-use crate::support;
-use crate::support::App;
-
 /// The open mission, reviewed, before a board of two roles.
 fn before_the_board() -> App {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     let board = json!([{ "role": "Science", "approvals": 1 }, { "role": "Mobility", "approvals": 1 }]);
     app.dispatch("review.rules", &json!({ "board": board }));
@@ -180,7 +178,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     }
     let world = Rc::clone(&app.world);
     drop(app);
-    let mut again = support::start_in(world);
+    let mut again = test_support::start_in(world);
     again.settle();
     assert_eq!(again.json()["review"]["history"], told);
 }
@@ -229,7 +227,7 @@ impl Told {
 
 #[test]
 fn the_manual_shows_a_board_s_history_from_draft_to_approval_over_one_edit() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     let mut told = Told { app, known: 0, rows: Vec::new() };
     let by = |name: &str, role: &str| json!({ "name": name, "role": role });
@@ -312,7 +310,7 @@ fn a_history_that_was_altered_is_refused_and_nothing_of_it_is_added() {
     let mut author = before_the_board();
     author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
     let altered = tampered(&author);
-    let mut app = support::start();
+    let mut app = test_support::start();
     open_json(&mut app, &altered);
     assert_eq!(app.json()["review"]["history"], json!([]));
     let said = last_toast(&app);
@@ -326,7 +324,7 @@ fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
     let mut author = before_the_board();
     author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
     let theirs = author.session.state().review.record().to_json();
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::OpenExample("both-paths".into()));
     app.run(Command::Review(ReviewCommand::Run));
     let rules = app.session.state().review.record().rules().clone();
@@ -339,7 +337,7 @@ fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
     // Under another name, with the very text that it is about, it belongs there.
     let mut renamed: Value = serde_json::from_str(&theirs).expect("JSON");
     renamed["mission"] = json!("Drive to the target");
-    let mut app = support::start();
+    let mut app = test_support::start();
     open_json(&mut app, &renamed.to_string());
     assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
 }
@@ -354,7 +352,7 @@ fn what_is_kept_and_cannot_be_used_is_kept_aside_and_never_lost() {
     let world = Rc::clone(&author.world);
     drop(author);
     world.storage.borrow_mut().insert(KEY.into(), altered.clone());
-    let mut app = support::start_in(Rc::clone(&world));
+    let mut app = test_support::start_in(Rc::clone(&world));
     app.settle();
     assert!(app.json()["review"]["aside"].as_str().is_some_and(|why| why.contains("altered")));
     assert_eq!(app.json()["review"]["history"], json!([]));
@@ -364,7 +362,7 @@ fn what_is_kept_and_cannot_be_used_is_kept_aside_and_never_lost() {
     app.run(Command::Review(ReviewCommand::SaveAside));
     assert_eq!(world.saved.borrow().last().expect("a file").1, altered.as_bytes());
     drop(app);
-    let mut again = support::start_in(world);
+    let mut again = test_support::start_in(world);
     again.settle();
     assert_eq!(again.json()["review"]["comments"][0]["text"], "Begun anew.");
     assert!(again.json()["review"]["aside"].is_string(), "it can still be saved");
@@ -372,10 +370,10 @@ fn what_is_kept_and_cannot_be_used_is_kept_aside_and_never_lost() {
 
 #[test]
 fn a_review_of_a_later_version_is_never_written_over() {
-    let world = Rc::<support::World>::default();
+    let world = Rc::<test_support::World>::default();
     let newer = json!({ "format": "enroute-review/3", "votes": [1, 2] }).to_string();
     world.storage.borrow_mut().insert(KEY.into(), newer.clone());
-    let mut app = support::start_in(Rc::clone(&world));
+    let mut app = test_support::start_in(Rc::clone(&world));
     app.settle();
     app.dispatch("review.comment", &json!({ "author": "Ada", "text": "Here?" }));
     assert_eq!(world.storage.borrow().get(KEY), Some(&newer));
@@ -390,7 +388,7 @@ fn a_whole_mission_with_an_altered_history_opens_and_says_so() {
     author.dispatch("review.comment", &json!({ "author": "Ada", "role": "Science", "text": "Why so long?" }));
     author.dispatch("file.saveAs", &json!(null));
     let text = author.world.saved_text().replace("Why so long?", "Fine as it is.");
-    let mut app = support::start();
+    let mut app = test_support::start();
     open_json(&mut app, &text);
     assert!(app.json()["review"]["aside"].as_str().is_some_and(|why| why.contains("altered")));
     let aside = app.world.storage.borrow().values().any(|kept| kept.contains("Fine as it is."));
@@ -399,7 +397,7 @@ fn a_whole_mission_with_an_altered_history_opens_and_says_so() {
 
 #[test]
 fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     app.sample(20, 5);
     let kept = app.session.state().review.record().to_json();
@@ -409,7 +407,7 @@ fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
     assert_eq!((runs.seed, runs.runs, runs.tally.runs), (5, 20, 20));
     let world = Rc::clone(&app.world);
     drop(app);
-    let mut again = support::start_in(world);
+    let mut again = test_support::start_in(world);
     again.settle();
     again.run(Command::Review(ReviewCommand::Run));
     assert_eq!(again.json()["robustness"]["runs"], 20);
@@ -420,7 +418,7 @@ fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
 
 #[test]
 fn schedules_say_how_the_plan_stands_and_what_is_pinned() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     app.acknowledge_all("Ada");
     app.dispatch("review.approve", &json!({ "name": "Ada" }));

@@ -1,8 +1,8 @@
 //! What is counted of a search is the same wherever it stands: in the plan, as the command line prints it, in the record
 //! that the search tree draws, and in what the page tells a host.
 
-use crate::support::start;
 use kirk::Status;
+use test_support::start;
 use tpn::generate::{Recipe, Tightness, mission};
 use workbench::command::Command;
 use workbench::state::search::Counts;

@@ -1,8 +1,8 @@
 //! The whole course, walked through: every lesson reads, its mission comes to what it says, every stop finds its step and
 //! its selection, every value in its prose is known, and every question has one right answer, which the planner gives.
 
-use crate::support::{App, start};
 use serde_json::{Value, json};
+use test_support::{App, start};
 use workbench::command::Command;
 use workbench::host::Remote as _;
 use workbench::lesson::{Answer, COURSE, CourseLesson, Expectation, Glossary, Lesson};

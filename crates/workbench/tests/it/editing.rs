@@ -1,7 +1,6 @@
 //! The editor's help while somebody types: lists that stay, templates, carets, places gone back to.
 
-use crate::support;
-use crate::support::App;
+use test_support::App;
 use text_editing::{Motion, TextCommand};
 use workbench::PanelKind;
 use workbench::command::{Command, EditorCommand};
@@ -9,7 +8,7 @@ use workbench::host::Remote as _;
 use workbench::state::manual::ManualCommand;
 
 fn showing(source: &str) -> App {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::SetSource(source.replace('|', "")));
     let at = source.find('|').unwrap_or(source.len());
     app.run(Command::Text(TextCommand::Select { anchor: at, head: at }));
@@ -145,7 +144,7 @@ fn a_line_that_was_copied_without_selecting_is_pasted_as_a_line_above() {
 fn the_manual_is_asked_about_the_word_at_the_caret_and_about_the_place_under_the_pointer() {
     let source = "var C : {ON, OFF};\nstate S : {A, B} = A;\nresource R capacity 2;\nprimitive P()[2,1] requires S=A uses R;\n\
         scenario S1[0,2*10] = { choose { P(), delay }; do { delay } maintaining C=ON }\n";
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::OpenSource { name: "test".into(), source: source.to_owned() });
     app.settle();
     let place = |app: &App| {

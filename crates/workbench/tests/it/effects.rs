@@ -1,8 +1,7 @@
 //! What commands leave to be done by panels, by the window and by the host: each thing once, in order.
 
-use crate::support;
-use crate::support::App;
 use rmpl::Span;
+use test_support::App;
 use text_editing::{Find, TextCommand};
 use workbench::command::{Command, EditorCommand, PictureFormat, ViewAction};
 use workbench::host::{FileKind, Remote as _};
@@ -12,7 +11,7 @@ use workbench::{Dialog, PanelEffect, PanelKind, WindowEffect};
 
 /// A session with a short text, whose first effects nobody waits for any more.
 fn opened(source: &str) -> App {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::OpenSource { name: "errand".into(), source: source.to_owned() });
     left(&mut app);
     app.session.take_window_effects();

@@ -3,8 +3,8 @@
 //! it (SPEC 8.2). That the compiled automaton follows the tables is tested in `hca`; here the lesson, its variables and
 //! the inputs of single steps are.
 
-use crate::support::{App, start};
 use serde_json::{Value, json};
+use test_support::{App, start};
 use workbench::command::Command;
 use workbench::host::Remote as _;
 use workbench::lesson::{COURSE, Lesson};

@@ -8,7 +8,7 @@ use workbench::host::{FileKind, HostEvent, Save};
 use workbench::state::files::FileCommand;
 use workbench::state::missions::LibraryCommand;
 
-use crate::support::{App, World, start_in};
+use test_support::{App, World, start_in};
 
 const MAIN: &str =
     "// A day.\nimport \"world/places.rmpl\";\n\nprimitive Rest()[1,2];\nscenario Day = { Rest() }\n";

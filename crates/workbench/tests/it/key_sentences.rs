@@ -3,9 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::start;
 use kirk::{Constraint, Event, Options, Search, Trace, TreeChoice, TreeNodeId, Unlimited};
 use rmpl::program::LabelMode;
+use test_support::start;
 use tpn::{ArcId, LabelId, Network, Plan, Top, compile};
 use workbench::command::Command;
 use workbench::lesson::COURSE;

@@ -1,7 +1,7 @@
 //! Key steps only: stepping and playing go from what the search does to what it does next, as a student follows it.
 
-use crate::support::{App, start};
 use serde_json::json;
+use test_support::{App, start};
 use workbench::command::{Command, ViewAction};
 use workbench::state::lesson::LessonCommand;
 use workbench::state::search::focus::is_key;

@@ -1,6 +1,5 @@
 //! The library of missions: nothing that was typed is ever lost, whatever happens to the tab or to the storage.
 
-use crate::support;
 use std::rc::Rc;
 
 use serde_json::{Value, json};
@@ -9,8 +8,8 @@ use workbench::host::{FileKind, HostEvent, Remote as _};
 use workbench::library::{Keeping, Mission};
 use workbench::state::missions::LibraryCommand;
 
-use crate::support::host::Shelf;
-use crate::support::{App, World, start_in};
+use test_support::host::Shelf;
+use test_support::{App, World, start_in};
 
 const EDITED: &str = "Sortie()[l,u] = { Scan()[1,2] }\n";
 const OTHER: &str = "Other()[l,u] = { Wait()[1,2] }\n";
@@ -270,7 +269,7 @@ fn settings_that_cannot_be_read_are_kept_aside() {
 
 #[test]
 fn missions_are_begun_named_copied_deleted_and_brought_back() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.dispatch("file.new", &Value::Null);
     assert_eq!(text_of(&app), "");
     edit(&mut app, EDITED);
@@ -299,7 +298,7 @@ fn missions_are_begun_named_copied_deleted_and_brought_back() {
 
 #[test]
 fn an_example_cannot_be_deleted_and_a_name_makes_it_a_mission_of_its_own() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     assert!(app.session.dispatch("file.delete", &Value::Null).is_err());
     app.dispatch("file.renameTo", &json!({ "name": "Mine" }));
     assert_eq!(names(&app), ["Mine"]);
@@ -308,7 +307,7 @@ fn an_example_cannot_be_deleted_and_a_name_makes_it_a_mission_of_its_own() {
 
 #[test]
 fn every_template_reads_without_errors_and_has_a_plan() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     for template in workbench::library::TEMPLATES {
         app.dispatch("file.newFrom", &json!({ "name": template.name }));
         let state = app.json();
@@ -323,7 +322,7 @@ fn every_template_reads_without_errors_and_has_a_plan() {
 
 #[test]
 fn the_history_of_a_mission_stays_while_another_one_is_open() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.dispatch("file.new", &Value::Null);
     edit(&mut app, EDITED);
     edit(&mut app, OTHER);
@@ -339,7 +338,7 @@ fn the_history_of_a_mission_stays_while_another_one_is_open() {
 
 #[test]
 fn versions_are_kept_and_brought_back_as_an_edit() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     edit(&mut app, EDITED);
     app.dispatch("file.keepVersionAs", &json!({ "name": "before the storm" }));
     edit(&mut app, OTHER);
@@ -428,7 +427,7 @@ fn a_slow_shelf_brings_the_missions_later_and_the_last_one_opens_if_nobody_typed
 
 #[test]
 fn a_file_that_is_no_mission_opens_nothing() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     edit(&mut app, EDITED);
     for (name, bytes) in [
         ("notes.txt", b"Buy milk.".as_slice()),
@@ -450,7 +449,7 @@ fn a_file_that_is_no_mission_opens_nothing() {
 #[test]
 fn one_file_holds_a_whole_mission_with_its_map_its_versions_and_its_review() {
     let map = b"P2 2 2 255 0 0 0 0".as_slice();
-    let mut app = support::start();
+    let mut app = test_support::start();
     drop_file(&mut app, "yard.pgm", map);
     edit(&mut app, "terrain \"yard.pgm\" cell 1;\nprimitive A()[1,2];\nscenario S[0,9] = { A() }\n");
     app.settle();
@@ -461,7 +460,7 @@ fn one_file_holds_a_whole_mission_with_its_map_its_versions_and_its_review() {
     let (name, bytes) = app.world.saved.borrow()[0].clone();
     assert_eq!(name, "Yard.enroute");
 
-    let mut elsewhere = support::start();
+    let mut elsewhere = test_support::start();
     drop_file(&mut elsewhere, &name, &bytes);
     let state = elsewhere.json();
     assert_eq!(state["mission"], "Yard");

@@ -14,6 +14,5 @@ mod manual;
 mod opening;
 mod path_race;
 mod session;
-mod support;
 mod transport;
 mod truth;

@@ -7,7 +7,7 @@ use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent, Remote as _};
 use workbench::limits::MAX_TEXT_BYTES;
 
-use crate::support::{App, World, start_in};
+use test_support::{App, World, start_in};
 
 fn open(app: &mut App, name: &str, bytes: &[u8]) {
     app.world.news.borrow_mut().push_back(HostEvent::FileOpened {

@@ -1,8 +1,8 @@
 //! Searches for a path that are looked at sample by sample: told in words, side by side, and past walls that are drawn.
 
-use crate::support::{App, start};
 use nalgebra::Point2;
 use serde_json::{Value, json};
+use test_support::{App, start};
 use workbench::command::Command;
 use workbench::state::growth::{GrowthCommand, Planners, Shown};
 use workbench::state::placing::NewThing;

@@ -1,13 +1,12 @@
 //! The workbench as a host page drives it, without a window.
 
-use crate::support;
 use serde_json::{Value, json};
 use workbench::command::all_commands;
 use workbench::host::{HostEvent, Remote as _, RemoteError};
 
 #[test]
 fn a_host_page_can_drive_the_app_and_is_told_what_is_wrong_with_a_call() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     let enroute = &mut app.session;
     enroute.set_source("scenario S[0,10] = { delay[5,5] }");
     enroute.dispatch("view.workspace", &json!({ "name": "teach" })).expect("a workspace");
@@ -28,7 +27,7 @@ fn a_host_page_can_drive_the_app_and_is_told_what_is_wrong_with_a_call() {
 
 #[test]
 fn an_error_in_the_text_keeps_the_last_good_network_and_says_so() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     let nodes = app.json()["tpn"]["nodes"].clone();
     let source = app.session.source();
     app.session.set_source(&source.replace("choose {", "choose"));
@@ -42,7 +41,7 @@ fn an_error_in_the_text_keeps_the_last_good_network_and_says_so() {
 
 #[test]
 fn a_host_page_sees_resources_and_what_a_plan_is_worth() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     assert!(app.json()["plan"].get("resources").is_none(), "the first mission has none");
     let text = "resource Battery 0..100 = 60;
         resource Drill;
@@ -72,7 +71,7 @@ fn a_host_page_sees_resources_and_what_a_plan_is_worth() {
 
 #[test]
 fn every_mission_that_comes_with_the_app_has_no_errors() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     for example in workbench::mission_file::EXAMPLES {
         app.session.open(example.name).expect("it is known");
         app.settle();
@@ -87,7 +86,7 @@ fn every_mission_that_comes_with_the_app_has_no_errors() {
 
 #[test]
 fn the_battery_s_mission_charges_between_its_drives() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.session.open("battery").expect("it is known");
     app.settle();
     let state = app.json();
@@ -101,7 +100,7 @@ fn the_battery_s_mission_charges_between_its_drives() {
 
 #[test]
 fn time_plays_to_the_end_of_the_plan_and_stops() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.session.dispatch("play.toggle", &json!(null)).expect("there is a plan");
     assert_eq!(app.json()["isPlaying"], true);
     for _ in 0..200 {
@@ -116,9 +115,9 @@ fn time_plays_to_the_end_of_the_plan_and_stops() {
 
 #[test]
 fn the_address_opens_a_mission_in_a_workspace() {
-    let world = std::rc::Rc::<support::World>::default();
+    let world = std::rc::Rc::<test_support::World>::default();
     "mission=threats&workspace=review".clone_into(&mut world.fragment.borrow_mut());
-    let mut app = support::start_in(world);
+    let mut app = test_support::start_in(world);
     app.settle();
     assert_eq!(app.json()["mission"], "threats");
     assert_eq!(app.json()["workspace"], "review");
@@ -126,7 +125,7 @@ fn the_address_opens_a_mission_in_a_workspace() {
 
 #[test]
 fn pins_stay_when_the_text_changes_elsewhere_and_go_when_their_time_is_over() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     let pin = json!({ "event": "Group-Enroute#1.start", "time": 40 });
     app.session.dispatch("plan.pin", &pin).expect("an event");
     app.settle();
@@ -154,8 +153,8 @@ fn command_names_are_unique_and_no_two_commands_share_a_key_where_both_work() {
 }
 
 /// A text whose planning takes long: it is asked for, and not answered.
-fn at_work() -> support::App {
-    let mut app = support::start();
+fn at_work() -> test_support::App {
+    let mut app = test_support::start();
     app.world.is_deaf.set(true);
     app.session.set_source("scenario S[0,10] = { delay[5,5] }");
     app.settle();
@@ -179,7 +178,7 @@ fn work_that_was_stopped_leaves_its_text_undecided_until_it_is_planned_again() {
 
 #[test]
 fn the_best_plan_so_far_is_kept_when_looking_for_a_better_one_is_stopped() {
-    let mut planned = support::start();
+    let mut planned = test_support::start();
     planned.session.set_source("scenario S[0,10] = { delay[5,5] }");
     planned.settle();
     let mut snapshot = planned.session.state().shown().expect("it is planned").as_ref().clone();

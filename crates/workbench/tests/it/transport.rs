@@ -1,7 +1,6 @@
 //! Who is driven by the keys that play and step.
 
-use crate::support;
-use crate::support::App;
+use test_support::App;
 use workbench::PanelKind;
 use workbench::command::Command;
 use workbench::state::growth::GrowthCommand;
@@ -12,7 +11,7 @@ use workbench::workspace::Workspace;
 
 /// A session in which the keys drive `track`.
 fn driving(track: Track) -> App {
-    let mut app = support::start();
+    let mut app = test_support::start();
     match track {
         Track::Plan => {}
         Track::Execution => app.run(Command::ShowWorkspace(Workspace::Execute)),

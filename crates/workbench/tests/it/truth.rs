@@ -3,6 +3,7 @@
 use link::Response;
 use review::review;
 use serde_json::{Value, json};
+use test_support::App;
 use workbench::command::{Command, EditorCommand};
 use workbench::host::{FileKind, HostEvent, Remote as _};
 use workbench::state::no_plan::NO_PLAN;
@@ -10,14 +11,11 @@ use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
 use workbench::workspace::Workspace;
 
-use crate::support;
-use crate::support::App;
-
 /// A mission without a plan: a wait of 8 minutes in one of 5.
 const TOO_LONG: &str = "scenario S[0,5] = {\n    delay[8,9]\n}\n";
 
 fn showing(source: &str) -> App {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::SetSource(source.to_owned()));
     app
 }
@@ -68,7 +66,7 @@ fn its_fixes_are_quick_fixes_in_the_text() {
 
 #[test]
 fn a_text_with_errors_is_never_said_to_have_a_plan_or_none() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     let source = app.session.source();
     // The network is complete without the unknown word, and yet the text has an error.
     app.run(Command::SetSource(format!("{source}\nactivity Broken() = {{ Nowhere( }}")));
@@ -90,7 +88,7 @@ fn leaving_teach_on_a_failure_shows_no_schedule_of_that_failure() {
 
 #[test]
 fn a_review_of_another_text_is_stale_and_of_another_mission_gone() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     let stale = |app: &App| app.json()["review"]["stale"].clone();
     assert_eq!(stale(&app), false);
@@ -112,7 +110,7 @@ fn a_review_of_another_text_is_stale_and_of_another_mission_gone() {
 
 #[test]
 fn a_review_that_comes_after_another_mission_was_opened_is_dropped() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     let shown = app.session.state().shown().expect("a plan").clone();
     let plan = app.session.state().settings.plan.clone();
     app.world.is_deaf.set(true);
@@ -129,7 +127,7 @@ fn a_review_that_comes_after_another_mission_was_opened_is_dropped() {
 #[test]
 fn a_review_and_an_approval_of_another_plan_of_the_same_text_are_not_shown_as_those_of_the_plan_that_is_drawn()
  {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     app.acknowledge_all("Ada");
     app.dispatch("review.approve", &json!({ "name": "Ada" }));
@@ -165,7 +163,7 @@ fn lines(app: &App, section: &str) -> Vec<Value> {
 
 #[test]
 fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     assert_eq!(lines(&app, "robustness"), Vec::<Value>::new());
     app.sample(20, 5);
@@ -191,7 +189,7 @@ fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
 
 #[test]
 fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
     let link = |app: &App| lines(app, "causal-links")[0]["status"].clone();
     assert_eq!(link(&app), "attention", "a margin of 0 has not passed");
@@ -208,7 +206,7 @@ fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
     let wrong = app.session.dispatch("review.rules", &json!({ "clearance_m": -1 }));
     assert!(wrong.is_err() && app.json()["review"]["rules"]["clearance_m"] == 0.25);
     // Another run finds them with the mission.
-    let again = support::start_in(std::rc::Rc::clone(&app.world));
+    let again = test_support::start_in(std::rc::Rc::clone(&app.world));
     drop(app);
     let mut again = again;
     again.settle();
@@ -223,7 +221,7 @@ fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
 
 #[test]
 fn a_mission_that_is_being_written_shows_its_places_and_not_the_mission_before() {
-    let mut app = support::start();
+    let mut app = test_support::start();
     assert!(!app.session.state().shown().expect("an example").traverses.is_empty());
     let source = "location BASE (24, 52);\nvehicle Rover1 : ATRV at BASE;\n";
     app.run(Command::SetSource(source.to_owned()));

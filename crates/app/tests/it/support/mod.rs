@@ -1,9 +1,6 @@
 //! The app without a window: a host that plans at once, in memory, with a clock that the test moves.
 #![allow(dead_code, reason = "examples use a part of it")]
 
-#[path = "../../../../workbench/tests/it/support/host.rs"]
-mod host;
-
 use std::rc::Rc;
 
 use app::Enroute;
@@ -12,7 +9,7 @@ use egui::{Rect, Shape};
 use egui_kittest::{Harness, HarnessBuilder};
 use workbench::host::{FileKind, HostEvent};
 
-pub use host::{TestHost, World};
+pub use test_support::{TestHost, World};
 
 /// A harness around the app, and what it shares with its host.
 pub struct App {

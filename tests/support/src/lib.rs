@@ -1,4 +1,4 @@
-//! The workbench without a window.
+//! The workbench without a window, on a host that plans at once: shared by tests of several crates.
 
 pub mod host;
 
