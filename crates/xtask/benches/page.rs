@@ -81,7 +81,7 @@ impl Bench {
     }
 
     fn open_page(&self) -> Result<Tab> {
-        let tab = self.browser.open_tab(WINDOW.0, WINDOW.1)?;
+        let tab = self.browser.open_context()?.open_tab(WINDOW.0, WINDOW.1)?;
         tab.go_to(&format!("{}#mission=enroute&workspace=author", self.url))?;
         tab.wait_until_ready()?;
         Ok(tab)

@@ -10,7 +10,7 @@ use anyhow::{Context as _, Result, ensure};
 use serde_json::json;
 
 use crate::{
-    browser::{Browser, Graphics, Tab},
+    browser::{Browser, Context, Tab},
     server::SiteServer,
 };
 
@@ -102,8 +102,8 @@ const FOCUS_TEXT: &str = "(() => { \
     text.focus(); return false; })()";
 /// A text longer than this is begun anew.
 const LONGEST_TEXT: usize = 1500;
-/// After so many disturbances a browser gives way to a fresh one: tabs that were closed leave something behind.
-const RUNS_OF_A_BROWSER: u32 = 100;
+/// After so many disturbances a context gives way to a fresh one: tabs that were closed leave something behind.
+const RUNS_OF_A_CONTEXT: u32 = 100;
 /// Width and height of the page in CSS pixels: small, because it is drawn without a graphics card.
 const SIZE: [u32; 2] = [560, 420];
 /// Bytes that a full storage has room for.
@@ -116,17 +116,23 @@ const COLLECT: &str = "window.startedWorkers = []; window.Worker = class extends
 
 /// Disturbs the page of a site `runs` times; `seed` decides what is typed and what happens then. `tell` hears of each
 /// run that has been made.
-pub fn disturb(site: &Path, runs: u32, seed: u64, mut tell: impl FnMut(u32)) -> Result<Losses> {
+pub fn disturb(
+    browser: &Browser,
+    site: &Path,
+    runs: u32,
+    seed: u64,
+    mut tell: impl FnMut(u32),
+) -> Result<Losses> {
     let server = SiteServer::start(site, 0, false)?;
-    let mut browser = Browser::start(Graphics::WebGl2)?;
+    let mut context = browser.open_context()?;
     let mut chance = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
-    let mut page = Page { tab: opened(&browser, &server)?, expected: String::new(), differences: Vec::new() };
+    let mut page = Page { tab: opened(&context, &server)?, expected: String::new(), differences: Vec::new() };
     page.begin("// ")?;
     let mut losses = Losses { tallies: [Tally::default(); Disturbance::ALL.len()], differences: Vec::new() };
     for run in 0..runs {
-        if run > 0 && run % RUNS_OF_A_BROWSER == 0 {
-            browser = Browser::start(Graphics::WebGl2)?;
-            page.tab = opened(&browser, &server)?;
+        if run > 0 && run % RUNS_OF_A_CONTEXT == 0 {
+            context = browser.open_context()?;
+            page.tab = opened(&context, &server)?;
             page.begin(&format!("// {run} "))?;
         }
         let kind = chance.below(Disturbance::ALL.len() as u64) as usize;
@@ -135,7 +141,7 @@ pub fn disturb(site: &Path, runs: u32, seed: u64, mut tell: impl FnMut(u32)) -> 
             page.begin(&format!("// {run} "))?;
         }
         let (undelivered, lost) = page
-            .disturbed(Disturbance::ALL[kind], &typed, &browser, &server)
+            .disturbed(Disturbance::ALL[kind], &typed, &context, &server)
             .with_context(|| format!("run {run}, {}", Disturbance::ALL[kind].words()))?;
         let tally = &mut losses.tallies[kind];
         *tally = tally.with(Tally { runs: 1, keys: typed.len(), undelivered, lost });
@@ -145,8 +151,8 @@ pub fn disturb(site: &Path, runs: u32, seed: u64, mut tell: impl FnMut(u32)) -> 
     Ok(losses)
 }
 
-fn opened(browser: &Browser, server: &SiteServer) -> Result<Tab> {
-    let tab = browser.open_tab(SIZE[0], SIZE[1])?;
+fn opened(context: &Context, server: &SiteServer) -> Result<Tab> {
+    let tab = context.open_tab(SIZE[0], SIZE[1])?;
     tab.call("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": COLLECT }))?;
     tab.go_to(server.url())?;
     tab.wait_until_ready()?;
@@ -176,7 +182,7 @@ impl Page {
         &mut self,
         kind: Disturbance,
         typed: &str,
-        browser: &Browser,
+        context: &Context,
         server: &SiteServer,
     ) -> Result<(usize, usize)> {
         self.tab.wait_until(FOCUS_TEXT)?;
@@ -202,7 +208,7 @@ impl Page {
         }
         if kind == Disturbance::CloseTab {
             self.tab.call("Page.close", &json!({}))?;
-            self.tab = opened(browser, server)?;
+            self.tab = opened(context, server)?;
         } else {
             self.tab.evaluate("window.isOldPage = true; location.reload()")?;
             self.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;

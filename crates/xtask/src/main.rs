@@ -12,6 +12,7 @@ use std::{path::PathBuf, process::ExitCode};
 use anyhow::{Result, ensure};
 use clap::{Parser, Subcommand};
 use xtask::{
+    browser::{Browser, Graphics},
     dist, disturb, process,
     site::{self, Flavour},
 };
@@ -75,7 +76,8 @@ fn disturb_page(options: &Disturbances) -> Result<()> {
         Some(folder) => folder.clone(),
         None => site::build(Flavour::Development)?,
     };
-    let losses = disturb::disturb(&folder, options.runs, options.seed, |made| {
+    let browser = Browser::start(Graphics::WebGl2)?;
+    let losses = disturb::disturb(&browser, &folder, options.runs, options.seed, |made| {
         if made % 100 == 0 {
             eprintln!("{made} of {}", options.runs);
         }

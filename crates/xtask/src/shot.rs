@@ -51,7 +51,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let server = SiteServer::start(&folder, 0, false)?;
     let browser = Browser::start(if options.webgpu { Graphics::WebGpu } else { Graphics::WebGl2 })?;
     let (width, height) = options.size;
-    let tab = browser.open_tab(width, height)?;
+    let tab = browser.open_context()?.open_tab(width, height)?;
     tab.go_to(&format!("{}#{}", server.url(), options.hash.trim_start_matches('#')))?;
     tab.wait_until_ready()?;
     for file in &options.drop {

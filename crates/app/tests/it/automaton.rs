@@ -125,6 +125,38 @@ fn the_modes_of_a_component_tell_how_likely_they_are() {
 }
 
 #[test]
+fn another_observation_changes_the_diagnosis_and_the_plants_own_brings_it_back() {
+    let mut app = orbit_insertion();
+    (0..4).for_each(|_| press(&mut app, "Step"));
+    let conflicts = |app: &support::App| app.json()["hca"]["plant"]["conflicts"].clone();
+    let believed = |app: &support::App| app.json()["hca"]["plant"]["belief"][0]["state"]["EngineA"].clone();
+    assert_eq!(conflicts(&app), json!([]));
+    let observed = "EngineA.thrust was observed to be";
+    app.harness.get_by_role_and_label(Role::ComboBox, observed).scroll_to_me();
+    app.settle();
+    app.harness.get_by_role_and_label(Role::ComboBox, observed).click();
+    app.settle();
+    press(&mut app, "zero");
+    assert!(conflicts(&app).to_string().contains("EngineA=Firing contradicts"), "{}", conflicts(&app));
+    assert_eq!(believed(&app), "Failed");
+    press(&mut app, "as shown");
+    assert_eq!(conflicts(&app), json!([]));
+    assert_eq!(believed(&app), "Firing");
+}
+
+#[test]
+fn a_composite_selects_its_text() {
+    let mut app = orbit_insertion();
+    press(&mut app, "a1: assert EngineA=Standby, marked");
+    let state = app.json();
+    let at = |end: &str| state["caret"][end].as_u64().expect("a place in the text") as usize;
+    let (from, to) = (at("anchor").min(at("head")), at("anchor").max(at("head")));
+    let source = app.harness.state().source();
+    let selected = &source[from..to];
+    assert!(selected.contains("EngineA = Standby"), "`{selected}` is selected");
+}
+
+#[test]
 fn many_runs_tell_how_likely_the_program_is_to_reach_its_end() {
     let mut app = orbit_insertion();
     press(&mut app, "EngineA: Failed, 0 %");

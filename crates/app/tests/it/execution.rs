@@ -2,7 +2,7 @@
 
 use crate::support;
 use egui::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 use workbench::host::{FileKind, HostEvent, Remote as _};
 
@@ -147,6 +147,64 @@ fn a_rover_is_stopped_and_an_obstacle_appears_from_the_time_shown_on() {
     assert_eq!(end["execution"]["status"], "finished");
     // The drive and the hand-over take 19.4 minutes at least, and 20 more stood still.
     assert!(end["time"].as_f64().is_some_and(|time| time > 39.0), "{}", end["time"]);
+}
+
+#[test]
+fn a_click_on_the_ground_makes_an_obstacle_appear_at_the_time_shown() {
+    let mut app = executing("both-paths");
+    dispatch(&mut app, "play.seek", &json!({ "time": 100 }));
+    let log = app.json()["execution"]["log"].clone();
+    dispatch(&mut app, "terrain.appear", &Value::Null);
+    assert_eq!(app.json()["terrain"]["tool"], "appear");
+    let map = app.harness.query_all_by_role(Role::Image).find_map(|node| {
+        let is_map = node.accesskit_node().label().is_some_and(|label| label.starts_with("Terrain"));
+        is_map.then(|| node.rect())
+    });
+    // A place to the side of the paths, on which nothing else stands.
+    let map = map.expect("the terrain");
+    let pos = map.min + map.size() * egui::vec2(0.5, 0.66);
+    app.harness.event(egui::Event::PointerMoved(pos));
+    app.harness.step();
+    for pressed in [true, false] {
+        let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+        app.harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+        app.harness.step();
+    }
+    app.settle();
+    let state = app.json();
+    let obstacle = &state["execution"]["disturbances"][0];
+    assert_eq!(obstacle["kind"], "obstacle", "{}", state["execution"]["disturbances"]);
+    assert_eq!((&obstacle["at"], &obstacle["radius"]), (&json!(100), &json!(5)));
+    assert_eq!(state["terrain"]["tool"], "look");
+    assert_eq!(state["execution"]["log"], log, "what happened until now stays as it was");
+    dispatch(&mut app, "execute.reset", &Value::Null);
+    assert_eq!(app.json()["execution"]["disturbances"], json!([]));
+}
+
+/// The camera that the mission starts fails while it comes up: what was to be set has not come, and the other camera looks.
+#[test]
+fn the_next_fault_of_the_plant_is_offered_and_sends_the_mission_to_the_other_camera() {
+    let mut app = executing("flyby");
+    assert_eq!(app.json()["plan"]["choices"], json!({ "D1": 0 }));
+    dispatch(&mut app, "play.seek", &json!({ "time": 1 }));
+    press(&mut app, "Let it happen");
+    let fault = json!({ "kind": "fault", "activity": "Start-Up#1", "step": 1, "component": "CameraA", "mode": "Failed" });
+    assert_eq!(app.json()["execution"]["disturbances"], json!([fault]));
+    dispatch(&mut app, "play.end", &Value::Null);
+    let state = app.json();
+    assert_eq!(state["execution"]["status"], "finished");
+    assert_eq!(state["plan"]["choices"], json!({ "D1": 1 }));
+    let log = state["execution"]["log"].as_array().expect("a log");
+    let happens = |name: &str| log.iter().any(|entry| entry["name"] == name);
+    assert!(happens("Look#2.end") && !happens("Look#1.start"), "{log:?}");
+    let says =
+        |part: &str| log.iter().any(|entry| entry["reason"].as_str().is_some_and(|it| it.contains(part)));
+    assert!(says("Calibrate#1 needs CameraA.mode=Ready"), "{log:?}");
+    // Nothing goes otherwise that means nothing, or before now.
+    let wrong = json!({ "kind": "duration", "activity": "Turn#1", "duration": -5 });
+    let _ = app.harness.state_mut().dispatch("execute.disturb", &wrong);
+    app.settle();
+    assert_eq!(app.json()["execution"]["disturbances"], json!([fault]));
 }
 
 /// SPEC 9.3: an engine that fails in the third step is diagnosed in the fourth, and the other one takes over.

@@ -1,7 +1,8 @@
 //! The `DevTools` protocol: calls with answers, and events, as JSON over a web socket.
 //!
 //! Synchronous on purpose: a test does one thing after the other. The protocol is described at
-//! <https://chromedevtools.github.io/devtools-protocol/>.
+//! <https://chromedevtools.github.io/devtools-protocol/>. The crates `chromiumoxide` and `headless_chrome` would replace this
+//! file alone, speak to no Firefox, and generate and compile types of the whole protocol.
 
 use std::{
     collections::VecDeque,
@@ -91,7 +92,8 @@ impl Connection {
 
     fn receive(&mut self) -> Result<Value> {
         loop {
-            if let Message::Text(text) = self.socket.read()? {
+            let message = self.socket.read().context("the browser has ended or does not answer")?;
+            if let Message::Text(text) = message {
                 return serde_json::from_str(&text).context("the browser sent no JSON");
             }
         }

@@ -1,6 +1,7 @@
 //! A headless Chromium, driven as a user would drive it: keys, clicks, wheel, and looking at what is drawn.
 
 mod axe;
+mod context;
 mod devtools;
 mod find;
 mod firefox;
@@ -9,13 +10,12 @@ mod picture;
 mod tab;
 
 use std::{
-    cell::RefCell,
     fs,
     io::{BufRead as _, BufReader},
     path::PathBuf,
     process::{Child, Command, Stdio},
-    rc::Rc,
     sync::{
+        Arc, Mutex, PoisonError, Weak,
         atomic::{AtomicU32, Ordering},
         mpsc,
     },
@@ -27,6 +27,7 @@ use anyhow::{Context as _, Result, bail};
 use serde_json::json;
 
 pub use axe::axe_script;
+pub use context::Context;
 pub use find::{find_or_install_chromium, is_root};
 pub use firefox::Firefox;
 pub use keys::{Key, Modifiers};
@@ -66,11 +67,11 @@ impl Graphics {
     }
 }
 
-/// A running Chromium with a profile of its own; ends when it is dropped.
+/// A running Chromium; ends when it is dropped.
 pub struct Browser {
     process: Child,
     profile: PathBuf,
-    connection: Rc<RefCell<Connection>>,
+    address: String,
 }
 
 impl Browser {
@@ -110,8 +111,8 @@ impl Browser {
         }
         let mut process =
             command.spawn().with_context(|| format!("{} could not be started", program.display()))?;
-        match connect(&mut process) {
-            Ok(connection) => Ok(Self { process, profile, connection: Rc::new(RefCell::new(connection)) }),
+        match wait_for_address(&mut process, "DevTools listening on ") {
+            Ok(address) => Ok(Self { process, profile, address }),
             Err(reason) => {
                 let _ = process.kill();
                 let _ = process.wait();
@@ -121,25 +122,20 @@ impl Browser {
         }
     }
 
-    /// Opens an empty tab whose page is this large, in CSS pixels.
-    pub fn open_tab(&self, width: u32, height: u32) -> Result<Tab> {
-        let mut connection = self.connection.borrow_mut();
-        let target = connection.call(None, "Target.createTarget", &json!({ "url": "about:blank" }))?;
-        let attached = connection.call(
-            None,
-            "Target.attachToTarget",
-            &json!({ "targetId": target["targetId"], "flatten": true }),
-        )?;
-        let session =
-            attached["sessionId"].as_str().context("the browser attached to no session")?.to_owned();
-        drop(connection);
-        Tab::prepare(Rc::clone(&self.connection), session, width, height)
+    /// Opens a context: nothing that another one stored, cached, or was allowed is known in it.
+    pub fn open_context(&self) -> Result<Context> {
+        Context::open(&self.address)
+    }
+
+    fn is_answering(&self) -> bool {
+        Connection::open(&self.address).is_ok()
     }
 }
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        let closed = self.connection.borrow_mut().call(None, "Browser.close", &json!({}));
+        let closed = Connection::open(&self.address)
+            .and_then(|mut connection| connection.call(None, "Browser.close", &json!({})));
         if closed.is_err() {
             let _ = self.process.kill();
         }
@@ -148,9 +144,29 @@ impl Drop for Browser {
     }
 }
 
-/// Waits for Chromium to say where it listens, and connects.
-fn connect(process: &mut Child) -> Result<Connection> {
-    Connection::open(&wait_for_address(process, "DevTools listening on ")?)
+/// A browser for all who want one at the same time: the first starts it, and it ends with the last. After a crash the next
+/// one starts another.
+pub struct SharedBrowser {
+    graphics: Graphics,
+    running: Mutex<Weak<Browser>>,
+}
+
+impl SharedBrowser {
+    /// None runs yet.
+    pub const fn new(graphics: Graphics) -> Self {
+        Self { graphics, running: Mutex::new(Weak::new()) }
+    }
+
+    /// The browser that runs.
+    pub fn get(&self) -> Result<Arc<Browser>> {
+        let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(browser) = running.upgrade().filter(|browser| browser.is_answering()) {
+            return Ok(browser);
+        }
+        let browser = Arc::new(Browser::start(self.graphics)?);
+        *running = Arc::downgrade(&browser);
+        Ok(browser)
+    }
 }
 
 /// Waits for a browser to say, after these words, where it listens.

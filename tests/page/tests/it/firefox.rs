@@ -3,7 +3,7 @@
 use anyhow::Result;
 use xtask::{browser::Firefox, server::SiteServer};
 
-use crate::opened::{SITE, take_turn};
+use crate::opened::SITE;
 
 /// F6, as `WebDriver` spells it.
 const F6: &str = "\u{e036}";
@@ -11,7 +11,6 @@ const F6: &str = "\u{e036}";
 #[test]
 #[expect(clippy::print_stdout, reason = "what was not tried is said")]
 fn firefox_starts_plans_draws_and_takes_keys() -> Result<()> {
-    let _turn = take_turn();
     let Some(program) = Firefox::find() else {
         println!("nothing was tried in Firefox: there is none (on Debian: apt-get install firefox-esr xvfb)");
         return Ok(());

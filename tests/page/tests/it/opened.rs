@@ -4,7 +4,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     sync::{
-        LazyLock, Mutex, MutexGuard, PoisonError,
+        Arc, LazyLock,
         atomic::{AtomicU32, Ordering},
     },
 };
@@ -12,7 +12,7 @@ use std::{
 use anyhow::{Context as _, Result, ensure};
 use serde_json::Value;
 use xtask::{
-    browser::{Browser, Graphics, Key, Modifiers, Picture, Tab},
+    browser::{Browser, Context, Graphics, Key, Modifiers, Picture, SharedBrowser, Tab},
     server::SiteServer,
     site::{self, Flavour},
 };
@@ -21,22 +21,21 @@ use xtask::{
 pub(crate) static SITE: LazyLock<PathBuf> =
     LazyLock::new(|| site::build(Flavour::Development).expect("the page can be built"));
 
-/// Lets one test at a time have the processor.
-static TURN: Mutex<()> = Mutex::new(());
+/// The browser of all tests that draw with WebGL2, each in a context of its own.
+pub(crate) static BROWSER: SharedBrowser = SharedBrowser::new(Graphics::WebGl2);
 
-/// Waits until no other test has the processor.
-pub(crate) fn take_turn() -> MutexGuard<'static, ()> {
-    // A test that failed in its turn has harmed nothing.
-    TURN.lock().unwrap_or_else(PoisonError::into_inner)
-}
+/// The size of the page in CSS pixels.
+const WIDTH: u32 = 1280;
+const HEIGHT: u32 = 800;
 
-/// A browser with the page in it.
+/// The page in a context of its own.
 pub(crate) struct Opened {
     pub(crate) tab: Tab,
     copy: Option<PathBuf>,
     server: SiteServer,
-    browser: Browser,
-    _turn: MutexGuard<'static, ()>,
+    context: Context,
+    // Goes after the context does.
+    _browser: Arc<Browser>,
 }
 
 impl Opened {
@@ -78,17 +77,18 @@ impl Opened {
     }
 
     fn from_site(site: &Path, graphics: Graphics, fragment: &str) -> Result<Self> {
-        let turn = take_turn();
         let server = SiteServer::start(site, 0, false)?;
-        let browser = Browser::start(graphics)?;
-        let tab = browser.open_tab(1280, 800)?;
+        let browser =
+            if graphics == Graphics::WebGl2 { BROWSER.get()? } else { Arc::new(Browser::start(graphics)?) };
+        let context = browser.open_context()?;
+        let tab = context.open_tab(WIDTH, HEIGHT)?;
         tab.go_to(&format!("{}#{fragment}", server.url()))?;
-        Ok(Self { tab, copy: None, server, browser, _turn: turn })
+        Ok(Self { tab, copy: None, server, context, _browser: browser })
     }
 
-    /// Another tab of the same browser, on the page with this text after `#`.
+    /// Another tab of the same context, on the page with this text after `#`.
     pub(crate) fn open_beside(&self, fragment: &str) -> Result<Tab> {
-        let tab = self.browser.open_tab(1280, 800)?;
+        let tab = self.context.open_tab(WIDTH, HEIGHT)?;
         tab.go_to(&format!("{}#{fragment}", self.server.url()))?;
         Ok(tab)
     }

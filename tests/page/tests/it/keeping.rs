@@ -3,7 +3,7 @@
 use anyhow::Result;
 use serde_json::json;
 
-use crate::opened::Opened;
+use crate::opened::{BROWSER, Opened, SITE};
 
 /// Types at the end of a fresh mission and leaves at once, without waiting for a frame.
 fn type_and_leave(page: &Opened, typed: &str, leave: &str) -> Result<()> {
@@ -117,8 +117,8 @@ fn damaged_settings_and_layouts_do_not_keep_the_page_from_starting() -> Result<(
 
 #[test]
 fn twenty_disturbances_lose_no_key_press() -> Result<()> {
-    let _turn = crate::opened::take_turn();
-    let losses = xtask::disturb::disturb(&crate::opened::SITE, 20, 7, |_| {})?;
+    let browser = BROWSER.get()?;
+    let losses = xtask::disturb::disturb(&browser, &SITE, 20, 7, |_| {})?;
     assert_eq!((losses.runs(), losses.lost()), (20, 0), "{losses}{:?}", losses.differences);
     Ok(())
 }

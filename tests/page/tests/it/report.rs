@@ -4,7 +4,7 @@ use std::{fs, path::PathBuf};
 
 use anyhow::{Context as _, Result, ensure};
 use data_encoding::BASE64;
-use serde_json::{Value, json};
+use serde_json::json;
 use xtask::browser::Tab;
 
 use crate::opened::Opened;
@@ -166,36 +166,6 @@ fn page_size(text: &str) -> Option<[f64; 2]> {
         [_, _, width, height] => Some([*width, *height]),
         _ => None,
     }
-}
-
-#[test]
-fn schedules_are_saved_for_other_tools() -> Result<()> {
-    let page = Opened::planned()?;
-    watch_saving(&page)?;
-    page.tab.evaluate("enroute.dispatch('export.schedule', { as: 'csv' })")?;
-    let table = saved_text(&page)?;
-    // SPEC 3.6.
-    assert!(
-        table.contains(
-            "Group-Wait#1,primitive,Group-Wait,TAI_HOLD1 TAI_HOLD2,415,460,415,514,45,99,min,,,,draft,"
-        ),
-        "{table}"
-    );
-    let epoch = "2004-01-25T05:05:00Z";
-    page.tab
-        .evaluate(&format!("enroute.dispatch('export.schedule', {{ as: 'open-mct', epoch: '{epoch}' }})"))?;
-    let plan: Value = serde_json::from_str(&saved_text(&page)?)?;
-    let drive = plan["Activities"]
-        .as_array()
-        .and_then(|entries| entries.iter().find(|entry| entry["name"] == "Group-Traverse-Path#1"))
-        .context("the drive")?;
-    assert_eq!(drive["start"], 1_075_007_700_000_i64);
-    page.tab
-        .evaluate(&format!("enroute.dispatch('export.schedule', {{ as: 'icalendar', epoch: '{epoch}' }})"))?;
-    let calendar = saved_text(&page)?;
-    assert!(calendar.starts_with("BEGIN:VCALENDAR\r\n") && calendar.ends_with("END:VCALENDAR\r\n"));
-    assert!(calendar.contains("DTSTART:20040125T051500Z\r\n"), "{calendar}");
-    Ok(())
 }
 
 #[test]

@@ -1,23 +1,18 @@
 //! The published page opens without a network once it was loaded.
 
 use anyhow::Result;
-use xtask::{
-    browser::{Browser, Graphics},
-    dist,
-    server::SiteServer,
-};
+use xtask::{dist, server::SiteServer};
 
-use crate::opened::{SITE, take_turn};
+use crate::opened::{BROWSER, SITE};
 
 #[test]
 fn the_published_page_opens_and_plans_when_its_server_is_gone() -> Result<()> {
-    let _turn = take_turn();
     let published = std::env::temp_dir().join(format!("enroute-published-{}", std::process::id()));
     dist::pack(&SITE, &published)?;
     let server = SiteServer::start(&published, 0, false)?;
     let url = server.url().to_owned();
-    let browser = Browser::start(Graphics::WebGl2)?;
-    let tab = browser.open_tab(800, 500)?;
+    let browser = BROWSER.get()?;
+    let tab = browser.open_context()?.open_tab(800, 500)?;
     tab.go_to(&url)?;
     tab.wait_until_ready()?;
     tab.wait_until("navigator.serviceWorker.ready.then(() => true)")?;

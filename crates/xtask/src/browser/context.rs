@@ -1,0 +1,43 @@
+//! A context of a running Chromium: tabs with storage, cookies, cache, permissions, and service workers of their own.
+
+use std::{cell::RefCell, rc::Rc};
+
+use anyhow::{Context as _, Result};
+use serde_json::json;
+
+use super::{devtools::Connection, tab::Tab};
+
+/// Tabs that share what they store, over a connection of their own. Ends with its last tab, as a private window does.
+pub struct Context {
+    connection: Rc<RefCell<Connection>>,
+    id: String,
+}
+
+impl Context {
+    pub(super) fn open(address: &str) -> Result<Self> {
+        let mut connection = Connection::open(address)?;
+        let created =
+            connection.call(None, "Target.createBrowserContext", &json!({ "disposeOnDetach": true }))?;
+        let id = created["browserContextId"].as_str().context("the browser opened no context")?.to_owned();
+        Ok(Self { connection: Rc::new(RefCell::new(connection)), id })
+    }
+
+    /// Opens an empty tab whose page is this large, in CSS pixels.
+    pub fn open_tab(&self, width: u32, height: u32) -> Result<Tab> {
+        let mut connection = self.connection.borrow_mut();
+        let target = connection.call(
+            None,
+            "Target.createTarget",
+            &json!({ "url": "about:blank", "browserContextId": self.id }),
+        )?;
+        let attached = connection.call(
+            None,
+            "Target.attachToTarget",
+            &json!({ "targetId": target["targetId"], "flatten": true }),
+        )?;
+        let session =
+            attached["sessionId"].as_str().context("the browser attached to no session")?.to_owned();
+        drop(connection);
+        Tab::prepare(Rc::clone(&self.connection), session, width, height)
+    }
+}
