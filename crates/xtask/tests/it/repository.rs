@@ -211,6 +211,22 @@ fn every_source_says_what_it_is() {
     assert!(silent.is_empty(), "no `//!` at the top of:\n{}", silent.join("\n"));
 }
 
+#[test]
+fn a_library_that_is_not_built_for_tests_has_none() {
+    let metadata = metadata();
+    let packages = packages(&metadata).filter(|package| package["source"].is_null());
+    let targets = packages.flat_map(|package| package["targets"].as_array().into_iter().flatten());
+    let mut found = Vec::new();
+    for library in targets.filter(|target| target["kind"][0] == "lib" && target["test"] == false) {
+        let folder = Path::new(library["src_path"].as_str().expect("a path")).parent().expect("a folder");
+        found.extend(sources(folder).into_iter().filter(|source| {
+            let text = fs::read_to_string(source).expect("a source");
+            text.lines().any(|line| line.trim_start().starts_with("#[test]") || line.contains("cfg(test)"))
+        }));
+    }
+    assert!(found.is_empty(), "tests that never run: {found:?}");
+}
+
 /// Whether a module is compiled for tests only: the module above it says so.
 pub(crate) fn is_test(source: &Path) -> bool {
     let (Some(folder), Some(name)) = (source.parent(), source.file_stem()) else { return false };
