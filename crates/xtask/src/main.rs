@@ -2,6 +2,7 @@
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a command line talks to its user")]
 
 mod bench;
+mod documentation;
 mod lines;
 mod serve;
 mod shot;
@@ -30,7 +31,7 @@ enum Task {
     /// Builds the page and serves it on a loopback address; rebuilds and reloads it when a source changes.
     Serve(serve::Options),
     /// Checks everything: formatting, lints, tests, and the page in headless Chromium.
-    Test,
+    Test(test::Options),
     /// Writes the page to `dist/`, for any web server.
     Dist,
     /// Prints the benchmark tables.
@@ -100,10 +101,13 @@ fn write_dist() -> Result<()> {
 }
 
 fn main() -> ExitCode {
+    if let Some(outcome) = documentation::in_place_of_rustdoc() {
+        return outcome;
+    }
     let outcome = match Arguments::parse().task {
         Task::Serve(options) => serve::run(&options),
         // The count of what passed and failed is the last line; nothing is to be said after it.
-        Task::Test => match test::run_all() {
+        Task::Test(options) => match test::run_parts(&options) {
             Ok(true) => Ok(()),
             Ok(false) => return ExitCode::FAILURE,
             Err(reason) => Err(reason),

@@ -12,7 +12,7 @@ use wasm_bindgen_cli_support::Bindgen;
 use crate::process::{cargo, find_program, root, run, target_dir};
 
 /// The target that pages run.
-pub const WASM_TARGET: &str = "wasm32-unknown-unknown";
+const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
 /// The wasm modules: the front end, and the planning core for the web worker.
 const MODULES: [&str; 2] = ["page", "worker"];
@@ -47,17 +47,22 @@ impl Flavour {
 /// Compiles both modules, writes their JavaScript sides and assembles the site; returns its folder.
 pub fn build(flavour: Flavour) -> Result<PathBuf> {
     require_wasm_target()?;
+    run(&mut compile_command(flavour))?;
+    assemble(flavour)
+}
+
+/// The command that compiles both modules.
+pub fn compile_command(flavour: Flavour) -> Command {
     let mut compile = cargo();
     compile.args(["build", "--target", WASM_TARGET, "--profile", flavour.profile()]);
     for module in MODULES {
         compile.args(["--package", module]);
     }
-    run(&mut compile)?;
-    assemble(flavour)
+    compile
 }
 
-/// Puts the compiled modules, their bindings and the files of `web/` together.
-fn assemble(flavour: Flavour) -> Result<PathBuf> {
+/// Puts the compiled modules, their bindings and the files of `web/` together; returns the site's folder.
+pub fn assemble(flavour: Flavour) -> Result<PathBuf> {
     let site = flavour.folder();
     let modules = target_dir().join(WASM_TARGET).join(flavour.profile());
     for module in MODULES {
