@@ -41,7 +41,7 @@ pub(crate) const LAYERS: &[(&str, &[&str])] = &[
     ("theme", &["display", "markdown"]),
     ("editor", &["text_editing", "theme"]),
     ("terrain_view", &["workbench", "theme"]),
-    ("panels", &["workbench", "terrain_view", "editor", "mission"]),
+    ("panels", &["workbench", "terrain_view", "editor"]),
     ("app", &["panels", "mission"]),
     ("page", &["app"]),
     ("worker", &["mission"]),
