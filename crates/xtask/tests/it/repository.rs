@@ -134,6 +134,29 @@ fn crates_depend_only_on_the_layers_below_them() {
 }
 
 #[test]
+fn the_page_is_built_without_the_core() {
+    let metadata = metadata();
+    let mut reached = BTreeSet::from(["page"]);
+    let mut waiting = vec!["page"];
+    while let Some(name) = waiting.pop() {
+        let package =
+            packages(&metadata).find(|package| package["name"] == name && package["source"].is_null());
+        let dependencies =
+            package.into_iter().flat_map(|package| package["dependencies"].as_array()).flatten();
+        for dependency in dependencies {
+            let is_of_page =
+                dependency["kind"].is_null() && dependency["target"] != "cfg(not(target_arch = \"wasm32\"))";
+            let on = dependency["name"].as_str().expect("dependencies have names");
+            if is_of_page && reached.insert(on) {
+                waiting.push(on);
+            }
+        }
+    }
+    assert!(reached.contains("link"), "the page asks the core");
+    assert!(!reached.contains("mission"), "the core is in the worker alone");
+}
+
+#[test]
 fn pure_crates_are_built_without_anything_that_draws() {
     let metadata = metadata();
     let ours: BTreeMap<&str, &Value> = packages(&metadata)
