@@ -4,7 +4,7 @@ use kirk::{Options, Search, Stats};
 use link::{BothSearches, Searched};
 use tpn::Network;
 
-use crate::core::CoreHost;
+use crate::host::CoreHost;
 
 /// Alternatives after which a search of a network with one node would be stopped. Larger networks take longer for each,
 /// and get less in proportion.

@@ -14,7 +14,7 @@ use executive::{
 };
 use rmpl::program::Program;
 use smol_str::SmolStr;
-use snapshot::{Executed, Execution, SimulatedDrive};
+use snapshot::{Commanded, Executed, Execution, SimulatedDrive};
 use tpn::{Network, OccurrenceKind, Plan, Supply, Window};
 
 use crate::ground::Grounds;
@@ -32,6 +32,8 @@ pub struct Ran {
     pub replanned: Vec<(Facts, Planned)>,
     /// The traverses as they were driven, in order of departure; none where durations are only drawn.
     pub drives: Vec<SimulatedDrive>,
+    /// What the control programs command.
+    pub commanded: Option<Commanded>,
 }
 
 /// Executes the plan of `planned`, which `problem` gave; `None` if it has no plan. Vehicles drive their traverses in
@@ -82,7 +84,8 @@ pub fn execute(
         Ok((outcome, replanner.replanned))
     });
     let drives = driving.map(Driving::into_drives).unwrap_or_default();
-    Some(ran.map(|(outcome, replanned)| Ran { outcome, replanned, drives }))
+    let commanded = programs.commanded(&planned.network);
+    Some(ran.map(|(outcome, replanned)| Ran { outcome, replanned, drives, commanded }))
 }
 
 /// Executes a plan of `problem` that was made ready for `world` and `executor`, which looks for its traverses in
@@ -99,7 +102,7 @@ pub(crate) fn execute_stage(
     let mut replanner = WithPaths { problem, grounds, paths, replanned: Vec::new(), courses };
     let num_program_nodes = problem.network.nodes.len();
     let outcome = run_stage(stage, num_program_nodes, world, executor, &mut replanner)?;
-    Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new() })
+    Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new(), commanded: None })
 }
 
 /// Whether disturbances mean something and are about what the mission has; if not, what is wrong with them.
@@ -218,6 +221,7 @@ pub fn executed(revision: u64, script: Script, program: &Program, planned: &Plan
         ending: ran.outcome.ending,
         plans,
         drives: ran.drives,
+        commanded: ran.commanded,
     }
 }
 

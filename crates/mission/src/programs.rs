@@ -13,7 +13,8 @@ use rmpl::control::Name as ControlName;
 use rmpl::program::{Name, PrimitiveDecl, Program, Runs};
 use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::SmolStr;
-use tpn::{Network, NodeId, Occurrence, OccurrenceKind, Plan};
+use snapshot::Commanded;
+use tpn::{Network, NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan};
 
 /// The programs of a mission, by the activity that runs each and what it hands over.
 #[derive(Clone, Debug, Default)]
@@ -124,6 +125,14 @@ impl Programs {
         let with =
             |arguments: &[SmolStr]| self.systems.get(&(occurrence.activity.clone(), arguments.to_vec()));
         with(&occurrence.arguments).or_else(|| with(&[]))
+    }
+
+    /// What they command, and the activities of `network` that run them.
+    pub fn commanded(&self, network: &Network) -> Option<Commanded> {
+        let plant = Arc::clone(&self.systems.values().next()?.model);
+        let runs = |&(_, occurrence): &(usize, &Occurrence)| self.system(occurrence).is_some();
+        let by = network.occurrences.iter().enumerate().filter(runs);
+        Some(Commanded { plant, by: by.map(|(index, _)| OccurrenceId::from_index(index)).collect() })
     }
 
     /// How long a step takes, in mission units.

@@ -376,3 +376,10 @@ fn incidents(
         })
         .collect()
 }
+
+/// A plan made ready for runs with chance, and what it belongs to.
+pub(crate) struct Sampled {
+    pub(crate) revision: u64,
+    pub(crate) uncertainty: Uncertainty,
+    pub(crate) sampler: Sampler,
+}

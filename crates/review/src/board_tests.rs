@@ -2,8 +2,9 @@
 
 use snapshot::Goal;
 
-use super::board::{PlanStatus, Present, Seat, standing};
+use super::board::{PlanStatus, Present, standing};
 use super::record::{Act, LineKey, Record, Subject, Who, seen_lines};
+use super::seat::Seat;
 use super::tests::{LASTING, SCENARIO, reviewed, snapshot};
 use super::{FlightRules, Review, Section, Status, since};
 

@@ -4,28 +4,11 @@
 
 use exact::Rational;
 use rmpl::program::LabelMode;
-use serde::{Deserialize, Serialize};
 use snapshot::Planning;
 use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply};
 
 use super::lines::Places;
-use super::{Line, Status};
-
-/// A resource, and how much of it a plan leaves in every schedule.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ResourceReview {
-    /// How far it is used, and what is left.
-    pub line: Line,
-    pub name: String,
-    /// How much of it there is.
-    pub supply: Supply,
-    /// How far the plan uses it, over all schedules.
-    pub levels: Levels,
-    /// What stays free of a reusable resource, and above the least level of a reservoir.
-    pub spare: Rational,
-    /// What stays free below the greatest level of a reservoir.
-    pub room: Option<Rational>,
-}
+use super::{Line, ResourceReview, Status};
 
 /// What the lines are made from.
 pub(super) struct DemandLines<'input> {

@@ -5,8 +5,8 @@ use serde_json::Value;
 use snapshot::Goal;
 
 use super::FlightRules;
-use super::board::DEFAULT_ROLE;
 use super::record::{Act, Record, Subject, Who};
+use super::seat::DEFAULT_ROLE;
 
 /// The format of the document.
 pub(super) const FORMAT: &str = "enroute-review/1";

@@ -8,12 +8,9 @@ use exact::{Rational, Time};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use smol_str::SmolStr;
-use snapshot::Robustness;
-use tpn::Supply;
 
-use super::board::{self, Seat};
-use super::flight_rule::{Finding, MissionRule, Outcome};
-use super::{Line, Review, Section, Status};
+use super::flight_rule::MissionRule;
+use super::seat::{self, Seat};
 
 /// The thresholds of a review.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,7 +61,7 @@ impl Default for FlightRules {
             reserves: BTreeMap::new(),
             success_rate: Some(SuccessRate { wanted: 0.95, least: 0.8 }),
             rules: Vec::new(),
-            board: board::default_board(),
+            board: seat::default_board(),
         }
     }
 }
@@ -84,7 +81,7 @@ impl FlightRules {
                 Some("a success rate is from 0 to 1")
             }
             Some(rate) if rate.least > rate.wanted => Some("what fails is no more than what is wanted"),
-            _ => self.problem_of_rules().or_else(|| board::problem(&self.board)),
+            _ => self.problem_of_rules().or_else(|| seat::problem(&self.board)),
         }
     }
 
@@ -128,7 +125,7 @@ impl FlightRules {
     }
 
     /// Where a rule comes from, for people.
-    fn source(is_default: impl Fn(&Self) -> bool) -> &'static str {
+    pub(super) fn source(is_default: impl Fn(&Self) -> bool) -> &'static str {
         if is_default(&Self::default()) { "flight rules, by default" } else { "flight rules of this mission" }
     }
 
@@ -179,260 +176,13 @@ impl FlightRules {
     }
 }
 
-fn at_least(amount: &str, is_positive: bool, unit: &str) -> String {
+pub(super) fn at_least(amount: &str, is_positive: bool, unit: &str) -> String {
     let what = if is_positive { format!("at least {amount}") } else { "more than 0".to_owned() };
     format!("{what} {unit}").trim_end().to_owned()
 }
 
 /// A share as people read it.
-fn percent(share: f64) -> String {
+pub(super) fn percent(share: f64) -> String {
     let percent = format!("{:.1}", share * 100.0);
     format!("{} %", percent.strip_suffix(".0").unwrap_or(&percent))
-}
-
-impl Line {
-    /// What the checker said of it, and no rule looks at it.
-    fn reset(&mut self) {
-        self.status = self.checked;
-    }
-
-    /// Holds it against a rule.
-    fn judge(&mut self, is_kept: bool, criterion: &str, source: &str) {
-        self.judge_as(if is_kept { Status::Passed } else { Status::Attention }, criterion, source);
-    }
-
-    fn judge_as(&mut self, status: Status, criterion: &str, source: &str) {
-        self.status = self.status.max(status);
-        let text = format!("{criterion} ({source})");
-        match &mut self.criterion {
-            Some(known) => {
-                known.push_str("; ");
-                known.push_str(&text);
-            }
-            None => self.criterion = Some(text),
-        }
-    }
-}
-
-/// Where what the checker examines is judged.
-const CHECKER: &str = "the independent checker finds the plan valid";
-
-impl MissionRule {
-    /// What was found of a rule, as a line. What has not been evaluated never counts as held.
-    pub fn line(&self, findings: &[Finding]) -> Line {
-        let found = findings.iter().find(|it| it.rule == self.rule);
-        let broken = if self.waivable { Status::Attention } else { Status::Failed };
-        let name = &self.name;
-        let (status, text) = match found.map(|it| &it.outcome) {
-            Some(Outcome::Holds) => (Status::Passed, format!("{name}: holds in every execution of the plan")),
-            Some(Outcome::NeverApplies) => {
-                (Status::Information, format!("{name}: the plan never comes to what it is about"))
-            }
-            Some(Outcome::Broken(when)) => {
-                (broken, format!("{name}: an execution of the plan breaks it, {when}"))
-            }
-            Some(Outcome::Unsure(when)) => (
-                Status::Attention,
-                format!("{name}: the mission does not say enough to be sure of it, {when}"),
-            ),
-            Some(Outcome::Undecided) => {
-                (Status::Attention, format!("{name}: there are too many cases to decide whether it holds"))
-            }
-            Some(Outcome::Unreadable { column, message }) => (
-                Status::Failed,
-                format!("{name}: cannot be read in this mission: {message} (character {column})"),
-            ),
-            Some(Outcome::NoPlan) => (Status::Failed, format!("{name}: there is no plan to hold against it")),
-            None => (Status::Failed, format!("{name}: has not been evaluated yet")),
-        };
-        let mut line = Line::new(status, text);
-        if let Some(Finding { names, nodes, .. }) = found {
-            (line.names, line.nodes) = (names.clone(), nodes.clone());
-        }
-        let source = if self.source.is_empty() { String::new() } else { format!("{}, ", self.source) };
-        line.criterion = Some(format!("{} ({source}flight rules of this mission)", self.rule));
-        line
-    }
-}
-
-impl Review {
-    /// Holds everything against `rules`, and against what runs with chance came to, if any were made. What was held
-    /// against other rules before is judged anew.
-    pub fn judge(&mut self, rules: &FlightRules, robustness: Option<&Robustness>) {
-        self.rules = rules.clone();
-        let unit = self.unit.clone();
-        for line in self.every_line() {
-            line.criterion = None;
-            line.reset();
-        }
-        let links = self.causal_links.iter_mut().map(|it| &mut it.line);
-        let conflicts = self.conflicts.iter_mut().map(|it| &mut it.line);
-        let resources = self.resources.iter_mut().map(|it| &mut it.line);
-        for line in links.chain(conflicts).chain(resources).chain(&mut self.states) {
-            line.criterion = Some(CHECKER.to_owned());
-        }
-        for choice in &mut self.choices {
-            choice.line.criterion = Some("every other alternative was examined".to_owned());
-        }
-        for line in &mut self.separation_violations {
-            line.criterion = Some("vehicles keep 1 m beyond their radii (this program)".to_owned());
-        }
-        for line in &mut self.durations {
-            line.criterion =
-                Some("a plan can use a duration as the mission declares it (the mission)".to_owned());
-        }
-        self.mission_rules = rules.rules.iter().map(|rule| rule.line(&self.findings)).collect();
-        self.mission_rules.extend(self.reserves_of_nothing(rules));
-        self.judge_margins(rules, &unit);
-        self.judge_resources(rules);
-        self.judge_traverses(rules);
-        self.robustness =
-            robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it, self.runs_programs));
-        let worst =
-            Section::ALL.iter().flat_map(|&section| self.lines(section)).map(|line| line.status).max();
-        self.status = worst.unwrap_or(Status::Passed).max(Status::Passed);
-    }
-
-    /// Whether every rule of the mission has been evaluated.
-    pub fn is_evaluated(&self, rules: &FlightRules) -> bool {
-        rules.rules.iter().all(|rule| self.findings.iter().any(|it| it.rule == rule.rule))
-    }
-
-    fn judge_margins(&mut self, rules: &FlightRules, unit: &str) {
-        let Some(margin) = rules.margin else { return };
-        let source = FlightRules::source(|it| it.margin == rules.margin);
-        let criterion = format!("margin {}", at_least(&margin.readable(), margin.is_positive(), unit));
-        let is_kept = |least: Time| least.is_positive() && least >= margin;
-        // What lasts is held until the next change, which waits for the need.
-        for link in self.causal_links.iter_mut().filter(|link| !link.is_lasting) {
-            link.line.judge(is_kept(link.margin.least), &criterion, source);
-        }
-        // Uses of a resource may follow each other at once.
-        for conflict in self.conflicts.iter_mut().filter(|conflict| !conflict.is_of_uses) {
-            conflict.line.judge(is_kept(conflict.gap.least), &criterion, source);
-        }
-    }
-
-    fn judge_resources(&mut self, rules: &FlightRules) {
-        for resource in &mut self.resources {
-            // Of what one alone uses at a time nothing can be left.
-            let is_exclusive =
-                matches!(resource.supply, Supply::Reusable { capacity } if capacity <= Rational::ONE);
-            let own = rules.reserves.get(resource.name.as_str()).copied();
-            let Some(reserve) = own.or(rules.reserve.filter(|_| !is_exclusive)) else { continue };
-            let source = FlightRules::source(|it| own.is_none() && it.reserve == rules.reserve);
-            let criterion = format!("reserve {}", at_least(&reserve.readable(), reserve.is_positive(), ""));
-            let is_kept = resource.spare.is_positive() && resource.spare >= reserve;
-            resource.line.judge(is_kept, &criterion, source);
-        }
-    }
-
-    /// A reserve that names no resource of the plan was held against nothing, and is not taken for kept.
-    fn reserves_of_nothing(&self, rules: &FlightRules) -> Vec<Line> {
-        let is_here = |name: &str| self.resources.iter().any(|resource| resource.name == name);
-        let missing = rules.reserves.iter().filter(|(name, _)| self.is_planned() && !is_here(name));
-        let line = |(name, reserve): (&SmolStr, &Rational)| {
-            let text =
-                format!("{name}: a reserve of it is asked for, and the plan has no resource of this name");
-            let mut line = Line::new(Status::Attention, text);
-            let wanted = at_least(&reserve.readable(), reserve.is_positive(), "");
-            line.criterion = Some(format!("reserve {wanted} (flight rules of this mission)"));
-            line
-        };
-        missing.map(line).collect()
-    }
-
-    fn judge_traverses(&mut self, rules: &FlightRules) {
-        for traverse in &mut self.traverses {
-            if let (Some(clearance_m), Some(least_m)) = (traverse.clearance_m, rules.clearance_m) {
-                let source = FlightRules::source(|it| it.clearance_m == rules.clearance_m);
-                traverse.line.judge(
-                    clearance_m >= least_m,
-                    &format!("clearance at least {least_m} m"),
-                    source,
-                );
-            }
-            let slope_deg = traverse.slope_max_rad.to_degrees();
-            if let Some(most_deg) = rules.slope_deg {
-                let source = FlightRules::source(|it| it.slope_deg == rules.slope_deg);
-                traverse.line.judge(slope_deg <= most_deg, &format!("slope at most {most_deg}°"), source);
-            }
-            if let Some(most_rad) = traverse.slope_limit_rad {
-                let most_deg = most_rad.to_degrees();
-                // Slopes are measured between samples, to about a tenth of a degree.
-                let status = if slope_deg <= most_deg + 0.1 { Status::Passed } else { Status::Failed };
-                let criterion = format!("slope at most {most_deg:.1}°");
-                traverse.line.judge_as(status, &criterion, "what the vehicles can climb");
-            }
-        }
-    }
-
-    /// Every line that a rule may judge.
-    fn every_line(&mut self) -> impl Iterator<Item = &mut Line> {
-        self.plan
-            .iter_mut()
-            .chain(self.choices.iter_mut().map(|it| &mut it.line))
-            .chain(self.causal_links.iter_mut().map(|it| &mut it.line))
-            .chain(self.conflicts.iter_mut().map(|it| &mut it.line))
-            .chain(&mut self.states)
-            .chain(self.resources.iter_mut().map(|it| &mut it.line))
-            .chain(&mut self.durations)
-            .chain(self.events.iter_mut().map(|it| &mut it.line))
-            .chain(self.traverses.iter_mut().map(|it| &mut it.line))
-            .chain(&mut self.separation_violations)
-            .chain(&mut self.warnings)
-    }
-}
-
-/// What runs with chance came to, held against the rule.
-fn success(rules: &FlightRules, found: &Robustness, runs_programs: bool) -> Line {
-    let (tally, settings) = (&found.tally, &found.settings);
-    let (low, high) = tally.interval();
-    let rate = tally.probability();
-    let made = if found.is_complete() {
-        format!("{} runs", tally.runs)
-    } else {
-        format!("only {} of {} runs", tally.runs, settings.runs)
-    };
-    let mut text = format!(
-        "{} of {made} with chance reached the end (seed {}; 95 % confidence: {} to {})",
-        percent(rate),
-        settings.seed,
-        percent(low),
-        percent(high)
-    );
-    // The plan that is reviewed did not hold in these.
-    match tally.succeeded_by_replanning {
-        0 => {}
-        1 => text.push_str(", one of them by another plan"),
-        several => text.push_str(&format!(", {several} of them by another plan")),
-    }
-    let is_by_chance = settings.uncertainty.leaves_something_to_chance(runs_programs);
-    if !is_by_chance {
-        text.push_str("; nothing was left to chance in them");
-    }
-    let checked = match (found.is_complete() && is_by_chance, rules.success_rate) {
-        (false, _) => Status::Attention,
-        (true, Some(_)) => Status::Passed,
-        // Held against nothing.
-        (true, None) => Status::Information,
-    };
-    let mut line = Line::new(checked, text);
-    if let Some(wanted) = rules.success_rate {
-        let source = FlightRules::source(|it| it.success_rate == rules.success_rate);
-        let status = match rate {
-            _ if rate < wanted.least => Status::Failed,
-            _ if rate < wanted.wanted => Status::Attention,
-            // Few runs that all went well could be luck.
-            _ if low < wanted.least => Status::Attention,
-            _ => Status::Passed,
-        };
-        let criterion = format!(
-            "success rate at least {}, below {} it has failed, and enough runs to be confident of the latter",
-            percent(wanted.wanted),
-            percent(wanted.least)
-        );
-        line.judge_as(status, &criterion, source);
-    }
-    line
 }

@@ -1,13 +1,15 @@
 //! A run of a mission: what happened, by which plans, and where the vehicles were.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use exact::Time;
 use executive::{Ending, Entry, Script};
+use plant::Model;
 use rmpl::Edit;
 use rmpl::spans::Spans as _;
 use serde::{Deserialize, Serialize};
-use tpn::{Network, Plan};
+use tpn::{Network, OccurrenceId, Plan};
 
 use crate::drive::SimulatedDrive;
 use crate::{Traverse, VehicleMotion};
@@ -28,6 +30,16 @@ pub struct Execution {
     pub plans: Vec<Executed>,
     /// The traverses as they were driven, in order of departure.
     pub drives: Vec<SimulatedDrive>,
+    /// What control programs command, if activities run any.
+    pub commanded: Option<Commanded>,
+}
+
+/// The plant of a mission and who commands it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Commanded {
+    pub plant: Arc<Model>,
+    /// The activities that run a control program.
+    pub by: BTreeSet<OccurrenceId>,
 }
 
 /// A plan that was executed until the run ended or planned again.

@@ -23,7 +23,7 @@ pub use self::snapshot::{
 };
 pub use content::{ContentKey, PartKeys};
 pub use drive::{DriveFrame, SimulatedDrive, SimulatedVehicle};
-pub use execution::{Executed, Execution};
+pub use execution::{Commanded, Executed, Execution};
 pub use goal::Goal;
 pub use ground::ClearanceOverlay;
 pub use problem::{Problem, TextEdit, TextFix};

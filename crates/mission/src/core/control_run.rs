@@ -9,10 +9,12 @@ use link::control_run::{Input, Moment};
 use link::{ControlProgram, ControlRun, ControlStanding};
 use link::{Response, Update};
 use rmpl::spans::Spans as _;
-use snapshot::Problem;
+use snapshot::content::Keys;
+use snapshot::{ContentKey, Problem, Snapshot, Stage, Timings};
 
-use super::{ContentKey, Core, CoreHost, Keys, Snapshot, Stage, Timings};
+use super::Core;
 use crate::control::Control;
+use crate::host::CoreHost;
 use crate::moments::{control_program, moment_of_run, moments_of_automaton};
 
 /// The run that was asked for last.

@@ -14,34 +14,19 @@ use std::sync::Arc;
 use interchange::geojson;
 use link::{Request, Response, Update};
 use review::MissionRule;
+use snapshot::PartKeys;
 use snapshot::Problem;
-use snapshot::content::{Keyed, Keys};
-use snapshot::{ContentKey, PartKeys};
+use snapshot::content::Keys;
 use snapshot::{MapKey, Snapshot, Stage, Timings};
 use terrain::Terrain;
 
 use crate::both_searches;
 use crate::control::ControlTexts;
 use crate::ground::Grounds;
+use crate::host::{CoreHost, Quiet, Unhurried};
 use crate::reading::{Followed, Reading};
+use crate::sampling::Sampled;
 use crate::traverse::Paths;
-
-/// What the core needs from where it runs.
-pub trait CoreHost {
-    /// Milliseconds since an arbitrary moment.
-    fn now_millis(&self) -> f64;
-
-    /// Whether the request under way should be given up, because a newer one has come.
-    fn is_superseded(&mut self) -> bool;
-
-    /// Takes an answer.
-    fn answer(&mut self, response: Response);
-
-    /// Whether plans are wanted before the best one is known.
-    fn wants_first_plans(&self) -> bool {
-        true
-    }
-}
 
 /// The planning core of one mission. Feed it requests in order.
 #[derive(Default)]
@@ -53,7 +38,7 @@ pub struct Core {
     keys: Keys,
     reading: Reading,
     last: Option<planned::Last>,
-    sampler: Option<running::Sampled>,
+    sampler: Option<Sampled>,
     controls: ControlTexts,
     control_run: Option<control_run::Session>,
     growth: Vec<path_growth::Session>,
@@ -226,65 +211,6 @@ impl Core {
         {
             host.answer(Response::Map { key: key.clone(), map: Arc::clone(map) });
             self.sent = Some(key.clone());
-        }
-    }
-}
-
-/// Answers with a compiled network once its plan takes long: to send it twice would hold up the plan.
-struct Unhurried<'a> {
-    host: &'a mut dyn CoreHost,
-    waiting: Option<Arc<Snapshot>>,
-    due_millis: f64,
-}
-
-impl CoreHost for Unhurried<'_> {
-    fn now_millis(&self) -> f64 {
-        self.host.now_millis()
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        let is_due = self.host.now_millis() >= self.due_millis;
-        if is_due && let Some(snapshot) = self.waiting.take() {
-            self.answer(Response::Snapshot(snapshot));
-        }
-        self.host.is_superseded()
-    }
-
-    fn wants_first_plans(&self) -> bool {
-        self.host.wants_first_plans()
-    }
-
-    fn answer(&mut self, response: Response) {
-        self.waiting = None;
-        self.host.answer(response);
-    }
-}
-
-/// Keeps the last snapshot instead of answering with it.
-struct Quiet<'a> {
-    host: &'a mut dyn CoreHost,
-    passes_maps: bool,
-    last: Option<Arc<Snapshot>>,
-}
-
-impl CoreHost for Quiet<'_> {
-    fn now_millis(&self) -> f64 {
-        self.host.now_millis()
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        self.host.is_superseded()
-    }
-
-    fn wants_first_plans(&self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        match response {
-            Response::Snapshot(snapshot) => self.last = Some(snapshot),
-            Response::Map { .. } if !self.passes_maps => {}
-            other => self.host.answer(other),
         }
     }
 }

@@ -6,9 +6,11 @@ use link::Response;
 use link::path_growth::MAX_SAMPLES;
 use link::{GrowthStanding, PathGrowth, WantedPlanner};
 use motion::{PlannerKind, Query, Settings, TracedSearch};
+use snapshot::ContentKey;
 use terrain::ConfigurationSpace;
 
-use super::{ContentKey, Core, CoreHost};
+use super::Core;
+use crate::host::CoreHost;
 
 /// A search that was asked for last.
 pub(super) struct Session {

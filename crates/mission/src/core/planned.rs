@@ -8,13 +8,16 @@ use link::Update;
 use rmpl::Edit;
 use rmpl::program::Program;
 use rmpl::spans::Spans as _;
-use snapshot::{MapKey, Planning, SeparationViolation, Snapshot, Traverse, VehicleMotion};
+use snapshot::content::{Keyed, Keys};
+use snapshot::{ContentKey, MapKey, Planning, SeparationViolation, Snapshot, Traverse, VehicleMotion};
 use terrain::Terrain;
 use tpn::{Network, Plan};
 
 use super::executions::Executions;
-use super::{ContentKey, Core, CoreHost, Keyed, Keys, Reading, TRACE_EVENTS};
+use super::{Core, TRACE_EVENTS};
+use crate::host::CoreHost;
 use crate::planning::{self, Planned};
+use crate::reading::Reading;
 use crate::repairs;
 
 /// What the last planned request led to, and what it depended on.

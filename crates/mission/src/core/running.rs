@@ -7,23 +7,17 @@ use link::ProgramChance;
 use link::{Response, Update};
 use rmpl::program::Program;
 use snapshot::MapKey;
-use snapshot::{RobustnessSettings, Tally, Uncertainty};
+use snapshot::{RobustnessSettings, Tally};
 use terrain::Terrain;
 use tpn::Network;
 
-use super::{Core, CoreHost};
+use super::Core;
 use crate::execution;
+use crate::host::CoreHost;
 use crate::planning::{self, Planned};
 use crate::program_chance;
 use crate::programs::Programs;
-use crate::sampling::Sampler;
-
-/// A plan made ready for runs with chance, and what it belongs to.
-pub(super) struct Sampled {
-    revision: u64,
-    uncertainty: Uncertainty,
-    sampler: Sampler,
-}
+use crate::sampling::{Sampled, Sampler};
 
 /// A text with its plan.
 pub(super) struct Evaluated {

@@ -67,18 +67,13 @@ fn written(automaton: &Automaton) -> impl Iterator<Item = (Span, AutomatonItem)>
 
 #[cfg(test)]
 mod tests {
-    use mission::{Control, read_control};
-
     use super::*;
 
     const TEXT: &str =
         "P ():: (DO-WATCHING (a = yes) (PARALLEL (b = yes) (WHEN-DONEXT (c = yes) (d = yes))))";
 
     fn automaton() -> std::sync::Arc<Automaton> {
-        match read_control(TEXT, None).0 {
-            Control::Unbound(automaton) => automaton,
-            _ => panic!("a program without a plant"),
-        }
+        hca::compile_text(TEXT, &hca::Vocabulary::default()).automaton.expect("it is well formed")
     }
 
     /// The names of what is marked with the caret before `word`.

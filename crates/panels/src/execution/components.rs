@@ -2,10 +2,8 @@
 
 use egui::{ComboBox, DragValue, RichText, Ui};
 use executive::Disturbance;
-use mission::programs::Programs;
 use num_traits::ToPrimitive as _;
 use smol_str::SmolStr;
-use snapshot::ContentKey;
 use workbench::command::{Command, CommandSender};
 use workbench::state::execution::{ExecutionCommand, Pending};
 use workbench::state::playback::number;
@@ -14,10 +12,9 @@ use super::{Shown, now};
 use crate::Context;
 use crate::plan::section;
 
-/// What is to fail, by places in the lists, and the programs that are known.
+/// What is to fail, by places in the lists.
 #[derive(Default)]
 pub(super) struct Components {
-    known: Option<([ContentKey; 2], Programs)>,
     component: usize,
     mode: usize,
     step: u32,
@@ -39,21 +36,17 @@ impl Components {
         commands: &mut CommandSender,
     ) {
         let Some(snapshot) = context.snapshot else { return };
-        let keys = [snapshot.keys.program, snapshot.keys.network];
-        if self.known.as_ref().is_none_or(|(known, _)| *known != keys) {
-            self.known = Some((keys, Programs::compile(&snapshot.program, Some(shown.network)).0));
-        }
-        let Some((_, programs)) = self.known.as_ref().filter(|(_, programs)| !programs.is_empty()) else {
+        let Some(commanded) = &shown.run.commanded else { return };
+        let choices = choices(&commanded.plant);
+        if choices.is_empty() {
             return;
-        };
-        let step_units = number(programs.step());
+        }
+        let step_units = number(snapshot.program.options.control_step);
         for pending in pending {
             let Some(occurrence) = shown.network.occurrences.get(pending.occurrence.index()) else {
                 continue;
             };
-            let Some(system) = programs.system(occurrence) else { continue };
-            let choices = choices(&system.model);
-            if choices.is_empty() {
+            if !commanded.by.contains(&pending.occurrence) {
                 continue;
             }
             // Steps that are over cannot go otherwise any more.

@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use egui::{Button, DragValue, RichText, TextEdit, Ui};
 use exact::{Rational, Time};
-use review::board::{MAX_APPROVALS, MAX_SEATS, Seat};
 use review::flight_rule::{self, MissionRule, Outcome};
+use review::seat::{MAX_APPROVALS, MAX_SEATS, Seat};
 use review::{FlightRules, SuccessRate};
 use theme::space;
 use workbench::command::{Command, CommandSender};

@@ -7,7 +7,6 @@ use rmpl::program::{LabelMode, Options};
 use smol_str::SmolStr;
 
 use super::bounds::Interval;
-use super::expand::Root;
 use super::names::{Fact, Vocabulary};
 use crate::network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, EventEnd, EventRef, Extent, Goal,
@@ -23,6 +22,15 @@ struct Draft {
     fact: Fact,
     owner: Option<OccurrenceId>,
     span: Span,
+}
+
+/// The outermost piece.
+pub(super) struct Root {
+    pub(super) block: BlockId,
+    pub(super) start: NodeId,
+    pub(super) end: NodeId,
+    /// An arc from the start that every plan selects, if there is one.
+    pub(super) arc: Option<ArcId>,
 }
 
 /// Collects the parts of a network. Arcs are created in textual order, outer ones first; their ends may follow later.

@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 
 use super::bounds::{self, Interval, Values as _};
 use super::clauses::Activity;
-use super::expand::{End, Entry, Expander, Piece};
+use super::expander::{End, Entry, Expander, Piece};
 use super::scope::{Scope, argument_text};
 use crate::network::{ArcKind, BlockKind, OccurrenceKind};
 

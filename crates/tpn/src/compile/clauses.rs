@@ -6,8 +6,8 @@ use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
 use super::bounds::{E_BOUNDS, Interval};
-use super::expand::{Expander, Piece};
-use super::names::{Fact, substituted};
+use super::expander::{Expander, Piece};
+use super::names::{E_UNDEF, Fact, substituted};
 use super::scope::Scope;
 use crate::network::{ArcId, Extent, OccurrenceId, Worth};
 
@@ -82,7 +82,7 @@ impl Expander<'_> {
                 let hint =
                     format!("declare it: `state {} : {{{}, …}} = …;`", fact.variable, effect.value.text);
                 self.diagnostics
-                    .push(Diagnostic::error(super::E_UNDEF, effect.variable.span, message).with_hint(hint));
+                    .push(Diagnostic::error(E_UNDEF, effect.variable.span, message).with_hint(hint));
             } else if effects.iter().any(|(known, _)| known.variable == fact.variable) {
                 let message = format!("`{}` sets `{}` twice", activity.declared.name.text, fact.variable);
                 let is_declared_so = effect.variable.text == fact.variable;

@@ -4,7 +4,7 @@ use rmpl::program::{Bounds, Condition, LabelMode, Statement};
 use rmpl::{Diagnostic, Span};
 
 use super::bounds::Interval;
-use super::expand::{End, Entry, Expander, Piece};
+use super::expander::{End, Entry, Expander, Piece};
 use super::names::{E_VALUE, Fact};
 use super::scope::Scope;
 use crate::network::{ArcId, ArcKind, BlockKind, Extent, OccurrenceId, OccurrenceKind};

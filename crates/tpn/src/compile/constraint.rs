@@ -12,7 +12,7 @@ use rmpl::diagnostics::limit;
 use rmpl::program::{EventName, Name};
 
 use super::bounds::Interval;
-use super::expand::Expander;
+use super::expander::Expander;
 use super::scope::Scope;
 use crate::network::{ArcKind, NodeId};
 

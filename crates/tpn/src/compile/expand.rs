@@ -1,147 +1,26 @@
 //! The compile rules of SPEC 3.3, one function per construct, over the program with its calls expanded.
 
-use std::collections::BTreeMap;
-use std::rc::Rc;
-
 use exact::{Bound, Time};
 use rmpl::diagnostics::limit;
-use rmpl::program::{
-    ActivityDecl, Bounds, Expr, LabelMode, PrimitiveDecl, Program, ScenarioDecl, Statement, StatementKind,
-};
+use rmpl::program::{Bounds, Expr, LabelMode, ScenarioDecl, Statement, StatementKind};
 use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
 
-use super::E_UNDEF;
 use super::bounds::{self, Interval};
-use super::build::Builder;
+use super::build::Root;
 use super::call::{Invocation, themselves};
-use super::constants::Constants;
-use super::constraint::Named;
-use super::names::Vocabulary;
+use super::expander::{End, Entry, Expander, Piece};
+use super::names::E_UNDEF;
 use super::scope::Scope;
 use super::shape::starts_with_decision;
-use crate::network::{
-    ArcId, ArcKind, BlockId, BlockKind, Network, NodeId, OccurrenceId, OccurrenceKind, ResourceId,
-};
+use crate::network::{ArcId, ArcKind, BlockKind, NodeId, OccurrenceId, OccurrenceKind};
 
 /// Networks grow no larger than this many nodes, so that a few lines of doubling calls cannot exhaust the memory.
 const MAX_NODES: usize = 500_000;
 /// Statements nest no deeper than this, instances included, so that no text can exhaust the stack.
 const DEEPEST: usize = 200;
 
-/// What kind of node stands at an end of a piece, which decides what may share the node (rule M).
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum End {
-    /// The start or end of an activity or assertion: shares its node only with a delay.
-    Event,
-    /// A fork, join, merge, decision or wrapper: shares its node with other structure.
-    Structural,
-    /// The start or end of a delay: waiting is no event of its own, so it shares its neighbour's node.
-    Delay,
-}
-
-/// Where a piece begins.
-#[derive(Clone, Copy)]
-pub(super) enum Entry {
-    /// At a new node.
-    Free,
-    /// At `node` if the two may share it, otherwise at a new node behind an arc `[0,0]` of kind `link`.
-    After { node: NodeId, end: End, link: ArcKind },
-}
-
-/// A compiled piece of the program.
-pub(super) struct Piece {
-    pub(super) start: NodeId,
-    pub(super) end: NodeId,
-    pub(super) end_kind: End,
-    pub(super) block: BlockId,
-    /// The arc, if the piece is a single one.
-    pub(super) arc: Option<ArcId>,
-    /// The activity or assertion that the piece is, if it is one.
-    pub(super) occurrence: Option<OccurrenceId>,
-}
-
-/// Expands a program into a network.
-pub(super) struct Expander<'program> {
-    pub(super) program: &'program Program,
-    pub(super) vocabulary: Rc<Vocabulary<'program>>,
-    pub(super) constants: Rc<Constants<'program>>,
-    pub(super) activities: Rc<BTreeMap<&'program str, &'program ActivityDecl>>,
-    pub(super) primitives: Rc<BTreeMap<&'program str, &'program PrimitiveDecl>>,
-    pub(super) builder: Builder,
-    pub(super) diagnostics: Vec<Diagnostic>,
-    /// The activities being expanded, outermost first.
-    pub(super) active: Vec<&'program str>,
-    pub(super) depth: usize,
-    pub(super) is_cut_off: bool,
-    /// The declared resources, by name, with their positions in the network's; `None` for one whose declaration is wrong.
-    pub(super) resources: BTreeMap<&'program str, Option<ResourceId>>,
-    pub(super) unordered_blocks: usize,
-    /// What `as` names, and where that is.
-    pub(super) named: Named<'program>,
-}
-
-/// What every scenario of a program is expanded with.
-#[derive(Clone)]
-pub(super) struct Declared<'program> {
-    program: &'program Program,
-    vocabulary: Rc<Vocabulary<'program>>,
-    pub(super) constants: Rc<Constants<'program>>,
-    activities: Rc<BTreeMap<&'program str, &'program ActivityDecl>>,
-    primitives: Rc<BTreeMap<&'program str, &'program PrimitiveDecl>>,
-}
-
-/// The outermost piece.
-pub(super) struct Root {
-    pub(super) block: BlockId,
-    pub(super) start: NodeId,
-    pub(super) end: NodeId,
-    /// An arc from the start that every plan selects, if there is one.
-    pub(super) arc: Option<ArcId>,
-}
-
-impl<'program> Declared<'program> {
-    pub(super) fn new(program: &'program Program, constants: Constants<'program>) -> Self {
-        let mut activities = BTreeMap::new();
-        for activity in &program.activities {
-            activities.entry(activity.name.text.as_str()).or_insert(activity);
-        }
-        let mut primitives = BTreeMap::new();
-        for primitive in &program.primitives {
-            primitives.entry(primitive.name.text.as_str()).or_insert(primitive);
-        }
-        Self {
-            program,
-            vocabulary: Rc::new(Vocabulary::new(program)),
-            constants: Rc::new(constants),
-            activities: Rc::new(activities),
-            primitives: Rc::new(primitives),
-        }
-    }
-}
-
 impl<'program> Expander<'program> {
-    pub(super) fn new(declared: Declared<'program>) -> Self {
-        let Declared { program, vocabulary, constants, activities, primitives } = declared;
-        let mut expander = Self {
-            program,
-            vocabulary,
-            constants,
-            activities,
-            primitives,
-            builder: Builder::default(),
-            diagnostics: Vec::new(),
-            active: Vec::new(),
-            depth: 0,
-            is_cut_off: false,
-            resources: BTreeMap::new(),
-            unordered_blocks: 0,
-            named: Named::default(),
-        };
-        expander.declare_resources();
-        expander
-    }
-
     pub(super) fn scenario(&mut self, scenario: &'program ScenarioDecl) -> Root {
         let occurrence = self.builder.occurrence(
             "scenario".into(),
@@ -208,14 +87,6 @@ impl<'program> Expander<'program> {
         };
         let arc = piece.occurrence.and_then(|occurrence| self.builder.arc_of(occurrence));
         Ok(Root { block: piece.block, start: piece.start, end: piece.end, arc })
-    }
-
-    pub(super) fn finish(self, root: Option<Root>) -> (Option<Network>, Vec<Diagnostic>) {
-        let objective = self.objective();
-        let network = root
-            .filter(|_| !self.is_cut_off)
-            .map(|root| self.builder.finish(&self.vocabulary, &root, &self.program.options, objective));
-        (network, self.diagnostics)
     }
 
     pub(super) fn statement(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {

@@ -12,6 +12,7 @@ mod constants;
 mod constraint;
 mod exogenous;
 mod expand;
+mod expander;
 mod names;
 mod resource;
 mod scope;
@@ -30,12 +31,10 @@ use crate::network::Network;
 pub use exogenous::assumed;
 
 use constants::Constants;
-use expand::{Declared, Expander};
+use expander::{Declared, Expander};
 
 /// There is no scenario, or none of the name that was asked for.
 const E_NOSCENARIO: Code = Code("E-NOSCENARIO");
-/// There is no activity of the name that was asked for.
-const E_UNDEF: Code = Code("E-UNDEF");
 
 /// What a network is compiled for.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,9 +6,11 @@ use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind}
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::E_UNDEF;
 use super::scope::argument_text;
 use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
+
+/// What is named is not there: an activity, a variable, a value or a resource.
+pub(super) const E_UNDEF: Code = Code("E-UNDEF");
 
 /// A value is outside its variable's domain.
 pub(super) const E_VALUE: Code = Code("E-VALUE");

@@ -8,8 +8,8 @@ use smol_str::format_smolstr;
 
 use super::bounds::{self, E_BOUNDS, Interval};
 use super::clauses::Activity;
-use super::expand::{Entry, Expander, Piece};
-use super::{E_UNDEF, expand};
+use super::expander::{End, Entry, Expander, Piece};
+use super::names::E_UNDEF;
 use crate::network::{ArcKind, BlockKind, Goal, Resource, ResourceId, Supply, Use};
 
 /// More is asked of a resource than it can ever give, or something that its kind does not do.
@@ -248,7 +248,7 @@ impl<'program> Expander<'program> {
             supply: Supply::Reusable { capacity: Rational::ONE },
             span: Some(span),
         });
-        let fork = self.enter(entry, expand::End::Structural, span);
+        let fork = self.enter(entry, End::Structural, span);
         let mut ends = Vec::with_capacity(branches.len());
         let mut blocks = Vec::with_capacity(branches.len());
         for branch in branches {
@@ -275,14 +275,7 @@ impl<'program> Expander<'program> {
             self.builder.arc(end, join, ArcKind::Join, Interval::ANY, span);
         }
         let block = self.builder.block(BlockKind::Parallel { branches: blocks }, fork, join, Some(span));
-        Piece {
-            start: fork,
-            end: join,
-            end_kind: expand::End::Structural,
-            block,
-            arc: None,
-            occurrence: None,
-        }
+        Piece { start: fork, end: join, end_kind: End::Structural, block, arc: None, occurrence: None }
     }
 
     /// What plans are to be best in.

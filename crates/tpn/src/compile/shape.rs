@@ -2,7 +2,7 @@
 
 use rmpl::program::{ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
 
-use super::expand::Expander;
+use super::expander::Expander;
 use super::scope::Scope;
 
 impl Expander<'_> {

@@ -41,7 +41,7 @@ pub(crate) const LAYERS: &[(&str, &[&str])] = &[
     ("theme", &["display", "markdown"]),
     ("editor", &["text_editing", "theme"]),
     ("terrain_view", &["workbench", "theme"]),
-    ("panels", &["workbench", "terrain_view", "editor", "mission"]),
+    ("panels", &["workbench", "terrain_view", "editor"]),
     ("app", &["panels", "mission"]),
     ("page", &["app"]),
     ("worker", &["mission"]),
@@ -131,6 +131,29 @@ fn crates_depend_only_on_the_layers_below_them() {
             assert!(below.contains(on), "{name} must not depend on {on}");
         }
     }
+}
+
+#[test]
+fn the_page_is_built_without_the_core() {
+    let metadata = metadata();
+    let mut reached = BTreeSet::from(["page"]);
+    let mut waiting = vec!["page"];
+    while let Some(name) = waiting.pop() {
+        let package =
+            packages(&metadata).find(|package| package["name"] == name && package["source"].is_null());
+        let dependencies =
+            package.into_iter().flat_map(|package| package["dependencies"].as_array()).flatten();
+        for dependency in dependencies {
+            let is_of_page =
+                dependency["kind"].is_null() && dependency["target"] != "cfg(not(target_arch = \"wasm32\"))";
+            let on = dependency["name"].as_str().expect("dependencies have names");
+            if is_of_page && reached.insert(on) {
+                waiting.push(on);
+            }
+        }
+    }
+    assert!(reached.contains("link"), "the page asks the core");
+    assert!(!reached.contains("mission"), "the core is in the worker alone");
 }
 
 #[test]
