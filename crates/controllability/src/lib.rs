@@ -85,16 +85,12 @@ pub fn plan_network(
         is_selected[precedence.earlier.index()] = true;
         is_selected[precedence.later.index()] = true;
     }
-    let mut first: Vec<usize> = (0..network.nodes.len()).collect();
-    for (_, arc) in arcs().filter(|(_, arc)| arc.is_tie()) {
-        let (one, other) = (first_of(&mut first, arc.from.index()), first_of(&mut first, arc.to.index()));
-        first[one.max(other)] = one.min(other);
-    }
+    let first = network.instants(arcs().map(|(_, arc)| arc).filter(|arc| arc.is_tie()));
     let mut points = vec![None; network.nodes.len()];
     let mut nodes: Vec<Vec<NodeId>> = Vec::new();
     for index in (0..is_selected.len()).filter(|&index| is_selected[index]) {
         // The first of those at one instant comes first, and is selected if one of them is.
-        let point = *points[first_of(&mut first, index)].get_or_insert(PointId(nodes.len() as u32));
+        let point = *points[first[index].index()].get_or_insert(PointId(nodes.len() as u32));
         points[index] = Some(point);
         match nodes.get_mut(point.index()) {
             Some(at_once) => at_once.push(NodeId::from_index(index)),
@@ -123,15 +119,6 @@ pub fn plan_network(
         )?;
     }
     Ok(made)
-}
-
-/// The first of the events that happen at one instant with an event.
-fn first_of(first: &mut [usize], mut index: usize) -> usize {
-    while first[index] != index {
-        first[index] = first[first[index]];
-        index = first[index];
-    }
-    index
 }
 
 /// The coarsest ticks that count all bounds of a network and its gap.

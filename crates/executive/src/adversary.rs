@@ -7,7 +7,7 @@ use stnu::adversary::{Intention, respond};
 use tpn::{ArcId, Network, NodeId};
 
 use crate::plan_network::PlanError;
-use crate::stage::{Dispatch, Stage};
+use crate::stage::Stage;
 use crate::world::World;
 
 /// The network that is played on. No duration is the executive's to choose because the mission reads it as ordinary.
@@ -19,7 +19,7 @@ pub(crate) struct Adversary {
 impl Adversary {
     /// The adversary of a stage in `world`, if there is one: plans that withstand nature have none.
     pub(crate) fn of(world: &World, stage: &Stage) -> Result<Option<Self>, PlanError> {
-        let is_lost = matches!(stage.dispatch, Dispatch::Certain(_)) && !stage.natures.is_empty();
+        let is_lost = !stage.dispatch.withstands_nature() && !stage.natures.is_empty();
         if !world.is_adversary() || !is_lost {
             return Ok(None);
         }

@@ -190,13 +190,19 @@ fn set_outcome(network: &mut Network, label: LabelId, value: ValueId) {
 fn add_back_arc(network: &mut Network, node: NodeId, earliest: Time, latest: Time) {
     // Nothing comes before the start, and what is not negative has an opposite that fits.
     let back = |time: Time| time.max(Time::ZERO).checked_neg().unwrap_or_default();
-    let id = ArcId::from_index(network.arcs.len());
+    let (lower, upper) = (back(latest), back(earliest));
     let start = network.start;
+    add_arc(network, [node, start], lower, upper);
+}
+
+/// Holds the second of two nodes to come between `lower` and `upper` after the first.
+fn add_arc(network: &mut Network, [from, to]: [NodeId; 2], lower: Time, upper: Time) {
+    let id = ArcId::from_index(network.arcs.len());
     network.arcs.push(Arc {
-        from: node,
-        to: start,
-        lower: back(latest),
-        upper: Bound::Finite(back(earliest)),
+        from,
+        to,
+        lower,
+        upper: Bound::Finite(upper),
         is_contingent: false,
         kind: ArcKind::Span,
         labels: Vec::new(),
@@ -204,8 +210,8 @@ fn add_back_arc(network: &mut Network, node: NodeId, earliest: Time, latest: Tim
         choice: None,
         span: None,
     });
-    network.nodes[node.index()].out_arcs.push(id);
-    network.nodes[start.index()].in_arcs.push(id);
+    network.nodes[from.index()].out_arcs.push(id);
+    network.nodes[to.index()].in_arcs.push(id);
 }
 
 /// An event of the world at a time that has come, with an arc that begins at it. Planning takes it as one more event that
@@ -213,22 +219,8 @@ fn add_back_arc(network: &mut Network, node: NodeId, earliest: Time, latest: Tim
 fn add_world_event(network: &mut Network, at: Time) -> (NodeId, ArcId, OccurrenceId) {
     let node = NodeId::from_index(network.nodes.len());
     network.nodes.push(Node { role: Role::Event, ..Node::default() });
-    let forth = ArcId::from_index(network.arcs.len());
     let start = network.start;
-    network.arcs.push(Arc {
-        from: start,
-        to: node,
-        lower: at,
-        upper: Bound::Finite(at),
-        is_contingent: false,
-        kind: ArcKind::Span,
-        labels: Vec::new(),
-        occurrence: None,
-        choice: None,
-        span: None,
-    });
-    network.nodes[start.index()].out_arcs.push(forth);
-    network.nodes[node.index()].in_arcs.push(forth);
+    add_arc(network, [start, node], at, at);
     let back = ArcId::from_index(network.arcs.len());
     add_back_arc(network, node, at, at);
     let owner = OccurrenceId::from_index(network.occurrences.len());

@@ -4,7 +4,6 @@
 
 pub mod activity_execution;
 mod adversary;
-mod certain_dispatch;
 mod dispatch;
 pub mod facts;
 pub mod log;
@@ -15,8 +14,6 @@ pub mod progress;
 pub mod run;
 pub mod stage;
 pub mod strategy;
-pub mod uncertain_dispatch;
-mod uncertain_progress;
 pub mod world;
 mod world_state;
 
@@ -29,5 +26,4 @@ pub use progress::{Observations, Progress, Waiting, progress};
 pub use run::{Replanner, RunOutcome, run, run_stage};
 pub use stage::{ExecutedPlan, Stage};
 pub use strategy::{Act, Actor, Course, Strategy, UnderWay};
-pub use uncertain_dispatch::UncertainDispatch;
 pub use world::{Disturbance, Script, World, WorldChange};

@@ -2,6 +2,7 @@
 
 use exact::{Bound, Scale, Time};
 use stn::{Inconsistency, PointId, Stn, Window};
+use stnu::Undecided;
 use tpn::{ArcId, ArcKind, Network, NodeId, Plan, Precedence};
 
 /// A plan's events as time points, with their constraints.
@@ -44,6 +45,13 @@ impl From<stn::Overflow> for PlanError {
 
 impl From<exact::Overflow> for PlanError {
     fn from(_: exact::Overflow) -> Self {
+        Self::Overflow
+    }
+}
+
+impl From<Undecided> for PlanError {
+    fn from(_: Undecided) -> Self {
+        // Nobody stops it.
         Self::Overflow
     }
 }

@@ -1,11 +1,16 @@
-//! What remains possible of a plan once some of its events have happened (SPEC 6.2).
+//! What remains possible of a plan once some of its events have happened (SPEC 6.2). Where nature chooses durations, the
+//! network of what is left is dispatched from the present on (SPEC 13.2).
 
+use std::sync::Arc;
+
+use controllability::{PlanNetwork as Uncertain, Source, plan_network};
 use exact::{Bound, Time};
-use stn::{Execution, ExecutionWindows};
+use stn::{Execution, ExecutionWindows, PointId};
+use stnu::adversary::residual;
+use stnu::{Dispatchable, Dispatcher, Part, Status, Verdict};
 use tpn::{ArcId, Network, NodeId, Plan, Window};
 
 use crate::plan_network::{ADDED, PlanError, PlanNetwork};
-use crate::uncertain_progress::uncertain_progress;
 
 /// What is known at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,7 +63,7 @@ pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Resu
     let windows = match stn::execution_windows(&mut made.stn, known, ADDED)? {
         ExecutionWindows::Consistent(windows) => windows,
         ExecutionWindows::Violated(tags) => {
-            return Ok(Progress::Violated(explain(network, &made, observed, &tags)));
+            return Ok(Progress::Violated(explain(network, observed, arcs(network, &tags))));
         }
     };
     let last = executed.iter().map(|&(_, time)| time).max().unwrap_or(0);
@@ -80,13 +85,15 @@ pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Resu
             for point in made.all_points() {
                 by_node[made.node(point).index()] = Some(made.window(windows[point.index()]));
             }
-            match uncertain_progress(network, plan, &made, &by_node, observed)? {
-                Some(progress) => progress,
-                None => Progress::Consistent(by_node, Vec::new()),
+            let scale = made.scale();
+            let read = plan_network(network, &plan.selected_arcs, &plan.precedences(network), scale)?;
+            if read.is_certain() {
+                return Ok(Progress::Consistent(by_node, Vec::new()));
             }
+            uncertain(network, &made, &read, &by_node, observed)?
         }
         ExecutionWindows::Violated(tags) => {
-            let mut reasons = explain(network, &made, observed, &tags);
+            let mut reasons = explain(network, observed, arcs(network, &tags));
             for point in pending {
                 let window = windows[point.index()];
                 let node = made.node(point);
@@ -104,23 +111,138 @@ pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Resu
     })
 }
 
-fn explain(network: &Network, made: &PlanNetwork, observed: &Observations, tags: &[u32]) -> Vec<String> {
-    let mut reasons: Vec<String> = Vec::new();
-    for &(node, time) in &observed.executed {
-        if made.point(node).is_some() {
-            let name = tpn::plan_json::node_name(network, node);
-            reasons.push(format!("{name} happened at {}", Bound::Finite(time)));
-        }
-    }
-    for &tag in tags {
-        let Some(arc) = network.arcs.get(tag as usize) else { continue };
-        let (from, to) =
-            (tpn::plan_json::node_name(network, arc.from), tpn::plan_json::node_name(network, arc.to));
-        let lower = Bound::Finite(arc.lower);
-        let reason = format!("{to} comes [{lower}, {}] after {from}", arc.upper);
+/// The arcs among the tags of constraints.
+fn arcs(network: &Network, tags: &[u32]) -> impl Iterator<Item = (ArcId, &'static str)> {
+    tags.iter().map(|&tag| ArcId(tag)).filter(|arc| arc.index() < network.arcs.len()).map(|arc| (arc, ""))
+}
+
+/// What happened, and the bounds of arcs that contradict it, each with what is added to it.
+fn explain<'a>(
+    network: &Network,
+    observed: &Observations,
+    arcs: impl Iterator<Item = (ArcId, &'a str)>,
+) -> Vec<String> {
+    let name = |node| tpn::plan_json::node_name(network, node);
+    let happened =
+        |&(node, time): &(NodeId, Time)| format!("{} happened at {}", name(node), Bound::Finite(time));
+    let mut reasons: Vec<String> = observed.executed.iter().map(happened).collect();
+    for (arc, who) in arcs {
+        let arc = &network.arcs[arc.index()];
+        let (from, to, lower) = (name(arc.from), name(arc.to), Bound::Finite(arc.lower));
+        let reason = format!("{to} comes [{lower}, {}] after {from}{who}", arc.upper);
         if !reasons.contains(&reason) {
             reasons.push(reason);
         }
     }
     reasons
+}
+
+/// The progress of a plan, `read` with the durations that nature chooses. `windows` are those under which it chooses
+/// nothing.
+fn uncertain(
+    network: &Network,
+    made: &PlanNetwork,
+    read: &Uncertain,
+    windows: &[Option<Window>],
+    observed: &Observations,
+) -> Result<Progress, PlanError> {
+    let scale = made.scale();
+    let now = scale.ticks(observed.now)?;
+    let reported = observed.executed.iter().map(|&(_, time)| scale.ticks(time));
+    let last = reported.collect::<Result<Vec<i64>, _>>()?.into_iter().max().unwrap_or(0);
+    let mut times: Vec<Option<i64>> = vec![None; read.network.num_points()];
+    for (index, window) in windows.iter().enumerate() {
+        let Some(point) = read.point(NodeId::from_index(index)) else { continue };
+        let Some(Window { earliest, latest: Bound::Finite(latest) }) = *window else { continue };
+        let (earliest, latest) = (scale.ticks(earliest)?, scale.ticks(latest)?);
+        let is_told = observed.executed.iter().any(|(node, _)| node.index() == index);
+        let natures = read.network.link_ending_at(point).map(|link| read.network.link(link));
+        let is_seen = is_told || natures.is_none_or(|link| link.spread() == 0);
+        // What must have come before something reported has come; nobody knows when, and so as early as it may have.
+        if latest <= last || (earliest == latest && latest <= now && is_seen) {
+            times[point.index()] = Some(earliest);
+        }
+    }
+    for (id, link) in (0..).map(stnu::LinkId).zip(read.network.links()) {
+        if read.nodes(link.end).is_empty() {
+            let end = network.arcs[read.arc(id).index()].to;
+            times[link.end.index()] = read.point(end).and_then(|point| times[point.index()]);
+        }
+    }
+    let left = residual(&read.network, &times, now)?;
+    if let Verdict::Uncontrollable(conflict) = stnu::check(&left, &mut || false)? {
+        let arcs = conflict.members.iter().filter_map(|member| broken(network, read, &left, member.part));
+        let mut reasons = explain(network, observed, arcs);
+        reasons.insert(0, "nature may break what is left of the plan".to_owned());
+        return Ok(Progress::Violated(reasons));
+    }
+    let Some(form) = Dispatchable::new(&left, &mut || false)? else {
+        return Ok(Progress::Violated(vec!["nature may break the plan".to_owned()]));
+    };
+    let origin = PointId(left.num_points() as u32 - 1);
+    let mut dispatcher = Dispatcher::new(Arc::new(form), 0);
+    let mut past: Vec<(i64, PointId)> = vec![(0, origin)];
+    past.extend((0..).map(PointId).zip(&times).filter_map(|(point, time)| Some(((*time)?, point))));
+    past.sort_by_key(|&(time, point)| (time, point != origin, point));
+    enter(&mut dispatcher, &past).map_err(|()| PlanError::Inconsistent)?;
+    dispatcher.advance(now).map_err(|_| PlanError::Inconsistent)?;
+    let found = dispatcher.windows().map_err(|_| PlanError::Overflow)?;
+    let mut by_node = vec![None; network.nodes.len()];
+    let mut waits = Vec::new();
+    for point in made.all_points() {
+        let node = made.node(point);
+        let Some(own) = read.point(node) else { continue };
+        let window = found[own.index()];
+        let latest = window.latest.map_or(Bound::Infinite, |latest| Bound::Finite(scale.time(latest)));
+        by_node[node.index()] = Some(Window { earliest: scale.time(window.earliest), latest });
+        let Status::Enabled { waits: awaited, .. } = dispatcher.status(own) else { continue };
+        if network.nodes[node.index()].events.is_empty() {
+            continue;
+        }
+        // What is left has the plan's links that have not ended, in their order.
+        let natures = |link| natures_arc(read, left.link(link).end);
+        waits.extend(awaited.into_iter().filter_map(|(link, until)| {
+            Some(Waiting { event: node, natures: natures(link)?, until: scale.time(until) })
+        }));
+    }
+    waits.sort_by_key(|wait| (wait.event, wait.natures));
+    Ok(Progress::Consistent(by_node, waits))
+}
+
+/// The arc whose duration ends at a point of the plan's network.
+fn natures_arc(read: &Uncertain, end: PointId) -> Option<ArcId> {
+    read.network.link_ending_at(end).map(|link| read.arc(link))
+}
+
+/// Enters what has happened, in order of time; of what came at one instant some may have to be entered before others.
+fn enter(dispatcher: &mut Dispatcher<Arc<Dispatchable>>, past: &[(i64, PointId)]) -> Result<(), ()> {
+    let mut left = past.to_vec();
+    while let Some(&(time, _)) = left.first() {
+        dispatcher.advance(time).map_err(|_| ())?;
+        let before = left.len();
+        left.retain(|&(at, point)| at > time || dispatcher.execute(point).is_err());
+        if left.len() == before {
+            return Err(());
+        }
+    }
+    Ok(())
+}
+
+/// The arc of the plan that a part of a conflict in what is left of it stands for, with who chooses its duration.
+fn broken(
+    network: &Network,
+    read: &Uncertain,
+    left: &stnu::Network,
+    part: Part,
+) -> Option<(ArcId, &'static str)> {
+    let arc = match part {
+        // The first edges of what is left are the plan's.
+        Part::Edge(id) if id.index() < read.network.edges().len() => match read.source(part) {
+            Source::Arc(arc, _) | Source::Tie(arc) => arc,
+            Source::Precedence(_) => return None,
+        },
+        Part::Edge(_) => return None,
+        Part::Lower(id) | Part::Upper(id) => natures_arc(read, left.link(id).end)?,
+    };
+    Some((arc, if network.is_uncertain(arc) { ", as nature chooses" } else { "" }))
 }

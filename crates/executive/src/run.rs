@@ -8,7 +8,7 @@ mod aborts;
 mod frontier;
 mod states;
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use exact::{Bound, Overflow, Rational, Time};
@@ -291,8 +291,8 @@ impl Run<'_> {
             if !is_driven && !self.stage.is_next(node) {
                 continue;
             }
-            let (component, offset) = self.stage.dispatch.component(point);
-            let waits = driven.get(&component).is_some_and(|&first| first <= offset);
+            // What comes together with a report waits for it.
+            let waits = driven.contains(&self.stage.dispatch.component(point));
             if !is_settled && waits && !is_driven {
                 continue;
             }
@@ -361,15 +361,12 @@ impl Run<'_> {
         }
     }
 
-    /// The components of which some member's time is not for the executive to choose, with the earliest such member's
-    /// place in it: members that come with it or after it wait for its report.
-    fn driven(&self) -> Result<BTreeMap<usize, i64>, PlanError> {
-        let mut driven = BTreeMap::new();
+    /// The components of which some member's time is not for the executive to choose.
+    fn driven(&self) -> Result<BTreeSet<usize>, PlanError> {
+        let mut driven = BTreeSet::new();
         for point in self.stage.made.all_points() {
             if !self.stage.dispatch.is_settled(point) && self.is_driven(point)? {
-                let (component, offset) = self.stage.dispatch.component(point);
-                let first = driven.entry(component).or_insert(offset);
-                *first = offset.min(*first);
+                driven.insert(self.stage.dispatch.component(point));
             }
         }
         Ok(driven)
@@ -602,7 +599,7 @@ impl Run<'_> {
                 return Ok(None);
             }
             Err(SettleError::Overflow(point)) => return Err(self.too_large(self.stage.made.node(point))),
-            Err(SettleError::OutOfWindow { .. }) => {
+            Err(SettleError::OutOfWindow) => {
                 let name = self.stage.name(node);
                 let reason = format!("{name} could not come at {}", shown(self.now));
                 let (name, news) = (name.into(), News::None);

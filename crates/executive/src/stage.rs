@@ -7,10 +7,8 @@ use exact::{Bound, Time};
 use stn::PointId;
 use tpn::{ArcId, ArcKind, EventRef, Network, NodeId, Occurrence, OccurrenceId, Plan, Precedence};
 
-use crate::certain_dispatch::CertainDispatch;
-use crate::dispatch::{NEVER, SettleError};
+use crate::dispatch::{Dispatch, NEVER};
 use crate::plan_network::{PlanError, PlanNetwork};
-use crate::uncertain_dispatch::UncertainDispatch;
 use crate::world_state::Effects;
 
 /// A plan made ready for dispatch, in ticks fine enough for all times that the world brings. Many runs of one plan share it.
@@ -42,7 +40,9 @@ impl Stage {
     pub fn new(network: Arc<Network>, plan: Plan, grid: &[Time]) -> Result<Self, PlanError> {
         let mut made = PlanNetwork::guided(&network, &plan)?;
         made.refine_for(&network, &plan, grid)?;
-        let dispatch = Dispatch::new(&network, &plan, &mut made)?;
+        let is_natures = plan.has_natures_choice(&network);
+        let dispatched = if is_natures { Arc::new(guided(&network)) } else { Arc::clone(&network) };
+        let dispatch = Dispatch::new(&dispatched, &plan, &made)?;
         let mut natures: BTreeMap<NodeId, Vec<ArcId>> = BTreeMap::new();
         for (index, arc) in network.arcs.iter().enumerate().filter(|(_, arc)| arc.is_contingent) {
             if plan.selected_arcs[index] {
@@ -150,63 +150,6 @@ impl Stage {
     }
 }
 
-/// Which events may happen now, and what an event that happened leaves possible.
-#[derive(Clone, Debug)]
-pub(crate) enum Dispatch {
-    /// All durations are the executive's to choose, or the plan does not withstand nature.
-    Certain(CertainDispatch),
-    /// Nature chooses some, and the plan withstands that.
-    Uncertain(UncertainDispatch),
-}
-
-impl Dispatch {
-    fn new(network: &Network, plan: &Plan, made: &mut PlanNetwork) -> Result<Self, PlanError> {
-        if plan.has_natures_choice(network)
-            && let Some(dispatch) = UncertainDispatch::new(&guided(network), plan, made)?
-        {
-            return Ok(Self::Uncertain(dispatch));
-        }
-        Ok(Self::Certain(CertainDispatch::new(made)?))
-    }
-
-    /// When a point may happen: its earliest and latest tick, [`NEVER`] if there is no latest.
-    pub(crate) fn window(&self, point: PointId) -> (i64, i64) {
-        match self {
-            Self::Certain(dispatch) => dispatch.window(point),
-            Self::Uncertain(dispatch) => dispatch.window(point),
-        }
-    }
-
-    /// What a point happens together with, and how many ticks after the first of that.
-    pub(crate) fn component(&self, point: PointId) -> (usize, i64) {
-        match self {
-            Self::Certain(_) => (point.index(), 0),
-            Self::Uncertain(dispatch) => (dispatch.component(point), 0),
-        }
-    }
-
-    pub(crate) fn is_settled(&self, point: PointId) -> bool {
-        match self {
-            Self::Certain(dispatch) => dispatch.is_settled(point),
-            Self::Uncertain(dispatch) => dispatch.is_settled(point),
-        }
-    }
-
-    pub(crate) fn is_enabled(&self, point: PointId) -> bool {
-        match self {
-            Self::Certain(dispatch) => dispatch.is_enabled(point),
-            Self::Uncertain(dispatch) => dispatch.is_enabled(point),
-        }
-    }
-
-    pub(crate) fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), SettleError> {
-        match self {
-            Self::Certain(dispatch) => dispatch.settle(point, ticks),
-            Self::Uncertain(dispatch) => dispatch.settle(point, ticks),
-        }
-    }
-}
-
 /// A vertex of a path: it guides the vehicle, and is no deadline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Guide {
@@ -273,7 +216,9 @@ fn before(network: &Network, plan: &Plan) -> Vec<Vec<NodeId>> {
 /// Otherwise the end of a delay would come as soon as it may, and with it the activity behind it, before what that waits
 /// for is over.
 fn wait_together(network: &Network, plan: &Plan, before: &mut [Vec<NodeId>]) {
-    let group_of = instants(network, plan);
+    let selected = network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected);
+    let ties = selected.map(|(arc, _)| arc).filter(|arc| arc.lower.is_zero() && arc.upper == Bound::ZERO);
+    let group_of: Vec<usize> = network.instants(ties).into_iter().map(NodeId::index).collect();
     let mut groups: Vec<Group> = vec![Group::default(); before.len()];
     for (node, earlier) in before.iter().enumerate() {
         let group = group_of[node];
@@ -320,28 +265,6 @@ struct Group {
     first: Vec<NodeId>,
     /// What they follow, but for each other.
     follows: Vec<NodeId>,
-}
-
-/// Which nodes come at one instant because of selected arcs of `[0,0]`: a number of each node's group.
-fn instants(network: &Network, plan: &Plan) -> Vec<usize> {
-    let mut tied = vec![Vec::new(); network.nodes.len()];
-    for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
-        if arc.lower.is_zero() && arc.upper == Bound::ZERO {
-            tied[arc.from.index()].push(arc.to.index());
-            tied[arc.to.index()].push(arc.from.index());
-        }
-    }
-    let mut group_of: Vec<Option<usize>> = vec![None; tied.len()];
-    for first in 0..tied.len() {
-        let mut pending = vec![first];
-        while let Some(node) = pending.pop() {
-            if group_of[node].is_none() {
-                group_of[node] = Some(first);
-                pending.extend(&tied[node]);
-            }
-        }
-    }
-    group_of.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 /// Whether `to` follows `from`.

@@ -10,17 +10,16 @@ use exact::{Bound, Scale, Time};
 use stn::PointId;
 use tpn::{ArcId, Network, NodeId, Plan, Window};
 
-use crate::dispatch::NEVER;
+use crate::dispatch::{Dispatch, NEVER};
 use crate::plan_network::{PlanError, PlanNetwork};
 use crate::progress::Waiting;
-use crate::uncertain_dispatch::UncertainDispatch;
 
 /// The strategy of a plan that withstands nature.
 #[derive(Clone, Debug)]
 pub struct Strategy {
     made: PlanNetwork,
     /// At the start, before anything else has happened.
-    begin: UncertainDispatch,
+    begin: Dispatch,
     /// The points that come at one instant always, by their first one; events with names first.
     instants: Vec<Vec<PointId>>,
     /// The instant of each point.
@@ -76,7 +75,7 @@ pub struct Course {
 /// A run, as far as it was played.
 #[derive(Clone, Debug)]
 pub(crate) struct Play {
-    dispatch: UncertainDispatch,
+    dispatch: Dispatch,
     acts: Vec<RawAct>,
 }
 
@@ -104,7 +103,10 @@ impl Strategy {
         if finer.refine_for(network, plan, grid).is_ok() {
             made = finer;
         }
-        let Some(mut begin) = UncertainDispatch::new(network, plan, &made)? else { return Ok(None) };
+        let mut begin = Dispatch::new(network, plan, &made)?;
+        if !begin.withstands_nature() {
+            return Ok(None);
+        }
         begin.settle(made.origin(), 0).map_err(|_| PlanError::Inconsistent)?;
         let mut instants: Vec<Vec<PointId>> = Vec::new();
         let mut of_component: BTreeMap<usize, usize> = BTreeMap::new();
@@ -220,8 +222,8 @@ impl Strategy {
         let mut windows = vec![None; num_nodes];
         let found = play.dispatch.windows(self.made.all_points())?;
         for (point, (earliest, latest)) in self.made.all_points().zip(found) {
-            let latest = latest.map_or(Bound::Infinite, |latest| Bound::Finite(time(latest)));
-            windows[self.made.node(point).index()] = Some(Window { earliest: time(earliest), latest });
+            let window = Window { earliest: time(earliest), latest: bound(latest) };
+            windows[self.made.node(point).index()] = Some(window);
         }
         Ok(Course {
             now: time(play.dispatch.now()),

@@ -6,7 +6,7 @@
 
 use crate::nearest::PointTree;
 use crate::path::Path;
-use crate::search::{Context, Event, Growth, Query};
+use crate::query::{Context, Event, Growth, Query};
 use crate::trajectory::{MotionState, Trajectory, heading_difference};
 use crate::tree::{Root, Tree};
 use nalgebra::{Point2, distance};

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
 use crate::path::Path;
-use crate::search::{Failure, PlannerKind, Query, SearchResult, Settings, Statistics, find_path};
+use crate::query::{Failure, PlannerKind, Query, Settings, Statistics};
+use crate::search::{SearchResult, find_path};
 use crate::shortcut::ShortcutSettings;
 
 /// A leg of a traverse.

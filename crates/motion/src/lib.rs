@@ -20,6 +20,7 @@ mod kinodynamic;
 mod leg;
 mod nearest;
 mod path;
+mod query;
 mod range_sensor;
 mod rrt;
 mod rrt_connect;
@@ -44,10 +45,9 @@ pub use formation::Formation;
 pub use leg::{Leg, LegFailure, find_shortest_path, plan_leg, plan_legs};
 pub use nearest::PointTree;
 pub use path::{Path, length_m};
+pub use query::{Event, Failure, Growth, PlannerKind, Query, Settings, Statistics};
 pub use range_sensor::{RangeScan, RangeSensor};
-pub use search::{
-    Event, Failure, Growth, PlannerKind, Query, Search, SearchResult, Settings, Statistics, find_path,
-};
+pub use search::{Search, SearchResult, find_path};
 pub use separation::{Approach, Separation, TimedPoint, closest_approach};
 pub use shortcut::{ShortcutSettings, shorten};
 pub use simplification::simplify;

@@ -2,7 +2,7 @@
 
 use crate::nearest::PointTree;
 use crate::path::{Path, between};
-use crate::search::{Context, Event, Growth, Query};
+use crate::query::{Context, Event, Growth, Query};
 use crate::tree::{Root, Tree};
 use nalgebra::{Point2, distance};
 

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
 #[cfg(doc)]
-use crate::search::Statistics;
-use crate::search::{Failure, Growth, PlannerKind, Query, Search, Settings};
+use crate::query::{Failure, Growth, PlannerKind, Query, Settings, Statistics};
+use crate::search::Search;
 
 /// All steps of a search. The same arguments give the same trace.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -158,7 +158,7 @@ pub fn trace(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::{PlannerKind, find_path};
+    use crate::search::find_path;
     use terrain::{CellState, GridFrame, Obstacle, Occupancy};
 
     #[test]

@@ -153,11 +153,6 @@ impl VehicleModel {
             Drive::Flight { .. } => self.speed_mps,
         }
     }
-
-    /// The distance in metres in which it stops from a speed: v² / 2a.
-    pub fn stopping_distance_m(&self, speed_mps: f64) -> f64 {
-        speed_mps * speed_mps / (2.0 * self.acceleration_mps2)
-    }
 }
 
 #[cfg(test)]

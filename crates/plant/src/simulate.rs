@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
-use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
+use crate::model::{Commands, ComponentId, Model, Observation};
 use crate::observe::values;
 use crate::successor::{EstimateError, distribution, nominal};
 
@@ -171,12 +171,6 @@ pub fn observation_of(model: &Model, state: &State) -> Observation {
         }
     }
     observation
-}
-
-/// Which variables are observed.
-pub fn observables(model: &Model) -> Vec<VariableId> {
-    let numbered = model.variables.iter().enumerate();
-    numbered.filter(|(_, variable)| variable.observable).map(|(at, _)| VariableId(at as u32)).collect()
 }
 
 fn draw(weights: &[(u8, u64)], denominator: u64, random: &mut Random) -> u8 {

@@ -488,6 +488,32 @@ pub struct Statement {
     pub span: Span,
 }
 
+impl Statement {
+    /// What stands directly in it.
+    pub fn parts(&self) -> &[Self] {
+        match &self.kind {
+            StatementKind::Sequence(parts)
+            | StatementKind::Parallel(parts)
+            | StatementKind::Choose(parts)
+            | StatementKind::Unordered(parts) => parts,
+            StatementKind::Maintaining(body, _)
+            | StatementKind::Watching(body, _)
+            | StatementKind::Telling(body, _)
+            | StatementKind::IfThennext(_, body)
+            | StatementKind::Repeat(_, body)
+            | StatementKind::Named(body, _)
+            | StatementKind::Using(body, ..) => std::slice::from_ref(body),
+            StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => &[],
+        }
+    }
+
+    /// Visits it and everything in it, in textual order.
+    pub fn for_each<'program>(&'program self, visit: &mut dyn FnMut(&'program Self)) {
+        visit(self);
+        self.parts().iter().for_each(|part| part.for_each(visit));
+    }
+}
+
 /// The kinds of statement. A block is the sequence or parallel it contains; bounds of a block stand on that statement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StatementKind {

@@ -92,11 +92,12 @@ impl<T: Spans> Spans for Vec<T> {
 }
 
 /// Visits the named fields of a type, which are all that hold places.
+#[macro_export]
 macro_rules! spans {
     ($($type:ty { $($field:ident),* })*) => {$(
-        impl Spans for $type {
-            fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
-                $(self.$field.visit_spans(visit);)*
+        impl $crate::spans::Spans for $type {
+            fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut $crate::Span)) {
+                $($crate::spans::Spans::visit_spans(&mut self.$field, visit);)*
             }
         }
     )*};

@@ -21,8 +21,8 @@ pub enum Status {
         from: i64,
         /// And no later than this; `None` is not bounded.
         until: Option<i64>,
-        /// The links whose ends it waits for: without these waits it could be executed earlier.
-        waits: Vec<LinkId>,
+        /// The links whose ends it waits for, and until when at most: without these waits it could be executed earlier.
+        waits: Vec<(LinkId, i64)>,
     },
     /// These must come first.
     Blocked(Vec<PointId>),
@@ -177,7 +177,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
                 Some(start) => {
                     let until = start.saturating_add(wait.until);
                     if until > self.lower[at].unwrap_or(i64::MIN) {
-                        waits.push(wait.link);
+                        waits.push((wait.link, until));
                     }
                     from = from.max(until);
                 }

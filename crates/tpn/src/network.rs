@@ -569,6 +569,23 @@ impl Label {
 }
 
 impl Network {
+    /// For each event the first of those at one instant with it, if the ends of each of `ties` are.
+    pub fn instants<'network>(&self, ties: impl Iterator<Item = &'network Arc>) -> Vec<NodeId> {
+        fn find(first: &mut [usize], mut index: usize) -> usize {
+            while first[index] != index {
+                first[index] = first[first[index]];
+                index = first[index];
+            }
+            index
+        }
+        let mut first: Vec<usize> = (0..self.nodes.len()).collect();
+        for tie in ties {
+            let (one, other) = (find(&mut first, tie.from.index()), find(&mut first, tie.to.index()));
+            first[one.max(other)] = one.min(other);
+        }
+        (0..first.len()).map(|index| NodeId::from_index(find(&mut first, index))).collect()
+    }
+
     /// The first and the last event of what a label occupies.
     pub fn interval(&self, label: LabelId) -> (NodeId, NodeId) {
         let label = &self.labels[label.index()];

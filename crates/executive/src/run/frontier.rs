@@ -1,5 +1,6 @@
-//! What may happen next in a plan whose durations the executive chooses: those events that everything they follow has happened of, and those that the
-//! world decides, in order of time. An event is looked at when something that matters for it has changed.
+//! What may happen next in a plan whose durations the executive chooses: events of which all that they follow has
+//! happened, and those that the world decides, in order of time. An event is looked at when something that matters for it
+//! has changed.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -11,7 +12,7 @@ use tpn::NodeId;
 
 use super::{Next, Run};
 use crate::plan_network::PlanError;
-use crate::stage::{Dispatch, Stage};
+use crate::stage::Stage;
 
 /// The events that may be next, by when that would be.
 #[derive(Debug, Default)]
@@ -39,7 +40,7 @@ impl Frontier {
 impl Run<'_> {
     /// Begins the frontier of the present plan anew, if it has one.
     pub(super) fn restart_frontier(&mut self) -> Result<(), PlanError> {
-        if !matches!(self.stage.dispatch, Dispatch::Certain(_)) {
+        if self.stage.dispatch.withstands_nature() {
             self.frontier = None;
             return Ok(());
         }
@@ -91,11 +92,8 @@ impl Run<'_> {
     fn look_at(&mut self, point: PointId) -> Result<(), PlanError> {
         let Some(next) = self.waiting_point(point)? else {
             // Only the adversary knows when, and nobody goes on before.
-            if self.is_natures(self.stage.made.node(point))
-                && self.is_driven(point)?
-                && let Dispatch::Certain(dispatch) = &mut self.stage.dispatch
-            {
-                dispatch.expect(point, i64::MAX);
+            if self.is_natures(self.stage.made.node(point)) && self.is_driven(point)? {
+                self.stage.dispatch.expect(point, i64::MAX);
             }
             return Ok(());
         };
@@ -103,11 +101,9 @@ impl Run<'_> {
         if let Some(frontier) = &mut self.frontier {
             frontier.heap.push(Reverse(key));
         }
-        if next.time > self.stage.window(point).0.max(self.now)
-            && let Dispatch::Certain(dispatch) = &mut self.stage.dispatch
-        {
+        if next.time > self.stage.window(point).0.max(self.now) {
             let ticks = self.stage.made.scale().ticks(next.time);
-            dispatch.expect(point, ticks.unwrap_or(i64::MAX));
+            self.stage.dispatch.expect(point, ticks.unwrap_or(i64::MAX));
         }
         Ok(())
     }
@@ -133,10 +129,7 @@ impl Run<'_> {
             let missing = &mut frontier.missing[follower.index()];
             *missing = missing.saturating_sub(1);
         }
-        let late = match &mut self.stage.dispatch {
-            Dispatch::Certain(dispatch) => dispatch.take_late(),
-            Dispatch::Uncertain(_) => Vec::new(),
-        };
+        let late = self.stage.dispatch.take_late();
         for &follower in &followers[node.index()] {
             if let Some(point) = self.stage.made.point(follower) {
                 self.look_at(point)?;

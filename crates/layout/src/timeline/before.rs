@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use smol_str::SmolStr;
 use tpn::{Network, Plan};
 
-use super::chart::{Chart, Row, RowKind};
+use super::chart::Chart;
+use super::row::{Row, RowKind};
 
 /// When things could start and end in another plan, by the names of their occurrences.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,18 +1,15 @@
-//! The timeline as data: its rows, the bars in them, and when they can be. Prepared once for a plan and its grouping;
-//! when only windows change, [`Chart::retime`] is enough. Nothing is drawn here.
+//! The timeline as data: its rows, the links between their bars, and what is laid over them. Prepared once for a plan and
+//! its grouping; when only windows change, [`Chart::retime`] is enough. Nothing is drawn here.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use rmpl::program::Program;
 use smol_str::SmolStr;
-use tpn::{
-    ArcId, CausalLink, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering, Plan, UseOrdering,
-    Window,
-};
+use tpn::{CausalLink, LabelId, Network, Ordering, Plan, UseOrdering};
 
 use super::before::{BarChange, Gone};
-use super::profile::{Profile, ProfilePart, profiles};
+use super::profile::{Profile, profiles};
+use super::row::{Bar, BarKind, Item, Row};
 use super::rule::RuleTrack;
 use super::{ChartOptions, group, profile, rule};
 
@@ -37,91 +34,6 @@ pub struct Chart {
     pub horizon: f64,
 }
 
-/// A row of the timeline, with the bars in it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    pub kind: RowKind,
-    /// What is written on its left.
-    pub name: SmolStr,
-    /// How far that is indented.
-    pub depth: u32,
-    /// Under which name it can be closed, if it has rows below it.
-    pub key: Option<SmolStr>,
-    /// Whether the rows below it are hidden; their bars are then in this row.
-    pub is_closed: bool,
-    pub bars: Range<usize>,
-}
-
-/// What a row is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowKind {
-    /// The heading of a thread, of a vehicle, or of the conditions.
-    Heading,
-    /// One activity or delay.
-    Single,
-    /// The assertions of a variable that is known only there, or what is required of it.
-    Track,
-    /// The values of a variable that keeps them.
-    State,
-    /// A part of the profile of a resource.
-    Profile(ProfilePart),
-    /// The flight rule of this number.
-    Rule(usize),
-    /// What is gone of another plan, by its number.
-    Gone(usize),
-}
-
-/// An activity, condition or delay over time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bar {
-    pub kind: BarKind,
-    /// Whose bar it is.
-    pub occurrence: Option<OccurrenceId>,
-    /// The condition that it is, on a track.
-    pub label: Option<LabelId>,
-    /// Its first and its last event.
-    pub events: [NodeId; 2],
-    /// Its name: of the occurrence, or of the condition.
-    pub name: SmolStr,
-    /// When it can start, earliest and latest, in mission units.
-    pub start: [f64; 2],
-    /// When it can end; the latest may be infinite.
-    pub end: [f64; 2],
-    /// The same without pinned events.
-    pub free: [[f64; 2]; 2],
-    /// The least and the greatest duration, where nature chooses it.
-    pub natures: Option<[f64; 2]>,
-    /// What it requires and asserts.
-    pub labels: Vec<LabelId>,
-}
-
-/// What a bar is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BarKind {
-    /// Has others inside.
-    Composite,
-    /// A primitive activity.
-    Activity,
-    Delay,
-    /// An asserted condition.
-    Tell,
-    /// A required condition.
-    Ask,
-    /// A value that a variable keeps, in the earliest schedule.
-    Value,
-    /// A variable has no value while something changes it, in the earliest schedule.
-    Changing,
-    /// What is required of a variable that keeps its value, in the earliest schedule.
-    Need,
-}
-
-impl BarKind {
-    /// Whether it is part of the track of a variable that keeps its value.
-    pub const fn is_of_state(self) -> bool {
-        matches!(self, Self::Value | Self::Changing | Self::Need)
-    }
-}
-
 /// A line between two bars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
@@ -142,44 +54,6 @@ pub enum LinkKind {
     Ordering(Ordering),
     /// One use of a resource was put before another.
     UseOrdering(UseOrdering),
-}
-
-/// A row before it is known which rows are closed.
-#[derive(Clone, Debug)]
-pub(super) struct Item {
-    pub(super) kind: RowKind,
-    /// What is written on its left.
-    pub(super) name: SmolStr,
-    /// Its name among the closed ones, if there are rows below it.
-    pub(super) key: Option<SmolStr>,
-    /// How deep it lies.
-    pub(super) depth: u32,
-    pub(super) bars: Vec<Bar>,
-}
-
-impl Bar {
-    /// The part in which it is going on for certain, if there is one.
-    pub fn certain(&self) -> Option<[f64; 2]> {
-        (self.start[1] < self.end[0]).then_some([self.start[1], self.end[0]])
-    }
-
-    /// Whether pinned events have narrowed its windows.
-    pub fn is_narrowed(&self) -> bool {
-        self.free != [self.start, self.end]
-    }
-
-    /// Whether it stands for all of its occurrence, and not for a condition of an activity that has its own bar.
-    pub fn is_whole(&self, network: &Network) -> bool {
-        let occurrence = self.occurrence.and_then(|id| network.occurrences.get(id.index()));
-        self.label.is_none() || occurrence.is_some_and(|it| it.kind == OccurrenceKind::Assertion)
-    }
-
-    /// Puts its windows to those of `plan`.
-    fn retime(&mut self, plan: &Plan) {
-        if let Some([start, end]) = times(plan, self.events) {
-            (self.start, self.end) = (start, end);
-        }
-    }
 }
 
 impl Chart {
@@ -293,20 +167,6 @@ impl Chart {
         });
         causal.chain(orderings).chain(uses).filter(|link| link.from != link.to).collect()
     }
-}
-
-/// The range of an arc's duration, in mission units, if nature chooses it.
-pub(super) fn natures(network: &Network, arc: Option<ArcId>) -> Option<[f64; 2]> {
-    let id = arc.filter(|&id| network.is_uncertain(id))?;
-    let arc = &network.arcs[id.index()];
-    Some([arc.lower.to_f64(), arc.upper.to_f64()])
-}
-
-/// The windows of two events, in mission units; `None` if the plan lacks one.
-pub fn times(plan: &Plan, events: [NodeId; 2]) -> Option<[[f64; 2]; 2]> {
-    let window = |node: NodeId| plan.windows.get(node.index()).copied().flatten();
-    let pair = |window: Window| [window.earliest.to_f64(), window.latest.to_f64()];
-    Some([pair(window(events[0])?), pair(window(events[1])?)])
 }
 
 fn horizon(bars: &[Bar]) -> f64 {

@@ -6,7 +6,7 @@ use rmpl::program::{LabelMode, Program};
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{LabelId, Network, OccurrenceId, OccurrenceKind, Plan};
 
-use super::chart::{Bar, BarKind, Item, RowKind, natures, times};
+use super::row::{Bar, BarKind, Item, RowKind, natures, times};
 use super::{ChartOptions, Grouping, state};
 use crate::threads::{thread_name, threads};
 

@@ -4,13 +4,15 @@ pub mod before;
 mod chart;
 mod group;
 pub mod profile;
+mod row;
 pub mod rule;
 pub mod state;
 mod ticks;
 
 use serde::{Deserialize, Serialize};
 
-pub use chart::{Bar, BarKind, Chart, Link, LinkKind, Row, RowKind, times};
+pub use chart::{Chart, Link, LinkKind};
+pub use row::{Bar, BarKind, ProfilePart, Row, RowKind, times};
 pub use ticks::Ticks;
 
 /// What a chart shows.

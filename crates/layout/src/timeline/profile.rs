@@ -6,7 +6,7 @@ use rmpl::program::Change;
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Levels, Network, NodeId, OccurrenceId, Plan, Resource, Supply, UseId};
 
-use super::chart::{Item, RowKind, times};
+use super::row::{Item, ProfilePart, RowKind, times};
 
 /// How many rows a profile is high.
 pub const PROFILE_ROWS: usize = 3;
@@ -46,15 +46,6 @@ pub struct Step {
     pub time: f64,
     /// What is used of a reusable resource, or left in a reservoir.
     pub level: Rational,
-}
-
-/// Which rows of a chart a profile has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ProfilePart {
-    /// Which of [`super::Chart::profiles`].
-    pub profile: usize,
-    /// Which of its rows, from 0.
-    pub part: usize,
 }
 
 /// Whether a resource has a name in the text; the one that keeps the parts of an `unordered` block apart has not.

@@ -2,7 +2,7 @@
 
 use smol_str::SmolStr;
 
-use super::chart::{Item, RowKind};
+use super::row::{Item, RowKind};
 
 /// A rule with its stretches of time.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,7 +10,7 @@ use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Extent, Label, LabelId, Network, Plan, ValueSet};
 
-use super::chart::{Bar, BarKind, Item, RowKind, times};
+use super::row::{Bar, BarKind, Item, RowKind, times};
 
 /// A row for each variable of a plan that keeps its value, below a heading; nothing without any.
 pub(super) fn items(network: &Network, plan: &Plan) -> Vec<Item> {

@@ -58,16 +58,12 @@ impl DistanceGraph {
     /// The graph of what is selected. Linear in it, but for sorting.
     pub fn new(selected: &Selected<'_>) -> Self {
         let network = selected.network;
-        let mut groups = Groups::new(network.nodes.len());
-        for arc in selected.arcs.iter().filter_map(|arc| network.arcs.get(arc.index())) {
-            if arc.lower == Time::ZERO && arc.upper == Bound::ZERO {
-                groups.join(arc.from.index(), arc.to.index());
-            }
-        }
+        let arcs = selected.arcs.iter().filter_map(|arc| network.arcs.get(arc.index()));
+        let first = network.instants(arcs.filter(|arc| arc.lower == Time::ZERO && arc.upper == Bound::ZERO));
         let mut graph = Self::default();
-        let mut vertex_of: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut vertex_of: BTreeMap<NodeId, usize> = BTreeMap::new();
         for &node in selected.nodes {
-            let vertex = *vertex_of.entry(groups.find(node.index())).or_insert_with(|| {
+            let vertex = *vertex_of.entry(first[node.index()]).or_insert_with(|| {
                 graph.vertices.push(Vertex::default());
                 graph.vertices.len() - 1
             });
@@ -77,7 +73,7 @@ impl DistanceGraph {
             vertex.nodes.sort_unstable();
             vertex.names = names(network, &vertex.nodes);
         }
-        let mut place = |node: NodeId| vertex_of.get(&groups.find(node.index())).copied();
+        let place = |node: NodeId| vertex_of.get(&first[node.index()]).copied();
         for edge in bounds(selected) {
             if let (Some(from), Some(to)) = (place(edge.from), place(edge.to))
                 && from != to
@@ -147,8 +143,8 @@ impl DistanceGraph {
 pub(super) struct Between {
     pub(super) from: NodeId,
     pub(super) to: NodeId,
-    weight: Time,
-    constraint: Constraint,
+    pub(super) weight: Time,
+    pub(super) constraint: Constraint,
 }
 
 /// Every bound of what is selected: `to − from ≤ weight`.
@@ -201,26 +197,4 @@ fn names(network: &Network, nodes: &[NodeId]) -> Vec<String> {
         last.push_str(&format!(" +{}", named.len() - 2));
     }
     names
-}
-
-/// Events that are at the same time, found by joining.
-struct Groups(Vec<usize>);
-
-impl Groups {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    fn find(&mut self, mut at: usize) -> usize {
-        while self.0[at] != at {
-            self.0[at] = self.0[self.0[at]];
-            at = self.0[at];
-        }
-        at
-    }
-
-    fn join(&mut self, one: usize, other: usize) {
-        let (one, other) = (self.find(one), self.find(other));
-        self.0[one.max(other)] = one.min(other);
-    }
 }

@@ -1,56 +1,44 @@
-//! The distance matrix of the selected events: the least upper bound from each to each, by Floyd and Warshall.
+//! The distance matrix of the selected events: the least upper bound from each to each, found in their distance graph.
 
 use std::collections::BTreeMap;
 
 use egui::RichText;
-use exact::Bound;
-use kirk::{Constraint, CycleMember};
+use exact::{Bound, Scale};
+use kirk::Constraint;
+use stn::{INFINITE, PointId, Stn};
 use theme::{size, space};
-use tpn::{ArcId, Network, NodeId, Plan, Precedence};
+use tpn::NodeId;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::selection::node_name;
 
+use super::graph::{Selected, bounds};
 use crate::Context;
 
 /// Larger networks are not shown as a matrix: nobody could read it.
 const MAX_EVENTS: usize = 32;
 
-/// What the matrix is made of.
-#[derive(Clone, Copy)]
-pub struct Parts<'a> {
-    pub network: &'a Network,
-    /// Selected events.
-    pub nodes: &'a [NodeId],
-    /// Selected constraints.
-    pub arcs: &'a [ArcId],
-    /// The plan, or what the step had of it.
-    pub plan: &'a Plan,
-    /// The contradiction, if there is one.
-    pub cycle: &'a [CycleMember],
-}
-
 /// Shows the matrix.
-pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, commands: &mut CommandSender) {
+pub fn show(ui: &mut egui::Ui, context: &Context<'_>, selected: &Selected<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
-    let network = parts.network;
+    let network = selected.network;
     let is_named = |node: &&NodeId| {
         network.nodes.get(node.index()).is_some_and(|node| {
             let is_point = |event: &tpn::EventRef| matches!(event.end, tpn::EventEnd::PathVertex { .. });
             !node.events.is_empty() && !node.events.iter().all(is_point)
         })
     };
-    let named: Vec<NodeId> = parts.nodes.iter().filter(is_named).copied().collect();
+    let named: Vec<NodeId> = selected.nodes.iter().filter(is_named).copied().collect();
     if named.is_empty() || named.len() > MAX_EVENTS {
         let text = format!("{} events are selected; a matrix shows up to {MAX_EVENTS}.", named.len());
         crate::show_empty(ui, context, &text);
         return;
     }
-    let distances = distances(parts);
-    let in_cycle: Vec<NodeId> = parts.cycle.iter().map(|member| member.from).collect();
+    let distances = distances(selected, &named).unwrap_or_default();
+    let in_cycle: Vec<NodeId> = selected.cycle.iter().map(|member| member.from).collect();
     egui::ScrollArea::both().id_salt("distances").auto_shrink(false).show(ui, |ui| {
         ui.add_space(space::XS);
-        if !parts.cycle.is_empty() {
+        if !selected.cycle.is_empty() {
             let text = "  Without the bound that closes the negative cycle: with it there are no shortest distances.";
             ui.label(RichText::new(text).small().color(tokens.text_muted));
         }
@@ -63,6 +51,7 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, command
             }
             ui.end_row();
             for (index, &from) in named.iter().enumerate() {
+                let row = distances.get(index);
                 let is_selected = context.state.selection == Selection::Node(from);
                 let color = match (in_cycle.contains(&from), is_selected) {
                     (true, _) => tokens.threat,
@@ -73,8 +62,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, command
                 if ui.add(egui::Button::selectable(is_selected, name)).clicked() {
                     commands.send(Command::Select(Selection::Node(from)));
                 }
-                for &to in &named {
-                    let distance = distances.get(&(from, to)).copied().unwrap_or(Bound::Infinite);
+                for (place, &to) in named.iter().enumerate() {
+                    let distance = row.map_or(Bound::Infinite, |row| row[place]);
                     let color = match distance {
                         Bound::Infinite => tokens.text_faint,
                         Bound::Finite(_) if from == to => tokens.text_faint,
@@ -88,83 +77,52 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, parts: &Parts<'_>, command
     });
 }
 
-/// All distances between the selected nodes. Of a contradiction, the bound that closed it is left out.
-fn distances(parts: &Parts<'_>) -> BTreeMap<(NodeId, NodeId), Bound> {
-    let (network, nodes) = (parts.network, parts.nodes);
-    let position: BTreeMap<NodeId, usize> =
-        nodes.iter().enumerate().map(|(index, &node)| (node, index)).collect();
-    let count = nodes.len();
-    let mut matrix = vec![Bound::Infinite; count * count];
-    for index in 0..count {
-        matrix[index * count + index] = Bound::ZERO;
-    }
-    let mut shorten = |from: NodeId, to: NodeId, weight: Bound| {
-        if let (Some(&from), Some(&to)) = (position.get(&from), position.get(&to)) {
-            let entry = &mut matrix[from * count + to];
-            *entry = (*entry).min(weight);
-        }
-    };
-    let closing = closing(parts);
-    for &id in parts.arcs {
-        let Some(arc) = network.arcs.get(id.index()) else { continue };
-        if closing != Some(Constraint::Upper(id)) {
-            shorten(arc.from, arc.to, arc.upper);
-        }
-        if let Some(weight) = arc.lower.checked_neg().filter(|_| closing != Some(Constraint::Lower(id))) {
-            shorten(arc.to, arc.from, Bound::Finite(weight));
+/// The distances from each of `named`, which are selected, to each, by row; `None` where a time does not fit. Of a
+/// contradiction, the bound that closed it is left out.
+fn distances(selected: &Selected<'_>, named: &[NodeId]) -> Option<Vec<Vec<Bound>>> {
+    let closing = closing(selected);
+    let mut bounds = bounds(selected);
+    bounds.retain(|bound| closing != Some(bound.constraint));
+    let scale = Scale::common(bounds.iter().map(|bound| bound.weight)).ok()?;
+    let position: BTreeMap<NodeId, PointId> =
+        selected.nodes.iter().zip((0..).map(PointId)).map(|(&node, point)| (node, point)).collect();
+    let mut stn = Stn::new(selected.nodes.len());
+    for bound in bounds {
+        if let (Some(&from), Some(&to)) = (position.get(&bound.from), position.get(&bound.to)) {
+            stn.push(from, to, scale.ticks(bound.weight).ok()?, 0);
         }
     }
-    let links = parts.plan.causal_links.iter();
-    let links = links.filter(|&&link| closing != Some(Constraint::Link(link)));
-    let orders = parts.plan.orderings_added.iter();
-    let orders = orders.filter(|&&order| closing != Some(Constraint::Order(order)));
-    let natures = network.natures_events(&parts.plan.selected_arcs);
-    let added = links
-        .flat_map(|link| link.precedences(network))
-        .chain(orders.map(|order| parts.plan.ordering_precedence(network, order, &natures)))
-        .chain(parts.plan.uses_ordered.iter().map(|order| order.precedence(network)));
-    for Precedence { earlier, later, least } in added {
-        if let Some(weight) = least.checked_neg() {
-            shorten(later, earlier, Bound::Finite(weight));
-        }
-    }
-    for middle in 0..count {
-        for from in 0..count {
-            for to in 0..count {
-                let through = matrix[from * count + middle].checked_add(matrix[middle * count + to]);
-                if let Some(through) = through.filter(|&through| through < matrix[from * count + to]) {
-                    matrix[from * count + to] = through;
-                }
-            }
-        }
-    }
-    let mut distances = BTreeMap::new();
-    for (from, &from_node) in nodes.iter().enumerate() {
-        for (to, &to_node) in nodes.iter().enumerate() {
-            distances.insert((from_node, to_node), matrix[from * count + to]);
-        }
-    }
-    distances
+    stn.settle(&position.values().copied().collect::<Vec<_>>()).ok()?;
+    let mut row = Vec::new();
+    let rows = named.iter().map(|from| -> Option<Vec<Bound>> {
+        stn.distances_from(*position.get(from)?, &mut row).ok()?;
+        let to = named.iter().map(|to| match row[position.get(to)?.index()] {
+            INFINITE => Some(Bound::Infinite),
+            ticks => Some(Bound::Finite(scale.time(ticks))),
+        });
+        to.collect()
+    });
+    rows.collect()
 }
 
 /// The bound that was added last of those that contradict each other: the others are consistent by themselves.
-fn closing(parts: &Parts<'_>) -> Option<Constraint> {
+fn closing(selected: &Selected<'_>) -> Option<Constraint> {
     let added = |constraint: &Constraint| match constraint {
         Constraint::Lower(arc) | Constraint::Upper(arc) => {
-            (0, parts.arcs.iter().position(|it| it == arc).unwrap_or_default())
+            (0, selected.arcs.iter().position(|it| it == arc).unwrap_or_default())
         }
         Constraint::Link(link) => {
-            (1, parts.plan.causal_links.iter().position(|it| it == link).unwrap_or_default())
+            (1, selected.plan.causal_links.iter().position(|it| it == link).unwrap_or_default())
         }
         Constraint::Order(order) => {
-            (2, parts.plan.orderings_added.iter().position(|it| it == order).unwrap_or_default())
+            (2, selected.plan.orderings_added.iter().position(|it| it == order).unwrap_or_default())
         }
         Constraint::UseOrder(order) => {
-            (3, parts.plan.uses_ordered.iter().position(|it| it == order).unwrap_or_default())
+            (3, selected.plan.uses_ordered.iter().position(|it| it == order).unwrap_or_default())
         }
         Constraint::Departure(_) => (0, 0),
     };
-    parts.cycle.iter().map(|member| member.constraint).max_by_key(added)
+    selected.cycle.iter().map(|member| member.constraint).max_by_key(added)
 }
 
 #[cfg(test)]
@@ -186,18 +144,20 @@ mod tests {
         let replay = kirk::Replay::new(&network, None, &trace).expect("its times fit");
         let step = replay.at(&trace, solution.expect("there is a plan"));
         let plan = &outcome.plans[0];
-        let parts = Parts { network: &network, nodes: &step.nodes, arcs: &step.arcs, plan, cycle: &[] };
-        let distances = distances(&parts);
+        let (nodes, arcs) = (step.nodes.as_slice(), step.arcs.as_slice());
+        let selected = Selected { network: &network, nodes, arcs, plan, cycle: &[] };
+        let distances = distances(&selected, nodes).expect("its times fit");
         let node = |name: &str| {
             let found = network
                 .nodes
                 .iter()
                 .position(|node| node.events.iter().any(|&it| network.event_name(it) == name));
-            NodeId::from_index(found.expect("the event exists"))
+            let found = NodeId::from_index(found.expect("the event exists"));
+            nodes.iter().position(|&node| node == found).expect("it is selected")
         };
         let bounds = |from: &str, to: &str| {
-            let back = distances[&(node(to), node(from))].finite().and_then(Time::checked_neg);
-            (back, distances[&(node(from), node(to))])
+            let back = distances[node(to)][node(from)].finite().and_then(Time::checked_neg);
+            (back, distances[node(from)][node(to)])
         };
         let expected = |low: i64, high: i64| (Some(Time::from(low)), Bound::Finite(Time::from(high)));
         assert_eq!(bounds("Group-Traverse-Path#1.start", "Group-Traverse-Path#1.end"), expected(405, 450));

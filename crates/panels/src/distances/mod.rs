@@ -66,8 +66,8 @@ impl Panel for DistancesPanel {
             None => of_plan(plan),
         };
         if self.shows_matrix {
-            let parts = matrix::Parts { network, nodes: &selected.0, arcs: &selected.1, plan, cycle };
-            matrix::show(ui, context, &parts, commands);
+            let selected = Selected { network, nodes: &selected.0, arcs: &selected.1, plan, cycle };
+            matrix::show(ui, context, &selected, commands);
             return;
         }
         self.follow(context, snapshot, network, plan, &selected, cycle);

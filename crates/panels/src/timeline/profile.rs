@@ -1,7 +1,7 @@
 //! What pointing at the profile of a resource tells: its level then, and who takes of it.
 
 use egui::{Rect, Sense, Ui};
-use layout::timeline::profile::ProfilePart;
+use layout::timeline::ProfilePart;
 
 use super::paint::Painting;
 use crate::painter::Placement;

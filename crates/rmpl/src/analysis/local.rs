@@ -264,24 +264,7 @@ impl Local {
 
     fn statement(&mut self, statement: &Statement) {
         self.bounds(statement.bounds.as_ref());
-        match &statement.kind {
-            StatementKind::Sequence(parts)
-            | StatementKind::Parallel(parts)
-            | StatementKind::Choose(parts)
-            | StatementKind::Unordered(parts) => {
-                for part in parts {
-                    self.statement(part);
-                }
-            }
-            StatementKind::Maintaining(body, _)
-            | StatementKind::Watching(body, _)
-            | StatementKind::Telling(body, _)
-            | StatementKind::IfThennext(_, body)
-            | StatementKind::Repeat(_, body)
-            | StatementKind::Named(body, _)
-            | StatementKind::Using(body, ..) => self.statement(body),
-            StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
-        }
+        statement.parts().iter().for_each(|part| self.statement(part));
     }
 
     /// Names of occurrences that stand twice where both can be selected. `known` are those before, and those in
@@ -299,9 +282,6 @@ impl Local {
                     known.add(name);
                 }
             }
-            StatementKind::Sequence(parts)
-            | StatementKind::Parallel(parts)
-            | StatementKind::Unordered(parts) => parts.iter().for_each(|part| self.named(part, known)),
             StatementKind::Named(body, name) => {
                 // What `or` copies stands in one place.
                 if known
@@ -314,13 +294,7 @@ impl Local {
                 known.add(name.clone());
                 self.named(body, known);
             }
-            StatementKind::Maintaining(body, _)
-            | StatementKind::Watching(body, _)
-            | StatementKind::Telling(body, _)
-            | StatementKind::IfThennext(_, body)
-            | StatementKind::Repeat(_, body)
-            | StatementKind::Using(body, ..) => self.named(body, known),
-            StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
+            _ => statement.parts().iter().for_each(|part| self.named(part, known)),
         }
     }
 

@@ -4,24 +4,10 @@ use super::syntax::{Constraint, ConstraintKind, Guard, Name};
 use crate::span::Span;
 use crate::spans::Spans;
 
-impl Spans for Name {
-    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
-        visit(&mut self.span);
-    }
-}
-
-impl Spans for Guard {
-    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
-        self.constraint.visit_spans(visit);
-        visit(&mut self.span);
-    }
-}
-
-impl Spans for Constraint {
-    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
-        self.kind.visit_spans(visit);
-        visit(&mut self.span);
-    }
+crate::spans! {
+    Name { span }
+    Guard { constraint, span }
+    Constraint { kind, span }
 }
 
 impl Spans for ConstraintKind {

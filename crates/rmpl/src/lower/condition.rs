@@ -266,30 +266,12 @@ impl Lowering<'_> {
     }
 }
 
-/// What stands directly in a statement.
-fn parts(statement: &Statement) -> &[Statement] {
-    match &statement.kind {
-        StatementKind::Sequence(parts)
-        | StatementKind::Parallel(parts)
-        | StatementKind::Choose(parts)
-        | StatementKind::Unordered(parts) => parts,
-        StatementKind::Maintaining(body, _)
-        | StatementKind::Watching(body, _)
-        | StatementKind::Telling(body, _)
-        | StatementKind::IfThennext(_, body)
-        | StatementKind::Repeat(_, body)
-        | StatementKind::Named(body, _)
-        | StatementKind::Using(body, ..) => std::slice::from_ref(body),
-        StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => &[],
-    }
-}
-
 /// How many statements there are in `statement`, itself included.
 fn size(statement: &Statement) -> usize {
-    1 + parts(statement).iter().map(size).sum::<usize>()
+    1 + statement.parts().iter().map(size).sum::<usize>()
 }
 
 /// How deep `statement` is nested, itself included.
 pub(super) fn depth(statement: &Statement) -> usize {
-    1 + parts(statement).iter().map(depth).max().unwrap_or(0)
+    1 + statement.parts().iter().map(depth).max().unwrap_or(0)
 }

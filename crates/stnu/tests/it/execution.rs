@@ -158,12 +158,13 @@ fn a_wait_ends_with_the_link_or_by_itself() {
     network.add_edge(PointId(1), PointId(2), 3);
     network.add_edge(PointId(2), PointId(1), 7);
     let form = dispatchable(&network).expect("controllable");
-    let waiting = |from, waits: &[LinkId]| Status::Enabled { from, until: None, waits: waits.to_vec() };
+    let waiting =
+        |from, waits: &[(LinkId, i64)]| Status::Enabled { from, until: None, waits: waits.to_vec() };
     let mut dispatcher = Dispatcher::new(&form, 0);
     assert_eq!(dispatcher.execute(PointId(2)), Err(DispatchError::Blocked));
     dispatcher.execute(PointId(0)).expect("nothing before it");
     // The end comes at 10 at the latest, which may be 7 after: the wait is until 3.
-    assert_eq!(dispatcher.status(PointId(2)), waiting(3, &[id]));
+    assert_eq!(dispatcher.status(PointId(2)), waiting(3, &[(id, 3)]));
     assert_eq!(dispatcher.execute(PointId(2)), Err(DispatchError::Early(3)));
     assert_eq!(dispatcher.observe(id), Err(DispatchError::Early(1)));
     assert_eq!(dispatcher.execute(PointId(1)), Err(DispatchError::Owner));

@@ -9,7 +9,6 @@ use rmpl::{Diagnostic, Span};
 use super::bounds::{self, Interval};
 use super::constants::Constants;
 use super::names::Fact;
-use super::statics::for_each_statement;
 
 /// A warning for each branch of `scenario` that calls nothing and leaves a choice.
 pub(super) fn check(scenario: &ScenarioDecl, constants: &Constants<'_>) -> Vec<Diagnostic> {
@@ -35,7 +34,7 @@ fn branches(scenario: &ScenarioDecl) -> &[Statement] {
 fn choices(part: &Statement, constants: &Constants<'_>) -> Vec<Choice> {
     let mut found: Vec<Choice> = Vec::new();
     let mut is_of_plan = false;
-    for_each_statement(part, &mut |statement| match &statement.kind {
+    part.for_each(&mut |statement| match &statement.kind {
         StatementKind::Call(..) => is_of_plan = true,
         StatementKind::Delay => {
             let name_end = statement.span.start + "delay".len() as u32;

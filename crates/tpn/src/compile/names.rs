@@ -302,26 +302,12 @@ impl Table {
 }
 
 fn for_each_condition<'program>(statement: &'program Statement, visit: &mut dyn FnMut(&'program Condition)) {
-    match &statement.kind {
-        StatementKind::Sequence(items)
-        | StatementKind::Parallel(items)
-        | StatementKind::Choose(items)
-        | StatementKind::Unordered(items) => {
-            for item in items {
-                for_each_condition(item, visit);
-            }
-        }
-        StatementKind::Maintaining(body, condition)
-        | StatementKind::Watching(body, condition)
-        | StatementKind::Telling(body, condition)
-        | StatementKind::IfThennext(condition, body) => {
-            visit(condition);
-            for_each_condition(body, visit);
-        }
-        StatementKind::Repeat(_, body) | StatementKind::Named(body, _) | StatementKind::Using(body, ..) => {
-            for_each_condition(body, visit);
-        }
-        StatementKind::Condition(_, condition) => visit(condition),
+    statement.for_each(&mut |statement| match &statement.kind {
+        StatementKind::Maintaining(_, condition)
+        | StatementKind::Watching(_, condition)
+        | StatementKind::Telling(_, condition)
+        | StatementKind::IfThennext(condition, _)
+        | StatementKind::Condition(_, condition) => visit(condition),
         StatementKind::Call(_, arguments) => {
             for argument in arguments {
                 if let ArgumentValue::Condition(condition) = &argument.value {
@@ -329,6 +315,6 @@ fn for_each_condition<'program>(statement: &'program Statement, visit: &mut dyn 
                 }
             }
         }
-        StatementKind::Delay => {}
-    }
+        _ => {}
+    });
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rmpl::call_cycles::call_cycles;
 use rmpl::diagnostics::recursion as wording;
-use rmpl::program::{ActivityDecl, Bounds, HeaderBound, HeaderBounds, Program, Statement, StatementKind};
+use rmpl::program::{ActivityDecl, Bounds, HeaderBound, HeaderBounds, Program, StatementKind};
 use rmpl::{Diagnostic, Span};
 
 use super::bounds;
@@ -37,13 +37,13 @@ pub(super) fn check(program: &Program, constants: &Constants<'_>) -> Vec<Diagnos
                 span: *span,
             });
         }
-        for_each_statement(&activity.body, &mut |statement| {
+        activity.body.for_each(&mut |statement| {
             statement.bounds.iter().for_each(&mut check_bounds);
         });
     }
     for scenario in &program.scenarios {
         scenario.bounds.iter().for_each(&mut check_bounds);
-        for_each_statement(&scenario.body, &mut |statement| {
+        scenario.body.for_each(&mut |statement| {
             statement.bounds.iter().for_each(&mut check_bounds);
         });
     }
@@ -70,7 +70,7 @@ fn recursion(program: &Program) -> Vec<Diagnostic> {
 
 fn calls_of(activity: &ActivityDecl, by_name: &BTreeMap<&str, usize>) -> Vec<(usize, Span)> {
     let mut calls = Vec::new();
-    for_each_statement(&activity.body, &mut |statement| {
+    activity.body.for_each(&mut |statement| {
         if let StatementKind::Call(name, _) = &statement.kind
             && let Some(&callee) = by_name.get(name.text.as_str())
             && activity.formals.iter().all(|formal| formal.text != name.text)
@@ -79,32 +79,4 @@ fn calls_of(activity: &ActivityDecl, by_name: &BTreeMap<&str, usize>) -> Vec<(us
         }
     });
     calls
-}
-
-/// Visits `statement` and everything in it, in textual order.
-pub(super) fn for_each_statement<'program>(
-    statement: &'program Statement,
-    visit: &mut dyn FnMut(&'program Statement),
-) {
-    visit(statement);
-    match &statement.kind {
-        StatementKind::Sequence(items)
-        | StatementKind::Parallel(items)
-        | StatementKind::Choose(items)
-        | StatementKind::Unordered(items) => {
-            for item in items {
-                for_each_statement(item, visit);
-            }
-        }
-        StatementKind::Maintaining(body, _)
-        | StatementKind::Watching(body, _)
-        | StatementKind::Telling(body, _)
-        | StatementKind::IfThennext(_, body)
-        | StatementKind::Repeat(_, body)
-        | StatementKind::Named(body, _)
-        | StatementKind::Using(body, ..) => {
-            for_each_statement(body, visit);
-        }
-        StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => {}
-    }
 }

@@ -7,7 +7,8 @@ use smol_str::{SmolStr, format_smolstr};
 use tpn::{Levels, Supply};
 
 use super::{Builder, SIGN, SIZES, Track};
-use crate::timeline::profile::{PROFILE_ROWS, Profile, ProfilePart};
+use crate::timeline::ProfilePart;
+use crate::timeline::profile::{PROFILE_ROWS, Profile};
 
 /// From the edges of the rows to the plot, above and below, where the number of the lowest line stands.
 const MARGINS: (f64, f64) = (9.0, 14.0);
