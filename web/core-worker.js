@@ -8,6 +8,7 @@ let panicMessage = null;
 // What the core calls while it works.
 const host = {
   isSuperseded: () => superseded !== null && Atomics.load(superseded, 0) !== 0,
+  textLost: () => self.postMessage({ kind: "textLost" }),
   alive: () => self.postMessage({ kind: "alive" }),
   answer: (bytes) => self.postMessage({ kind: "answer", payload: bytes }, [bytes.buffer]),
 };

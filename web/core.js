@@ -7,8 +7,8 @@ const PATIENCE_MILLIS = { looking: 2000, blind: 300 };
 const LAST_WORD_MILLIS = 100;
 
 /**
- * Starts a core. `tell(kind, payload)` hears "ready", "alive", "answer" with bytes, "finished", and "failed" with what
- * is known about it; after "failed" nothing more comes.
+ * Starts a core. `tell(kind, payload)` hears "ready", "alive", "textLost", "answer" with bytes, "finished", and "failed"
+ * with what is known about it; after "failed" nothing more comes.
  */
 export function startCore(tell) {
   const worker = new Worker(new URL("core-worker.js", import.meta.url), { type: "module", name: "planning core" });

@@ -12,6 +12,8 @@ use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use snapshot::ContentKey;
 
+use crate::Source;
+
 /// A run that is wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ControlRun {
@@ -19,8 +21,7 @@ pub struct ControlRun {
     pub token: u64,
     /// The revision of the text.
     pub revision: u64,
-    /// The whole text.
-    pub source: Arc<str>,
+    pub source: Source,
     /// The plant that a program without one of its own is bound to.
     pub plant: Option<Arc<str>>,
     /// With a seed, components fail by chance.

@@ -8,7 +8,7 @@ use std::hash::{DefaultHasher, Hasher as _};
 
 use serde::{Deserialize, Serialize};
 
-use crate::Request;
+use crate::{Request, Source};
 
 /// Names a job among those of one [`Link`](crate::Link).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -166,7 +166,7 @@ impl Request {
         }
     }
 
-    /// The revision of the text that it is about.
+    /// The revision of the text that it is about, if that is the open one.
     pub const fn revision(&self) -> Option<u64> {
         match self {
             Self::Update(update)
@@ -178,6 +178,38 @@ impl Request {
             Self::RunControl(wanted) => Some(wanted.revision),
             Self::GrowPath(wanted) => Some(wanted.update.revision),
             Self::ImportMap { .. } | Self::Evaluate { .. } => None,
+        }
+    }
+
+    /// The text that it is about.
+    pub const fn source(&self) -> Option<&Source> {
+        match self {
+            Self::Update(update)
+            | Self::Review { update, .. }
+            | Self::CompareSearches(update)
+            | Self::Execute { update, .. }
+            | Self::Sample { update, .. }
+            | Self::Evaluate { update, .. } => Some(&update.source),
+            Self::SampleProgram { source, .. } => Some(source),
+            Self::RunControl(wanted) => Some(&wanted.source),
+            Self::GrowPath(wanted) => Some(&wanted.update.source),
+            Self::ImportMap { .. } => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub const fn source_mut(&mut self) -> Option<&mut Source> {
+        match self {
+            Self::Update(update)
+            | Self::Review { update, .. }
+            | Self::CompareSearches(update)
+            | Self::Execute { update, .. }
+            | Self::Sample { update, .. }
+            | Self::Evaluate { update, .. } => Some(&mut update.source),
+            Self::SampleProgram { source, .. } => Some(source),
+            Self::RunControl(wanted) => Some(&mut wanted.source),
+            Self::GrowPath(wanted) => Some(&mut wanted.update.source),
+            Self::ImportMap { .. } => None,
         }
     }
 

@@ -10,6 +10,7 @@ mod link;
 pub mod path_growth;
 mod program_chance;
 pub mod request;
+mod source;
 pub mod wire;
 
 pub use self::link::{Link, LinkEvent, News, Transport};
@@ -19,3 +20,4 @@ pub use job::{Job, JobId, Kind};
 pub use path_growth::{GrowthStanding, PathGrowth, WantedPlanner};
 pub use program_chance::ProgramChance;
 pub use request::{Request, Response, Update};
+pub use source::{Since, Source};

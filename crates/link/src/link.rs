@@ -9,9 +9,13 @@ mod queue;
 mod tests;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
+
+use rmpl::Journal;
 
 use crate::{Job, JobId, Kind};
 use crate::{Request, Response};
+use crate::{Since, Source};
 use queue::Queue;
 
 /// Carries jobs to a core.
@@ -38,6 +42,8 @@ pub enum News {
     Ready,
     /// It goes on with the job under way.
     Alive,
+    /// It does not have the text that the job under way edits: it gives the job up, and needs all of the text.
+    TextLost,
     /// It answers the job under way.
     Answer(Response),
     /// It has answered the job under way in full, or given it up.
@@ -79,6 +85,10 @@ const MAX_FAILURES: u32 = 2;
 pub struct Link<T> {
     transport: T,
     queue: Queue,
+    /// The edits of the open text, those of jobs that were dropped included.
+    journal: Journal,
+    /// The revision of the text that the running core was handed last.
+    handed: Option<u64>,
     state: CoreState,
     /// Counts the cores, so that what a dead one still said is not taken for the word of its successor.
     cores: u32,
@@ -104,6 +114,8 @@ impl<T: Transport> Link<T> {
         let mut link = Self {
             transport,
             queue: Queue::default(),
+            journal: Journal::default(),
+            handed: None,
             state: CoreState::Absent,
             cores: 0,
             events: VecDeque::new(),
@@ -117,6 +129,9 @@ impl<T: Transport> Link<T> {
 
     /// Asks the core. A request that is waiting or under way already is not asked twice.
     pub fn post(&mut self, request: Request) -> JobId {
+        if let Request::Update(update) = &request {
+            self.note_text(update.revision, &update.source);
+        }
         let id = self.queue.post(request);
         self.push_on();
         id
@@ -155,6 +170,10 @@ impl<T: Transport> Link<T> {
         match news {
             News::Ready => self.state = CoreState::Ready,
             News::Alive => {}
+            News::TextLost => {
+                self.handed = None;
+                self.queue.text_lost();
+            }
             News::Answer(response) => {
                 if let Some(job) = self.queue.under_way() {
                     self.events.push_back(LinkEvent::Answer { job: job.id, response });
@@ -207,6 +226,11 @@ impl<T: Transport> Link<T> {
         self.queue.under_way().is_some()
     }
 
+    /// The text that the job under way is about.
+    pub fn text_under_way(&self) -> Option<&Arc<str>> {
+        Some(self.queue.under_way()?.request.source()?.text())
+    }
+
     /// Which core is spoken to, from 1.
     pub const fn core(&self) -> u32 {
         self.cores
@@ -217,8 +241,22 @@ impl<T: Transport> Link<T> {
         &mut self.transport
     }
 
+    /// Notes how the open text came to what it is now.
+    fn note_text(&mut self, revision: u64, source: &Source) {
+        match &source.since {
+            Some(Since { revision: before, edits }) if *before == self.journal.revision() => {
+                self.journal.record(revision, edits.iter().cloned());
+            }
+            _ => {
+                self.journal = Journal::starting_at(revision);
+                self.handed = None;
+            }
+        }
+    }
+
     fn start_core(&mut self) {
         self.cores += 1;
+        self.handed = None;
         self.state = CoreState::Starting;
         self.heard_secs = self.now_secs;
         self.transport.start(self.cores);
@@ -240,6 +278,15 @@ impl<T: Transport> Link<T> {
         }
         if let Some(job) = self.queue.start_next() {
             self.heard_secs = self.now_secs;
+            if let (Some(revision), Some(source)) = (job.request.revision(), job.request.source_mut()) {
+                // The core knows the text that it was handed last, whatever became of the jobs between.
+                let since = |before| {
+                    let edits = self.journal.between(before, revision)?.cloned().collect();
+                    Some(Since { revision: before, edits })
+                };
+                source.since = self.handed.and_then(since);
+                self.handed = Some(revision);
+            }
             if let Err(message) = self.transport.send(job) {
                 self.fail(message);
             }

@@ -11,6 +11,7 @@ use snapshot::{RobustnessSettings, Tally};
 
 use crate::BothSearches;
 use crate::ProgramChance;
+use crate::Source;
 use crate::{ControlRun, ControlStanding};
 use crate::{GrowthStanding, PathGrowth};
 
@@ -41,8 +42,7 @@ pub enum Request {
     SampleProgram {
         /// The revision of the text.
         revision: u64,
-        /// The whole text.
-        source: Arc<str>,
+        source: Source,
         /// What the runs are.
         chance: ProgramChance,
         /// The first run, from 0.
@@ -81,8 +81,7 @@ pub enum Request {
 pub struct Update {
     /// Counts the edits of the text; every answer says which revision it belongs to.
     pub revision: u64,
-    /// The whole text.
-    pub source: Arc<str>,
+    pub source: Source,
     pub goal: Goal,
     /// How to search.
     pub search: kirk::Search,

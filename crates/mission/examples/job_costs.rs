@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use executive::model_based::{Options, Run, StepInput};
 use link::control_run::Input;
-use link::wire::{Reader, Writer};
+use link::wire::{AskerEnd, CoreEnd};
 use link::{ControlRun, ControlStanding, PathGrowth, Request, Response, Update};
 use mission::{Control, Core, CoreHost, read_control};
 use motion::PlannerKind;
@@ -19,8 +19,9 @@ use tpn::generate::{Recipe, Tightness, mission};
 /// The core's host: measures, and passes answers on as bytes.
 struct Page {
     begun: Instant,
-    writer: Writer,
-    reader: Reader,
+    core: CoreEnd,
+    asker: AskerEnd,
+    text: Arc<str>,
     bytes: usize,
     write_millis: f64,
     read_millis: f64,
@@ -41,9 +42,9 @@ impl CoreHost for Page {
 
     fn answer(&mut self, response: Response) {
         let begun = self.now_millis();
-        let bytes = self.writer.write(response).expect("it can be written");
+        let bytes = self.core.write(response).expect("it can be written");
         let written = self.now_millis();
-        let response = self.reader.read(&bytes).expect("it can be read");
+        let response = self.asker.read(&bytes, Arc::clone(&self.text)).expect("it can be read");
         self.write_millis += written - begun;
         self.read_millis += self.now_millis() - written;
         self.bytes += bytes.len();
@@ -60,8 +61,9 @@ impl CoreHost for Page {
 fn page() -> Page {
     Page {
         begun: Instant::now(),
-        writer: Writer::default(),
-        reader: Reader::default(),
+        core: CoreEnd::default(),
+        asker: AskerEnd::default(),
+        text: Arc::default(),
         bytes: 0,
         write_millis: 0.0,
         read_millis: 0.0,
@@ -169,6 +171,7 @@ fn comment_edit() {
             trace: false,
         };
         (page.bytes, page.write_millis, page.read_millis) = (0, 0.0, 0.0);
+        page.text = Arc::clone(update.source.text());
         let begun = Instant::now();
         core.handle(Request::Update(update), &mut page);
         let whole = millis(begun) - page.write_millis - page.read_millis;
@@ -199,6 +202,7 @@ fn growth() {
         trace: false,
     };
     let (mut core, mut page) = (Core::default(), page());
+    page.text = Arc::clone(update.source.text());
     core.handle(Request::Update(update.clone()), &mut page);
     let snapshot = page.snapshot.clone().expect("it is answered");
     let network = snapshot.network.as_ref().expect("it compiles");

@@ -7,9 +7,10 @@ use std::sync::Arc;
 
 use exact::Time;
 use interchange::is_network_text;
+use link::Source;
 use rmpl::program::{ControlDecl, Program, Runs};
-use rmpl::spans::{Spans as _, difference};
-use rmpl::{Diagnostic, Edit, Parse, Severity};
+use rmpl::spans::Spans as _;
+use rmpl::{Diagnostic, Parse, Severity, Shift};
 use smol_str::SmolStr;
 use snapshot::ContentKey;
 use snapshot::Goal;
@@ -24,8 +25,8 @@ use crate::programs::Programs;
 pub(crate) enum Followed {
     /// The program is the same, in the same places.
     Same,
-    /// The program is the same, but its places have moved through this edit.
-    Moved(Edit),
+    /// The program is the same, but its places have moved.
+    Moved(Shift),
     /// The program is another one.
     Changed,
 }
@@ -33,6 +34,8 @@ pub(crate) enum Followed {
 /// A text with what was made of it.
 #[derive(Debug, Default)]
 pub(crate) struct Reading {
+    /// Of the text that was parsed last.
+    revision: Option<u64>,
     /// Instead of a mission, if the text is a network.
     network_text: Option<NetworkText>,
     parse: Parse,
@@ -67,19 +70,20 @@ struct CompiledPrograms {
 }
 
 impl Reading {
-    /// Reads `text`, as an edit of the text before.
-    pub(crate) fn follow(&mut self, text: &str, keys: &mut Keys) -> Followed {
+    /// Reads the text of a revision. Where it is not known which edits led there, the texts are compared.
+    pub(crate) fn follow(&mut self, revision: u64, text: &Source, keys: &mut Keys) -> Followed {
         if is_network_text(text) {
             return self.follow_network(text, keys);
         }
         if self.network_text.take().is_some() {
             self.compiled = None;
         }
-        let edit = difference(self.parse.text(), text);
-        if let (true, true, Some(_)) = (edit.span.range().is_empty(), edit.text.is_empty(), &self.program) {
+        let known = text.shift_from(self.revision.replace(revision));
+        let shift = known.unwrap_or_else(|| Shift::between(self.parse.text(), text));
+        if shift.is_nothing() && self.program.is_some() {
             return Followed::Same;
         }
-        self.parse.edit(&edit);
+        self.parse.follow(Arc::clone(text.text()), shift);
         let program = self.parse.program();
         let Some(before) = &mut self.program else {
             self.program = Some(Keyed { key: keys.fresh(), value: Arc::new(program) });
@@ -94,7 +98,7 @@ impl Reading {
             return Followed::Same;
         }
         let mut moved = Program::clone(&before.value);
-        moved.follow(&edit);
+        moved.follow(shift);
         if moved != program {
             self.program = Some(Keyed { key: keys.fresh(), value: Arc::new(program) });
             self.compiled = None;
@@ -102,18 +106,18 @@ impl Reading {
         }
         before.value = Arc::new(program);
         if let Some(programs) = &mut self.programs {
-            programs.control.follow(&edit);
-            programs.runners.iter_mut().for_each(|(_, name)| name.follow(&edit));
-            programs.found.follow(&edit);
+            programs.control.follow(shift);
+            programs.runners.iter_mut().for_each(|(_, name)| name.follow(shift));
+            programs.found.follow(shift);
         }
         if let Some(compiled) = &mut self.compiled {
             if let Some(network) = &mut compiled.network {
-                Arc::make_mut(&mut network.value).follow(&edit);
+                Arc::make_mut(&mut network.value).follow(shift);
             }
-            compiled.found.follow(&edit);
+            compiled.found.follow(shift);
             compiled.tell(&self.parse, self.programs.as_ref());
         }
-        Followed::Moved(edit)
+        Followed::Moved(shift)
     }
 
     /// Reads the text of a network; any change of it gives another one.
@@ -267,5 +271,39 @@ fn top(program: &Program, goal: &Goal) -> Top {
         Goal::Activity { name, lower, upper } => {
             Top::Activity { name: name.clone(), lower: *lower, upper: *upper }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use link::Since;
+    use rmpl::{Edit, Span};
+
+    use super::*;
+
+    /// A text whose comment was replaced, and how many declarations that took.
+    fn followed(since: u64) -> (Followed, u64) {
+        let (mut reading, mut keys) = (Reading::default(), Keys::default());
+        let before = "// note\nprimitive A()[1,2]; primitive B()[1,2];\nscenario S[0,9] = { A(); B() }\n";
+        reading.follow(1, &before.into(), &mut keys);
+        let read = reading.parse.declarations_read();
+        let edits = vec![Edit { span: Span::new(3, 7), text: "notes".to_owned() }];
+        let since = Some(Since { revision: since, edits });
+        let after = Source::edited(before.replace("note", "notes"), since);
+        let followed = reading.follow(2, &after, &mut keys);
+        assert_eq!(reading.program().value, rmpl::parse(&after).program().into());
+        (followed, reading.parse.declarations_read() - read)
+    }
+
+    #[test]
+    fn an_edit_that_is_known_is_not_looked_for() {
+        let told = Shift { start: 3, removed: 4, inserted: 5 };
+        assert_eq!(followed(1), (Followed::Moved(told), 1));
+    }
+
+    #[test]
+    fn where_the_edits_are_of_another_text_both_texts_are_compared() {
+        let least = Shift { start: 7, removed: 0, inserted: 1 };
+        assert_eq!(followed(7), (Followed::Moved(least), 1));
     }
 }

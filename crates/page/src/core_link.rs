@@ -9,7 +9,7 @@ use std::{
 };
 
 use js_sys::Uint8Array;
-use link::wire::{self, Reader};
+use link::wire::{self, AskerEnd};
 use link::{Job, Link, LinkEvent, News, Request, Transport};
 use wasm_bindgen::prelude::*;
 use workbench::host::HostEvent;
@@ -23,7 +23,7 @@ pub(crate) struct CoreLink(Rc<RefCell<Shared>>);
 struct Shared {
     link: Link<Workers>,
     /// Reads the answers of the running core.
-    reader: Reader,
+    end: AskerEnd,
     wake: egui::Context,
     events: VecDeque<HostEvent>,
 }
@@ -47,7 +47,7 @@ impl CoreLink {
         Self(Rc::new_cyclic(|shared| {
             let workers = Workers { glue, running: None, shared: shared.clone() };
             let link = Link::start(workers, now_secs());
-            RefCell::new(Shared { link, reader: Reader::of_core(1), wake, events: VecDeque::new() })
+            RefCell::new(Shared { link, end: AskerEnd::of_core(1), wake, events: VecDeque::new() })
         }))
     }
 
@@ -103,14 +103,18 @@ impl Shared {
         self.link.tick(now_secs());
         let news = match kind {
             "ready" => {
-                self.reader = Reader::of_core(core);
+                self.end = AskerEnd::of_core(core);
                 News::Ready
             }
             "alive" => News::Alive,
-            "answer" => match self.reader.read(&Uint8Array::new(payload).to_vec()) {
-                Ok(response) => News::Answer(response),
-                Err(reason) => News::Failed(format!("an answer cannot be read: {reason}")),
-            },
+            "textLost" => News::TextLost,
+            "answer" => {
+                let text = self.link.text_under_way().cloned().unwrap_or_default();
+                match self.end.read(&Uint8Array::new(payload).to_vec(), text) {
+                    Ok(response) => News::Answer(response),
+                    Err(reason) => News::Failed(format!("an answer cannot be read: {reason}")),
+                }
+            }
             "finished" => News::Finished,
             _ => News::Failed(payload.as_string().unwrap_or_else(|| kind.to_owned())),
         };

@@ -331,7 +331,7 @@ mod tests {
             before.replace("[2,3]", "[3,2]"),
         ] {
             let mut edited = parse(&before);
-            edited.edit(&crate::spans::difference(&before, &after));
+            edited.edit(&crate::Shift::between(&before, &after).edit(&after));
             assert_eq!(edited.diagnostics(), parse(&after).diagnostics(), "{after}");
             assert_eq!(edited.program(), parse(&after).program(), "{after}");
         }

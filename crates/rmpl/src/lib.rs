@@ -8,6 +8,7 @@ pub mod control;
 pub mod diagnostic;
 pub mod diagnostics;
 pub mod editor;
+mod edits;
 pub mod explanation;
 pub mod files;
 pub mod format;
@@ -22,6 +23,7 @@ pub mod syntax;
 
 pub use diagnostic::{Code, Diagnostic, Edit, Fix, MAX_LISTED, Severity, listed};
 pub use diagnostics::explain;
+pub use edits::{Journal, Shift};
 pub use explanation::Explanation;
 pub use format::{format, format_edit};
 pub use parse::{Parse, parse};

@@ -15,6 +15,7 @@ use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, c
 use crate::control::{ComponentModes, component_modes};
 use crate::diagnostic::{Diagnostic, Edit, Known, Listed, Severity};
 use crate::diagnostics::{syntax, undefined};
+use crate::edits::Shift;
 use crate::files::{self, MARK};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
@@ -32,17 +33,18 @@ use crate::syntax::{DeclarationTree, SyntaxNode};
 /// assert_eq!(parsed.program().scenarios[0].name.text, "Day");
 /// ```
 pub fn parse(text: &str) -> Parse {
-    Parse::new(text.to_owned())
+    Parse::new(text.into())
 }
 
 /// A mission text with its trees and what follows from them.
 #[derive(Clone, Debug, Default)]
 pub struct Parse {
-    text: String,
+    text: Arc<str>,
     places: Vec<Place>,
     names: Names,
     index: Index,
     cycles: Vec<(DeclarationKey, Diagnostic)>,
+    declarations_read: u64,
 }
 
 /// Where a declaration stands.
@@ -74,7 +76,8 @@ pub(crate) struct Declaration {
 }
 
 impl Parse {
-    fn new(text: String) -> Self {
+    /// Parses a text that is held elsewhere, too.
+    pub fn new(text: Arc<str>) -> Self {
         let mut parse = Self { text, ..Self::default() };
         let fresh = parse.read_declarations(0, |_, _| false);
         parse.exchange(0..0, fresh);
@@ -82,7 +85,7 @@ impl Parse {
     }
 
     /// The trees of a text alone: what its names mean is not asked.
-    pub(crate) fn trees(text: String) -> Self {
+    pub(crate) fn trees(text: Arc<str>) -> Self {
         let mut parse = Self { text, ..Self::default() };
         let fresh = parse.read_declarations(0, |_, _| false);
         let checked = Arc::new(Checked::default());
@@ -101,23 +104,35 @@ impl Parse {
         &self.text
     }
 
+    /// How many declarations were parsed so far, those of earlier texts included.
+    pub const fn declarations_read(&self) -> u64 {
+        self.declarations_read
+    }
+
     /// Replaces a part of the text. Only what the edit touches is parsed again. Places outside the text or inside a
     /// character are moved to the nearest place before.
     pub fn edit(&mut self, edit: &Edit) {
         let end = floor_boundary(&self.text, edit.span.end);
         let start = floor_boundary(&self.text, edit.span.start).min(end);
-        self.text.replace_range(start..end, &edit.text);
-        let first =
-            self.places.iter().position(|place| place.start + place.declaration.reach >= start as u32);
+        let text = [&self.text[..start], &edit.text, &self.text[end..]].concat();
+        let [start, removed, inserted] = [start, end - start, edit.text.len()].map(|bytes| bytes as u32);
+        self.follow(text.into(), Shift { start, removed, inserted });
+    }
+
+    /// Follows the text to what it has become. Only what `shift`, which leads there, covers is parsed again.
+    pub fn follow(&mut self, text: Arc<str>, shift: Shift) {
+        self.text = text;
+        let (start, end) = (shift.start, shift.start + shift.removed);
+        let first = self.places.iter().position(|place| place.start + place.declaration.reach >= start);
         let first = first.unwrap_or(self.places.len());
         let from = self.places.get(first).map_or_else(|| self.end_of_places(), |place| place.start);
-        let new_end = start + edit.text.len();
-        // Beyond the edit, places of the old text are found `shift` further on.
-        let shift = edit.text.len() as i64 - (end - start) as i64;
+        let new_end = start + shift.inserted;
+        // Beyond the edit, places of the old text are found so much further on.
+        let shift = i64::from(shift.inserted) - i64::from(shift.removed);
         let mut resume = first;
         let fresh = self.read_declarations(from, |old, at| {
             let Ok(old_start) = u32::try_from(i64::from(at) - shift) else { return false };
-            if (at as usize) < new_end || old_start < end as u32 {
+            if at < new_end || old_start < end {
                 return false;
             }
             while old.get(resume).is_some_and(|place| place.start < old_start) {
@@ -153,6 +168,7 @@ impl Parse {
             let declaration = Declaration::read(rest, &mut scratch, &mut self.names);
             let length = declaration.tree.len().max(1);
             found.push((at, declaration));
+            self.declarations_read += 1;
             at += length;
         }
         found

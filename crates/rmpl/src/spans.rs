@@ -4,6 +4,7 @@
 //! places move.
 
 use crate::diagnostic::{Diagnostic, Edit, Fix};
+use crate::edits::Shift;
 use crate::program::{
     ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ConstrainDecl,
     ControlDecl, Effect, EventName, Expr, ExprKind, GoalDecl, HeaderBound, HeaderBounds, ImportDecl,
@@ -18,9 +19,9 @@ pub trait Spans {
     /// Calls `visit` with each place.
     fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span));
 
-    /// Moves all places through an edit of the text.
-    fn follow(&mut self, edit: &Edit) {
-        self.visit_spans(&mut |span| *span = edit.moved(*span));
+    /// Moves all places through a change of the text.
+    fn follow(&mut self, shift: Shift) {
+        self.visit_spans(&mut |span| *span = shift.moved(*span));
     }
 
     /// The same wherever it is written.
@@ -33,40 +34,6 @@ pub trait Spans {
         bare.visit_spans(&mut |span| *span = Span::default());
         bare
     }
-}
-
-impl Edit {
-    /// Where what stood at `span` stands after the edit, if the edit is outside of it, or inside but not at its ends.
-    pub fn moved(&self, span: Span) -> Span {
-        let inserted = self.text.len() as u32;
-        let shifted = |offset: u32| {
-            if offset >= self.span.end {
-                offset - (self.span.end - self.span.start) + inserted
-            } else {
-                offset
-            }
-        };
-        let end = if span.end <= self.span.start { span.end } else { shifted(span.end) };
-        // What is empty stays where it ends.
-        if span.start == span.end { Span::new(end, end) } else { Span::new(shifted(span.start), end) }
-    }
-}
-
-/// The change from one text to another as one edit: what stands between their common beginning and end.
-pub fn difference(before: &str, after: &str) -> Edit {
-    let common = before.bytes().zip(after.bytes()).take_while(|(one, other)| one == other).count();
-    let mut start = common;
-    while !before.is_char_boundary(start) || !after.is_char_boundary(start) {
-        start -= 1;
-    }
-    let rest = (before.len() - start).min(after.len() - start);
-    let endings = before.bytes().rev().zip(after.bytes().rev()).take(rest);
-    let mut tail = endings.take_while(|(one, other)| one == other).count();
-    while !before.is_char_boundary(before.len() - tail) || !after.is_char_boundary(after.len() - tail) {
-        tail -= 1;
-    }
-    let text = after.get(start..after.len() - tail).unwrap_or_default().to_owned();
-    Edit { span: Span::new(start as u32, (before.len() - tail) as u32), text }
 }
 
 impl Spans for Span {
@@ -243,36 +210,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_difference_is_the_least_that_turns_one_text_into_the_other() {
-        let shown = |before: &str, after: &str| {
-            let edit = difference(before, after);
-            let mut text = before.to_owned();
-            text.replace_range(edit.span.range(), &edit.text);
-            assert_eq!(text, after);
-            (edit.span.start, edit.span.end, edit.text)
-        };
-        assert_eq!(shown("abc", "abc"), (3, 3, String::new()));
-        assert_eq!(shown("abc", "abxc"), (2, 2, "x".to_owned()));
-        assert_eq!(shown("aaa", "aa"), (2, 3, String::new()));
-        assert_eq!(shown("", "new"), (0, 0, "new".to_owned()));
-        // The first byte of both letters is the same.
-        assert_eq!(shown("è", "é"), (0, 2, "é".to_owned()));
-        // So is the last.
-        assert_eq!(shown("\u{e9}", "\u{129}"), (0, 2, "\u{129}".to_owned()));
-    }
-
-    #[test]
-    fn what_is_behind_an_edit_moves_and_what_is_around_it_grows() {
-        let edit = Edit { span: Span::new(4, 6), text: "12345".to_owned() };
-        assert_eq!(edit.moved(Span::new(0, 4)), Span::new(0, 4));
-        assert_eq!(edit.moved(Span::new(6, 8)), Span::new(9, 11));
-        assert_eq!(edit.moved(Span::new(2, 8)), Span::new(2, 11));
-        let insertion = Edit { span: Span::new(4, 4), text: "12".to_owned() };
-        assert_eq!(insertion.moved(Span::new(2, 4)), Span::new(2, 4), "it ends before the insertion");
-        assert_eq!(insertion.moved(Span::new(4, 5)), Span::new(6, 7), "it begins behind the insertion");
-    }
-
-    #[test]
     fn a_program_follows_the_edit_of_a_comment() {
         let before = "# A note.\nconst N = 2*M; const M = 3;\nprimitive B(n, c)[1,2];\n\
              state ARM : {IN, OUT} = IN;\nresource P capacity 2; resource E 0..N = 3; objective minimize cost;\n\
@@ -283,7 +220,7 @@ mod tests {
              constrain F.start to F.end [N,2*N]; import \"other.rmpl\";\n";
         let after = before.replace("note", "longer note");
         let mut program = crate::parse(before).program();
-        program.follow(&difference(before, &after));
+        program.follow(Shift::between(before, &after));
         assert_eq!(program, crate::parse(&after).program());
     }
 }

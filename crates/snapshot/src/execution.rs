@@ -6,7 +6,7 @@ use std::sync::Arc;
 use exact::Time;
 use executive::{Ending, Entry, Script};
 use plant::Model;
-use rmpl::Edit;
+use rmpl::Shift;
 use rmpl::spans::Spans as _;
 use serde::{Deserialize, Serialize};
 use tpn::{Network, OccurrenceId, Plan};
@@ -60,9 +60,9 @@ pub struct Executed {
 
 impl Execution {
     /// Moves all places through an edit of the text that left the mission as it is.
-    pub fn follow(&mut self, edit: &Edit) {
+    pub fn follow(&mut self, shift: Shift) {
         for executed in &mut self.plans {
-            Arc::make_mut(&mut executed.network).follow(edit);
+            Arc::make_mut(&mut executed.network).follow(shift);
         }
     }
 

@@ -3,10 +3,10 @@
 //! Offsets are bytes and always lie on character boundaries; lines count from 0 and end in `\n` only. What keys do to
 //! the text is in [`TextCommand`](crate::TextCommand).
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use rmpl::files::MARK;
-use rmpl::{Edit, Span};
+use rmpl::{Edit, Journal, Shift, Span};
 
 use crate::carets::Carets;
 use crate::history::{Change, EditKind, Step, joins};
@@ -49,11 +49,11 @@ impl Caret {
 #[derive(Debug)]
 pub struct Document {
     text: String,
-    shared: Option<Arc<str>>,
+    shared: OnceLock<Arc<str>>,
     line_starts: Vec<usize>,
     /// The lines that begin another file of the mission (`rmpl::files`).
     headings: Vec<usize>,
-    revision: u64,
+    journal: Journal,
     saved_revision: u64,
     pub(crate) caret: Caret,
     pub(crate) others: Vec<Caret>,
@@ -83,8 +83,8 @@ impl Document {
             headings: headings(&text),
             line_starts: line_starts(&text),
             text,
-            shared: None,
-            revision: 1,
+            shared: OnceLock::new(),
+            journal: Journal::starting_at(1),
             saved_revision: 1,
             caret: Caret::default(),
             others: Vec::new(),
@@ -101,18 +101,18 @@ impl Document {
 
     /// Replaces everything, history included: another mission was opened. The revision goes on counting.
     pub fn open(&mut self, text: &str) {
-        let revision = self.revision + 1;
-        *self = Self { wrap_columns: self.wrap_columns, ..Self::new(text) };
-        self.revision = revision;
+        let revision = self.revision() + 1;
+        let journal = Journal::starting_at(revision);
+        *self = Self { journal, wrap_columns: self.wrap_columns, ..Self::new(text) };
         self.saved_revision = revision;
     }
 
     /// Takes this document up again where another one was: its revisions go on from that one's.
     pub fn count_on_from(&mut self, revision: u64) {
         let is_saved = !self.is_modified();
-        self.revision = self.revision.max(revision) + 1;
+        self.journal = Journal::starting_at(self.revision().max(revision) + 1);
         if is_saved {
-            self.saved_revision = self.revision;
+            self.mark_saved();
         }
     }
 
@@ -122,32 +122,38 @@ impl Document {
     }
 
     /// The text, shared; copied at most once per revision.
-    pub fn shared_text(&mut self) -> Arc<str> {
-        Arc::clone(self.shared.get_or_insert_with(|| Arc::from(self.text.as_str())))
+    pub fn shared_text(&self) -> Arc<str> {
+        Arc::clone(self.shared.get_or_init(|| Arc::from(self.text.as_str())))
     }
 
     /// Counts the changes of the text, undone and redone ones included.
     pub fn revision(&self) -> u64 {
-        self.revision
+        self.journal.revision()
+    }
+
+    /// The edits since a revision, each of the text that those before it left; `None` if they are not known, as of
+    /// another text and of one that was edited much since.
+    pub fn edits_since(&self, revision: u64) -> Option<impl Iterator<Item = &Edit>> {
+        self.journal.between(revision, self.revision())
     }
 
     /// Counts on without a change: something else that answers depend on has changed.
     pub fn touch(&mut self) {
         let is_saved = !self.is_modified();
-        self.revision += 1;
+        self.journal.record(self.revision() + 1, []);
         if is_saved {
-            self.saved_revision = self.revision;
+            self.mark_saved();
         }
     }
 
     /// Whether the text has changed since it was opened or saved.
     pub fn is_modified(&self) -> bool {
-        self.revision != self.saved_revision
+        self.revision() != self.saved_revision
     }
 
     /// The present text has been saved.
     pub fn mark_saved(&mut self) {
-        self.saved_revision = self.revision;
+        self.saved_revision = self.revision();
     }
 
     /// The caret and the selected text.
@@ -319,7 +325,7 @@ impl Document {
             }
             return;
         }
-        self.text_changed();
+        self.text_changed(changes.iter().map(|it| it.edit(true)).collect());
         let after = caret.unwrap_or(Caret::selecting(anchor, head));
         self.caret = Caret {
             anchor: self.boundary_before(after.anchor),
@@ -339,7 +345,7 @@ impl Document {
     /// Replaces the whole text, its files included, as one undoable step, changing only what differs.
     pub fn replace_all(&mut self, text: &str) {
         let text = normalized(text);
-        let edit = difference(&self.text, &text);
+        let edit = Shift::between(&self.text, &text).edit(&text);
         self.edit_freely(&[edit], EditKind::Single, None);
     }
 
@@ -356,38 +362,38 @@ impl Document {
     /// Takes the last step back, caret included.
     pub fn undo(&mut self) {
         let Some(step) = self.undo.pop() else { return };
-        for change in step.changes.iter().rev() {
-            let range = change.start..change.start + change.inserted.len();
-            self.text.replace_range(range, &change.removed);
+        let edits: Vec<Edit> = step.changes.iter().rev().map(|change| change.edit(false)).collect();
+        for edit in &edits {
+            self.text.replace_range(edit.span.range(), &edit.text);
         }
         (self.caret, self.others) = (step.before.main, step.before.others.clone());
         self.closers.clear();
         self.stops = Stops::default();
         self.redo.push(step);
         self.may_join = false;
-        self.text_changed();
+        self.text_changed(edits);
     }
 
     /// Makes the last step that was taken back again.
     pub fn redo(&mut self) {
         let Some(step) = self.redo.pop() else { return };
-        for change in &step.changes {
-            let range = change.start..change.start + change.removed.len();
-            self.text.replace_range(range, &change.inserted);
+        let edits: Vec<Edit> = step.changes.iter().map(|change| change.edit(true)).collect();
+        for edit in &edits {
+            self.text.replace_range(edit.span.range(), &edit.text);
         }
         (self.caret, self.others) = (step.after.main, step.after.others.clone());
         self.closers.clear();
         self.stops = Stops::default();
         self.undo.push(step);
         self.may_join = false;
-        self.text_changed();
+        self.text_changed(edits);
     }
 
-    fn text_changed(&mut self) {
+    fn text_changed(&mut self, edits: Vec<Edit>) {
         self.line_starts = line_starts(&self.text);
         self.headings = headings(&self.text);
-        self.shared = None;
-        self.revision += 1;
+        self.shared = OnceLock::new();
+        self.journal.record(self.revision() + 1, edits);
     }
 
     fn record(&mut self, step: Step) {
@@ -419,23 +425,6 @@ fn moved(offset: usize, start: usize, removed: usize, inserted: usize) -> usize 
         offset - removed + inserted
     } else {
         start + (offset - start).min(inserted)
-    }
-}
-
-/// The smallest single replacement that turns `old` into `new`.
-pub fn difference(old: &str, new: &str) -> Edit {
-    // Bytes first, because they are quick to compare; then back to character boundaries.
-    let same = |(left, right): &(u8, u8)| left == right;
-    let common = old.bytes().zip(new.bytes()).take_while(same).count();
-    let prefix = old.floor_char_boundary(common).min(new.floor_char_boundary(common));
-    let rest = old[prefix..].bytes().rev().zip(new[prefix..].bytes().rev());
-    let mut suffix = rest.take_while(same).count();
-    while !(old.is_char_boundary(old.len() - suffix) && new.is_char_boundary(new.len() - suffix)) {
-        suffix -= 1;
-    }
-    Edit {
-        span: Span::new(prefix as u32, (old.len() - suffix) as u32),
-        text: new[prefix..new.len() - suffix].to_owned(),
     }
 }
 
@@ -516,17 +505,6 @@ mod tests {
     }
 
     #[test]
-    fn the_smallest_difference_respects_characters_of_several_bytes() {
-        for (old, new) in [("aéb", "aèb"), ("", "∞"), ("∞∞", "∞"), ("[0,∞]", "[0,inf]"), ("same", "same")]
-        {
-            let edit = difference(old, new);
-            let mut text = old.to_owned();
-            text.replace_range(edit.span.range(), &edit.text);
-            assert_eq!(text, new);
-        }
-    }
-
-    #[test]
     fn any_mix_of_keys_can_be_undone_to_the_start_and_redone_to_the_end() {
         let motions = [
             Motion::Left,
@@ -568,7 +546,12 @@ mod tests {
                     12 => TextCommand::DeleteLines,
                     _ => TextCommand::Move { motion, select: next(2) == 0 },
                 };
+                let (revision, mut followed) = (document.revision(), document.text().to_owned());
                 command.apply(&mut document);
+                for edit in document.edits_since(revision).expect("the edits of one key are known") {
+                    followed.replace_range(edit.span.range(), &edit.text);
+                }
+                assert_eq!(followed, document.text(), "seed {seed}: {command:?}");
                 let caret = document.caret();
                 assert!(document.text().is_char_boundary(caret.head), "seed {seed}: {command:?}");
                 assert!(document.text().is_char_boundary(caret.anchor), "seed {seed}: {command:?}");

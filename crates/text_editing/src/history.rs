@@ -1,5 +1,7 @@
 //! The steps of a text's history, and which edits are one step.
 
+use rmpl::{Edit, Shift, Span};
+
 use crate::carets::Carets;
 
 /// How an edit joins the edits before it in the history.
@@ -30,6 +32,17 @@ pub(crate) struct Change {
     pub(crate) start: usize,
     pub(crate) removed: String,
     pub(crate) inserted: String,
+}
+
+impl Change {
+    /// The replacement, or the one that takes it back, without what it leaves as it was.
+    pub(crate) fn edit(&self, forwards: bool) -> Edit {
+        let (removed, inserted) =
+            if forwards { (&self.removed, &self.inserted) } else { (&self.inserted, &self.removed) };
+        let Edit { span, text } = Shift::between(removed, inserted).edit(inserted);
+        let at = |offset| self.start as u32 + offset;
+        Edit { span: Span::new(at(span.start), at(span.end)), text }
+    }
 }
 
 /// Whether `next` is undone together with `last`.

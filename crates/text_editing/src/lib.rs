@@ -10,15 +10,13 @@ mod find;
 mod history;
 mod pairs;
 mod rows;
-mod shift;
 mod template;
 mod typing;
 mod wrap;
 
-pub use document::{Caret, Document, difference};
+pub use document::{Caret, Document};
 pub use find::{Find, Pattern};
 pub use history::EditKind;
 pub use rows::Rows;
-pub use shift::Shift;
 pub use typing::{INDENT, Motion, TextCommand, is_name_character, word_at};
 pub use wrap::{MIN_WRAP_COLUMNS, WrappedRows};

@@ -3,7 +3,7 @@
 //! A window around it calls [`Session::begin_frame`], sends commands by [`Session::apply`], shows the state, and ends
 //! by [`Session::end_frame`]; without a window, the same calls run the whole app.
 
-use link::{Request, Update};
+use link::{Request, Since, Source, Update};
 use serde_json::Value;
 
 use crate::command::{self, Command};
@@ -242,7 +242,12 @@ impl Session {
         }
         let revision = self.state.document.revision();
         let PlanSettings { goal, search, seed, trace } = wanted.settings.clone();
-        let source = self.state.document.shared_text();
+        let document = &self.state.document;
+        let since = self.posted.as_ref().and_then(|posted| {
+            let edits = document.edits_since(posted.revision)?.cloned().collect();
+            Some(Since { revision: posted.revision, edits })
+        });
+        let source = Source::edited(document.shared_text(), since);
         self.host.post(Request::Update(Update { revision, source, goal, search, seed, trace }));
         self.posted = Some(Posted { revision, ..wanted });
         self.state.frame.asked_secs = self.state.frame.now_secs;

@@ -6,7 +6,7 @@ use std::panic;
 
 use js_sys::Uint8Array;
 use link::Response;
-use link::wire::{self, Writer};
+use link::wire::CoreEnd;
 use mission::{Core, CoreHost};
 use wasm_bindgen::prelude::*;
 
@@ -23,6 +23,10 @@ extern "C" {
     /// Takes the bytes of an answer.
     #[wasm_bindgen(method)]
     fn answer(this: &WorkerHost, answer: Uint8Array);
+
+    /// Hears that the core does not have the text that a job edits.
+    #[wasm_bindgen(method, js_name = textLost)]
+    fn text_lost(this: &WorkerHost);
 
     /// Hears that the core goes on with a long job.
     #[wasm_bindgen(method)]
@@ -56,12 +60,15 @@ impl PlanningCore {
     #[wasm_bindgen(constructor)]
     pub fn new(host: WorkerHost) -> Self {
         panic::set_hook(Box::new(|panic| core_panicked(&panic.to_string())));
-        Self { core: Core::default(), page: Page { host, writer: Writer::default(), told_millis: 0.0 } }
+        Self { core: Core::default(), page: Page { host, end: CoreEnd::default(), told_millis: 0.0 } }
     }
 
     /// Does one job, given as the bytes of a [`link::Request`]; answers go out while it works.
     pub fn handle(&mut self, request: &[u8]) -> Result<(), JsError> {
-        let request = wire::read_request(request)?;
+        let Some(request) = self.page.end.read(request)? else {
+            self.page.host.text_lost();
+            return Ok(());
+        };
         self.page.told_millis = performance_now();
         self.core.handle(request, &mut self.page);
         Ok(())
@@ -70,8 +77,8 @@ impl PlanningCore {
 
 struct Page {
     host: WorkerHost,
-    /// Knows what the page holds.
-    writer: Writer,
+    /// Knows what the page holds and what it told.
+    end: CoreEnd,
     /// When the page last heard something.
     told_millis: f64,
 }
@@ -92,7 +99,7 @@ impl CoreHost for Page {
 
     fn answer(&mut self, response: Response) {
         self.told_millis = performance_now();
-        match self.writer.write(response) {
+        match self.end.write(response) {
             Ok(bytes) => self.host.answer(Uint8Array::from(bytes.as_slice())),
             Err(reason) => core_panicked(&format!("an answer cannot be written: {reason}")),
         }

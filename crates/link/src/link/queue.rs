@@ -27,6 +27,8 @@ struct UnderWay {
     job: Job,
     failures: u32,
     is_cancelled: bool,
+    /// Whether the core gave it up for want of its text.
+    lacks_text: bool,
 }
 
 impl Queue {
@@ -48,12 +50,13 @@ impl Queue {
     }
 
     /// The job to hand over now, if the core is free; it counts as under way from here on.
-    pub(super) fn start_next(&mut self) -> Option<&Job> {
+    pub(super) fn start_next(&mut self) -> Option<&mut Job> {
         if self.under_way.is_some() {
             return None;
         }
         let Waiting { job, failures } = self.waiting.pop_front()?;
-        Some(&self.under_way.insert(UnderWay { job, failures, is_cancelled: false }).job)
+        let under_way = UnderWay { job, failures, is_cancelled: false, lacks_text: false };
+        Some(&mut self.under_way.insert(under_way).job)
     }
 
     /// The job under way.
@@ -72,10 +75,20 @@ impl Queue {
         jobs.filter(|job| job.request.kind() == kind).map(|job| job.id).collect()
     }
 
-    /// The job under way was answered in full.
+    /// The core cannot do the job under way without all of its text.
+    pub(super) fn text_lost(&mut self) {
+        self.under_way.iter_mut().for_each(|it| it.lacks_text = true);
+    }
+
+    /// The job under way was answered in full, or given up; it comes next again if it was for want of its text.
     pub(super) fn finished(&mut self) {
-        let Some(UnderWay { job, is_cancelled: false, .. }) = self.under_way.take() else { return };
-        if job.request.kind() == Kind::ImportMap {
+        let is_in_vain = self.is_in_vain();
+        let Some(UnderWay { job, failures, is_cancelled: false, lacks_text }) = self.under_way.take() else {
+            return;
+        };
+        if lacks_text && !is_in_vain {
+            self.waiting.push_front(Waiting { job, failures });
+        } else if job.request.kind() == Kind::ImportMap {
             self.imported.retain(|earlier| !job.request.supersedes(&earlier.request));
             self.imported.push(job);
         }

@@ -1,5 +1,6 @@
 //! The link between front end and core on a fake transport: order, superseding, cancelling, silence, crash and retry.
 
+use rmpl::{Edit, Span};
 use snapshot::Goal;
 
 use super::*;
@@ -11,6 +12,8 @@ use crate::Update;
 struct Fake {
     /// What it was told: `start 1`, `send …`, `interrupt`, `terminate`.
     told: Vec<String>,
+    /// The revision that the text of each job was an edit of, and what was typed.
+    edited: Vec<Option<(u64, String)>>,
     /// The jobs that cannot be sent.
     cannot_send: bool,
 }
@@ -22,6 +25,9 @@ impl Transport for Fake {
 
     fn send(&mut self, job: &Job) -> Result<(), String> {
         self.told.push(format!("send {}", shown(&job.request)));
+        let since = job.request.source().and_then(|source| source.since.as_ref());
+        let typed = |since: &Since| since.edits.iter().map(|edit| edit.text.as_str()).collect();
+        self.edited.push(since.map(|since| (since.revision, typed(since))));
         if self.cannot_send { Err("too large".to_owned()) } else { Ok(()) }
     }
 
@@ -329,4 +335,102 @@ fn everything_that_was_asked_can_be_taken_back_and_maps_are_read_all_the_same() 
     assert!(!link.is_busy());
     link.post(update(1));
     assert_eq!(told(&mut link), ["send Update 1"], "it can be asked again");
+}
+
+/// The text of a revision, which came from the one before by typing a letter.
+fn typed(revision: u64, letter: &str) -> Request {
+    let edits = vec![Edit { span: Span::default(), text: letter.to_owned() }];
+    let source = Source::edited(letter, Some(Since { revision: revision - 1, edits }));
+    Request::Update(Update { source, ..text(revision) })
+}
+
+/// The revision that the text of the last job was an edit of, and what was typed since.
+fn edited(link: &Link<Fake>) -> Option<(u64, &str)> {
+    let (revision, typed) = link.transport.edited.last()?.as_ref()?;
+    Some((*revision, typed))
+}
+
+#[test]
+fn the_edits_of_jobs_that_were_dropped_go_with_the_next_one() {
+    let mut link = ready();
+    link.post(update(1));
+    assert_eq!(edited(&link), None, "a core that knows nothing needs the whole text");
+    for (revision, letter) in [(2, "a"), (3, "b"), (4, "c")] {
+        link.post(typed(revision, letter));
+    }
+    link.hear(1, News::Finished);
+    assert_eq!(told(&mut link), ["send Update 1", "interrupt", "send Update 4"]);
+    assert_eq!(edited(&link), Some((1, "abc")));
+    // Of a job that is taken back, too.
+    let taken_back = link.post(typed(5, "d"));
+    link.cancel(taken_back);
+    link.post(typed(6, "e"));
+    link.hear(1, News::Finished);
+    assert_eq!(edited(&link), Some((4, "de")));
+    // What else is asked of the same text needs no edits.
+    link.post(review(6));
+    link.hear(1, News::Finished);
+    assert_eq!(edited(&link), Some((6, "")));
+}
+
+#[test]
+fn what_is_asked_of_an_earlier_text_brings_it_along_and_the_next_edits_go_on_from_it() {
+    let mut link = ready();
+    for request in [update(1), typed(2, "a"), review(1), typed(3, "b")] {
+        link.post(request);
+        link.hear(1, News::Finished);
+    }
+    let since = &link.transport.edited;
+    let typed = |revision, letters: &str| Some((revision, letters.to_owned()));
+    assert_eq!(*since, [None, typed(1, "a"), None, typed(1, "ab")]);
+}
+
+#[test]
+fn a_text_to_compare_with_is_told_whole_and_the_open_one_stays_known() {
+    let mut link = ready();
+    for request in [update(1), Request::Evaluate { token: 1, update: text(9) }, typed(2, "a")] {
+        link.post(request);
+        link.hear(1, News::Finished);
+    }
+    assert_eq!(link.transport.edited, [None, None, Some((1, "a".to_owned()))]);
+}
+
+#[test]
+fn a_fresh_core_is_told_the_whole_text_and_another_text_is_told_whole() {
+    let mut link = ready();
+    link.post(update(1));
+    link.hear(1, News::Finished);
+    link.post(typed(2, "a"));
+    assert_eq!(edited(&link), Some((1, "a")));
+    link.hear(1, News::Failed("out of memory".to_owned()));
+    assert_eq!(edited(&link), None);
+    link.hear(2, News::Finished);
+    link.post(typed(3, "b"));
+    link.hear(2, News::Finished);
+    assert_eq!(edited(&link), Some((2, "b")));
+    link.post(update(4));
+    assert_eq!(edited(&link), None, "nothing is known of how it came from the one before");
+}
+
+#[test]
+fn a_core_that_has_lost_the_text_is_told_all_of_it() {
+    let mut link = ready();
+    link.post(update(1));
+    link.hear(1, News::Finished);
+    let lost = link.post(typed(2, "a"));
+    link.hear(1, News::TextLost);
+    link.hear(1, News::Finished);
+    assert_eq!(told(&mut link), ["send Update 1", "send Update 2", "send Update 2"]);
+    assert_eq!(edited(&link), None);
+    link.hear(1, News::Answer(answer("it")));
+    link.hear(1, News::Finished);
+    assert_eq!(events(&mut link), [format!("answer {}", lost.0)]);
+    assert_eq!(told(&mut link), [""; 0]);
+    // A newer text takes its place.
+    link.post(typed(3, "b"));
+    link.post(typed(4, "c"));
+    link.hear(1, News::TextLost);
+    link.hear(1, News::Finished);
+    assert_eq!(told(&mut link), ["send Update 3", "interrupt", "send Update 4"]);
+    assert_eq!(edited(&link), None);
 }

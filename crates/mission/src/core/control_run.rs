@@ -42,9 +42,9 @@ impl Core {
     /// A control program has no network and nothing to plan; what is wrong with it is all there is to tell.
     pub(super) fn update_control(&mut self, update: &Update, host: &mut dyn CoreHost) {
         let begun = host.now_millis();
-        let problems = Problem::all(self.controls.diagnostics(&update.source), &update.source);
+        let problems = Problem::all(self.controls.diagnostics(update.source.text()), &update.source);
         let timings = Timings { parse_millis: host.now_millis() - begun, ..Timings::default() };
-        let mut snapshot = Snapshot::empty(update.revision, Arc::clone(&update.source));
+        let mut snapshot = Snapshot::empty(update.revision, Arc::clone(update.source.text()));
         snapshot.stage = Stage::Complete;
         snapshot.problems = problems.into();
         snapshot.timings = timings;
@@ -53,7 +53,7 @@ impl Core {
 
     /// Runs a control program up to the moment after the inputs that are wanted.
     pub(super) fn run_control(&mut self, wanted: &ControlRun, host: &mut dyn CoreHost) {
-        let control = self.controls.read(&wanted.source, wanted.plant.as_ref()).clone();
+        let control = self.controls.read(wanted.source.text(), wanted.plant.as_ref()).clone();
         let session = Session::follow(self.control_run.take(), control, wanted.seed, &mut self.keys);
         self.control_run.insert(session).drive(wanted, host);
     }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use executive::Script;
-use rmpl::Edit;
+use rmpl::Shift;
 use snapshot::Execution;
 
 /// Runs that are kept: those before are rarely gone back to.
@@ -37,9 +37,9 @@ impl Executions {
     }
 
     /// Moves all places through an edit that left the program as it is.
-    pub(super) fn follow(&mut self, edit: &Edit) {
+    pub(super) fn follow(&mut self, shift: Shift) {
         for run in &mut self.runs {
-            Arc::make_mut(run).follow(edit);
+            Arc::make_mut(run).follow(shift);
         }
     }
 }

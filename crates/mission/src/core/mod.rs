@@ -64,7 +64,7 @@ impl Core {
             Request::Execute { update, script } => self.execute(&update, script, host),
             Request::Sample { update, settings, from } => self.sample(&update, settings, from, host),
             Request::SampleProgram { revision, source, chance, from } => {
-                self.sample_program((revision, &source), chance, from, host);
+                self.sample_program((revision, source.text()), chance, from, host);
             }
             Request::Review { update, rules } => self.review(&update, &rules, host),
             Request::Evaluate { token, update } => self.evaluate_beside(token, &update, host),
@@ -133,13 +133,13 @@ impl Core {
     }
 
     /// Reads a text; what is kept of the plan follows it.
-    fn read(&mut self, source: &str) {
+    fn read(&mut self, update: &Update) {
         let structure = self.reading.network_key();
-        let followed = self.reading.follow(source, &mut self.keys);
-        if let (Followed::Moved(edit), Some(last)) = (followed, &mut self.last)
+        let followed = self.reading.follow(update.revision, &update.source, &mut self.keys);
+        if let (Followed::Moved(shift), Some(last)) = (followed, &mut self.last)
             && Some(last.structure) == structure
         {
-            last.follow(&edit, &self.reading);
+            last.follow(shift, &self.reading);
         }
     }
 
@@ -149,7 +149,7 @@ impl Core {
             return;
         }
         let begun = host.now_millis();
-        self.read(&update.source);
+        self.read(update);
         let parsed = host.now_millis();
         let (network, mut diagnostics) = self.reading.compile(&update.goal, &mut self.keys);
         let program = self.reading.program();
@@ -166,7 +166,7 @@ impl Core {
                 compile_millis: compiled - parsed,
                 plan_millis: 0.0,
             },
-            ..Snapshot::empty(update.revision, Arc::clone(&update.source))
+            ..Snapshot::empty(update.revision, Arc::clone(update.source.text()))
         };
         self.show_ground(ground.as_ref(), host);
         let Some(network) = network else {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use kirk::Options;
 use link::Update;
-use rmpl::Edit;
+use rmpl::Shift;
 use rmpl::program::Program;
 use rmpl::spans::Spans as _;
 use snapshot::content::{Keyed, Keys};
@@ -91,8 +91,8 @@ impl Shown {
 }
 
 impl Last {
-    /// Moves all places through an edit that left the program as it is; `reading` has made it already.
-    pub(super) fn follow(&mut self, edit: &Edit, reading: &Reading) {
+    /// Moves all places through a change that left the program as it is; `reading` has made it already.
+    pub(super) fn follow(&mut self, shift: Shift, reading: &Reading) {
         let is_bare = Arc::ptr_eq(&self.planned.network, &self.network);
         self.program = reading.program().value;
         if let Some(network) = reading.network() {
@@ -101,13 +101,13 @@ impl Last {
         if is_bare {
             self.planned.network = Arc::clone(&self.network);
         } else {
-            Arc::make_mut(&mut self.planned.network).follow(edit);
+            Arc::make_mut(&mut self.planned.network).follow(shift);
         }
         if self.planned.planning.refers_to_places() {
-            Arc::make_mut(&mut self.planned.planning).follow(edit);
+            Arc::make_mut(&mut self.planned.planning).follow(shift);
         }
-        self.planned.warnings.follow(edit);
-        self.executions.follow(edit);
+        self.planned.warnings.follow(shift);
+        self.executions.follow(shift);
         self.shown.network.value = Arc::clone(&self.planned.network);
         self.shown.planning.value = Arc::clone(&self.planned.planning);
     }

@@ -144,7 +144,7 @@ impl Core {
         if rmpl::control::is_control_text(&update.source) {
             return Some(Err("a control program is stepped, not executed".to_owned()));
         }
-        self.read(&update.source);
+        self.read(update);
         let (Some(network), _) = self.reading.compile(&update.goal, &mut self.keys) else {
             return Some(Err("the mission has errors".to_owned()));
         };

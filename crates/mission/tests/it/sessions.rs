@@ -5,7 +5,7 @@ use std::sync::Arc;
 use exact::Time;
 use executive::{Disturbance, Script};
 use link::control_run::{Input, Moment};
-use link::wire::{Reader, Writer};
+use link::wire::{AskerEnd, CoreEnd};
 use link::{
     ControlProgram, ControlRun, ControlStanding, GrowthStanding, PathGrowth, Request, Response, Update,
     WantedPlanner,
@@ -247,14 +247,14 @@ fn an_edit_of_the_mission_changes_the_keys_of_what_it_changes() {
 /// Carries answers over as bytes, and counts them.
 #[derive(Default)]
 struct Wire {
-    writer: Writer,
-    reader: Reader,
+    core: CoreEnd,
+    asker: AskerEnd,
 }
 
 impl Wire {
     fn carry(&mut self, snapshot: &Arc<Snapshot>) -> (Arc<Snapshot>, usize) {
-        let bytes = self.writer.write(Response::Snapshot(Arc::clone(snapshot))).expect("it can be written");
-        match self.reader.read(&bytes).expect("it can be read") {
+        let bytes = self.core.write(Response::Snapshot(Arc::clone(snapshot))).expect("it can be written");
+        match self.asker.read(&bytes, Arc::clone(&snapshot.source)).expect("it can be read") {
             Response::Snapshot(read) => (read, bytes.len()),
             other => panic!("{other:?}"),
         }
@@ -296,10 +296,9 @@ fn keys_of_a_core_that_was_started_anew_are_others() {
     let first = planned(&mut Core::default(), 1, MISSIONS[1]);
     let mut keys = Vec::new();
     for core in 1..=2 {
-        let bytes = Writer::default().write(Response::Snapshot(Arc::clone(&first))).expect("bytes");
-        let Response::Snapshot(read) = Reader::of_core(core).read(&bytes).expect("read") else {
-            panic!("a snapshot")
-        };
+        let bytes = CoreEnd::default().write(Response::Snapshot(Arc::clone(&first))).expect("bytes");
+        let answer = AskerEnd::of_core(core).read(&bytes, Arc::clone(&first.source));
+        let Ok(Response::Snapshot(read)) = answer else { panic!("a snapshot") };
         assert_eq!(content(&read), content(&first));
         keys.push(read.keys.network);
     }

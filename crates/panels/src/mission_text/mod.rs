@@ -6,8 +6,7 @@ mod language;
 
 use editor::{Diagnostic, Editor, EditorView, Mark, Popup, PopupItem, Reveal};
 use egui::Ui;
-use rmpl::Span;
-use text_editing::Shift;
+use rmpl::{Shift, Span};
 use workbench::PanelEffect;
 use workbench::command::CommandSender;
 use workbench::state::editor::PopupKind;
@@ -21,8 +20,6 @@ pub use keyboard::{editor_id, typed_text};
 pub struct EditorPanel {
     editor: Editor,
     answers: language::Answers,
-    /// How the text of the last answer became the present one, with the revisions of both.
-    shift: Option<([u64; 2], Shift)>,
 }
 
 impl Panel for EditorPanel {
@@ -31,7 +28,7 @@ impl Panel for EditorPanel {
         if !state.document.headings().is_empty() {
             files::show(ui, context, commands);
         }
-        let shift = self.shift(context);
+        let shift = shift(context);
         let popup = popup(context);
         let reveal = context.take_last(|effect| match effect {
             PanelEffect::Reveal(reveal) => Some(reveal),
@@ -64,30 +61,18 @@ impl Panel for EditorPanel {
     }
 }
 
-impl EditorPanel {
-    /// How the text of the last answer became the present one.
-    fn shift(&mut self, context: &Context<'_>) -> Shift {
-        let Some(latest) = context.state.snapshots.latest() else { return Shift::NONE };
-        let revisions = [latest.revision, context.state.document.revision()];
-        match self.shift {
-            Some((of, shift)) if of == revisions => shift,
-            _ => {
-                let shift = if revisions[0] == revisions[1] {
-                    Shift::NONE
-                } else {
-                    Shift::between(&latest.source, context.state.document.text())
-                };
-                self.shift = Some((revisions, shift));
-                shift
-            }
-        }
-    }
+/// How the text of the last answer became the present one.
+fn shift(context: &Context<'_>) -> Shift {
+    let Some(latest) = context.state.snapshots.latest() else { return Shift::default() };
+    let document = &context.state.document;
+    let edits = document.edits_since(latest.revision);
+    edits.map_or_else(|| Shift::between(&latest.source, document.text()), Shift::of)
 }
 
 /// The problems of the last answer, at their places in the present text.
 fn diagnostics<'a>(context: &Context<'a>, shift: Shift) -> Vec<Diagnostic<'a>> {
     let problems = context.state.snapshots.problems();
-    let here = problems.iter().filter_map(|problem| Some((problem, shift.span(problem.span)?)));
+    let here = problems.iter().filter_map(|problem| Some((problem, shift.surviving(problem.span)?)));
     here.map(|(problem, span)| Diagnostic {
         bytes: span.range(),
         severity: severity(problem.severity),
@@ -104,7 +89,7 @@ fn marks(context: &Context<'_>, shift: Shift) -> Vec<Mark> {
     let tokens = context.tokens;
     let mut marks = Vec::new();
     let mut mark = |span: Span, fill, underline| {
-        marks.extend(shift.span(span).map(|span| Mark { bytes: span.range(), fill, underline }));
+        marks.extend(shift.surviving(span).map(|span| Mark { bytes: span.range(), fill, underline }));
     };
     if let Some(focus) = context.focus().filter(|_| !context.is_stale) {
         let color = if focus.is_failure { tokens.failure } else { tokens.decision };

@@ -23,10 +23,10 @@ pub(crate) const INDENT: usize = 2;
 /// The text in the house layout. Formatting twice gives the same as formatting once, and the meaning stays: the
 /// formatted text has the same tokens, comments and trees. Linear in the length of the text.
 pub fn format(text: &str) -> String {
-    let parsed = Parse::trees(text.to_owned());
+    let parsed = Parse::trees(text.into());
     let formatted = print(&parsed);
     // Line starts steer the recovery from mistakes; where moving one would change a tree, the text is left alone.
-    if formatted == text || is_same(&parsed, &Parse::trees(formatted.clone())) {
+    if formatted == text || is_same(&parsed, &Parse::trees(formatted.as_str().into())) {
         formatted
     } else {
         text.to_owned()

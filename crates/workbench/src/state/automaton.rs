@@ -159,7 +159,7 @@ impl AutomatonState {
         Some(ControlRun {
             token: self.asked,
             revision: self.revision,
-            source: document.text().into(),
+            source: document.shared_text().into(),
             plant: Some(mission_file::PLANT.into()),
             seed: self.fault_seed.map(FaultSeed::seed_of_run),
             inputs: self.log.clone(),

@@ -1,10 +1,12 @@
 //! What the language crate knows about the text, kept up to date with every edit.
 
+use std::sync::Arc;
+
 use interchange::is_network_text;
 use rmpl::control::{ParsedControl, is_control_text};
 use rmpl::editor::{self, Evaluation, EventWindow, Invocation};
-use rmpl::{Parse, Span};
-use text_editing::{Document, difference};
+use rmpl::{Parse, Shift, Span};
+use text_editing::Document;
 use tpn::{OccurrenceKind, Plan};
 
 mod data_notation;
@@ -22,9 +24,9 @@ enum Notation {
     /// Missions (SPEC 1).
     Mission(Box<Parse>),
     /// Control programs (SPEC 2), with their text.
-    Control(Box<ParsedControl>, String),
+    Control(Box<ParsedControl>, Arc<str>),
     /// Networks of other tools, in JSON or EDN.
-    Network(String),
+    Network(Arc<str>),
 }
 
 /// What a piece of source text is, in either notation: each has a colour of its own.
@@ -53,12 +55,12 @@ pub enum SyntaxRole {
 }
 
 /// An edit longer than this may turn a text into one of the other notation.
-const LARGE_EDIT_BYTES: usize = 64;
+const LARGE_EDIT_BYTES: u32 = 64;
 
 impl Language {
     /// Reads a document.
     pub fn new(document: &Document) -> Self {
-        Self { revision: document.revision(), notation: read(document.text()) }
+        Self { revision: document.revision(), notation: read(document.shared_text()) }
     }
 
     /// Reads what has changed in the document since.
@@ -66,20 +68,15 @@ impl Language {
         if self.revision == document.revision() {
             return;
         }
+        let shift = document.edits_since(self.revision).map(Shift::of);
         self.revision = document.revision();
-        match &mut self.notation {
-            Notation::Mission(parse) => {
-                let edit = difference(parse.text(), document.text());
-                let is_large = edit.text.len() > LARGE_EDIT_BYTES
-                    || edit.span.range().len() > LARGE_EDIT_BYTES
-                    || document.text().len() < 4 * LARGE_EDIT_BYTES;
-                if is_large && (is_control_text(document.text()) || is_network_text(document.text())) {
-                    self.notation = read(document.text());
-                } else {
-                    parse.edit(&edit);
-                }
+        let text = document.shared_text();
+        match (&mut self.notation, shift) {
+            (_, Some(shift)) if shift.is_nothing() => {}
+            (Notation::Mission(parse), Some(shift)) if !may_change_notation(shift, &text) => {
+                parse.follow(text, shift);
             }
-            Notation::Control(..) | Notation::Network(_) => self.notation = read(document.text()),
+            _ => self.notation = read(text),
         }
     }
 
@@ -126,7 +123,7 @@ impl Language {
                 let files = formatted.iter().map(|(name, text)| (*name, text.as_str()));
                 (parse.text(), rmpl::files::joined(files))
             }
-            Notation::Control(_, text) => (text.as_str(), rmpl::control::format(text)),
+            Notation::Control(_, text) => (&**text, rmpl::control::format(text)),
             // Its layout is its tool's.
             Notation::Network(_) => return None,
         };
@@ -172,14 +169,22 @@ fn windows(network: &tpn::Network, plan: &Plan) -> Vec<EventWindow> {
     network.nodes.iter().zip(&plan.windows).filter_map(of_node).flatten().collect()
 }
 
-fn read(text: &str) -> Notation {
-    if is_control_text(text) {
-        Notation::Control(Box::new(rmpl::control::parse(text)), text.to_owned())
-    } else if is_network_text(text) {
-        Notation::Network(text.to_owned())
+fn read(text: Arc<str>) -> Notation {
+    if is_control_text(&text) {
+        Notation::Control(Box::new(rmpl::control::parse(&text)), text)
+    } else if is_network_text(&text) {
+        Notation::Network(text)
     } else {
-        Notation::Mission(Box::new(rmpl::parse(text)))
+        Notation::Mission(Box::new(Parse::new(text)))
     }
+}
+
+/// Whether a mission's text may be in another notation since: only a large edit, or one of a short text, does that.
+fn may_change_notation(shift: Shift, text: &str) -> bool {
+    let is_large = shift.inserted > LARGE_EDIT_BYTES
+        || shift.removed > LARGE_EDIT_BYTES
+        || text.len() < 4 * LARGE_EDIT_BYTES as usize;
+    is_large && (is_control_text(text) || is_network_text(text))
 }
 
 const fn mission_role(kind: editor::HighlightKind) -> SyntaxRole {

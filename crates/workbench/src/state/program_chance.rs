@@ -121,7 +121,7 @@ impl AppState {
         let asked = chance.asked.clone().filter(|(asked, _)| *asked == revision && chance.is_running);
         match asked {
             Some((_, chance)) if from < chance.runs => {
-                let source = Arc::from(self.document.text());
+                let source = self.document.shared_text().into();
                 self.effects.push(Effect::Post(Request::SampleProgram { revision, source, chance, from }));
             }
             _ => chance.is_running = false,

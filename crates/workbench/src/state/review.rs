@@ -235,7 +235,7 @@ impl AppState {
         let PlanSettings { goal, search, seed, trace } = self.settings.plan.clone();
         self.review.running = Some((revision, search));
         self.review.asked = self.review.hash().map(str::to_owned);
-        let source = self.document.shared_text();
+        let source = self.document.shared_text().into();
         let update = Update { revision, source, goal, search, seed, trace };
         let rules = self.review.record.rules().rules.clone();
         self.effects.push(Effect::Post(Request::Review { update, rules }));

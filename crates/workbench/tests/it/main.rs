@@ -4,6 +4,7 @@ mod board;
 mod counters;
 mod course;
 mod editing;
+mod edits;
 mod effects;
 mod esterel;
 mod files;

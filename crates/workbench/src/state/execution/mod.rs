@@ -186,7 +186,7 @@ impl AppState {
             return None;
         }
         let PlanSettings { goal, search, seed, trace } = self.settings.plan.clone();
-        Some(Update { revision, source: Arc::clone(&shown.source), goal, search, seed, trace })
+        Some(Update { revision, source: Arc::clone(&shown.source).into(), goal, search, seed, trace })
     }
 
     pub(super) fn take_run(&mut self, answer: Response) {
