@@ -11,10 +11,6 @@ use anyhow::{Context as _, Result, ensure};
 use brotli::enc::BrotliEncoderParams;
 use flate2::{Compression, write::GzEncoder};
 
-/// What browsers load before the first frame, and what they load beside it before the first plan.
-const FRONT_END: [&str; 2] = ["wasm/page_bg.wasm", "wasm/page.js"];
-const CORE: [&str; 2] = ["wasm/worker_bg.wasm", "wasm/worker.js"];
-
 /// Kinds of files that are worth compressing.
 const COMPRESSED: [&str; 8] = ["css", "html", "js", "json", "svg", "ts", "wasm", "webmanifest"];
 
@@ -43,7 +39,7 @@ pub fn pack(site: &Path, dist: &Path) -> Result<()> {
 }
 
 /// All files of a folder by their paths in it, in alphabetical order.
-fn files_under(folder: &Path, inside: &Path) -> Result<Vec<PathBuf>> {
+pub(crate) fn files_under(folder: &Path, inside: &Path) -> Result<Vec<PathBuf>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder.join(inside))? {
         let entry = entry?;
@@ -106,7 +102,7 @@ pub fn compress(dist: &Path) -> Result<()> {
         }
         let file = dist.join(&name);
         let content = fs::read(&file)?;
-        for (suffix, smaller) in [("br", brotli(&content)?), ("gz", gzip(&content)?)] {
+        for (suffix, smaller) in [("br", brotli(&content, BEST_QUALITY)?), ("gz", gzip(&content)?)] {
             if smaller.len() < content.len() {
                 fs::write(dist.join(format!("{}.{suffix}", name.display())), smaller)?;
             }
@@ -115,9 +111,13 @@ pub fn compress(dist: &Path) -> Result<()> {
     Ok(())
 }
 
-fn brotli(content: &[u8]) -> Result<Vec<u8>> {
+/// Brotli's best, for what is published.
+const BEST_QUALITY: i32 = 11;
+
+/// Compresses as browsers read it, with a quality from 0 to 11.
+pub(crate) fn brotli(content: &[u8], quality: i32) -> Result<Vec<u8>> {
     let mut compressed = Vec::new();
-    let parameters = BrotliEncoderParams { quality: 11, lgwin: 24, ..BrotliEncoderParams::default() };
+    let parameters = BrotliEncoderParams { quality, lgwin: 24, ..BrotliEncoderParams::default() };
     brotli::BrotliCompress(&mut &content[..], &mut compressed, &parameters)?;
     Ok(compressed)
 }
@@ -126,31 +126,4 @@ fn gzip(content: &[u8]) -> Result<Vec<u8>> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(content)?;
     Ok(encoder.finish()?)
-}
-
-/// How large everything became: a table for people.
-pub fn sizes(dist: &Path) -> Result<String> {
-    let mut table = format!("{:>10} {:>10}  file\n", "bytes", "brotli");
-    let (mut front_end, mut core) = (0, 0);
-    for name in files_under(dist, Path::new(""))? {
-        if name.extension().is_some_and(|suffix| suffix == "br" || suffix == "gz") {
-            continue;
-        }
-        let shown = name.to_string_lossy().replace('\\', "/");
-        let size = fs::metadata(dist.join(&name))?.len();
-        let compressed = fs::metadata(dist.join(format!("{shown}.br"))).map_or(size, |data| data.len());
-        if FRONT_END.contains(&shown.as_str()) {
-            front_end += compressed;
-        } else if CORE.contains(&shown.as_str()) {
-            core += compressed;
-        }
-        table.push_str(&format!("{size:>10} {compressed:>10}  {shown}\n"));
-    }
-    let megabytes = |bytes: u64| bytes as f64 / 1e6;
-    table.push_str(&format!(
-        "download (Brotli): {:.2} MB before the first frame, {:.2} MB before the first plan\n",
-        megabytes(front_end),
-        megabytes(front_end + core)
-    ));
-    Ok(table)
 }

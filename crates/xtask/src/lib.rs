@@ -6,6 +6,8 @@ pub mod browser;
 pub mod dependencies;
 pub mod dist;
 pub mod disturb;
+pub mod download;
 pub mod process;
 pub mod server;
 pub mod site;
+pub mod wasm_parts;

@@ -6,6 +6,7 @@ mod documentation;
 mod lines;
 mod serve;
 mod shot;
+mod size;
 mod test;
 
 use std::{path::PathBuf, process::ExitCode};
@@ -14,7 +15,9 @@ use anyhow::{Result, ensure};
 use clap::{Parser, Subcommand};
 use xtask::{
     browser::{Browser, Graphics},
-    dist, disturb, process,
+    dist, disturb,
+    download::{Download, LIMITS},
+    process,
     site::{self, Flavour},
 };
 
@@ -32,8 +35,10 @@ enum Task {
     Serve(serve::Options),
     /// Checks everything: formatting, lints, tests, and the page in headless Chromium.
     Test(test::Options),
-    /// Writes the page to `dist/`, for any web server.
+    /// Writes the page to `dist/`, for any web server; fails when its download is over the limits.
     Dist,
+    /// Prints what the page's download consists of, by file and by crate; fails when it is over the limits.
+    Size(size::Options),
     /// Prints the benchmark tables.
     Bench(bench::Options),
     /// Reloads, closes and starves the page while somebody types, and counts the key presses that are lost.
@@ -91,13 +96,20 @@ fn disturb_page(options: &Disturbances) -> Result<()> {
     Ok(())
 }
 
-fn write_dist() -> Result<()> {
+/// Builds the page and packs it into the folder `dist`, which it returns.
+fn pack_release() -> Result<PathBuf> {
     let dist = process::root().join("dist");
     dist::pack(&site::build(Flavour::Release)?, &dist)?;
     dist::compress(&dist)?;
-    print!("{}", dist::sizes(&dist)?);
+    Ok(dist)
+}
+
+fn write_dist() -> Result<()> {
+    let dist = pack_release()?;
+    let download = Download::of(&dist)?;
+    print!("{download}");
     println!("{}", dist.display());
-    Ok(())
+    download.check(LIMITS)
 }
 
 fn main() -> ExitCode {
@@ -113,6 +125,7 @@ fn main() -> ExitCode {
             Err(reason) => Err(reason),
         },
         Task::Dist => write_dist(),
+        Task::Size(options) => size::run(&options),
         Task::Bench(options) => bench::run_all(&options),
         Task::Disturb(options) => disturb_page(&options),
         Task::Fuzz(fuzzing) => process::run(

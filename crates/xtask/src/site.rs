@@ -15,7 +15,7 @@ use crate::process::{cargo, find_program, root, run, target_dir};
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
 /// The wasm modules: the front end, and the planning core for the web worker.
-const MODULES: [&str; 2] = ["page", "worker"];
+pub const MODULES: [&str; 2] = ["page", "worker"];
 
 /// How the page is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,12 +61,16 @@ pub fn compile_command(flavour: Flavour) -> Command {
     compile
 }
 
+/// A module as cargo built it, with the names of its functions.
+pub fn compiled(flavour: Flavour, module: &str) -> PathBuf {
+    target_dir().join(WASM_TARGET).join(flavour.profile()).join(format!("{module}.wasm"))
+}
+
 /// Puts the compiled modules, their bindings and the files of `web/` together; returns the site's folder.
 pub fn assemble(flavour: Flavour) -> Result<PathBuf> {
     let site = flavour.folder();
-    let modules = target_dir().join(WASM_TARGET).join(flavour.profile());
     for module in MODULES {
-        write_bindings(flavour, &modules.join(format!("{module}.wasm")), &site.join("wasm"))
+        write_bindings(flavour, &compiled(flavour, module), &site.join("wasm"))
             .with_context(|| format!("the bindings of `{module}` could not be written"))?;
     }
     copy_folder(&root().join("web"), &site.join("web"))?;
