@@ -5,9 +5,10 @@ use std::rc::Rc;
 
 use serde_json::{Value, json};
 use workbench::command::Command;
-use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::host::{FileKind, HostEvent};
+use workbench::library::LibraryCommand;
 use workbench::library::{Keeping, Mission};
-use workbench::state::missions::LibraryCommand;
+use workbench::outside::Remote as _;
 
 use crate::support::host::Shelf;
 use crate::support::{App, World, start_in};

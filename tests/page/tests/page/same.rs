@@ -4,7 +4,7 @@ use anyhow::Result;
 use app::{Enroute, native::NativeHost};
 use egui::{Context, RawInput};
 use serde_json::{Value, json};
-use workbench::{host::Remote as _, mission_file::EXAMPLES};
+use workbench::{mission_file::EXAMPLES, outside::Remote as _};
 
 use crate::opened::Opened;
 
