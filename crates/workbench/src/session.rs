@@ -7,12 +7,12 @@ use link::Request;
 use serde_json::Value;
 
 use crate::command::Command;
+use crate::description::State;
 use crate::effect::Effect;
 use crate::host::{Host, HostEvent, RemoteError};
 use crate::library::LibraryCommand;
 use crate::mission_file::{self, EXAMPLES};
 use crate::outside::Remote;
-use crate::description::State;
 use crate::outside::{self, Keeper};
 use crate::registry;
 use crate::state::settings::{PlanSettings, Settings};

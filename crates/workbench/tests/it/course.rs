@@ -98,8 +98,10 @@ fn answer(app: &mut App, answer: &Answer, has_solution: bool) -> Vec<String> {
         return vec!["what is right cannot be computed".to_owned()];
     };
     if let Answer::Choice(choices) = answer {
-        let verdicts: Vec<Option<bool>> =
-            choices.iter().map(|choice| choice.is_right.holds(&Description::of(app.session.state()))).collect();
+        let verdicts: Vec<Option<bool>> = choices
+            .iter()
+            .map(|choice| choice.is_right.holds(&Description::of(app.session.state())))
+            .collect();
         if verdicts.iter().filter(|it| **it == Some(true)).count() != 1 || verdicts.contains(&None) {
             wrong.push(format!("exactly one choice is right, not {verdicts:?}"));
         }
