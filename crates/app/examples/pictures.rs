@@ -4,6 +4,7 @@
 mod support;
 
 use workbench::command::Command;
+use workbench::state::settings::SettingsCommand;
 use workbench::state::settings::ThemeChoice;
 use workbench::workspace::Workspace;
 
@@ -14,13 +15,13 @@ fn main() {
     std::fs::create_dir_all(&folder).expect("the folder can be made");
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         let mut app = support::start_in(std::rc::Rc::default(), egui_kittest::HarnessBuilder::wgpu);
-        app.harness.state_mut().run(Command::SetTheme(theme));
+        app.harness.state_mut().run(Command::Settings(SettingsCommand::SetTheme(theme)));
         for workspace in Workspace::ALL {
             app.harness.state_mut().run(Command::ShowWorkspace(workspace));
             for step in &script {
                 let (name, arguments) = step.split_once(' ').unwrap_or((step, "null"));
                 let arguments = serde_json::from_str(arguments).expect("arguments are JSON");
-                workbench::host::Remote::dispatch(app.harness.state_mut(), name, &arguments)
+                workbench::outside::Remote::dispatch(app.harness.state_mut(), name, &arguments)
                     .expect("a command");
                 app.settle();
             }

@@ -74,7 +74,7 @@ impl Layouts {
             | PanelEffect::Arrange => Some(effect),
             _ => None,
         };
-        for effect in state.panel_effects.take(layout) {
+        for effect in state.window.panel_effects.take(layout) {
             match effect {
                 PanelEffect::Show(panel) => default_layout::show_panel(self.tree_mut(arrangement), panel),
                 PanelEffect::Close(panel) => default_layout::close_panel(self.tree_mut(arrangement), panel),

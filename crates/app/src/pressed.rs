@@ -2,8 +2,10 @@
 
 use egui::{Context, Event, KeyboardShortcut};
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSpec, Scope, all_commands};
+use workbench::command::Command;
+use workbench::registry::{CommandSpec, Scope, all_commands};
 use workbench::state::AppState;
+use workbench::state::window::WindowCommand;
 
 use crate::chord::shortcut;
 
@@ -22,7 +24,7 @@ pub fn take_pressed(context: &Context, state: &AppState, editor: egui::Id) -> Ve
     if egui::Popup::is_any_open(context) {
         return Vec::new();
     }
-    if state.dialog.is_some() {
+    if state.window.dialog.is_some() {
         return take_in_dialog(context);
     }
     let focus = focus(context, editor);
@@ -51,7 +53,7 @@ pub fn take_pressed(context: &Context, state: &AppState, editor: egui::Id) -> Ve
 /// Under a dialog only Escape works; the dialog's own keys are its own.
 fn take_in_dialog(context: &Context) -> Vec<Command> {
     let escape = context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape));
-    if escape { vec![Command::CloseDialog] } else { Vec::new() }
+    if escape { vec![Command::Window(WindowCommand::CloseDialog)] } else { Vec::new() }
 }
 
 fn focus(context: &Context, editor: egui::Id) -> Focus {
@@ -77,7 +79,9 @@ fn best_match(
             keys.logical_key == key
                 && matches_modifiers(modifiers, *keys)
                 && works(spec.scope, focus, *keys)
-                && (!is_letter(*keys) || focus != Focus::Nothing || state.active_panel != PanelKind::Editor)
+                && (!is_letter(*keys)
+                    || focus != Focus::Nothing
+                    || state.window.active_panel != PanelKind::Editor)
                 && (spec.available)(state).is_ok()
         })
         .max_by_key(|(_, keys)| specificity(*keys))

@@ -11,9 +11,11 @@ use serde_json::Value;
 use theme::icon::{self, Icon};
 use theme::structure;
 use workbench::command::{Command, CommandSender};
-use workbench::host::{Host, Remote, RemoteError};
-use workbench::outside::PageState;
+use workbench::description::State;
+use workbench::host::{Host, RemoteError};
+use workbench::outside::Remote;
 use workbench::state::manual::ManualCommand;
+use workbench::state::window::WindowCommand;
 use workbench::state::{AppState, System};
 use workbench::{PanelEffect, PanelKind, Session, WindowEffect};
 
@@ -105,7 +107,7 @@ impl Enroute {
         self.follow_effects();
         let pressed = take_pressed(ui.ctx(), self.app_state(), panels::editor_id());
         self.apply(pressed);
-        if self.app_state().dialog.is_none() {
+        if self.app_state().window.dialog.is_none() {
             let typed = panels::typed_text(ui.ctx(), self.app_state());
             self.apply(typed);
         }
@@ -117,7 +119,7 @@ impl Enroute {
         let next_secs = self.session.end_frame(layout_millis);
         self.wake_after(next_secs);
         if let Some(mirror) = self.egui.plugin_opt::<AccessibilityMirror>() {
-            mirror.lock().announce(&self.app_state().announcement());
+            mirror.lock().announce(&workbench::outside::announcement(self.app_state()));
         }
         // What is kept is kept when nobody is dragging.
         if !self.egui.input(|input| input.pointer.any_down()) {
@@ -134,7 +136,7 @@ impl Enroute {
         commands: &mut CommandSender,
     ) -> Option<f64> {
         let layout_millis = Cell::new(None);
-        let effects = RefCell::new(std::mem::take(&mut self.session.state_mut().panel_effects));
+        let effects = RefCell::new(std::mem::take(&mut self.session.state_mut().window.panel_effects));
         let state = self.session.state();
         let clock = || self.session.host().monotonic_secs();
         let context = Context {
@@ -157,7 +159,7 @@ impl Enroute {
             structure::part(ui, Role::Main, "Panels");
             let mut tiles =
                 PanelTiles { panels: &mut self.panels, context: &context, commands, shown: Vec::new() };
-            match state.maximized {
+            match state.window.maximized {
                 Some(panel) => tiles.show_alone(ui, panel),
                 None => tree.ui(&mut tiles, ui),
             }
@@ -167,9 +169,9 @@ impl Enroute {
         dialog::show(ui.ctx(), &context, commands);
         toasts::show(ui.ctx(), &context, commands);
         let state = self.session.state_mut();
-        state.panels_on_screen = shown;
+        state.window.panels_on_screen = shown;
         // What no panel has taken waits for its panel.
-        state.panel_effects = effects.into_inner();
+        state.window.panel_effects = effects.into_inner();
         layout_millis.get()
     }
 
@@ -188,7 +190,7 @@ impl Enroute {
             PanelEffect::FocusPanel(panel) => Some(panel),
             _ => None,
         };
-        if let Some(panel) = self.session.state_mut().panel_effects.take(focused).pop() {
+        if let Some(panel) = self.session.state_mut().window.panel_effects.take(focused).pop() {
             let id = panels::region_id(panel);
             self.egui.memory_mut(|memory| memory.request_focus(id));
             self.egui.data_mut(|data| data.insert_temp(id, Ring(false)));
@@ -268,7 +270,7 @@ impl Remote for Enroute {
         Ok(())
     }
 
-    fn state(&self) -> PageState {
+    fn state(&self) -> State {
         Remote::state(&self.session)
     }
 
@@ -308,7 +310,7 @@ impl PanelTiles<'_> {
         self.follow_tab(&tab, panel);
         bar_ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if icon::button(ui, tokens, Icon::Restore, "Put the panels back").clicked() {
-                self.commands.send(Command::Maximize(None));
+                self.commands.send(Command::Window(WindowCommand::Maximize(None)));
             }
         });
         let place = egui::UiBuilder::new().max_rect(ui.available_rect_before_wrap());
@@ -318,9 +320,9 @@ impl PanelTiles<'_> {
 
     fn follow_tab(&mut self, tab: &bar::tab::Tab, panel: PanelKind) {
         if tab.is_closed {
-            self.commands.send(Command::ClosePanel(panel));
+            self.commands.send(Command::Window(WindowCommand::ClosePanel(panel)));
         } else if tab.response.double_clicked() {
-            self.commands.send(Command::Maximize(Some(panel)));
+            self.commands.send(Command::Window(WindowCommand::Maximize(Some(panel))));
         }
     }
 
@@ -331,8 +333,11 @@ impl PanelTiles<'_> {
         let pressed = ui.input(|input| {
             input.pointer.any_pressed() && input.pointer.interact_pos().is_some_and(|at| rect.contains(at))
         });
-        if pressed && self.context.state.active_panel != kind && self.context.state.dialog.is_none() {
-            self.commands.send(Command::Activate(kind));
+        if pressed
+            && self.context.state.window.active_panel != kind
+            && self.context.state.window.dialog.is_none()
+        {
+            self.commands.send(Command::Window(WindowCommand::Activate(kind)));
         }
         structure::part(ui, Role::Region, &format!("{} panel", kind.title()));
         self.region(ui, kind);
@@ -411,7 +416,7 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
         let Some(panel) = panel else { return };
         let name = format!("Give {} the whole window", panel.title());
         if icon::button(ui, self.context.tokens, Icon::Maximize, &name).clicked() {
-            self.commands.send(Command::Maximize(Some(panel)));
+            self.commands.send(Command::Window(WindowCommand::Maximize(Some(panel))));
         }
         if panel == PanelKind::Manual {
             return;

@@ -6,10 +6,11 @@ use theme::icon::{self, Icon};
 use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::ToastKind;
+use workbench::state::window::WindowCommand;
 
 /// Shows all messages, newest at the bottom.
 pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandSender) {
-    let toasts = context.state.toasts.shown();
+    let toasts = context.state.window.toasts.shown();
     if toasts.is_empty() {
         return;
     }
@@ -30,7 +31,7 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
                         icon::label(ui, sign, color);
                         ui.add(egui::Label::new(&toast.text).wrap());
                         if icon::button(ui, tokens, Icon::Close, "Dismiss message").clicked() {
-                            commands.send(Command::DismissToast(index));
+                            commands.send(Command::Window(WindowCommand::DismissToast(index)));
                         }
                     });
                 });

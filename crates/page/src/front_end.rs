@@ -11,8 +11,9 @@ use eframe::WebRunner;
 use egui::{Key, Modifiers};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
-use workbench::command::all_commands;
-use workbench::host::{RefusalCode, Remote};
+use workbench::host::RefusalCode;
+use workbench::outside::Remote;
+use workbench::registry::all_commands;
 
 use crate::{
     core_link::CoreLink,

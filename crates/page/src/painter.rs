@@ -48,7 +48,7 @@ pub(crate) fn options() -> WebOptions {
     options
 }
 
-/// What draws, for [`State`](workbench::host::Remote::state).
+/// What draws, for [`State`](workbench::outside::Remote::state).
 pub(crate) fn name(render_state: Option<&RenderState>) -> &'static str {
     match render_state.map(|state| state.adapter.get_info().backend) {
         Some(Backend::BrowserWebGpu) => "webgpu",

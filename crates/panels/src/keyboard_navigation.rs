@@ -22,7 +22,7 @@ enum Direction {
 
 /// How many rows the arrow keys go down (or up, if negative) in a list, if they are meant for `panel`.
 pub fn arrows(ui: &Ui, context: &Context<'_>, panel: PanelKind) -> Option<isize> {
-    if context.state.active_panel != panel || !is_free(ui, context) {
+    if context.state.window.active_panel != panel || !is_free(ui, context) {
         return None;
     }
     match pressed(ui)? {
@@ -33,15 +33,15 @@ pub fn arrows(ui: &Ui, context: &Context<'_>, panel: PanelKind) -> Option<isize>
 
 /// Follows the arrow keys in the network, the timeline and the terrain.
 pub fn follow(ui: &Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    let panel = context.state.active_panel;
+    let panel = context.state.window.active_panel;
     let navigates = matches!(panel, PanelKind::Network | PanelKind::Timeline | PanelKind::Terrain);
-    let is_shown = context.state.panels_on_screen.contains(&panel);
+    let is_shown = context.state.window.panels_on_screen.contains(&panel);
     if !navigates || !is_shown || !is_free(ui, context) || context.state.selection.is_none() && has_focus(ui)
     {
         return;
     }
     let Some(direction) = pressed(ui) else { return };
-    let selection = &context.state.selection;
+    let selection = &*context.state.selection;
     let found = match panel {
         PanelKind::Terrain => {
             context.snapshot.and_then(|it| next_thing(&it.program.world, selection, direction))
@@ -67,7 +67,7 @@ pub(crate) fn has_focus(ui: &Ui) -> bool {
 
 /// Whether plain keys belong to the panel: nobody types, and no dialog is open.
 fn is_free(ui: &Ui, context: &Context<'_>) -> bool {
-    context.state.dialog.is_none() && !ui.ctx().text_edit_focused() && {
+    context.state.window.dialog.is_none() && !ui.ctx().text_edit_focused() && {
         let is_editor = ui.memory(|memory| memory.focused() == Some(super::editor_id()));
         !is_editor
     }

@@ -6,7 +6,8 @@ use rmpl::program::Program;
 use text_editing::TextCommand;
 use theme::{Tokens, space};
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::command::{Command, CommandSender};
+use workbench::state::editor::EditorCommand;
 
 use crate::{Context, Panel, keyboard_navigation, show_empty};
 

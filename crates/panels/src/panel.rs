@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use snapshot::Snapshot;
 use theme::Tokens;
-use workbench::command::{CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::CommandSender;
 use workbench::state::AppState;
 use workbench::state::search::Focus;
 use workbench::{PanelEffect, PanelEffects, PanelKind};

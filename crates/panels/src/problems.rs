@@ -9,10 +9,12 @@ use theme::icon;
 use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::command::{Command, CommandSender};
 use workbench::manual;
+use workbench::state::editor::EditorCommand;
 use workbench::state::manual::ManualCommand;
 use workbench::state::no_plan::NO_PLAN;
+use workbench::state::window::WindowCommand;
 
 use crate::{Context, Panel, keyboard_navigation, show_empty};
 
@@ -127,9 +129,9 @@ fn show_details(
         let explain = if is_of_plan { "Show why" } else { "Explain" };
         if ui.add(egui::Button::new(explain).frame_when_inactive(false)).clicked() {
             commands.send(if is_of_plan {
-                Command::ShowPanel(PanelKind::Plan)
+                Command::Window(WindowCommand::ShowPanel(PanelKind::Plan))
             } else {
-                Command::ShowDialog(Dialog::Explain(problem.code.clone()))
+                Command::Window(WindowCommand::ShowDialog(Dialog::Explain(problem.code.clone())))
             });
         }
         if is_of_plan

@@ -85,7 +85,7 @@ impl Scene<'_> {
     /// selected. A name, or a whole obstacle, is no handle: turning the view must not move what it happens to begin on.
     pub fn pick_handle(&self, pointer: Pos2) -> Option<Selection> {
         let picked = self.pick(pointer);
-        if !picked.is_none() && picked == self.state.selection {
+        if !picked.is_none() && picked == *self.state.selection {
             return Some(picked);
         }
         let is_on_plate = self.plates.iter().any(|(plate, _)| plate.contains(pointer));

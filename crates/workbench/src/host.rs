@@ -1,16 +1,13 @@
 //! The line between the front end and where it runs: a page, a native window, or a test.
 //!
 //! [`Host`] is what the app needs from outside: the planning core, storage, files, the address line and a clock. The
-//! app never touches a thread, a file or a clock itself. [`Remote`] is the other direction: how a host page, a test
-//! or a window drives the app; it mirrors `window.enroute` (DESIGN 4.3).
+//! app never touches a thread, a file or a clock itself. The other direction is [`Remote`](crate::outside::Remote).
 
 use link::{Request, Response};
-use serde_json::Value;
 #[cfg(test)]
 use ts_rs::TS;
 
 use crate::limits::{MAX_FILE_BYTES, MAX_TEXT_BYTES};
-use crate::outside::PageState;
 
 /// What the app needs from where it runs.
 ///
@@ -277,27 +274,6 @@ pub enum StorageError {
         /// What the host says about it.
         reason: String,
     },
-}
-
-/// How the world outside drives the app: the same operations as `window.enroute` (DESIGN 4.3).
-pub trait Remote {
-    /// Opens the example mission of this name.
-    fn open(&mut self, name: &str) -> Result<(), RemoteError>;
-
-    /// Replaces the whole text, as one undoable edit.
-    fn set_source(&mut self, text: &str);
-
-    /// The text as it stands.
-    fn source(&self) -> String;
-
-    /// Runs a command of the registry by its name.
-    fn dispatch(&mut self, command: &str, arguments: &Value) -> Result<(), RemoteError>;
-
-    /// The state as host pages see it.
-    fn state(&self) -> PageState;
-
-    /// Grows whenever [`Remote::state`] may have changed; subscribers are told then.
-    fn state_version(&self) -> u64;
 }
 
 /// Why a call from outside was refused.

@@ -4,8 +4,11 @@
 //! pages send; what only the host can do it leaves behind as effects. It draws nothing and knows no widget: the panels
 //! and the app around them read it.
 
+pub mod acts;
 pub mod command;
+pub mod description;
 mod dialog;
+mod effect;
 pub mod host;
 pub mod lesson;
 pub mod library;
@@ -15,13 +18,13 @@ pub mod mission_file;
 pub mod outside;
 mod panel_effect;
 mod panel_kind;
+pub mod registry;
 mod session;
 pub mod state;
 pub mod time_text;
-pub mod transport;
 pub mod workspace;
 
 pub use dialog::Dialog;
-pub use panel_effect::{PanelEffect, PanelEffects};
+pub use panel_effect::{PanelEffect, PanelEffects, PictureFormat, ViewAction};
 pub use panel_kind::PanelKind;
 pub use session::{Session, WindowEffect};

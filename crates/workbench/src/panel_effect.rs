@@ -1,8 +1,43 @@
 //! The one channel from commands to what is on screen: what panels and their layout are to do, once, in order.
 
-use crate::PanelKind;
-use crate::command::{PictureFormat, ViewAction};
+use crate::panel_kind::PanelKind;
 use crate::state::editor::Reveal;
+
+/// What can be done with a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewAction {
+    ZoomIn,
+    ZoomOut,
+    /// Designed size.
+    ZoomReset,
+    /// Everything at once.
+    Fit,
+    /// What is selected.
+    FitSelection,
+    /// Straight down, north up; for the terrain.
+    TopView,
+    /// Keeps the selected vehicle in the middle, or the first one; lets it go if one is kept. For the terrain.
+    Follow,
+}
+
+/// The formats that drawings are saved in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Lines and texts, sharp at any size.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl PictureFormat {
+    /// What files of this format end in.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Png => "png",
+        }
+    }
+}
 
 /// Something that a panel, or the layout of the panels, is to do once.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,15 +3,21 @@
 //! A window around it calls [`Session::begin_frame`], sends commands by [`Session::apply`], shows the state, and ends
 //! by [`Session::end_frame`]; without a window, the same calls run the whole app.
 
-use link::{Request, Since, Source, Update};
+use link::{Request, Since, Source};
 use serde_json::Value;
 
-use crate::command::{self, Command};
-use crate::host::{Host, HostEvent, Remote, RemoteError};
+use crate::command::Command;
+use crate::description::State;
+use crate::effect::Effect;
+use crate::host::{Host, HostEvent, RemoteError};
+use crate::library::LibraryCommand;
 use crate::mission_file::{self, EXAMPLES};
-use crate::outside::{self, Keeper, PageState};
-use crate::state::missions::LibraryCommand;
-use crate::state::{AnswerFrame, AppState, Effect, PlanSettings, Settings, Status, ToastKind};
+use crate::outside::Remote;
+use crate::outside::{self, Keeper};
+use crate::registry;
+use crate::state::settings::{PlanSettings, Settings};
+use crate::state::snapshots::Status;
+use crate::state::{AnswerFrame, AppState};
 
 /// The state with its host.
 pub struct Session {
@@ -50,7 +56,7 @@ impl Session {
     pub fn new(mut host: Box<dyn Host>, renderer: &str) -> Self {
         let mut state = AppState::new();
         if let Some(settings) = outside::remembered_settings(host.as_ref()) {
-            state.settings = settings;
+            *state.settings = settings;
         }
         renderer.clone_into(&mut state.frame.renderer);
         state.frame.unix_millis = host.unix_millis();
@@ -111,21 +117,21 @@ impl Session {
             }
             self.version += 1;
         }
-        let shown = self.state.shown().cloned();
-        let is_replaced = self.state.snapshots.lose_patience(now_secs);
-        if is_replaced {
-            self.state.follow_shown(shown.as_ref());
+        let is_waiting = self.state.snapshots.is_waiting();
+        if is_waiting {
+            self.state.snapshots.lose_patience(now_secs);
+            self.state.derive();
         }
         let advanced = self.state.advance(elapsed_secs);
         self.version += u64::from(advanced.is_changed);
-        let toast_secs = self.state.toasts.advance(now_secs);
+        let toast_secs = self.state.window.toasts.advance(now_secs);
         self.do_effects();
         // What stops the work is offered without another reason for a frame.
         let waits = self.state.status() == Status::Working && !self.state.is_long_at_work();
         // How long it has taken is told by the second.
         let counts = self.state.is_long_at_work() || self.state.is_improving();
         let work_secs = [waits.then_some(0.2), counts.then_some(1.0)].into_iter().flatten().next();
-        [is_replaced.then_some(0.1), work_secs, advanced.next_secs, toast_secs]
+        [is_waiting.then_some(0.1), work_secs, advanced.next_secs, toast_secs]
             .into_iter()
             .flatten()
             .reduce(f64::min)
@@ -194,7 +200,7 @@ impl Session {
     fn do_effects(&mut self) {
         // A text ends what was asked of the one before; what is asked of this one comes after it.
         self.post_text();
-        for effect in self.state.take_effects() {
+        for effect in self.state.window.take_effects() {
             match effect {
                 Effect::Copy(text) => self.window_effects.push(WindowEffect::Copy(text)),
                 Effect::OpenFile(kind) => self.host.open_file(kind),
@@ -215,7 +221,7 @@ impl Session {
                     outside::keep_review(self.host.as_mut(), &mut self.state, joins);
                 }
                 Effect::JoinReview(record) => {
-                    self.state.join_review(*record);
+                    self.state.reviewing().join(*record);
                 }
                 Effect::SetReviewAside(aside) => {
                     outside::set_review_aside(self.host.as_mut(), &mut self.state, aside);
@@ -241,14 +247,13 @@ impl Session {
             self.state.document.touch();
         }
         let revision = self.state.document.revision();
-        let PlanSettings { goal, search, seed, trace } = wanted.settings.clone();
         let document = &self.state.document;
         let since = self.posted.as_ref().and_then(|posted| {
             let edits = document.edits_since(posted.revision)?.cloned().collect();
             Some(Since { revision: posted.revision, edits })
         });
         let source = Source::edited(document.shared_text(), since);
-        self.host.post(Request::Update(Update { revision, source, goal, search, seed, trace }));
+        self.host.post(Request::Update(wanted.settings.update(revision, source)));
         self.posted = Some(Posted { revision, ..wanted });
         self.state.frame.asked_secs = self.state.frame.now_secs;
     }
@@ -265,15 +270,15 @@ impl Session {
         match self.host.link(&fragment) {
             Some(link) if !outside::is_link_short(&link) => {
                 let words = "The mission is too long for a link that every browser opens. It is saved as a file instead";
-                self.state.toasts.add(ToastKind::Info, words);
+                self.state.window.info(words);
                 self.state.apply(Command::Library(LibraryCommand::SaveWhole));
                 self.do_effects();
             }
             Some(link) => {
                 self.window_effects.push(WindowEffect::Copy(link));
-                self.state.toasts.add(ToastKind::Done, "The link is on the clipboard");
+                self.state.window.done("The link is on the clipboard");
             }
-            None => self.state.toasts.add(ToastKind::Failed, "Links work in the web page only"),
+            None => self.state.window.failed("Links work in the web page only"),
         }
     }
 }
@@ -299,13 +304,13 @@ impl Remote for Session {
     }
 
     fn dispatch(&mut self, command: &str, arguments: &Value) -> Result<(), RemoteError> {
-        let command = command::from_json(&self.state, command, arguments)?;
+        let command = registry::from_json(&self.state, command, arguments)?;
         self.apply(vec![command]);
         Ok(())
     }
 
-    fn state(&self) -> PageState {
-        PageState::of(&self.state)
+    fn state(&self) -> State {
+        State::of(&self.state)
     }
 
     fn state_version(&self) -> u64 {

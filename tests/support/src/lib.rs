@@ -7,7 +7,7 @@ use std::rc::Rc;
 use serde_json::Value;
 use workbench::Session;
 use workbench::command::Command;
-use workbench::host::Remote as _;
+use workbench::outside::Remote as _;
 use workbench::state::chance::ChanceCommand;
 
 pub use host::{TestHost, World};
@@ -84,6 +84,6 @@ impl App {
 
     /// The state as a host page sees it.
     pub fn json(&self) -> Value {
-        serde_json::to_value(workbench::host::Remote::state(&self.session)).expect("plain data")
+        serde_json::to_value(workbench::outside::Remote::state(&self.session)).expect("plain data")
     }
 }

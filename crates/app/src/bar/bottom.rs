@@ -10,7 +10,8 @@ use theme::structure;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::library::Keeping;
-use workbench::state::missions::LibraryCommand;
+use workbench::library::LibraryCommand;
+use workbench::state::window::WindowCommand;
 
 /// Shows the bar.
 pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -59,7 +60,7 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         x += 25.0 + size.x;
     }
     if response.on_hover_text(name.clone()).clicked() {
-        commands.send(Command::ShowPanel(PanelKind::Problems));
+        commands.send(Command::Window(WindowCommand::ShowPanel(PanelKind::Problems)));
     }
 }
 

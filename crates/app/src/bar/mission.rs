@@ -6,9 +6,10 @@ use theme::icon::{self, Icon};
 use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
+use workbench::library::LibraryCommand;
 use workbench::library::TEMPLATES;
 use workbench::mission_file::EXAMPLES;
-use workbench::state::missions::LibraryCommand;
+use workbench::state::window::WindowCommand;
 
 /// Missions that the menu lists; the others are in the list of all.
 const MAX_LISTED: usize = 8;
@@ -85,7 +86,7 @@ fn menu(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 fn entries(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let library = &context.state.library;
     if ui.button("Missions…").clicked() {
-        commands.send(Command::ShowDialog(Dialog::missions()));
+        commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::missions())));
         ui.close();
     }
     if ui.button("New mission").clicked() {

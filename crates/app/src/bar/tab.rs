@@ -58,7 +58,7 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, kind: Option<PanelKind>, id: Id,
     }
     if state.active {
         let line = Rect::from_min_size(rect.min, Vec2::new(rect.width(), 2.0));
-        let is_used = kind == Some(context.state.active_panel);
+        let is_used = kind == Some(context.state.window.active_panel);
         ui.painter().rect_filled(line, 1.0, if is_used { tokens.accent } else { tokens.line_strong });
     }
     let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + Vec2::new(MARGIN, 0.0), galley.size()).min;

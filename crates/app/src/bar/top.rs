@@ -9,10 +9,13 @@ use theme::space;
 use theme::structure;
 use workbench::Dialog;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, CommandSpec, Group, all_commands};
+use workbench::command::{Command, CommandSender};
+use workbench::registry::{CommandSpec, Group, all_commands};
 use workbench::state::Status;
 use workbench::state::lesson::LessonCommand;
+use workbench::state::settings::SettingsCommand;
 use workbench::state::settings::ThemeChoice;
+use workbench::state::window::WindowCommand;
 use workbench::workspace::Workspace;
 
 use crate::bar::badge::{self, Look};
@@ -102,11 +105,11 @@ fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut Command
     if group == Group::View {
         ui.separator();
         for panel in PanelKind::ALL {
-            let is_on_screen = context.state.panels_on_screen.contains(&panel);
+            let is_on_screen = context.state.window.panels_on_screen.contains(&panel);
             let item = ui.selectable_label(is_on_screen, panel.title());
             structure::role(&item, accesskit::Role::MenuItemCheckBox);
             if item.clicked() {
-                commands.send(Command::ShowPanel(panel));
+                commands.send(Command::Window(WindowCommand::ShowPanel(panel)));
                 ui.close();
             }
         }
@@ -123,7 +126,7 @@ fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &
         response = response.on_disabled_hover_text(reason);
     }
     if response.clicked() {
-        commands.send(spec.plain(context.state).unwrap_or(Command::CloseDialog));
+        commands.send(spec.plain(context.state).unwrap_or(Command::Window(WindowCommand::CloseDialog)));
         ui.close();
     }
 }
@@ -135,7 +138,7 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
     }
     ui.spacing_mut().item_spacing.x = space::XS;
     for workspace in Workspace::ALL {
-        let is_open = context.state.workspace == workspace && !context.state.lesson.is_beside();
+        let is_open = context.state.window.workspace == workspace && !context.state.lesson.is_beside();
         let color = if is_open { tokens.text } else { tokens.text_muted };
         let fill = if is_open { tokens.pressed } else { tokens.background };
         let button = Button::new(RichText::new(workspace.title()).color(color))
@@ -160,11 +163,11 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
 /// The workspaces as a list that opens.
 fn workspace_list(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let is_lesson = context.state.lesson.is_beside();
-    let title = if is_lesson { "Lessons" } else { context.state.workspace.title() };
+    let title = if is_lesson { "Lessons" } else { context.state.window.workspace.title() };
     let list = egui::ComboBox::from_id_salt("workspace").selected_text(title).width(0.0);
     let shown = list.show_ui(ui, |ui| {
         for workspace in Workspace::ALL {
-            let is_open = context.state.workspace == workspace && !is_lesson;
+            let is_open = context.state.window.workspace == workspace && !is_lesson;
             if ui.selectable_label(is_open, workspace.title()).clicked() {
                 commands.send(Command::ShowWorkspace(workspace));
             }
@@ -205,7 +208,7 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         ui.painter().galley(at, galley, color);
     }
     if response.on_hover_text("Show the details").clicked() {
-        commands.send(Command::ShowPanel(panel));
+        commands.send(Command::Window(WindowCommand::ShowPanel(panel)));
     }
 }
 
@@ -225,7 +228,7 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     ui.spacing_mut().item_spacing.x = space::XS;
     if icon::button(ui, tokens, Icon::Help, "Keyboard shortcuts").clicked() {
-        commands.send(Command::ShowDialog(Dialog::Keys));
+        commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::Keys)));
     }
     let (sign, name, other) = if context.state.is_dark() {
         (Icon::Sun, "Light theme", ThemeChoice::Light)
@@ -233,10 +236,10 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         (Icon::Moon, "Dark theme", ThemeChoice::Dark)
     };
     if icon::button(ui, tokens, sign, name).clicked() {
-        commands.send(Command::SetTheme(other));
+        commands.send(Command::Settings(SettingsCommand::SetTheme(other)));
     }
     if icon::button(ui, tokens, Icon::Palette, "Command palette").clicked() {
-        commands.send(Command::ShowDialog(Dialog::palette()));
+        commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::palette())));
     }
     ui.spacing_mut().item_spacing.x = space::M;
 }

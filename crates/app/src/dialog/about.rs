@@ -4,6 +4,7 @@ use egui::{RichText, Ui};
 use panels::Context;
 use theme::space;
 use workbench::command::{Command, CommandSender};
+use workbench::state::window::WindowCommand;
 
 /// Shows name, version and purpose.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -24,6 +25,6 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     }
     ui.add_space(space::M);
     if ui.button("Close").clicked() {
-        commands.send(Command::CloseDialog);
+        commands.send(Command::Window(WindowCommand::CloseDialog));
     }
 }

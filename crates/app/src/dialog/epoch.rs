@@ -8,6 +8,7 @@ use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
 use workbench::state::documents::ScheduleForm;
+use workbench::state::window::WindowCommand;
 
 /// Shows the question.
 pub(super) fn show(
@@ -43,12 +44,12 @@ pub(super) fn show(
     ui.horizontal(|ui| {
         is_asked |= ui.add_enabled(is_date, Button::new("Export")).clicked();
         if ui.button("Cancel").clicked() {
-            commands.send(Command::CloseDialog);
+            commands.send(Command::Window(WindowCommand::CloseDialog));
         }
     });
     if is_asked && is_date {
         commands.send(Command::WriteSchedule { form, epoch: text.trim().to_owned() });
     } else if text != epoch {
-        commands.send(Command::ShowDialog(Dialog::Epoch { form, epoch: text }));
+        commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::Epoch { form, epoch: text })));
     }
 }

@@ -7,6 +7,7 @@ use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::manual;
 use workbench::state::manual::ManualCommand;
+use workbench::state::window::WindowCommand;
 
 /// Shows the manual page of `code`.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mut CommandSender) {
@@ -46,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
         if ui.button("In the manual").clicked()
             && let Some(section) = manual::section_of_code(code)
         {
-            commands.send(Command::CloseDialog);
+            commands.send(Command::Window(WindowCommand::CloseDialog));
             commands.send(Command::Manual(ManualCommand::Open("diagnostics", section)));
         }
     });
@@ -54,6 +55,6 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
 
 fn close(ui: &mut Ui, commands: &mut CommandSender) {
     if ui.button("Close").clicked() {
-        commands.send(Command::CloseDialog);
+        commands.send(Command::Window(WindowCommand::CloseDialog));
     }
 }

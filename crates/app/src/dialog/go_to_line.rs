@@ -3,7 +3,9 @@
 use egui::{Key, RichText, TextEdit, Ui};
 use panels::Context;
 use workbench::Dialog;
-use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::command::{Command, CommandSender};
+use workbench::state::editor::EditorCommand;
+use workbench::state::window::WindowCommand;
 
 /// Shows the question.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mut CommandSender) {
@@ -26,9 +28,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mu
     }
     match wanted.filter(|_| enter) {
         Some(line) => {
-            commands.send(Command::CloseDialog);
+            commands.send(Command::Window(WindowCommand::CloseDialog));
             commands.send(Command::Editor(EditorCommand::GoToLine(file.start + line)));
         }
-        None => commands.send(Command::ShowDialog(Dialog::GoToLine { line: text })),
+        None => commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::GoToLine { line: text }))),
     }
 }

@@ -3,7 +3,9 @@
 use egui::{Grid, RichText, ScrollArea, TextEdit, Ui};
 use panels::Context;
 use theme::space;
-use workbench::command::{Command, CommandSender, Group, all_commands};
+use workbench::command::{Command, CommandSender};
+use workbench::registry::{Group, all_commands};
+use workbench::state::window::WindowCommand;
 
 use crate::chord;
 
@@ -33,7 +35,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         theme::structure::mark_heading(&ui.heading("Keyboard shortcuts"), 2);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if ui.button("Close").clicked() {
-                commands.send(Command::CloseDialog);
+                commands.send(Command::Window(WindowCommand::CloseDialog));
             }
             let field = TextEdit::singleline(&mut query).hint_text("Find a key or what it does");
             let field = ui.add(field.desired_width(240.0)).accessible_name("Find a key or what it does");

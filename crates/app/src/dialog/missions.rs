@@ -8,9 +8,10 @@ use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
 use workbench::host::FileKind;
+use workbench::library::LibraryCommand;
 use workbench::library::{Keeping, Mission, MissionId, TEMPLATES};
 use workbench::mission_file::EXAMPLES;
-use workbench::state::missions::LibraryCommand;
+use workbench::state::window::WindowCommand;
 
 const WIDTH: f32 = 720.0;
 const ROW: f32 = 48.0;
@@ -54,7 +55,7 @@ pub(super) fn show(
         unreadable(ui, context, commands);
     });
     if (&query, &renaming) != (&before.0, &before.1) {
-        commands.send(Command::ShowDialog(Dialog::Missions { query, renaming }));
+        commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::Missions { query, renaming })));
     }
 }
 
@@ -63,7 +64,7 @@ fn heading(ui: &mut Ui, query: &mut String, commands: &mut CommandSender) {
         theme::structure::mark_heading(&ui.heading("Missions"), 2);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if ui.button("Close").clicked() {
-                commands.send(Command::CloseDialog);
+                commands.send(Command::Window(WindowCommand::CloseDialog));
             }
         });
     });
@@ -88,7 +89,7 @@ fn heading(ui: &mut Ui, query: &mut String, commands: &mut CommandSender) {
             }
         });
         if ui.button("Open a file…").clicked() {
-            commands.send(Command::OpenFile(FileKind::Mission));
+            commands.send(Command::Window(WindowCommand::OpenFile(FileKind::Mission)));
         }
         let field = TextEdit::singleline(query).hint_text("Find a mission").desired_width(f32::INFINITY);
         ui.add(field).accessible_name("Find a mission");
@@ -249,7 +250,8 @@ fn versions(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         });
     }
     if ui.button("Keep a version…").clicked() {
-        commands.send(Command::ShowDialog(Dialog::VersionName { name: String::new() }));
+        commands
+            .send(Command::Window(WindowCommand::ShowDialog(Dialog::VersionName { name: String::new() })));
     }
 }
 

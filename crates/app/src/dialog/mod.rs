@@ -16,10 +16,11 @@ use theme::space;
 use theme::structure;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
+use workbench::state::window::WindowCommand;
 
 /// Shows the open dialog, if there is one.
 pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandSender) {
-    let Some(dialog) = &context.state.dialog else { return };
+    let Some(dialog) = &context.state.window.dialog else { return };
     let is_list = matches!(
         dialog,
         Dialog::Palette { .. }
@@ -43,7 +44,7 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
         structure::part_in(ui, ui.min_rect(), egui::accesskit::Role::Dialog, dialog.title());
     });
     if answer.should_close() {
-        commands.send(Command::CloseDialog);
+        commands.send(Command::Window(WindowCommand::CloseDialog));
     }
 }
 

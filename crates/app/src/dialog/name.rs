@@ -4,8 +4,9 @@ use egui::{Button, Key, TextEdit, Ui};
 use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
+use workbench::library::LibraryCommand;
 use workbench::state::files::FileCommand;
-use workbench::state::missions::LibraryCommand;
+use workbench::state::window::WindowCommand;
 
 /// What the name is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut Command
     ui.horizontal(|ui| {
         is_asked |= ui.add_enabled(!text.trim().is_empty(), Button::new(done)).clicked();
         if ui.button("Cancel").clicked() {
-            commands.send(Command::CloseDialog);
+            commands.send(Command::Window(WindowCommand::CloseDialog));
         }
     });
     let dialog = |name: String| match named {
@@ -48,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut Command
         Named::NewFile => Dialog::FileName { name, renames: false },
     };
     if is_asked && !text.trim().is_empty() {
-        commands.send(Command::CloseDialog);
+        commands.send(Command::Window(WindowCommand::CloseDialog));
         commands.send(match named {
             Named::Mission => Command::Library(LibraryCommand::Rename { id: None, name: text }),
             Named::Version => Command::Library(LibraryCommand::KeepVersion(text)),
@@ -56,6 +57,6 @@ pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut Command
             Named::NewFile => Command::Files(FileCommand::Add(text)),
         });
     } else if text != name {
-        commands.send(Command::ShowDialog(dialog(text)));
+        commands.send(Command::Window(WindowCommand::ShowDialog(dialog(text))));
     }
 }

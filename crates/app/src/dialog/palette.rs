@@ -5,9 +5,11 @@ use panels::Context;
 use theme::space;
 use workbench::Dialog;
 use workbench::PanelKind;
-use workbench::command::{self, Command, CommandSender};
+use workbench::command::{Command, CommandSender};
+use workbench::library::LibraryCommand;
 use workbench::mission_file::EXAMPLES;
-use workbench::state::missions::LibraryCommand;
+use workbench::registry;
+use workbench::state::window::WindowCommand;
 
 use crate::chord;
 
@@ -71,16 +73,16 @@ pub(super) fn show(
             ui.label(RichText::new("Nothing is called that.").color(context.tokens.text_muted));
         }
     });
-    commands.send(Command::ShowDialog(Dialog::Palette { query: text, chosen }));
+    commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::Palette { query: text, chosen })));
     let run = run.and_then(|index| entries.get(index)).filter(|entry| entry.unavailable.is_none());
     if let Some(entry) = run {
-        commands.send(Command::CloseDialog);
+        commands.send(Command::Window(WindowCommand::CloseDialog));
         commands.send(entry.command.clone());
     }
 }
 
 fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
-    let commands = command::matching(query).into_iter().filter_map(|spec| {
+    let commands = registry::matching(query).into_iter().filter_map(|spec| {
         Some(Entry {
             group: spec.group.title(),
             title: spec.title.to_owned(),
@@ -94,7 +96,7 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
         title: panel.title().to_owned(),
         keys: String::new(),
         unavailable: None,
-        command: Command::ShowPanel(panel),
+        command: Command::Window(WindowCommand::ShowPanel(panel)),
     });
     let missions = context.state.library.missions().into_iter().map(|mission| Entry {
         group: "Mission",
@@ -113,12 +115,12 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
     let others = panels
         .chain(missions)
         .chain(examples)
-        .filter(|entry| command::score(&format!("{} {}", entry.group, entry.title), query).is_some());
+        .filter(|entry| registry::score(&format!("{} {}", entry.group, entry.title), query).is_some());
     let mut entries: Vec<Entry> = commands.chain(others).collect();
     if !query.is_empty() {
         entries.sort_by_key(|entry| {
-            let title = command::score(&entry.title, query).unwrap_or(i32::MIN);
-            let full = command::score(&format!("{} {}", entry.group, entry.title), query);
+            let title = registry::score(&entry.title, query).unwrap_or(i32::MIN);
+            let full = registry::score(&format!("{} {}", entry.group, entry.title), query);
             -title.max(full.map_or(i32::MIN, |score| score - 1))
         });
     }

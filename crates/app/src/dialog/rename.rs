@@ -3,7 +3,9 @@
 use egui::{Key, RichText, TextEdit, Ui};
 use panels::Context;
 use workbench::Dialog;
-use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::command::{Command, CommandSender};
+use workbench::state::editor::EditorCommand;
+use workbench::state::window::WindowCommand;
 
 /// Shows the question.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, old: &str, name: &str, commands: &mut CommandSender) {
@@ -24,9 +26,12 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, old: &str, name: &str, co
         ui.label(RichText::new(refusal.to_string()).color(context.tokens.error));
     }
     if enter && refusal.is_none() {
-        commands.send(Command::CloseDialog);
+        commands.send(Command::Window(WindowCommand::CloseDialog));
         commands.send(Command::Editor(EditorCommand::RenameTo(text)));
     } else {
-        commands.send(Command::ShowDialog(Dialog::Rename { old: old.to_owned(), name: text }));
+        commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::Rename {
+            old: old.to_owned(),
+            name: text,
+        })));
     }
 }

@@ -5,8 +5,9 @@ use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 use workbench::command::Command;
-use workbench::host::{FileKind, Remote as _};
+use workbench::host::FileKind;
 use workbench::lesson::COURSE;
+use workbench::outside::Remote as _;
 use workbench::state::lesson::LessonCommand;
 
 use crate::support::App;

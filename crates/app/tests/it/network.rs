@@ -5,8 +5,9 @@ use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
 use workbench::command::Command;
-use workbench::host::Remote as _;
+use workbench::outside::Remote as _;
 use workbench::state::Selection;
+use workbench::state::settings::SettingsCommand;
 
 fn started() -> support::App {
     let mut app = support::start();
@@ -121,7 +122,9 @@ fn the_saved_picture_shows_what_is_switched_on_of_all_that_is_drawn() {
     app.world.saved.borrow_mut().clear();
     let mut views = app.harness.state().app_state().settings.views.clone();
     (views.network.bounds, views.network.unselected) = (false, false);
-    app.harness.state_mut().run(workbench::command::Command::SetViews(Box::new(views)));
+    app.harness
+        .state_mut()
+        .run(workbench::command::Command::Settings(SettingsCommand::SetViews(Box::new(views))));
     app.harness.state_mut().dispatch("file.networkSvg", &json!(null)).expect("there is a network");
     app.settle();
     app.settle();
@@ -193,7 +196,9 @@ fn lanes_carry_the_names_of_the_threads() {
     let mut app = started();
     let mut views = app.harness.state().app_state().settings.views.clone();
     views.network.lanes = true;
-    app.harness.state_mut().run(workbench::command::Command::SetViews(Box::new(views)));
+    app.harness
+        .state_mut()
+        .run(workbench::command::Command::Settings(SettingsCommand::SetViews(Box::new(views))));
     app.settle();
     let is_written = |name: &str| {
         app.harness.output().shapes.iter().any(|shape| match &shape.shape {

@@ -6,7 +6,8 @@ use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
 use workbench::PanelKind;
 use workbench::command::Command;
-use workbench::host::Remote as _;
+use workbench::outside::Remote as _;
+use workbench::state::window::WindowCommand;
 
 /// Shows the plan's tables where there is room for all of them.
 fn show_windows(app: &mut support::App) {
@@ -94,7 +95,7 @@ fn that_there_is_no_plan_is_listed_counted_and_mended_like_any_problem() {
     app.settle();
     app.harness.get_by_label("Status: no plan");
     app.harness.get_by_label_contains("1 error, ");
-    app.harness.state_mut().run(Command::ShowPanel(PanelKind::Problems));
+    app.harness.state_mut().run(Command::Window(WindowCommand::ShowPanel(PanelKind::Problems)));
     app.settle();
     let is_row = |label: String| label.contains("E-NOPLAN") && label.starts_with("Line ");
     app.harness.get_by(|node| node.label().is_some_and(is_row)).click();
@@ -188,7 +189,7 @@ fn is_line(shape: &egui::Shape) -> bool {
 fn a_double_click_on_a_tab_gives_its_panel_the_window_and_another_puts_the_panels_back() {
     let mut app = support::start();
     app.settle();
-    let shown = |app: &support::App| app.harness.state().app_state().panels_on_screen.clone();
+    let shown = |app: &support::App| app.harness.state().app_state().window.panels_on_screen.clone();
     let all = shown(&app);
     assert!(all.len() > 3);
     let double_click = |app: &mut support::App| {
@@ -222,7 +223,7 @@ fn f6_gives_a_panel_the_keyboard_and_tab_goes_to_what_it_holds() {
     app.harness.key_press(egui::Key::F6);
     app.settle();
     app.settle();
-    let active = app.harness.state().app_state().active_panel;
+    let active = app.harness.state().app_state().window.active_panel;
     assert_ne!(active, PanelKind::Editor);
     let region = panels::region_id(active);
     let focused = |app: &support::App| app.harness.ctx.memory(egui::Memory::focused);
@@ -233,7 +234,7 @@ fn f6_gives_a_panel_the_keyboard_and_tab_goes_to_what_it_holds() {
     let inside = focused(&app).expect("something has the keyboard");
     assert_ne!(inside, region);
     let place = app.harness.ctx.read_response(inside).expect("it is shown").rect;
-    let tree_has_it = app.harness.state().app_state().panels_on_screen.contains(&active);
+    let tree_has_it = app.harness.state().app_state().window.panels_on_screen.contains(&active);
     assert!(tree_has_it && place.is_positive());
 }
 

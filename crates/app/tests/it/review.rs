@@ -6,9 +6,12 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 use workbench::PanelKind;
 use workbench::command::Command;
-use workbench::host::{FileKind, Remote as _};
+use workbench::host::FileKind;
+use workbench::outside::Remote as _;
 use workbench::state::compare::CompareCommand;
 use workbench::state::search::SearchCommand;
+use workbench::state::settings::SettingsCommand;
+use workbench::state::window::WindowCommand;
 
 use crate::support::App;
 
@@ -142,7 +145,7 @@ fn a_step_of_the_search_beside_the_review_is_said_to_be_one() {
     let mut app = reviewing();
     let note = "The drawings show step 1 of the search, and not the plan that was reviewed.";
     assert!(app.harness.query_by_label(note).is_none());
-    app.harness.state_mut().run(Command::SetTrace(true));
+    app.harness.state_mut().run(Command::Settings(SettingsCommand::SetTrace(true)));
     app.settle();
     app.harness.state_mut().run(Command::Search(SearchCommand::GoTo(0)));
     app.settle();
@@ -516,7 +519,7 @@ fn the_network_in_a_review_says_what_the_approved_plan_had_otherwise() {
     approve(&mut app, "Ada");
     let says = |app: &App| painted(app).iter().any(|text| text == "end was 460");
     let show = |app: &mut App, panel: Option<PanelKind>| {
-        app.harness.state_mut().run(Command::Maximize(panel));
+        app.harness.state_mut().run(Command::Window(WindowCommand::Maximize(panel)));
         app.settle();
     };
     show(&mut app, Some(PanelKind::Network));

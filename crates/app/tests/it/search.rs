@@ -5,7 +5,8 @@ use egui::{Key, Modifiers, Rect, Role};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
 use workbench::command::Command;
-use workbench::host::Remote as _;
+use workbench::outside::Remote as _;
+use workbench::state::window::WindowCommand;
 
 use crate::support::App;
 
@@ -100,7 +101,7 @@ fn stepping_back_leads_to_the_same_states_as_stepping_forth() {
 fn a_link_leads_to_its_step_and_a_step_into_the_link() {
     let mut app = lesson("&step=60");
     assert_eq!(step(&app), 60);
-    app.harness.state_mut().run(Command::CopyLink);
+    app.harness.state_mut().run(Command::Window(WindowCommand::CopyLink));
     app.settle();
     press(&mut app, Key::Period);
     let fragment = workbench::outside::fragment(app.harness.state().app_state());

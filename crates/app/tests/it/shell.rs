@@ -6,7 +6,7 @@ use std::rc::Rc;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
-use workbench::host::Remote as _;
+use workbench::outside::Remote as _;
 
 #[test]
 fn the_app_opens_with_the_enroute_mission_and_its_plan() {
@@ -92,7 +92,7 @@ fn the_key_list_names_every_shortcut_of_the_registry() {
     app.harness.get_by_label("Keyboard shortcuts").click();
     app.settle();
     assert_eq!(app.json()["dialog"], "keys");
-    for spec in workbench::command::all_commands().filter(|spec| !spec.keys.is_empty()) {
+    for spec in workbench::registry::all_commands().filter(|spec| !spec.keys.is_empty()) {
         assert!(
             app.harness.query_all_by_label(spec.title).next().is_some(),
             "{} is not in the key list",

@@ -5,7 +5,9 @@ use hca::{Automaton, CompositeKind, LocationId, LocationKind};
 use layout::{AutomatonDrawing, AutomatonItem};
 use text_editing::TextCommand;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
+use workbench::state::window::WindowCommand;
 
 use super::{Drawn, Shown, legend, log, marks};
 use crate::Context;
@@ -68,7 +70,7 @@ impl Canvas {
             self.press(shown.automaton, item, is_double, commands);
         }
         if response.clicked() || on_button.is_some() {
-            commands.send(Command::Activate(PanelKind::Automaton));
+            commands.send(Command::Window(WindowCommand::Activate(PanelKind::Automaton)));
         }
         if let Some(text) = pointed.and_then(|item| describe(shown.automaton, item)) {
             response.on_hover_text_at_pointer(text);

@@ -4,8 +4,10 @@ use egui::{Align, Frame, Layout, Margin, RichText, Slider, Ui};
 use theme::icon::{self, Icon};
 use theme::space;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, Program};
+use workbench::state::window::WindowCommand;
 
 use crate::Context;
 use crate::one_line::in_one_line;
@@ -26,7 +28,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                 ];
                 for (sign, name, action) in zoom {
                     if icon::button(ui, context.tokens, sign, name).clicked() {
-                        commands.send(Command::ViewOf(PanelKind::Automaton, action));
+                        commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Automaton, action)));
                     }
                 }
                 if matches!(context.state.automaton.program(), Some(Program::Unbound(_))) {
@@ -60,7 +62,7 @@ fn stepping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let pressed =
             ui.add_enabled_ui(is_enabled, |ui| icon::toggle(ui, context.tokens, sign, name, is_on).clicked());
         if pressed.inner {
-            commands.send(Command::Activate(PanelKind::Automaton));
+            commands.send(Command::Window(WindowCommand::Activate(PanelKind::Automaton)));
             commands.send(Command::Automaton(command));
         }
     }

@@ -15,8 +15,10 @@ use snapshot::Snapshot;
 use theme::space;
 use tpn::{ArcId, Network, NodeId, Plan};
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
+use workbench::state::window::WindowCommand;
 
 use super::network::view::View;
 use super::{Context, Panel, show_empty};
@@ -215,7 +217,7 @@ impl DistancesPanel {
             commands.send(Command::Select(selection));
         }
         if response.double_clicked() {
-            commands.send(Command::ViewOf(PanelKind::Distances, ViewAction::Fit));
+            commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Distances, ViewAction::Fit)));
         }
     }
 }

@@ -72,7 +72,9 @@ fn why_not(context: &Context<'_>) -> String {
         Status::Broken => "The mission has errors. See the problems.",
         Status::NoPlan => "There is no plan to execute. The plan panel says why.",
         Status::Empty => "There is no mission to execute.",
-        Status::Plan if state.workspace == workbench::workspace::Workspace::Execute => "Working the run out…",
+        Status::Plan if state.window.workspace == workbench::workspace::Workspace::Execute => {
+            "Working the run out…"
+        }
         Status::Plan => "The mission runs in the Execute workspace.",
         Status::Working => "Planning…",
         Status::Undecided => "Planning was stopped. The plan panel plans again.",

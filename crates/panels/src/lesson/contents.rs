@@ -8,6 +8,7 @@ use workbench::host::FileKind;
 use workbench::lesson::{COURSE, CourseLesson, Lesson};
 use workbench::state::lesson::LessonCommand;
 use workbench::state::manual::ManualCommand;
+use workbench::state::window::WindowCommand;
 
 use crate::Context;
 
@@ -39,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             }
             ui.horizontal_wrapped(|ui| {
                 if ui.button("Open a lesson file…").clicked() {
-                    commands.send(Command::OpenFile(FileKind::Lesson));
+                    commands.send(Command::Window(WindowCommand::OpenFile(FileKind::Lesson)));
                 }
                 if ui.button("How to write one").clicked() {
                     commands.send(Command::Manual(ManualCommand::Open("lessons", String::new())));

@@ -4,7 +4,9 @@ use egui::Ui;
 use rmpl::Span;
 use theme::space;
 use workbench::Dialog;
-use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::command::{Command, CommandSender};
+use workbench::state::editor::EditorCommand;
+use workbench::state::window::WindowCommand;
 
 use crate::Context;
 
@@ -26,7 +28,10 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         }
         let add = ui.button("+").on_hover_text("Adds a file to the mission");
         if add.accessible_name("Add a file").clicked() {
-            commands.send(Command::ShowDialog(Dialog::FileName { name: String::new(), renames: false }));
+            commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::FileName {
+                name: String::new(),
+                renames: false,
+            })));
         }
     });
     ui.separator();

@@ -3,8 +3,10 @@
 use editor::{EditorAction, Keyboard};
 use egui::{Context, Id};
 use workbench::PanelKind;
-use workbench::command::{Command, EditorCommand};
+use workbench::command::Command;
 use workbench::state::AppState;
+use workbench::state::editor::EditorCommand;
+use workbench::state::window::WindowCommand;
 
 /// The editor's widget id: who has the focus while the author types.
 pub fn editor_id() -> Id {
@@ -17,7 +19,7 @@ pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
         id: editor_id(),
         is_composing: !state.editor.composition.is_empty(),
         has_popup: state.editor.popup.is_some(),
-        can_take_focus: state.dialog.is_none(),
+        can_take_focus: state.window.dialog.is_none(),
     };
     editor::typed(context, &keyboard).into_iter().map(command).collect()
 }
@@ -27,7 +29,7 @@ pub(super) fn command(action: EditorAction) -> Command {
     Command::Editor(match action {
         EditorAction::Text(command) => return Command::Text(command),
         EditorAction::SetText(text) => return Command::SetSource(text),
-        EditorAction::Press => return Command::Activate(PanelKind::Editor),
+        EditorAction::Press => return Command::Window(WindowCommand::Activate(PanelKind::Editor)),
         EditorAction::Compose(text) => EditorCommand::Compose(text),
         EditorAction::Copy { cut } => EditorCommand::CopySelection { cut },
         EditorAction::Focus => EditorCommand::Focus,

@@ -34,8 +34,9 @@ impl Panel for EditorPanel {
             PanelEffect::Reveal(reveal) => Some(reveal),
             _ => None,
         });
-        let takes_focus = context
-            .take_last(|effect| (effect == PanelEffect::FocusEditor && state.dialog.is_none()).then_some(()));
+        let takes_focus = context.take_last(|effect| {
+            (effect == PanelEffect::FocusEditor && state.window.dialog.is_none()).then_some(())
+        });
         let view = EditorView {
             manual_keys: Some("Shift+F1"),
             id: editor_id(),

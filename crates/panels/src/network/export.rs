@@ -4,8 +4,10 @@ use display::DisplayList;
 use layout::list::network::progress_list;
 use layout::{NetworkState, Progress};
 use tpn::{Network, Plan};
-use workbench::command::{Command, PictureFormat};
+use workbench::PictureFormat;
+use workbench::command::Command;
 use workbench::state::settings::NetworkView;
+use workbench::state::window::WindowCommand;
 
 use super::data::Drawn;
 use crate::Context;
@@ -30,12 +32,12 @@ pub(super) fn save(
     let svg = svg(context, drawn, network, plan, progress, view);
     let name = format!("{}-network.{}", context.state.mission, format.extension());
     match format {
-        PictureFormat::Svg => Command::SaveFile { name, bytes: svg.into_bytes() },
+        PictureFormat::Svg => Command::Window(WindowCommand::SaveFile { name, bytes: svg.into_bytes() }),
         PictureFormat::Png => {
             let (width, height) = (drawn.frame().width(), drawn.frame().height());
             let scale = pixels_per_unit(width, height);
             let size = [width, height].map(|side| (side * scale).round().max(1.0) as u32);
-            Command::SavePicture { name, svg, size }
+            Command::Window(WindowCommand::SavePicture { name, svg, size })
         }
     }
 }

@@ -23,9 +23,12 @@ use egui::{CursorIcon, InputState, Key, PointerButton, Rect, Response, Role, Sen
 use layout::{BlockForm, Item, NetworkDrawing, OverlayCurve, OverlayKind, Progress};
 use snapshot::Snapshot;
 use tpn::{BlockId, Network, NodeId, Plan};
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::search::Focus;
 use workbench::state::settings::NetworkView;
+use workbench::state::settings::SettingsCommand;
+use workbench::state::window::WindowCommand;
 use workbench::state::{Selection, Status, Views};
 use workbench::workspace::Workspace;
 use workbench::{PanelEffect, PanelKind};
@@ -83,7 +86,10 @@ impl Panel for NetworkPanel {
         let boxes = self.boxes();
         let asked = toolbar::show(ui, context, &mut options, &mut self.search, boxes, commands);
         if options != views.network {
-            commands.send(Command::SetViews(Box::new(Views { network: options.clone(), ..views.clone() })));
+            commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(Views {
+                network: options.clone(),
+                ..views.clone()
+            }))));
         }
         let room = ui.available_size() - vec2(0.0, badges_height(context, snapshot));
         self.detail.follow(room, self.view.is_fitted(), options.windows);
@@ -141,11 +147,11 @@ impl NetworkPanel {
     /// the search is looked at.
     fn approved_key(context: &Context<'_>) -> Option<String> {
         let state = context.state;
-        let is_wanted = state.workspace == Workspace::Review
+        let is_wanted = state.window.workspace == Workspace::Review
             && state.settings.views.timeline.approved
             && context.step().is_none();
         let (entry, _) = state.review.record().last_approval().filter(|_| is_wanted)?;
-        let review = state.current_review()?;
+        let review = state.review.current()?;
         Some(format!("{} {} {}", entry.digest(), review.content_hash, review.plan_hash))
     }
 
@@ -159,7 +165,7 @@ impl NetworkPanel {
             }
             Asked::FitAll => {
                 self.detail.reset();
-                commands.send(Command::ViewOf(PanelKind::Network, ViewAction::Fit));
+                commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Network, ViewAction::Fit)));
                 return;
             }
             Asked::CloseAll => {
@@ -185,7 +191,7 @@ impl NetworkPanel {
         commands: &mut CommandSender,
     ) {
         let plan = context.plan().map(|(_, plan)| plan).filter(|plan| fits(plan, network));
-        let times = || context.state.approved_times();
+        let times = || context.state.review.approved_times();
         let approved = Self::approved_key(context).map(|key| data::Approved { key, times: &times });
         self.drawn.list(network, plan, options, approved.as_ref());
         let now = context.state.playback.time;
@@ -273,7 +279,7 @@ impl NetworkPanel {
         });
         let mut drawn = Drawn::default();
         drawn.follow(snapshot, network, context.step(), &detail, None, windows_of);
-        let times = || context.state.approved_times();
+        let times = || context.state.review.approved_times();
         let approved = Self::approved_key(context).map(|key| data::Approved { key, times: &times });
         drawn.list(network, plan, options, approved.as_ref());
         for format in formats {
@@ -383,7 +389,7 @@ impl NetworkPanel {
 
     /// Brings a new selection into view if none of it is.
     fn follow_selection(&mut self, panel: Rect, context: &Context<'_>, network: &Network) {
-        let selection = &context.state.selection;
+        let selection = &*context.state.selection;
         if *selection == self.followed_selection {
             return;
         }

@@ -3,8 +3,10 @@
 use egui::{RichText, TextEdit, Ui};
 use theme::space;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, PictureFormat, ViewAction};
+use workbench::command::{Command, CommandSender};
 use workbench::state::settings::NetworkView;
+use workbench::state::window::WindowCommand;
+use workbench::{PictureFormat, ViewAction};
 
 use super::search::Search;
 use crate::Context;
@@ -69,12 +71,12 @@ pub(super) fn show(
         }
         let small = |name: &str| egui::Button::new(RichText::new(name).small());
         if ui.add(small("Fit")).on_hover_text("Show everything (F)").clicked() {
-            commands.send(Command::ViewOf(PanelKind::Network, ViewAction::Fit));
+            commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Network, ViewAction::Fit)));
         }
         ui.menu_button(RichText::new("Save").small(), |ui| {
             for (format, name) in [(PictureFormat::Svg, "As SVG"), (PictureFormat::Png, "As PNG")] {
                 if ui.button(name).clicked() {
-                    commands.send(Command::SaveNetwork(format));
+                    commands.send(Command::Window(WindowCommand::SaveNetwork(format)));
                     ui.close();
                 }
             }

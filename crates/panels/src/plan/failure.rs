@@ -7,7 +7,8 @@ use text_editing::EditKind;
 use theme::icon::{self, Icon};
 use theme::space;
 use tpn::Network;
-use workbench::command::{Command, CommandSender, EditorCommand};
+use workbench::command::{Command, CommandSender};
+use workbench::state::editor::EditorCommand;
 use workbench::state::selection::alternative_text;
 
 use crate::Context;

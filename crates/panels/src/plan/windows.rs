@@ -7,6 +7,7 @@ use tpn::{EventEnd, EventRef, Network, NodeId, Plan};
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
+use workbench::state::settings::SettingsCommand;
 use workbench::state::settings::WindowSort;
 use workbench::time_text;
 
@@ -64,7 +65,7 @@ impl WindowTable {
             if ui.add(egui::Button::selectable(shown, RichText::new("Path points").small())).clicked() {
                 let mut views = context.state.settings.views.clone();
                 views.plan.path_points = !shown;
-                commands.send(Command::SetViews(Box::new(views)));
+                commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));
             }
         });
         ui.add_space(space::XS);
@@ -185,7 +186,7 @@ fn show_header(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender)
             let mut views = context.state.settings.views.clone();
             views.plan.descending = is_sorted && !view.descending;
             views.plan.sort = sort;
-            commands.send(Command::SetViews(Box::new(views)));
+            commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));
         }
     }
     ui.painter().hline(rect.x_range(), rect.bottom(), egui::Stroke::new(1.0, context.tokens.line));
@@ -249,7 +250,7 @@ fn show_row(
 
 /// An event is selected by itself or with its activity.
 fn is_selected(context: &Context<'_>, network: &Network, row: &Row) -> bool {
-    match &context.state.selection {
+    match &*context.state.selection {
         Selection::Node(node) => *node == row.node,
         selection @ (Selection::Occurrence(_) | Selection::Label(_)) => {
             selection.occurrence(network).is_some_and(|occurrence| row.event.occurrence == occurrence)

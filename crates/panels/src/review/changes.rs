@@ -46,7 +46,7 @@ impl Changes {
     ) {
         let state = context.state;
         let approval = state.review.record().last_approval();
-        let Some(((entry, approved), review)) = approval.zip(state.current_review()) else { return };
+        let Some(((entry, approved), review)) = approval.zip(state.review.current()) else { return };
         let Some(snapshot) = context.snapshot.filter(|_| !context.is_stale) else { return };
         let found = state.robustness().map(AsRef::as_ref);
         let is_known = self.made.as_ref().is_some_and(|(key, _)| {

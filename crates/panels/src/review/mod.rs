@@ -53,8 +53,8 @@ impl Panel for ReviewPanel {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             Frame::new().inner_margin(Margin::symmetric(10, 8)).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = space::S;
-                let shown = state.review.shown(state.settings.plan.search);
-                let standing = state.standing();
+                let shown = state.review.shown();
+                let standing = state.review.standing();
                 verdict::show(ui, context, shown, standing.as_ref(), &mut self.people, commands);
                 self.changes.show(ui, context, &mut self.closed, commands);
                 if let Some((review, is_stale)) = shown {
@@ -157,7 +157,7 @@ impl ReviewPanel {
 /// Whether the review that is shown is of another content than the present one.
 fn is_stale(context: &Context<'_>) -> bool {
     let state = context.state;
-    state.review.shown(state.settings.plan.search).is_some_and(|(_, is_stale)| is_stale)
+    state.review.shown().is_some_and(|(_, is_stale)| is_stale)
 }
 
 /// The sign, the word and the colour of a status. What was reviewed of another text keeps its words, in grey.

@@ -2,7 +2,8 @@
 
 use egui::{Button, Ui};
 use snapshot::Robustness;
-use workbench::command::{self, CommandSender};
+use workbench::command::CommandSender;
+use workbench::registry;
 
 use super::row;
 use crate::Context;
@@ -36,7 +37,7 @@ pub(super) fn show(
         );
         ui.horizontal(|ui| {
             ui.add_space(row::INDENT);
-            let spec = command::by_id(COMMAND);
+            let spec = registry::by_id(COMMAND);
             let refused =
                 spec.map_or(Err("this build cannot execute plans"), |spec| (spec.available)(context.state));
             let button = ui.add_enabled(refused.is_ok(), Button::new("Run with chance"));

@@ -174,7 +174,7 @@ pub(super) fn background(ui: &Ui, context: &Context<'_>, rect: Rect, response: &
 /// The names of what is selected, as the lines of a review name things.
 pub(super) fn selected_names(context: &Context<'_>) -> Vec<String> {
     let network = context.snapshot.and_then(|snapshot| snapshot.network.as_deref());
-    let selection = &context.state.selection;
+    let selection = &*context.state.selection;
     match (selection, network) {
         (Selection::None, _) => Vec::new(),
         (Selection::Node(id), Some(network)) => network

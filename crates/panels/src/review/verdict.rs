@@ -10,6 +10,7 @@ use workbench::command::{Command, CommandSender};
 use workbench::state;
 use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
+use workbench::state::window::WindowCommand;
 
 use super::people::{People, who};
 use super::status_look;
@@ -125,7 +126,7 @@ fn content(ui: &mut Ui, context: &Context<'_>, review: &Review, commands: &mut C
     let label = ui.add(egui::Button::new(text).frame(false));
     let label = label.on_hover_text(format!("SHA-256 of text, map and seed. Click to copy.\n{hash}"));
     if label.accessible_name("Copy the content hash").clicked() {
-        commands.send(Command::Copy(hash.clone()));
+        commands.send(Command::Window(WindowCommand::Copy(hash.clone())));
     }
 }
 

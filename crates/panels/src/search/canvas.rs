@@ -7,7 +7,7 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, StrokeKind
 use kirk::{Event, Trace, TreeChoice, TreeNodeId, TreeStatus};
 use theme::size;
 use tpn::Network;
-use workbench::command::ViewAction;
+use workbench::ViewAction;
 use workbench::state::search::focus::concerns;
 use workbench::state::search::{Share, wording};
 

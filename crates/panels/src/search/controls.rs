@@ -7,6 +7,8 @@ use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::state::search::{Recording, SearchCommand};
+use workbench::state::settings::SettingsCommand;
+use workbench::state::window::WindowCommand;
 
 use super::{kind_help, kind_name};
 use crate::Context;
@@ -45,7 +47,7 @@ fn show_steps(ui: &mut Ui, context: &Context<'_>, recordings: &[Recording], comm
         (Icon::ToEnd, "Last step (End)", SearchCommand::GoTo(usize::MAX)),
     ] {
         if icon::toggle(ui, tokens, sign, name, sign == Icon::Pause).clicked() {
-            commands.send(Command::Activate(PanelKind::Search));
+            commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(command));
         }
     }
@@ -160,6 +162,6 @@ fn show_kind(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         .response
         .accessible_name("Search");
     if kind != context.state.settings.plan.search {
-        commands.send(Command::SetSearch(kind));
+        commands.send(Command::Settings(SettingsCommand::SetSearch(kind)));
     }
 }

@@ -20,8 +20,8 @@ pub fn follow(
     commands: &mut CommandSender,
 ) {
     let trace = recording.trace();
-    let is_meant = context.state.active_panel == PanelKind::Search
-        && context.state.dialog.is_none()
+    let is_meant = context.state.window.active_panel == PanelKind::Search
+        && context.state.window.dialog.is_none()
         && !crate::keyboard_navigation::has_focus(ui);
     if !is_meant {
         return;

@@ -7,9 +7,11 @@ use kirk::Search as SearchKind;
 use kirk::{TreeChoice, TreeNodeId, TreeStatus};
 use theme::space;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::search::focus::selection_of;
 use workbench::state::search::{MergedTree, Recording, SearchCommand, Share};
+use workbench::state::window::WindowCommand;
 
 use super::canvas::{self, Pointed, Tree};
 use super::kind_name;
@@ -163,7 +165,7 @@ impl MergedSide {
                 self.toggled.insert(hovered);
             }
         } else if pointed.clicked {
-            commands.send(Command::Activate(PanelKind::Search));
+            commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(SearchCommand::Turn(side)));
             let click = self.drawn.as_ref().map(|drawn| drawn.own[side].goal_of_click(state));
             commands.send(Command::Search(click.unwrap_or(SearchCommand::GoToNode(state))));

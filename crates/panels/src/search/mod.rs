@@ -19,10 +19,13 @@ use kirk::Search as SearchKind;
 use kirk::TreeNodeId;
 use theme::space;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::search::focus::selection_of;
 use workbench::state::search::{Recording, SearchCommand};
+use workbench::state::settings::SettingsCommand;
+use workbench::state::window::WindowCommand;
 
 use crate::{Context, Panel};
 use canvas::{Pointed, Tree};
@@ -309,7 +312,7 @@ impl Side {
                 self.toggled.insert(state);
             }
         } else if pointed.clicked {
-            commands.send(Command::Activate(PanelKind::Search));
+            commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(SearchCommand::Turn(number)));
             commands.send(Command::Search(drawn.index.goal_of_click(state)));
             let choice = drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice);
@@ -350,7 +353,7 @@ fn show_unrecorded(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         ui.label(RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);
         if ui.button("Record the search").clicked() {
-            commands.send(Command::SetTrace(true));
+            commands.send(Command::Settings(SettingsCommand::SetTrace(true)));
         }
     });
 }

@@ -5,6 +5,7 @@ use kirk::Status;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::state::search::{Counts, Recording, SearchCommand};
+use workbench::state::window::WindowCommand;
 
 use super::kind_name;
 use crate::Context;
@@ -32,7 +33,7 @@ pub fn show(
             let text = theme::strong(name).color(color);
             let button = ui.add(egui::Button::selectable(is_active, text));
             if button.on_hover_text("The other panels show this search").clicked() {
-                commands.send(Command::Activate(PanelKind::Search));
+                commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
                 commands.send(Command::Search(SearchCommand::Turn(side)));
             }
             let (text, color) = match searched.status {

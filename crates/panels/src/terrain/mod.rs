@@ -31,6 +31,7 @@ use theme::space;
 use tpn::OccurrenceId;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
+use workbench::state::settings::SettingsCommand;
 use workbench::state::settings::TerrainView;
 use workbench::state::terrain::{TerrainCommand, Tool};
 
@@ -88,15 +89,15 @@ impl Panel for TerrainPanel {
         let followed = self.follow;
         toolbar::show(ui, context, snapshot, &mut view, &mut self.follow, commands);
         if view != views.terrain {
-            commands.send(Command::SetViews(Box::new(workbench::state::Views {
+            commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(workbench::state::Views {
                 terrain: view.clone(),
                 ..views.clone()
-            })));
+            }))));
         }
         if self.follow != followed && self.follow.is_some() {
             self.fly_to_followed(context, snapshot);
         }
-        let map = snapshot.map.as_ref().and_then(|key| context.state.maps.get(key));
+        let map = context.state.maps.of(snapshot);
         self.show_ground(context, map, snapshot, &view);
         self.lay_decal(context, snapshot, map, &view);
         self.show_image(ui, context, snapshot, map, &view, commands);

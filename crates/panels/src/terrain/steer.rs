@@ -7,7 +7,7 @@ use terrain_view::camera::Camera;
 use terrain_view::flight::Flight;
 use terrain_view::{pick, scene};
 use workbench::PanelKind;
-use workbench::command::ViewAction;
+use workbench::ViewAction;
 use workbench::state::Selection;
 
 use super::{TerrainPanel, clearance};
@@ -66,7 +66,7 @@ impl TerrainPanel {
             ViewAction::TopView => self.fly(camera, camera.top_view(), context),
             ViewAction::FitSelection => {
                 self.follow = None;
-                match &context.state.selection {
+                match &*context.state.selection {
                     Selection::None => self.fly_to_sample(context),
                     selection => self.fly_to(context, snapshot, selection, None),
                 }

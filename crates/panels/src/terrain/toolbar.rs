@@ -4,10 +4,12 @@ use egui::Ui;
 use snapshot::Snapshot;
 use theme::space;
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::growth::GrowthCommand;
 use workbench::state::settings::{Coloring, HEIGHT_SCALES, TerrainView};
 use workbench::state::terrain::{TerrainCommand, Tool};
+use workbench::state::window::WindowCommand;
 
 use crate::Context;
 
@@ -86,7 +88,7 @@ fn camera_menu(
         (flight, ViewAction::FitSelection, can_fly),
     ] {
         if ui.add_enabled(is_enabled, egui::Button::new(name)).clicked() {
-            commands.send(Command::ViewOf(PanelKind::Terrain, action));
+            commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Terrain, action)));
             ui.close();
         }
     }

@@ -8,10 +8,13 @@ use theme::icon::{self, Icon};
 use theme::space;
 use tpn::{Network, OccurrenceKind};
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::PinCommand;
+use workbench::state::playback::TransportCommand;
+use workbench::state::settings::SettingsCommand;
+use workbench::state::window::WindowCommand;
 use workbench::time_text;
-use workbench::transport::TransportCommand;
 use workbench::workspace::Workspace;
 
 use super::handle;
@@ -69,7 +72,7 @@ fn range(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut C
     );
     ui.label(RichText::new(text).small().color(context.tokens.accent));
     if ui.button(RichText::new("Zoom").small()).on_hover_text("Show just this range").clicked() {
-        commands.send(Command::ViewOf(PanelKind::Timeline, ViewAction::FitSelection));
+        commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Timeline, ViewAction::FitSelection)));
     }
     if ui.button(RichText::new("Clear").small()).on_hover_text("Select no range (Escape)").clicked() {
         commands.send(Command::SelectTimes(None));
@@ -86,7 +89,7 @@ fn grouping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 if ui.selectable_label(chosen == choice, choice.title()).clicked() {
                     let mut views = context.state.settings.views.clone();
                     views.timeline.grouping = choice;
-                    commands.send(Command::SetViews(Box::new(views)));
+                    commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));
                 }
             }
         })
@@ -96,7 +99,7 @@ fn grouping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 
 /// The buttons that move time.
 pub(crate) fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    let playback = context.state.playback;
+    let playback = *context.state.playback;
     let (sign, name) = if playback.is_playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let buttons = [
         (Icon::ToStart, "To the start", Command::Seek(0.0)),
@@ -143,7 +146,7 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let mut views = context.state.settings.views.clone();
     let view = &mut views.timeline;
     let mut changed = false;
-    let has_approved = context.state.workspace == Workspace::Review
+    let has_approved = context.state.window.workspace == Workspace::Review
         && context.state.review.record().last_approval().is_some();
     if has_approved {
         let button = Button::selectable(view.approved, RichText::new("Approved").small());
@@ -170,7 +173,7 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
     }
     if changed {
-        commands.send(Command::SetViews(Box::new(views)));
+        commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));
     }
 }
 
@@ -187,7 +190,7 @@ fn zoom(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
     for (sign, name, action) in buttons {
         if icon::button(ui, context.tokens, sign, name).clicked() {
-            commands.send(Command::ViewOf(PanelKind::Timeline, action));
+            commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Timeline, action)));
         }
     }
 }

@@ -27,8 +27,10 @@ use smol_str::SmolStr;
 use snapshot::Snapshot;
 use tpn::{LabelId, Network, Plan};
 use workbench::PanelKind;
-use workbench::command::{Command, CommandSender, ViewAction};
+use workbench::ViewAction;
+use workbench::command::{Command, CommandSender};
 use workbench::state::settings::TimelineView;
+use workbench::state::window::WindowCommand;
 use workbench::state::{Selection, Status};
 use workbench::time_text;
 use workbench::workspace::Workspace;
@@ -125,8 +127,8 @@ impl TimelinePanel {
             (&state.settings.views.timeline, context.step().map(|step| Arc::clone(&step.plan)));
         let pins = state.pins.version();
         // What a step of the search shows is not what was reviewed.
-        let review = state.current_review().filter(|_| step.is_none()).cloned();
-        let is_reviewing = state.workspace == Workspace::Review && view.approved;
+        let review = state.review.current().filter(|_| step.is_none()).cloned();
+        let is_reviewing = state.window.workspace == Workspace::Review && view.approved;
         let approval = state.review.record().last_approval().filter(|_| is_reviewing);
         let approved = approval.map(|(entry, _)| entry.digest().to_owned());
         let is_current = self.prepared.as_ref().is_some_and(|it| {
@@ -151,12 +153,13 @@ impl TimelinePanel {
             // Pinned events only narrow windows: rows are those of the plan without them.
             let free = if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan };
             let mut chart = Chart::new(&snapshot.program, network, free, view.chart(), &self.closed);
-            let before = review.as_ref().filter(|_| approved.is_some()).and_then(|_| state.approved_times());
+            let before =
+                review.as_ref().filter(|_| approved.is_some()).and_then(|_| state.review.approved_times());
             if let Some(before) = before {
                 chart.compare_with(&before, network, free);
             }
             if review.is_some() {
-                chart.add_rules(state.rule_tracks(), &self.closed);
+                chart.add_rules(state.review.rule_tracks(), &self.closed);
             }
             let silhouette = Silhouette::new(&chart);
             chart.retime(plan);
@@ -462,7 +465,7 @@ impl TimelinePanel {
             commands.send(Command::Select(selection));
         }
         if response.double_clicked() {
-            commands.send(Command::ViewOf(PanelKind::Timeline, ViewAction::Fit));
+            commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Timeline, ViewAction::Fit)));
         }
         if let Some(pointed) = pointed {
             let name = link::name(pointed.kind, painting.network);
@@ -486,7 +489,7 @@ impl TimelinePanel {
 
     /// Scrolls to the row of a new selection.
     fn follow_selection(&mut self, ui: &Ui, painting: &Painting<'_>) {
-        let selection = &painting.context.state.selection;
+        let selection = &*painting.context.state.selection;
         if *selection == self.followed_selection {
             return;
         }

@@ -7,9 +7,9 @@ use exact::Rational;
 use serde_json::Value as Json;
 
 use super::expression::{Expression, Value};
+use super::facts::Known;
 use super::show::command_of;
 use super::{LessonError, entries};
-use crate::state::AppState;
 
 /// A question, or a task.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,40 +54,40 @@ pub struct Choice {
 pub enum Action {
     /// In the mission text, the first of these words become the second.
     Replace(String, String),
-    /// A command with its arguments.
-    Command(String, Json),
+    /// The line of a command, its name and its arguments.
+    Command(u32, String, Json),
 }
 
 impl Answer {
     /// Whether what was answered is right, and nothing while that is not known: the number of a choice from 0, a number
     /// or a word; a task is judged by the state alone.
-    pub fn is_right(&self, given: &str, state: &AppState) -> Option<bool> {
+    pub fn is_right(&self, given: &str, known: &dyn Known) -> Option<bool> {
         match self {
-            Self::Choice(choices) => choices.get(given.parse::<usize>().ok()?)?.is_right.holds(state),
+            Self::Choice(choices) => choices.get(given.parse::<usize>().ok()?)?.is_right.holds(known),
             Self::Number(expression, within) => {
-                let right = expression.number(state)?;
+                let right = expression.number(known)?;
                 let Some(given) = number_in(given) else { return Some(false) };
                 let off = given.checked_sub(right)?;
                 let off = if off.is_negative() { off.checked_neg()? } else { off };
                 Some(off <= *within)
             }
             Self::Word(expression) => {
-                let right = expression.value(state)?.to_string();
+                let right = expression.value(known)?.to_string();
                 Some(words_in(&right) == words_in(given))
             }
-            Self::Task(expression) => expression.holds(state),
+            Self::Task(expression) => expression.holds(known),
         }
     }
 
     /// What would be right now, as somebody would give it; nothing while that is not known, and for a task.
-    pub fn right_now(&self, state: &AppState) -> Option<String> {
+    pub fn right_now(&self, known: &dyn Known) -> Option<String> {
         match self {
             Self::Choice(choices) => {
-                let right = choices.iter().position(|choice| choice.is_right.holds(state) == Some(true))?;
+                let right = choices.iter().position(|choice| choice.is_right.holds(known) == Some(true))?;
                 Some(right.to_string())
             }
-            Self::Number(expression, _) => expression.number(state).map(|number| number.to_string()),
-            Self::Word(expression) => expression.value(state).map(|value| value.to_string()),
+            Self::Number(expression, _) => expression.number(known).map(|number| number.to_string()),
+            Self::Word(expression) => expression.value(known).map(|value| value.to_string()),
             Self::Task(_) => None,
         }
     }
@@ -193,7 +193,7 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
             },
             "hint" => hint = value,
             "because" => because = value,
-            "solution" => match action(&value) {
+            "solution" => match action(line, &value) {
                 Ok(action) => solution.push(action),
                 Err(message) => errors.push(LessonError::new(line, message)),
             },
@@ -243,9 +243,9 @@ fn choice(written: &str) -> Result<Choice, String> {
 }
 
 /// `"10,20" becomes "10,35"`, or a command with its arguments.
-fn action(value: &str) -> Result<Action, String> {
+fn action(line: u32, value: &str) -> Result<Action, String> {
     if !value.starts_with('"') {
-        return command_of(value).map(|(id, arguments)| Action::Command(id, arguments));
+        return command_of(value).map(|(id, arguments)| Action::Command(line, id, arguments));
     }
     let quoted = value.trim().strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
     match quoted.and_then(|inside| inside.split_once("\" becomes \"")) {

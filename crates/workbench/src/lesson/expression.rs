@@ -11,8 +11,7 @@ use std::fmt;
 
 use exact::Rational;
 
-use super::facts::{self, Fact};
-use crate::state::AppState;
+use super::facts::{self, Fact, Known};
 
 /// What comes of an expression.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,34 +73,34 @@ impl Expression {
     }
 
     /// What it comes to now; nothing while something in it is not known, or does not exist.
-    pub fn value(&self, state: &AppState) -> Option<Value> {
+    pub fn value(&self, known: &dyn Known) -> Option<Value> {
         match self {
             Self::Constant(value) => Some(value.clone()),
-            Self::Fact(fact, argument) => (fact.value)(state, argument),
-            Self::Not(expression) => Some(Value::Truth(!expression.holds(state)?)),
+            Self::Fact(fact, argument) => known.value_of(fact.name, argument),
+            Self::Not(expression) => Some(Value::Truth(!expression.holds(known)?)),
             Self::Both(left, Operator::And, right) => {
-                Some(Value::Truth(left.holds(state)? && right.holds(state)?))
+                Some(Value::Truth(left.holds(known)? && right.holds(known)?))
             }
             Self::Both(left, Operator::Or, right) => {
-                Some(Value::Truth(left.holds(state)? || right.holds(state)?))
+                Some(Value::Truth(left.holds(known)? || right.holds(known)?))
             }
             Self::Both(left, operator, right) => {
-                combined(&left.value(state)?, *operator, &right.value(state)?)
+                combined(&left.value(known)?, *operator, &right.value(known)?)
             }
         }
     }
 
     /// Whether it is true now; nothing if that is not known.
-    pub fn holds(&self, state: &AppState) -> Option<bool> {
-        match self.value(state)? {
+    pub fn holds(&self, known: &dyn Known) -> Option<bool> {
+        match self.value(known)? {
             Value::Truth(truth) => Some(truth),
             Value::Number(_) | Value::Text(_) => None,
         }
     }
 
     /// The number that it comes to now.
-    pub fn number(&self, state: &AppState) -> Option<Rational> {
-        match self.value(state)? {
+    pub fn number(&self, known: &dyn Known) -> Option<Rational> {
+        match self.value(known)? {
             Value::Number(number) => Some(number),
             Value::Truth(_) | Value::Text(_) => None,
         }

@@ -98,7 +98,7 @@ pub struct LessonError {
 }
 
 impl LessonError {
-    fn new(line: u32, message: impl Into<String>) -> Self {
+    pub(crate) fn new(line: u32, message: impl Into<String>) -> Self {
         Self { line, message: message.into() }
     }
 }
@@ -169,6 +169,17 @@ impl Lesson {
     pub fn mission_at(&self, stop: usize) -> &LessonMission {
         let before = self.stops.iter().take(stop.saturating_add(1)).rev();
         before.into_iter().find_map(|stop| stop.mission.as_ref()).unwrap_or(&self.mission)
+    }
+
+    /// The commands that its stops and solutions do, by name, with their lines.
+    pub fn commands(&self) -> impl Iterator<Item = (u32, &str)> {
+        let shown =
+            self.stops.iter().flat_map(|stop| &stop.show.commands).map(|(line, id, _)| (*line, id.as_str()));
+        let solutions = self.stops.iter().filter_map(|stop| stop.ask.as_ref()).flat_map(|ask| &ask.solution);
+        shown.chain(solutions.filter_map(|action| match action {
+            Action::Command(line, id, _) => Some((*line, id.as_str())),
+            Action::Replace(..) => None,
+        }))
     }
 
     /// The text of a mission stands in the prose too where its fence says `shown`.

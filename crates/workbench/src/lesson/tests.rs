@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use exact::Rational;
 
 use super::*;
-use crate::PanelKind;
+use crate::description::Description;
+use crate::panel_kind::PanelKind;
+use crate::registry::read_lesson;
 use crate::state::AppState;
 use crate::workspace::Workspace;
 
@@ -57,7 +59,7 @@ solution: search.goTo {"step": 4}
 "#;
 
 fn errors(text: &str) -> Vec<(u32, String)> {
-    let (_, errors) = Lesson::read("x", text);
+    let (_, errors) = read_lesson("x", text);
     errors.into_iter().map(|error| (error.line, error.message)).collect()
 }
 
@@ -75,7 +77,7 @@ fn check(lines: &str, line: u32, words: &str) {
 
 #[test]
 fn a_whole_lesson_is_read() {
-    let (lesson, errors) = Lesson::read("whole", WHOLE);
+    let (lesson, errors) = read_lesson("whole", WHOLE);
     assert_eq!(errors, []);
     assert_eq!((lesson.title.as_str(), lesson.about.as_str()), ("A title", "Something"));
     assert_eq!((&lesson.mission, lesson.search), (&LessonMission::Example("enroute"), LessonSearch::Both));
@@ -143,7 +145,7 @@ fn a_lesson_needs_a_title_and_a_mission() {
 }
 
 fn value(text: &str) -> Option<Value> {
-    Expression::read(text).expect("an expression").value(&AppState::new())
+    Expression::read(text).expect("an expression").value(&Description::of(&AppState::new()))
 }
 
 #[test]
@@ -166,27 +168,28 @@ fn expressions_count_and_compare() {
 #[test]
 fn answers_are_judged() {
     let state = AppState::new();
+    let known = Description::of(&state);
     let number =
         Answer::Number(Expression::read("5 / 2").expect("a number"), Rational::new(1, 10).expect("a tenth"));
     for (given, is_right) in [("2.5", true), ("2,5", true), ("2.45", true), ("2.3", false), ("two", false)] {
-        assert_eq!(number.is_right(given, &state), Some(is_right), "{given}");
+        assert_eq!(number.is_right(given, &known), Some(is_right), "{given}");
     }
     let word = Answer::Word(Expression::read("\"Deploy#1\"").expect("a word"));
-    assert_eq!(word.is_right(" deploy#1 ", &state), Some(true));
-    assert_eq!(word.is_right("Stow#1", &state), Some(false));
+    assert_eq!(word.is_right(" deploy#1 ", &known), Some(true));
+    assert_eq!(word.is_right("Stow#1", &known), Some(false));
     // Right in other words, and wrong in words that look like it.
     let minutes = Answer::Number(Expression::read("20").expect("a number"), Rational::ZERO);
     for given in ["20", " 20 min", "20 minutes.", "20,0", "+20", "40/2", "20 %", "20min"] {
-        assert_eq!(minutes.is_right(given, &state), Some(true), "{given}");
+        assert_eq!(minutes.is_right(given, &known), Some(true), "{given}");
     }
     for given in
         ["", "2", "-20", "−20", "20 to 30", "20-30", "20 30", "min", "about 20", "200", "20,5", "two"]
     {
-        assert_eq!(minutes.is_right(given, &state), Some(false), "{given}");
+        assert_eq!(minutes.is_right(given, &known), Some(false), "{given}");
     }
     let two = Answer::Number(Expression::read("2").expect("a number"), Rational::ZERO);
     assert_eq!(
-        ["two", "Two", "twelve"].map(|it| two.is_right(it, &state)),
+        ["two", "Two", "twelve"].map(|it| two.is_right(it, &known)),
         [Some(true), Some(true), Some(false)]
     );
     let marks = Answer::Word(Expression::read("\"assert x=a, when s=on\"").expect("words"));
@@ -196,24 +199,24 @@ fn answers_are_judged() {
         "`assert x=a`,`when s=on`",
         "Assert X=A , when s=on.",
     ] {
-        assert_eq!(marks.is_right(given, &state), Some(true), "{given}");
+        assert_eq!(marks.is_right(given, &known), Some(true), "{given}");
     }
     for given in ["assert x=a", "assert x=b, when s=on", "assertx=a, when s=on", "assert x=a when s=on", ""] {
-        assert_eq!(marks.is_right(given, &state), Some(false), "{given}");
+        assert_eq!(marks.is_right(given, &known), Some(false), "{given}");
     }
     let goal = Answer::Word(Expression::read("\"lamp=on\"").expect("a word"));
     for (given, is_right) in
         [("(lamp = on)", true), ("“lamp=on”", true), ("lamp", false), ("lamp=off", false)]
     {
-        assert_eq!(goal.is_right(given, &state), Some(is_right), "{given}");
+        assert_eq!(goal.is_right(given, &known), Some(is_right), "{given}");
     }
     let tell = Answer::Word(Expression::read("\"Tell(PATH1=OK)#1\"").expect("a word"));
     for (given, is_right) in
         [("tell (PATH1 = OK) #1", true), ("Tell(PATH1=OK)", false), ("Tell(PATH1=OK)#2", false)]
     {
-        assert_eq!(tell.is_right(given, &state), Some(is_right), "{given}");
+        assert_eq!(tell.is_right(given, &known), Some(is_right), "{given}");
     }
-    assert_eq!(number.right_now(&state).as_deref(), Some("2.5"));
+    assert_eq!(number.right_now(&known).as_deref(), Some("2.5"));
 }
 
 #[test]

@@ -5,18 +5,23 @@
 //! and the original stays what it was.
 
 mod base64;
+mod command;
 mod mission;
+mod picture;
 mod template;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use smol_str::{SmolStr, format_smolstr};
+use text_editing::Document;
 
+pub use command::LibraryCommand;
 pub(crate) use mission::joined;
 pub use mission::{
     FORMAT, MAIN_TEXT, MapFile, Mission, MissionError, MissionId, MissionKind, TextFile, Version,
 };
+pub(crate) use picture::picture;
 pub use template::{TEMPLATES, Template, template};
 
 use mission::split;
@@ -83,6 +88,8 @@ pub struct Library {
     pub keeping: Keeping,
     /// What cannot be read.
     pub unreadable: Vec<Unreadable>,
+    /// The texts of other missions that were open in this run, with their histories.
+    pub(crate) set_aside: BTreeMap<MissionId, Document>,
     seed: u64,
     count: u64,
 }
@@ -102,6 +109,7 @@ impl Library {
             changes: BTreeSet::new(),
             keeping: Keeping::default(),
             unreadable: Vec::new(),
+            set_aside: BTreeMap::new(),
             seed: 0,
             count: 0,
         }

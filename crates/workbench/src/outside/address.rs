@@ -8,12 +8,13 @@ use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_with_limit, decompress
 
 use crate::command::Command;
 use crate::host::Host;
+use crate::library::LibraryCommand;
 use crate::library::{MissionId, MissionKind, Open};
 use crate::limits::MAX_TEXT_BYTES;
 use crate::mission_file;
+use crate::state::AppState;
 use crate::state::lesson::LessonCommand;
-use crate::state::missions::LibraryCommand;
-use crate::state::{AppState, ToastKind};
+use crate::state::settings::SettingsCommand;
 use crate::workspace::Workspace;
 
 /// The fragment that brings back the open lesson at its stop, or the open mission, the workspace, the step of the search and the time.
@@ -31,7 +32,7 @@ pub fn fragment(state: &AppState) -> String {
     let time = state.playback.time;
     let time = if time > 0.0 { format!("&t={time}") } else { String::new() };
     let step = state.search.step().map(|step| format!("&step={}", step.step + 1)).unwrap_or_default();
-    format!("{mission}&workspace={}{step}{time}", state.workspace.name())
+    format!("{mission}&workspace={}{step}{time}", state.window.workspace.name())
 }
 
 /// Lets the address name the mission that is open, unless it does already: what was edited is never brought back as it
@@ -86,11 +87,11 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
             }
             "mission" => match mission_file::example(value) {
                 Some(example) => state.apply(Command::OpenExample(example.name.into())),
-                None => state.toasts.add(ToastKind::Failed, format!("There is no mission \"{value}\"")),
+                None => state.window.failed(format!("There is no mission \"{value}\"")),
             },
             "source" => match unpack(value) {
                 Ok(source) => state.apply(Command::OpenSource { name: "shared".into(), source }),
-                Err(reason) => state.toasts.add(ToastKind::Failed, reason.to_string()),
+                Err(reason) => state.window.failed(reason.to_string()),
             },
             "workspace" => {
                 if let Some(workspace) = Workspace::by_name(value) {
@@ -114,7 +115,7 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
         match key {
             "step" => {
                 if let Ok(step) = value.parse::<usize>() {
-                    state.apply(Command::SetTrace(true));
+                    state.apply(Command::Settings(SettingsCommand::SetTrace(true)));
                     state.want_step(step);
                 }
             }
@@ -256,7 +257,7 @@ mod tests {
         let before = state.document.text().to_owned();
         open_fragment(&mut state, "source=3.AAAA");
         assert_eq!(state.document.text(), before);
-        assert!(state.toasts.shown()[0].text.contains("later version"));
+        assert!(state.window.toasts.shown()[0].text.contains("later version"));
     }
 
     #[test]
@@ -267,7 +268,7 @@ mod tests {
             open_fragment(&mut state, damaged);
         }
         assert_eq!(state.document.text(), before);
-        assert!(!state.toasts.shown().is_empty());
+        assert!(!state.window.toasts.shown().is_empty());
     }
 
     #[test]
@@ -289,7 +290,7 @@ mod tests {
         let mut again = AppState::new();
         open_fragment(&mut again, &fragment(&state));
         assert_eq!(again.document.text(), "scenario S { }");
-        assert_eq!(again.workspace, Workspace::Review);
+        assert_eq!(again.window.workspace, Workspace::Review);
         assert_eq!(again.playback.time, 12.5);
     }
 }

@@ -14,7 +14,7 @@ use smol_str::SmolStr;
 use crate::host::{Host, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 use crate::library::{Change, Keeping, Mission, MissionError, MissionId, MissionKind, Unreadable};
 use crate::mission_file;
-use crate::state::{AppState, ToastKind};
+use crate::state::AppState;
 
 /// The mission that was open last.
 const LAST_KEY: &str = "enroute/open-1";
@@ -108,7 +108,7 @@ impl Keeper {
             Some(id) => {
                 self.wants_last = false;
                 state.open_mission(&id);
-                state.toasts.add(ToastKind::Done, "Your text is as you left it");
+                state.window.done("Your text is as you left it");
             }
             None => self.wants_last = self.shelf == Shelf::Opening,
         }
@@ -166,11 +166,11 @@ impl Keeper {
                         }
                     }
                     Ok(None) => {
-                        state.toasts.add(ToastKind::Failed, format!("The map {name} is not kept any more"));
+                        state.window.failed(format!("The map {name} is not kept any more"));
                     }
                     Err(reason) => {
                         let text = format!("The map {name} cannot be read: {reason}");
-                        state.toasts.add(ToastKind::Failed, text);
+                        state.window.failed(text);
                     }
                 }
             }
@@ -340,7 +340,7 @@ impl Keeper {
         let count = state.library.unreadable.len();
         let what = if count == 1 { "A kept mission" } else { "Kept missions" };
         let text = format!("{what} cannot be read ({reason}); it stays where it is, see File · Missions");
-        state.toasts.add(ToastKind::Failed, text);
+        state.window.failed(text);
     }
 
     fn read_small_copies(&mut self, state: &mut AppState, host: &dyn Host) {
@@ -400,16 +400,16 @@ impl Keeper {
         match &keeping {
             Keeping::Nothing(reason) if !std::mem::replace(&mut self.has_complained, true) => {
                 let text = format!("Your text is not kept when this closes ({reason}); save it as a file");
-                state.toasts.add(ToastKind::Failed, text);
+                state.window.failed(text);
             }
             Keeping::LatestOnly(reason) if !std::mem::replace(&mut self.has_complained, true) => {
                 let text = format!(
                     "Only your latest text is kept, without maps and versions ({reason}); save the mission as a file"
                 );
-                state.toasts.add(ToastKind::Failed, text);
+                state.window.failed(text);
             }
             Keeping::Kept if std::mem::take(&mut self.has_complained) => {
-                state.toasts.add(ToastKind::Done, "Your missions are kept again");
+                state.window.done("Your missions are kept again");
             }
             _ => {}
         }

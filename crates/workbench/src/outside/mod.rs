@@ -1,26 +1,30 @@
 //! What the app tells and hears through its host: remembered settings, addresses, and its state as plain JSON.
 
 mod address;
+mod announcement;
 mod keeper;
-mod page_state;
+mod remote;
 
 use review::Record;
 use review::record::RecordError;
 
+use crate::effect::Aside;
 use crate::host::Host;
-use crate::state::review::{Aside, ReviewState};
-use crate::state::{AppState, Settings};
+use crate::state::AppState;
+use crate::state::review::ReviewState;
+use crate::state::settings::Settings;
 
 pub use address::{fragment, is_link_short, open_fragment, show_address};
+pub use announcement::announcement;
 pub use keeper::Keeper;
-pub use page_state::PageState;
+pub use remote::Remote;
 
 /// What the board said of the open mission when that was last kept.
 pub fn recall_review(host: &dyn Host, state: &mut AppState) {
     let mission = state.mission_key();
     let kept = host.stored(&ReviewState::key(&mission));
     let aside = host.stored(&ReviewState::aside_key(&mission, 0));
-    state.recall_review(kept.as_deref(), aside);
+    state.reviewing().recall(kept.as_deref(), aside);
 }
 
 /// Keeps what the board said of the open mission; `joins` adds what is kept already, perhaps by another tab. A full
@@ -46,7 +50,7 @@ fn make_way(host: &mut dyn Host, state: &mut AppState, key: &str, joins: bool) -
     match Record::from_json(&kept) {
         Ok(record) if joins => {
             state.review.join(record);
-            state.judge_reviews();
+            state.reviewing().judge();
             Ok(())
         }
         Ok(_) => Ok(()),

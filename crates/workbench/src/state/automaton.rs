@@ -147,16 +147,19 @@ impl AutomatonState {
         self.wants_answer = is_control;
     }
 
-    /// What to ask the core, once whenever that has changed.
-    pub fn take_request(&mut self, document: &Document) -> Option<ControlRun> {
-        if !std::mem::take(&mut self.wants_answer) {
-            return None;
-        }
+    /// Whether there is something to ask the core.
+    pub(crate) const fn wants_answer(&self) -> bool {
+        self.wants_answer
+    }
+
+    /// What to ask the core.
+    pub(crate) fn request(&mut self, document: &Document) -> ControlRun {
+        self.wants_answer = false;
         self.asked += 1;
         self.is_waiting = true;
         self.coming.clear();
         self.coming.extend(self.moments.iter().take(self.fresh).cloned());
-        Some(ControlRun {
+        ControlRun {
             token: self.asked,
             revision: self.revision,
             source: document.shared_text().into(),
@@ -166,7 +169,7 @@ impl AutomatonState {
             held_program: self.program_key,
             held_run: self.run_key,
             held: self.fresh as u32,
-        })
+        }
     }
 
     /// Takes what the core answered.
@@ -208,7 +211,7 @@ impl AutomatonState {
     }
 
     /// The core stopped over what it was asked.
-    pub(super) const fn give_up(&mut self) {
+    pub(crate) const fn give_up(&mut self) {
         self.is_waiting = false;
         self.is_playing = false;
         self.chance.give_up();
@@ -471,7 +474,8 @@ mod tests {
 
         /// Answers what is asked, as long as something is.
         fn answer(&mut self) {
-            while let Some(wanted) = self.state.take_request(&self.document) {
+            while self.state.wants_answer() {
+                let wanted = self.state.request(&self.document);
                 let mut answers = Answers::default();
                 self.core.handle(link::Request::RunControl(wanted), &mut answers);
                 for standing in answers.0 {
@@ -617,9 +621,9 @@ mod tests {
     fn an_answer_to_what_was_asked_before_is_not_taken() {
         let mut state = orbit_insertion();
         state.state.apply(AutomatonCommand::Step(1));
-        let earlier = state.state.take_request(&state.document).expect("it is asked for");
+        let earlier = state.state.request(&state.document);
         state.state.apply(AutomatonCommand::Step(1));
-        let later = state.state.take_request(&state.document).expect("it is asked for");
+        let later = state.state.request(&state.document);
         let mut answers = Answers::default();
         state.core.handle(link::Request::RunControl(earlier), &mut answers);
         state.core.handle(link::Request::RunControl(later), &mut answers);

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use link::{Request, Response};
-use review::content_hash;
+use link::{Request, Response, Update};
 use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
-use super::{AppState, ToastKind};
+use crate::state::window::Window;
 
 /// What is left to chance, and the runs made so far.
 #[derive(Debug)]
@@ -53,17 +52,17 @@ impl ChanceState {
     }
 
     /// The runs asked for are not made any more; what was found is kept.
-    pub(super) fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         self.running = None;
     }
 
     /// What the runs of this content came to: see [`review::content_hash`].
-    pub fn of_content(&self, content_hash: &str) -> Option<Arc<Robustness>> {
-        self.of_content.iter().find(|(of, _)| of == content_hash).map(|(_, found)| Arc::clone(found))
+    pub fn of_content(&self, content_hash: &str) -> Option<&Arc<Robustness>> {
+        self.of_content.iter().find(|(of, _)| of == content_hash).map(|(_, found)| found)
     }
 
     /// Takes what is known from elsewhere, unless more runs were made here.
-    pub(super) fn learn(&mut self, content_hash: &str, found: Robustness) {
+    pub(crate) fn learn(&mut self, content_hash: &str, found: Robustness) {
         let known = self.of_content(content_hash).map_or(0, |known| known.tally.runs);
         if found.tally.runs > known {
             self.keep(content_hash.to_owned(), found);
@@ -82,72 +81,69 @@ impl ChanceState {
     }
 }
 
-impl AppState {
-    /// How the present mission fares in many runs with chance, if runs were made of it.
-    pub fn robustness(&self) -> Option<&Arc<Robustness>> {
-        let content = self.review.hash()?;
-        self.chance.of_content.iter().find(|(of, _)| of == content).map(|(_, found)| found)
-    }
-
-    pub(super) fn apply_to_chance(&mut self, command: ChanceCommand) {
+impl ChanceState {
+    /// Does what a command asks for; `planned` is the mission as it is planned, with its content hash. Returns the
+    /// content whose runs have ended, if some have.
+    pub(crate) fn apply(
+        &mut self,
+        command: ChanceCommand,
+        planned: Option<(Update, String)>,
+        window: &mut Window,
+    ) -> Option<String> {
         match command {
             ChanceCommand::Start => {
-                self.chance.tally = Tally::default();
-                self.chance.running = self.update_shown().zip(self.shown()).map(|(update, shown)| {
-                    let map = shown.map.as_ref();
-                    let content = content_hash(&update.source, map, &update.goal, update.seed);
-                    (update.revision, content)
-                });
-                self.sample_on();
+                self.tally = Tally::default();
+                let (update, content) = planned.unzip();
+                self.running = update.as_ref().map(|update| update.revision).zip(content);
+                self.sample_on(update, window);
+                None
             }
-            ChanceCommand::Stop => {
-                let stopped = self.chance.running.take();
-                self.judge_reviews();
-                if let Some((_, content)) = stopped {
-                    self.keep_runs(&content);
-                }
-            }
+            ChanceCommand::Stop => self.running.take().map(|(_, content)| content),
             ChanceCommand::Set(settings) => {
-                self.chance.settings = *settings;
-                self.chance.settings.runs = self.chance.settings.runs.clamp(1, MAX_RUNS);
-                self.chance.running = None;
+                self.settings = *settings;
+                self.settings.runs = self.settings.runs.clamp(1, MAX_RUNS);
+                self.running = None;
+                None
             }
         }
     }
 
-    /// Asks for the next runs, unless all are made or the text has changed.
-    fn sample_on(&mut self) {
-        let wanted = self.chance.running.as_ref().map(|running| running.0);
-        let update = self.update_shown().filter(|update| Some(update.revision) == wanted);
-        let from = self.chance.tally.runs;
-        match update {
-            Some(update) if from < self.chance.settings.runs => {
-                let settings = self.chance.settings.clone();
-                self.effects.push(super::Effect::Post(Request::Sample { update, settings, from }));
+    /// Asks for the next runs of what is planned, unless all are made or the mission has changed.
+    fn sample_on(&mut self, update: Option<Update>, window: &mut Window) {
+        let wanted = self.running.as_ref().map(|running| running.0);
+        let from = self.tally.runs;
+        match update.filter(|update| Some(update.revision) == wanted) {
+            Some(update) if from < self.settings.runs => {
+                let settings = self.settings.clone();
+                window.post(Request::Sample { update, settings, from });
             }
-            _ => self.chance.running = None,
+            _ => self.running = None,
         }
     }
 
-    pub(super) fn take_sample(&mut self, answer: Response) {
-        let Response::Sampled { revision, settings, from, tally } = answer else { return };
-        let Some((running, content)) = self.chance.running.clone() else { return };
-        let is_wanted =
-            running == revision && *settings == self.chance.settings && from == self.chance.tally.runs;
+    /// Takes runs that were made. Returns the content whose runs have ended, if they have.
+    pub(crate) fn take(
+        &mut self,
+        answer: Response,
+        update: Option<Update>,
+        window: &mut Window,
+    ) -> Option<String> {
+        let Response::Sampled { revision, settings, from, tally } = answer else { return None };
+        let (running, content) = self.running.clone()?;
+        let is_wanted = running == revision && *settings == self.settings && from == self.tally.runs;
         if !is_wanted {
-            return;
+            return None;
         }
-        self.chance.tally.merge(&tally);
-        let robustness = Robustness { settings: *settings, tally: self.chance.tally.clone() };
-        self.chance.keep(content.clone(), robustness);
-        self.sample_on();
-        if !self.chance.is_running() {
-            self.judge_reviews();
-            self.keep_runs(&content);
+        self.tally.merge(&tally);
+        let robustness = Robustness { settings: *settings, tally: self.tally.clone() };
+        self.keep(content.clone(), robustness);
+        self.sample_on(update, window);
+        if self.is_running() {
+            return None;
         }
-        if !self.chance.is_running() && self.chance.tally.runs >= self.chance.settings.runs {
-            let text = format!("{} runs made", self.chance.tally.runs);
-            self.toasts.add(ToastKind::Done, text);
+        if self.tally.runs >= self.settings.runs {
+            window.done(format!("{} runs made", self.tally.runs));
         }
+        Some(content)
     }
 }

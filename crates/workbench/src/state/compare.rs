@@ -10,7 +10,8 @@ use review::record::{Subject, is_record};
 use serde_json::Value;
 use snapshot::{Goal, Snapshot};
 
-use crate::state::{AppState, Effect, ToastKind};
+use crate::effect::Effect;
+use crate::state::window::Window;
 
 /// Something that concerns the comparison.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,80 +53,86 @@ impl CompareState {
         self.waiting.as_ref().map(|(_, name)| name.as_str())
     }
 
-    pub(super) fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         self.waiting = None;
     }
 }
 
-impl AppState {
-    pub(super) fn apply_to_compare(&mut self, command: &CompareCommand) {
+impl CompareState {
+    /// Does what a command asks for; `shown` is the open mission, `record` what its board said.
+    pub(crate) fn apply(
+        &mut self,
+        command: &CompareCommand,
+        shown: Option<&Snapshot>,
+        record: &Record,
+        window: &mut Window,
+    ) {
         match command {
             CompareCommand::Pin => {
-                let Some(shown) = self.shown().filter(|shown| shown.plan().is_some()) else { return };
+                let Some(shown) = shown.filter(|shown| shown.plan().is_some()) else { return };
                 let name = format!("pinned revision {}", shown.revision);
                 let (side, text) = (Side::of_snapshot(&name, shown), Arc::clone(&shown.source));
-                self.compare.reference = Some(Arc::new(side));
-                self.compare.text = Some(text);
-                self.compare.waiting = None;
+                self.reference = Some(Arc::new(side));
+                self.text = Some(text);
+                self.waiting = None;
             }
-            CompareCommand::WithApproved => match self.review.record().last_approval() {
+            CompareCommand::WithApproved => match record.last_approval() {
                 Some((entry, approved)) => {
                     let name = format!("approved by {} on {}", entry.by, day_of(&entry.time));
                     let Subject { source, goal, seed, .. } = approved.clone();
-                    self.evaluate_reference(name, &source, goal, seed);
+                    self.evaluate(name, &source, goal, seed, window);
                 }
-                None => self.toasts.add(ToastKind::Info, "Nobody has approved this mission yet"),
+                None => window.info("Nobody has approved this mission yet"),
             },
             CompareCommand::OpenFile => {
-                self.effects.push(Effect::OpenFile(crate::host::FileKind::Comparison));
+                window.ask(Effect::OpenFile(crate::host::FileKind::Comparison));
             }
             CompareCommand::Clear => {
-                self.compare.reference = None;
-                self.compare.text = None;
-                self.compare.waiting = None;
+                self.reference = None;
+                self.text = None;
+                self.waiting = None;
             }
         }
     }
 
     /// Compares with a file that the user chose.
-    pub(super) fn compare_with_file(&mut self, name: &str, text: &str) {
+    pub(crate) fn open_file(&mut self, name: &str, text: &str, seed: u64, window: &mut Window) {
         let is_json = name.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("json"));
         if !is_json {
-            let seed = self.settings.plan.seed;
-            self.evaluate_reference(name.to_owned(), text, Goal::Default, seed);
+            self.evaluate(name.to_owned(), text, Goal::Default, seed, window);
             return;
         }
         let failed = |reason: String| format!("{name} cannot be compared with: {reason}");
         let document: Value = match serde_json::from_str(text) {
             Ok(document) => document,
-            Err(reason) => return self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
+            Err(reason) => return window.failed(failed(reason.to_string())),
         };
         if is_record(&document) {
             let approved = Record::from_json(text)
                 .map(|record| record.last_approval().map(|(_, approved)| approved.clone()));
             match approved {
                 Ok(Some(Subject { source, goal, seed, .. })) => {
-                    self.evaluate_reference(name.to_owned(), &source, goal, seed);
+                    self.evaluate(name.to_owned(), &source, goal, seed, window);
                 }
-                Ok(None) => self.toasts.add(ToastKind::Failed, failed("nobody has approved it".to_owned())),
-                Err(reason) => self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
+                Ok(None) => window.failed(failed("nobody has approved it".to_owned())),
+                Err(reason) => window.failed(failed(reason.to_string())),
             }
             return;
         }
         match Side::of_json(name, &document) {
             Ok(side) => {
-                self.compare.reference = Some(Arc::new(side));
-                self.compare.text = None;
-                self.compare.waiting = None;
+                self.reference = Some(Arc::new(side));
+                self.text = None;
+                self.waiting = None;
             }
-            Err(reason) => self.toasts.add(ToastKind::Failed, failed(reason.to_string())),
+            Err(reason) => window.failed(failed(reason.to_string())),
         }
     }
 
-    fn evaluate_reference(&mut self, name: String, source: &str, goal: Goal, seed: u64) {
-        self.compare.last_token += 1;
-        let token = self.compare.last_token;
-        self.compare.waiting = Some((token, name));
+    fn evaluate(&mut self, name: String, source: &str, goal: Goal, seed: u64, window: &mut Window) {
+        self.last_token += 1;
+        let token = self.last_token;
+        self.waiting = Some((token, name));
         let update = Update {
             revision: 0,
             source: source.into(),
@@ -134,14 +141,14 @@ impl AppState {
             seed,
             trace: false,
         };
-        self.effects.push(Effect::Post(Request::Evaluate { token, update }));
+        window.post(Request::Evaluate { token, update });
     }
 
     /// Takes a text that was planned to compare with.
-    pub(super) fn take_evaluated(&mut self, token: u64, snapshot: &Snapshot) {
-        if let Some((_, name)) = self.compare.waiting.take_if(|(waiting, _)| *waiting == token) {
-            self.compare.reference = Some(Arc::new(Side::of_snapshot(&name, snapshot)));
-            self.compare.text = Some(Arc::clone(&snapshot.source));
+    pub(crate) fn take(&mut self, token: u64, snapshot: &Snapshot) {
+        if let Some((_, name)) = self.waiting.take_if(|(waiting, _)| *waiting == token) {
+            self.reference = Some(Arc::new(Side::of_snapshot(&name, snapshot)));
+            self.text = Some(Arc::clone(&snapshot.source));
         }
     }
 }

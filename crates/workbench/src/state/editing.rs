@@ -4,15 +4,38 @@
 
 use rmpl::editor;
 use rmpl::{Edit, Span};
-use text_editing::{Caret, EditKind, Find, TextCommand};
+use smol_str::SmolStr;
+use text_editing::{Caret, Document, EditKind, Find, TextCommand};
 
-use crate::PanelKind;
-use crate::command::EditorCommand;
+use crate::effect::Effect;
+use crate::panel_kind::PanelKind;
+use crate::state::editor::{EditorCommand, EditorState};
 use crate::state::folding::Folding;
-use crate::state::{AppState, Effect, Selection, ToastKind};
+use crate::state::language::Language;
+use crate::state::maps::Maps;
+use crate::state::part::Part;
+use crate::state::selection::Selection;
+use crate::state::snapshots::Snapshots;
+use crate::state::window::Window;
 
-impl AppState {
-    pub(super) fn type_text(&mut self, command: &TextCommand) {
+/// The text with what its commands read and change of other parts.
+pub(crate) struct Writing<'a> {
+    pub(crate) document: &'a mut Part<Document>,
+    pub(crate) language: &'a mut Language,
+    pub(crate) editor: &'a mut EditorState,
+    pub(crate) selection: &'a mut Part<Selection>,
+    pub(crate) window: &'a mut Window,
+    pub(crate) snapshots: &'a Snapshots,
+    pub(crate) maps: &'a Maps,
+    /// The name of the mission.
+    pub(crate) mission: &'a str,
+    /// The name of its main text, as a file.
+    pub(crate) main_text: SmolStr,
+    pub(crate) now_secs: f64,
+}
+
+impl Writing<'_> {
+    pub(crate) fn type_text(&mut self, command: &TextCommand) {
         let is_one = self.document.other_carets().is_empty();
         match (command, self.language.parse().filter(|_| is_one)) {
             (TextCommand::NewLine, Some(parse)) => {
@@ -35,10 +58,10 @@ impl AppState {
         }
         self.language.follow(&self.document);
         self.follow_popup(command);
-        self.editor.active_secs = self.frame.now_secs;
+        self.editor.active_secs = self.now_secs;
         self.editor.composition.clear();
         let head = self.document.caret().head as u32;
-        self.scroll_to(Span::new(head, head), false);
+        self.window.scroll_to(Span::new(head, head), false);
         if matches!(
             command,
             TextCommand::Move { .. } | TextCommand::Select { .. } | TextCommand::SelectWord(_)
@@ -59,26 +82,36 @@ impl AppState {
     }
 
     /// Selects in all panels what stands at a byte of the text, as long as the drawings belong to this text.
-    pub(super) fn select_at(&mut self, offset: u32) {
+    pub(crate) fn select_at(&mut self, offset: u32) {
         if self.snapshots.is_stale(self.document.revision()) {
             return;
         }
-        let Some(shown) = self.shown() else { return };
+        let Some(shown) = self.snapshots.shown() else { return };
         let found = Selection::at_offset(shown, offset, &self.selection);
-        self.selection = found;
+        **self.selection = found;
     }
 
     /// Selects something in all panels; the editor shows its text, and the caret stays where it is.
-    pub(super) fn select(&mut self, selection: Selection) {
+    pub(crate) fn select(&mut self, selection: Selection) {
         let is_current = !self.snapshots.is_stale(self.document.revision());
-        let span = self.shown().filter(|_| is_current).and_then(|shown| selection.span(shown));
-        self.selection = selection;
+        let span = self.snapshots.shown().filter(|_| is_current).and_then(|shown| selection.span(shown));
+        **self.selection = selection;
         if let Some(span) = span {
-            self.scroll_to(span, true);
+            self.window.scroll_to(span, true);
         }
     }
 
-    pub(super) fn reveal(&mut self, span: Span) {
+    /// Selects something in all panels, and puts the caret at its text.
+    pub(crate) fn select_and_reveal(&mut self, selection: Selection) {
+        let is_current = !self.snapshots.is_stale(self.document.revision());
+        let span = self.snapshots.shown().and_then(|shown| selection.span(shown)).filter(|_| is_current);
+        **self.selection = selection;
+        if let Some(span) = span {
+            self.reveal(span);
+        }
+    }
+
+    pub(crate) fn reveal(&mut self, span: Span) {
         let (from, to) = (self.document.caret().head, span.start as usize);
         if self.document.line_at(from) != self.document.line_at(to) {
             self.editor.places.leave(from);
@@ -88,16 +121,17 @@ impl AppState {
 
     fn go_to(&mut self, span: Span) {
         self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
-        self.scroll_to(span, true);
-        self.editor.active_secs = self.frame.now_secs;
-        self.show_panel(PanelKind::Editor);
+        self.window.scroll_to(span, true);
+        self.editor.active_secs = self.now_secs;
+        self.window.show(PanelKind::Editor);
     }
 
-    pub(super) fn apply_to_editor(&mut self, command: EditorCommand) {
+    /// Does what a command of the editor asks for.
+    pub(crate) fn apply(&mut self, command: EditorCommand) {
         match command {
             EditorCommand::Focus => {
-                self.show_panel(PanelKind::Editor);
-                self.focus_editor();
+                self.window.show(PanelKind::Editor);
+                self.window.focus_editor();
             }
             EditorCommand::Hover(place) => self.editor.hovered = place,
             EditorCommand::Compose(text) => self.editor.composition = text,
@@ -105,7 +139,7 @@ impl AppState {
             EditorCommand::SetFind(find) => self.editor.find = Some(find),
             EditorCommand::CloseFind => {
                 self.editor.find = None;
-                self.focus_editor();
+                self.window.focus_editor();
             }
             EditorCommand::FindNext => self.go_to_match(true),
             EditorCommand::FindPrevious => self.go_to_match(false),
@@ -115,7 +149,7 @@ impl AppState {
                 let range =
                     self.document.line_range(line.saturating_sub(1).min(self.document.line_count() - 1));
                 self.reveal(Span::new(range.start as u32, range.start as u32));
-                self.focus_editor();
+                self.window.focus_editor();
             }
             EditorCommand::GoToProblem { forwards } => self.go_to_problem(forwards),
             EditorCommand::CopySelection { cut } => self.copy_selection(cut),
@@ -128,7 +162,7 @@ impl AppState {
                 let pair = self.language.parse().and_then(|parse| editor::matching_bracket(parse, head));
                 if let Some((_, other)) = pair {
                     self.reveal(Span::new(other.start, other.start));
-                    self.focus_editor();
+                    self.window.focus_editor();
                 }
             }
             EditorCommand::GoToPlace { forwards } => {
@@ -136,7 +170,7 @@ impl AppState {
                 if let Some(place) = self.editor.places.step(here, forwards) {
                     let place = self.document.boundary_before(place) as u32;
                     self.go_to(Span::new(place, place));
-                    self.focus_editor();
+                    self.window.focus_editor();
                 }
             }
             EditorCommand::MoveInPopup(steps) => {
@@ -170,7 +204,7 @@ impl AppState {
         find.replacing |= replacing;
         find.wants_focus = true;
         self.editor.find = Some(find);
-        self.show_panel(PanelKind::Editor);
+        self.window.show(PanelKind::Editor);
     }
 
     fn go_to_match(&mut self, forwards: bool) {
@@ -206,7 +240,7 @@ impl AppState {
         let count = edits.len();
         self.document.edit(&edits, EditKind::Single, None);
         let matches = if count == 1 { "match" } else { "matches" };
-        self.toasts.add(ToastKind::Done, format!("Replaced {count} {matches}"));
+        self.window.done(format!("Replaced {count} {matches}"));
     }
 
     fn go_to_problem(&mut self, forwards: bool) {
@@ -220,14 +254,14 @@ impl AppState {
         if let Some(&span) = next {
             self.reveal(span);
             self.select_at(span.start);
-            self.focus_editor();
+            self.window.focus_editor();
         }
     }
 
     fn copy_selection(&mut self, cut: bool) {
         let caret = self.document.caret();
         if !self.document.other_carets().is_empty() {
-            self.effects.push(Effect::Copy(self.document.all_selected_text()));
+            self.window.ask(Effect::Copy(self.document.all_selected_text()));
             if cut && self.document.carets().iter().any(|caret| !caret.is_empty()) {
                 TextCommand::Insert(String::new()).apply(&mut self.document);
             }
@@ -239,7 +273,7 @@ impl AppState {
             TextCommand::SelectLine(caret.head).apply(&mut self.document);
             self.editor.copied_line = Some(self.document.selected_text().to_owned());
         }
-        self.effects.push(Effect::Copy(self.document.selected_text().to_owned()));
+        self.window.ask(Effect::Copy(self.document.selected_text().to_owned()));
         if cut {
             let range = self.document.caret().range();
             let span = Span::new(range.start as u32, range.end as u32);
@@ -251,6 +285,6 @@ impl AppState {
 }
 
 /// A range of bytes as a span.
-pub(super) fn span_of(range: &std::ops::Range<usize>) -> Span {
+pub(crate) fn span_of(range: &std::ops::Range<usize>) -> Span {
     Span::new(range.start as u32, range.end as u32)
 }

@@ -6,6 +6,83 @@ use text_editing::Find;
 
 use crate::state::folding::Folding;
 
+/// What only the editor does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EditorCommand {
+    /// Gives the editor the keyboard.
+    Focus,
+    /// The pointer is over a place of the text that something is known of, or over none any more.
+    Hover(Option<usize>),
+    /// Text that an input method is composing.
+    Compose(String),
+    /// Opens the find bar, with the replacement row or without.
+    Find {
+        /// Whether the replacement row is open.
+        replacing: bool,
+    },
+    /// Changes what is looked for.
+    SetFind(Find),
+    /// Closes the find bar.
+    CloseFind,
+    /// Selects the next match.
+    FindNext,
+    /// Selects the match before.
+    FindPrevious,
+    /// Replaces the selected match and selects the next.
+    ReplaceOne,
+    /// Replaces all matches.
+    ReplaceAll,
+    /// Goes to a line, from 1.
+    GoToLine(usize),
+    /// Goes to the next or the previous problem.
+    GoToProblem {
+        /// Whether to go forwards.
+        forwards: bool,
+    },
+    /// Lists what can be written at the caret.
+    Complete,
+    /// Lists what mends the problem at the caret.
+    QuickFix,
+    /// Lists where the name at the caret stands.
+    FindReferences,
+    /// Goes to where the name at the caret is declared.
+    GoToDefinition,
+    /// Goes to the bracket that belongs to the one at the caret.
+    GoToBracket,
+    /// Goes where the caret was before, or forward again.
+    GoToPlace {
+        /// Whether to go forward.
+        forwards: bool,
+    },
+    /// Moves in the list at the caret.
+    MoveInPopup(isize),
+    /// Takes an entry of the list at the caret, the chosen one if none is given.
+    TakeFromPopup(Option<usize>),
+    /// Closes the list at the caret.
+    ClosePopup,
+    /// Asks for a new name of the name at the caret.
+    Rename,
+    /// Gives the name at the caret a new name.
+    RenameTo(String),
+    /// Gives the text its canonical layout.
+    Format,
+    /// Selects the next larger piece of structure.
+    ExpandSelection,
+    /// Folds away or shows the piece of text that begins in this line, from 0.
+    ToggleFold(usize),
+    /// Folds the innermost open piece of text around the caret, or shows it again.
+    FoldAtCaret(bool),
+    /// Folds every outermost piece, or shows everything.
+    FoldAll(bool),
+    /// The view breaks lines into rows of so many columns, or breaks none.
+    WrapAt(Option<usize>),
+    /// Cuts or copies the selection, or the line of the caret.
+    CopySelection {
+        /// Whether it is taken away.
+        cut: bool,
+    },
+}
+
 /// The editor's own state.
 #[derive(Clone, Debug, Default)]
 pub struct EditorState {

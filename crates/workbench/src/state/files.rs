@@ -1,16 +1,14 @@
 //! The files of the open mission, which are edited as one text (`rmpl::files`): adding, naming and removing them.
 
+use rmpl::Span;
 use rmpl::files::{self, Files, MARK};
 use rmpl::program::ImportDecl;
-use rmpl::{Edit, Span};
 use smol_str::SmolStr;
-use snapshot::Problem;
-use snapshot::TextFix;
-use text_editing::Caret;
+use text_editing::{Caret, Document};
 
-use crate::library::MAIN_TEXT;
+use crate::state::editing::Writing;
+use crate::state::imports::imports;
 use crate::state::networks::network_ending;
-use crate::state::{AppState, ToastKind};
 
 /// Something that concerns the files of the open mission.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,36 +24,34 @@ pub enum FileCommand {
 /// The extension of a file whose name has none.
 const EXTENSION: &str = ".rmpl";
 
-impl AppState {
-    /// The names of the mission's files, the main text first.
-    pub fn file_names(&self) -> Vec<SmolStr> {
-        let named = |line: &usize| self.document.heading(*line).map(SmolStr::new);
-        let main = self.library.open_mission().and_then(|mission| mission.texts.first());
-        let main = main.map_or_else(|| MAIN_TEXT.into(), |main| main.name.clone());
-        std::iter::once(main).chain(self.document.headings().iter().filter_map(named)).collect()
-    }
+/// The names of a mission's files, the main text first.
+pub(crate) fn names(document: &Document, main_text: SmolStr) -> Vec<SmolStr> {
+    let named = |line: &usize| document.heading(*line).map(SmolStr::new);
+    std::iter::once(main_text).chain(document.headings().iter().filter_map(named)).collect()
+}
 
-    /// Which of them the caret is in.
-    pub fn file_at_caret(&self) -> usize {
-        let line = self.document.line_at(self.document.caret().head);
-        self.document.headings().partition_point(|&heading| heading <= line)
-    }
+/// Which file of a mission the caret is in.
+pub(crate) fn at_caret(document: &Document) -> usize {
+    let line = document.line_at(document.caret().head);
+    document.headings().partition_point(|&heading| heading <= line)
+}
 
-    pub(super) fn apply_to_files(&mut self, command: FileCommand) {
-        self.dialog = None;
+impl Writing<'_> {
+    pub(crate) fn apply_to_files(&mut self, command: FileCommand) {
+        self.window.dialog = None;
         let done = match command {
             FileCommand::Add(name) => self.add_file(&name, ""),
             FileCommand::Rename(name) => self.rename_file(&name),
             FileCommand::Remove => self.remove_file(),
         };
         if let Err(reason) = done {
-            self.toasts.add(ToastKind::Failed, reason);
+            self.window.failed(reason);
         }
-        self.focus_editor();
+        self.window.focus_editor();
     }
 
     /// Adds a file, and imports it in the main text unless something imports it already.
-    pub(super) fn add_file(&mut self, name: &str, text: &str) -> Result<(), String> {
+    pub(crate) fn add_file(&mut self, name: &str, text: &str) -> Result<(), String> {
         let name = self.free_name(name)?;
         let mut whole = self.document.text().to_owned();
         if !self.imports().iter().any(|(file, _)| *file == name) {
@@ -66,13 +62,12 @@ impl AppState {
         self.document.replace_all(&files::joined(known));
         let start = self.document.text().len() - text.len();
         self.document.set_caret(Caret::at(start));
-        self.toasts.add(ToastKind::Done, format!("{name} is a file of this mission now"));
+        self.window.done(format!("{name} is a file of this mission now"));
         Ok(())
     }
 
     /// Adds a file of declarations that another file came to, under that one's name.
-    pub(super) fn take_places(&mut self, of_file: &str, lines: &str) {
-        self.forget_map(of_file);
+    pub(crate) fn take_places(&mut self, of_file: &str, lines: &str) {
         let stem = of_file.rsplit_once('.').map_or(of_file, |(stem, _)| stem);
         let added = if self.language.is_network() || self.language.is_control() {
             Err(format!("The places of {of_file} belong into a mission; open or begin one first"))
@@ -80,7 +75,7 @@ impl AppState {
             self.add_file(&format!("{stem}{EXTENSION}"), lines)
         };
         if let Err(reason) = added {
-            self.toasts.add(ToastKind::Failed, reason);
+            self.window.failed(reason);
         }
     }
 
@@ -115,12 +110,12 @@ impl AppState {
         });
         spans.extend(imports.filter(|span| !(start..file.end as u32).contains(&span.start)));
         self.replace_spans(spans.into_iter().map(|span| (span, String::new())).collect());
-        self.toasts.add(ToastKind::Done, format!("{old} is removed; undo brings it back"));
+        self.window.done(format!("{old} is removed; undo brings it back"));
         Ok(())
     }
 
     /// The text with all its files, each as a file of its own.
-    pub(super) fn files_to_save(&self) -> Vec<(String, Vec<u8>)> {
+    pub(crate) fn files_to_save(&self) -> Vec<(String, Vec<u8>)> {
         let is_network = self.language.is_network();
         let extension = if is_network { network_ending(self.document.text()) } else { EXTENSION };
         let named = |(index, (name, text)): (usize, (&str, &str))| {
@@ -131,7 +126,7 @@ impl AppState {
     }
 
     /// The file that is imported under this name, or one like it in a folder, and is not there.
-    pub(super) fn missing_file(&self, name: &str) -> Option<String> {
+    pub(crate) fn missing_file(&self, name: &str) -> Option<String> {
         let known = Files::of(self.document.text());
         let is_missing = |file: &String| known.named(file).is_none();
         let is_it = |file: &String| file == name || file.ends_with(&format!("/{name}"));
@@ -160,7 +155,7 @@ impl AppState {
         if name.starts_with('.') || !files::is_name(&name) {
             return Err(format!("\"{name}\" is no name of a file in the mission's folder"));
         }
-        if self.file_names().iter().any(|known| *known == name) {
+        if names(self.document, self.main_text.clone()).iter().any(|known| *known == name) {
             return Err(format!("{name} is a file of this mission already"));
         }
         Ok(name)
@@ -174,13 +169,6 @@ impl AppState {
         }
         self.document.replace_all(&text);
     }
-}
-
-/// Each import with the file that it means.
-fn imports(text: &str, imports: &[ImportDecl]) -> Vec<(String, ImportDecl)> {
-    let known = Files::of(text);
-    let meant = |import: &ImportDecl| files::resolve(&known.at(import.span.start).name, &import.file);
-    imports.iter().filter_map(|import| Some((meant(import)?, import.clone()))).collect()
 }
 
 /// How the file `importer` names another one.
@@ -213,23 +201,4 @@ fn import_line(text: &str, name: &str) -> (usize, String) {
     let before = if is_at_line_start { "" } else { "\n" };
     let after = if place.is_some() { "" } else { "\n" };
     (at, format!("{before}import \"{name}\";\n{after}"))
-}
-
-/// Gives each problem of an import whose file is not there the fix that adds it.
-pub(super) fn offer_files(problems: &mut [Problem], text: &str, declared: &[ImportDecl]) {
-    if declared.is_empty() {
-        return;
-    }
-    let known = Files::of(text);
-    let end = text.len() as u32;
-    for (file, import) in imports(text, declared) {
-        if known.named(&file).is_some() || !files::is_name(&file) {
-            continue;
-        }
-        let of_import = problems.iter_mut().filter(|it| it.span == import.file_span && it.fixes.is_empty());
-        for problem in of_import {
-            let edit = Edit { span: Span::new(end, end), text: format!("\n{MARK}{file}\n") };
-            problem.fixes.push(TextFix { label: format!("Add the file `{file}`"), edits: vec![edit] });
-        }
-    }
 }

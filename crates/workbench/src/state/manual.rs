@@ -1,8 +1,8 @@
 //! The manual as it is looked at: which page, where on it, and what is looked for.
 
-use crate::PanelKind;
 use crate::manual::{self, Found};
-use crate::state::AppState;
+use crate::panel_kind::PanelKind;
+use crate::state::window::Window;
 
 /// The manual as it is looked at.
 #[derive(Debug, Default)]
@@ -64,51 +64,41 @@ impl ManualState {
     }
 }
 
-impl AppState {
-    /// The page and the section about what the pointer is over in the text, or else about what the caret is at while the
-    /// text is the panel asked about: a problem there, or the part of the language.
-    fn about_text(&self, panel: PanelKind) -> Option<(&'static str, String)> {
-        let caret = || (panel == PanelKind::Editor).then(|| self.document.caret().head);
-        let place = self.editor.hovered.or_else(caret)? as u32;
-        let is_there = |span: rmpl::Span| span.start <= place && place <= span.end;
-        let problem = self.snapshots.problems().iter().find(|problem| is_there(problem.span));
-        problem.and_then(|problem| manual::about_code(&problem.code)).or_else(|| {
-            let hover =
-                rmpl::editor::hover(self.language.parse()?, place, &rmpl::editor::Evaluation::default())?;
-            let (page, section) = manual::about_topic(hover.topic);
-            Some((page, section.to_owned()))
-        })
-    }
-
-    pub(super) fn apply_to_manual(&mut self, command: ManualCommand) {
-        let manual = &mut self.manual;
+impl ManualState {
+    /// Does what a command asks for; `about_text` is the page and the section about what is pointed at in the text.
+    pub(crate) fn apply(
+        &mut self,
+        command: ManualCommand,
+        about_text: Option<(&'static str, String)>,
+        window: &mut Window,
+    ) {
         match command {
-            ManualCommand::Open(page, section) => {
-                manual.before.extend(manual.place.take());
-                manual.go(Some((page, section)));
-            }
+            ManualCommand::Open(page, section) => self.open(page, section),
             ManualCommand::About(panel) => {
-                let about_text = self.about_text(panel);
                 let (page, section) = about_text.unwrap_or_else(|| {
                     let (page, section) = panel.manual();
                     (page, section.to_owned())
                 });
-                return self.apply_to_manual(ManualCommand::Open(page, section));
+                self.open(page, section);
             }
             ManualCommand::Search(query) => {
-                manual.found = manual::search(&query);
-                manual.query = query;
+                self.found = manual::search(&query);
+                self.query = query;
             }
             ManualCommand::Back => {
-                let before = manual.before.pop();
-                manual.go(before);
+                let before = self.before.pop();
+                self.go(before);
             }
             ManualCommand::Contents => {
-                manual.before.extend(manual.place.take());
-                manual.go(None);
+                self.before.extend(self.place.take());
+                self.go(None);
             }
         }
-        self.show_panel(PanelKind::Manual);
-        self.active_panel = PanelKind::Manual;
+        window.turn_to(PanelKind::Manual);
+    }
+
+    fn open(&mut self, page: &'static str, section: String) {
+        self.before.extend(self.place.take());
+        self.go(Some((page, section)));
     }
 }

@@ -1,23 +1,27 @@
-//! Everything the app knows: the one thing that commands change and panels read.
+//! Everything the app knows, in parts: what commands change and panels read.
+//!
+//! A part owns its data and changes by its own commands. [`AppState`] puts the parts together and answers what takes
+//! several of them to answer; what takes several to do is in `acts`.
 
-mod announcement;
-mod apply;
 pub mod automaton;
 pub mod chance;
 pub mod compare;
+pub mod derived;
 pub mod documents;
-mod editing;
+pub(crate) mod editing;
 pub mod editor;
 pub mod execution;
 pub mod files;
 pub mod folding;
 pub mod growth;
+pub(crate) mod imports;
 pub mod language;
 pub mod lesson;
 pub mod manual;
-pub mod missions;
+pub mod maps;
 pub mod networks;
 pub mod no_plan;
+pub mod part;
 pub mod pins;
 pub mod placing;
 pub mod playback;
@@ -27,28 +31,21 @@ pub mod search;
 pub mod selection;
 mod services;
 pub mod settings;
-mod snapshots;
+pub(crate) mod snapshots;
 pub mod terrain;
-pub mod toast;
+pub(crate) mod toast;
+pub mod window;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use rmpl::Span;
+use link::Update;
 use smol_str::SmolStr;
-use snapshot::{MapKey, Snapshot};
+use snapshot::{Robustness, Snapshot};
 use text_editing::Document;
 
-use crate::library::{Library, MissionId, MissionKind};
-use crate::mission_file;
-use crate::state::editor::Reveal;
-use crate::state::settings::ThemeChoice;
-use crate::workspace::{Arrangement, Workspace};
-use crate::{Dialog, PanelEffect, PanelEffects, PanelKind};
-
-pub use apply::Effect;
 pub use editor::EditorState;
 pub use language::Language;
+pub use part::Part;
 pub use pins::{PinCommand, Pins};
 pub use playback::Playback;
 pub use selection::Selection;
@@ -56,83 +53,68 @@ pub use settings::{PlanSettings, Settings, Views};
 pub use snapshots::{Snapshots, Status};
 pub use toast::{Toast, ToastKind, Toasts};
 
+use crate::library::{Library, MAIN_TEXT, MissionKind, Open};
+use crate::mission_file;
+use crate::state::settings::ThemeChoice;
+use crate::workspace::{Arrangement, Workspace};
+
 /// The state of the app. Only commands change it ([`AppState::apply`]).
 #[derive(Debug)]
 pub struct AppState {
     /// The text, its caret and its history.
-    pub document: Document,
+    pub document: Part<Document>,
     /// What the language knows about the text.
     pub language: Language,
+    /// What the editor shows besides the text.
+    pub editor: EditorState,
     /// The name of the open mission, without extension.
     pub mission: SmolStr,
     /// The missions that the user has.
     pub library: Library,
-    /// The texts of other missions that were open in this run, with their histories.
-    set_aside: BTreeMap<MissionId, Document>,
-    /// Maps that the user chose and that the core has not read yet.
-    maps_in_hand: BTreeMap<SmolStr, Arc<[u8]>>,
-    /// A label that came without its image.
-    waiting_label: Option<missions::WaitingLabel>,
-    /// The map that was opened last, whose label may come after it.
-    last_map: Option<(String, Vec<u8>)>,
-    /// What the planning core answered.
-    pub snapshots: Snapshots,
     /// The ground of the missions opened so far.
-    pub maps: BTreeMap<MapKey, Arc<::terrain::Terrain>>,
+    pub maps: maps::Maps,
+    /// What the planning core answered.
+    pub snapshots: Part<Snapshots>,
     /// What is selected, in all panels.
-    pub selection: Selection,
+    pub selection: Part<Selection>,
     /// What the pointer is over in some panel, for the others to hint at.
     pub hovered: Selection,
+    /// The range of times that is selected, in mission units.
+    pub time_range: Option<[f64; 2]>,
+    /// Which of the reasons why there is no plan is shown on the drawing.
+    pub reason: usize,
     /// The step of the search that is looked at.
-    pub search: search::SearchState,
+    pub search: Part<search::SearchState>,
     /// The control program, if the text is one, and its run.
-    pub automaton: automaton::AutomatonState,
+    pub automaton: Part<automaton::AutomatonState>,
     /// The lesson that is open.
-    pub lesson: lesson::LessonState,
+    pub lesson: Part<lesson::LessonState>,
     /// The manual as it is looked at.
     pub manual: manual::ManualState,
     /// The review of the mission, with what was said and signed.
-    pub review: review::ReviewState,
+    pub review: Part<review::ReviewState>,
     /// What the mission is compared with.
     pub compare: compare::CompareState,
     /// The tool in hand on the terrain, and what it has.
-    pub terrain: terrain::TerrainState,
+    pub terrain: Part<terrain::TerrainState>,
     /// The mission as it is executed.
-    pub execution: execution::ExecutionState,
+    pub execution: Part<execution::ExecutionState>,
     /// Many runs of it with chance.
-    pub chance: chance::ChanceState,
+    pub chance: Part<chance::ChanceState>,
     /// The time shown, and whether it runs.
-    pub playback: Playback,
+    pub playback: Part<Playback>,
     /// Events that are pinned to times, to see what that leaves of the plan.
-    pub pins: Pins,
-    /// Which of the reasons why there is no plan is shown on the drawing.
-    pub reason: usize,
-    /// The range of times that is selected, in mission units.
-    pub time_range: Option<[f64; 2]>,
-    /// Which workspace is shown.
-    pub workspace: Workspace,
+    pub pins: Part<Pins>,
     /// What is remembered between runs.
-    pub settings: Settings,
-    /// What the editor shows besides the text.
-    pub editor: EditorState,
-    /// Short messages.
-    pub toasts: Toasts,
-    /// The dialog on top, if any.
-    pub dialog: Option<Dialog>,
-    /// The panel that was used last; view actions go to it.
-    pub active_panel: PanelKind,
-    /// The panel that has the window to itself, if one has.
-    pub maximized: Option<PanelKind>,
-    /// The panels that were on screen in the last frame, in the order of the layout.
-    pub panels_on_screen: Vec<PanelKind>,
-    /// What panels and their layout are to do.
-    pub panel_effects: PanelEffects,
+    pub settings: Part<Settings>,
+    /// The window around the mission.
+    pub window: window::Window,
     /// How the last frame went.
     pub frame: FrameInfo,
     /// How the user has set up the system.
     pub system: System,
-    /// What the host is to do.
-    pub(crate) effects: Vec<Effect>,
+    /// What was computed from what.
+    pub derived: derived::Derived,
 }
 
 /// What the user has asked of all programs.
@@ -187,51 +169,41 @@ impl AppState {
         let document = Document::new(example.source);
         Self {
             language: Language::new(&document),
-            document,
+            document: Part::new(document),
+            editor: EditorState::default(),
             mission: example.name.into(),
             library: Library::new(MissionKind::Example, example.source),
-            set_aside: BTreeMap::new(),
-            maps_in_hand: BTreeMap::new(),
-            waiting_label: None,
-            last_map: None,
-            snapshots: Snapshots::default(),
-            maps: BTreeMap::new(),
-            selection: Selection::None,
+            maps: maps::Maps::default(),
+            snapshots: Part::default(),
+            selection: Part::default(),
             hovered: Selection::None,
-            search: search::SearchState::default(),
-            automaton: automaton::AutomatonState::default(),
-            lesson: lesson::LessonState::default(),
-            manual: manual::ManualState::default(),
-            review: review::ReviewState::default(),
-            compare: compare::CompareState::default(),
-            terrain: terrain::TerrainState::default(),
-            execution: execution::ExecutionState::default(),
-            chance: chance::ChanceState::default(),
-            playback: Playback::default(),
-            pins: Pins::default(),
-            reason: 0,
             time_range: None,
-            workspace: Workspace::default(),
-            settings: Settings::default(),
-            editor: EditorState::default(),
-            toasts: Toasts::default(),
-            dialog: None,
-            active_panel: PanelKind::Editor,
-            maximized: None,
-            panels_on_screen: Vec::new(),
-            system: System::default(),
-            panel_effects: PanelEffects::default(),
+            reason: 0,
+            search: Part::default(),
+            automaton: Part::default(),
+            lesson: Part::default(),
+            manual: manual::ManualState::default(),
+            review: Part::default(),
+            compare: compare::CompareState::default(),
+            terrain: Part::default(),
+            execution: Part::default(),
+            chance: Part::default(),
+            playback: Part::default(),
+            pins: Part::default(),
+            settings: Part::default(),
+            window: window::Window::default(),
             frame: FrameInfo::default(),
-            effects: vec![Effect::RecallReview],
+            system: System::default(),
+            derived: derived::Derived::default(),
         }
     }
 
     /// Which layout the panels have.
-    pub const fn arrangement(&self) -> Arrangement {
+    pub fn arrangement(&self) -> Arrangement {
         if self.lesson.is_beside() {
             return Arrangement::Lesson;
         }
-        Arrangement::new(self.workspace, self.language.is_control())
+        Arrangement::new(self.window.workspace, self.language.is_control())
     }
 
     /// What the panels show: see [`Snapshots::shown`].
@@ -248,7 +220,7 @@ impl AppState {
     }
 
     /// Whether the theme that is shown is light on dark.
-    pub const fn is_dark(&self) -> bool {
+    pub fn is_dark(&self) -> bool {
         match self.settings.theme {
             ThemeChoice::System => !self.system.is_light,
             ThemeChoice::Dark => true,
@@ -273,24 +245,73 @@ impl AppState {
         self.snapshots.is_improving(self.document.revision())
     }
 
-    /// Asks the layout to bring a panel back, or to the front of its tabs.
-    pub(crate) fn show_panel(&mut self, panel: PanelKind) {
-        self.panel_effects.push(PanelEffect::Show(panel));
+    /// What panels draw: while a mission is executed, the plan followed at the time shown with what has happened;
+    /// otherwise [`AppState::shown`].
+    pub fn looked_at(&self) -> Option<&Arc<Snapshot>> {
+        self.execution.snapshot().filter(|_| self.is_executing()).or_else(|| self.shown())
     }
 
-    /// Asks the editor to scroll to a place; with `center` to the middle, even when the place can be seen.
-    pub(crate) fn scroll_to(&mut self, span: Span, center: bool) {
-        self.panel_effects.push(PanelEffect::Reveal(Reveal { span, center }));
+    /// Whether a run of the mission is shown.
+    pub fn is_executing(&self) -> bool {
+        self.window.workspace == Workspace::Execute
+            && self
+                .execution
+                .run()
+                .zip(self.shown())
+                .is_some_and(|(run, shown)| shown.revision == run.revision && shown.plan().is_some())
     }
 
-    /// Gives the editor the keyboard.
-    pub(crate) fn focus_editor(&mut self) {
-        self.panel_effects.push(PanelEffect::FocusEditor);
+    /// The run of the mission, while it is shown.
+    pub fn run_shown(&self) -> Option<&snapshot::Execution> {
+        self.execution.run().map(AsRef::as_ref).filter(|_| self.is_executing())
     }
 
-    /// Takes what the host is to do.
-    pub(crate) fn take_effects(&mut self) -> Vec<Effect> {
-        std::mem::take(&mut self.effects)
+    /// How robust the plan is, once runs were made of the present content.
+    pub fn robustness(&self) -> Option<&Arc<Robustness>> {
+        self.chance.of_content(self.review.hash()?)
+    }
+
+    /// The present text as it was planned, whether or not there is a plan; nothing while that is not shown.
+    pub(crate) fn update_planned(&self) -> Option<Update> {
+        let revision = self.document.revision();
+        let shown = self.shown().filter(|shown| shown.revision == revision)?;
+        Some(self.settings.plan.update(revision, Arc::clone(&shown.source)))
+    }
+
+    /// The present text as it was planned, once it has a plan.
+    pub(crate) fn update_with_plan(&self) -> Option<Update> {
+        self.update_planned().filter(|_| self.shown().is_some_and(|shown| shown.plan().is_some()))
+    }
+
+    /// What the open mission is known by: its id in the library, or the name of an original.
+    pub fn mission_key(&self) -> SmolStr {
+        self.library.open_id().map_or_else(|| self.mission.clone(), |id| id.0.clone())
+    }
+
+    /// What the open mission is called on screen: examples have a title.
+    pub fn mission_title(&self) -> &str {
+        match self.library.open() {
+            Open::Original { kind: MissionKind::Example, .. } => {
+                mission_file::example(&self.mission).map_or(self.mission.as_str(), |example| example.title)
+            }
+            _ => &self.mission,
+        }
+    }
+
+    /// The name of the main text of the open mission, as a file.
+    pub(crate) fn main_text(&self) -> SmolStr {
+        let main = self.library.open_mission().and_then(|mission| mission.texts.first());
+        main.map_or_else(|| MAIN_TEXT.into(), |main| main.name.clone())
+    }
+
+    /// The names of the mission's files, the main text first.
+    pub fn file_names(&self) -> Vec<SmolStr> {
+        files::names(&self.document, self.main_text())
+    }
+
+    /// Which of them the caret is in.
+    pub fn file_at_caret(&self) -> usize {
+        files::at_caret(&self.document)
     }
 }
 

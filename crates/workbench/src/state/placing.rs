@@ -7,7 +7,7 @@ use rmpl::program::{Program, World};
 use rmpl::{Edit, Span};
 use smol_str::{SmolStr, format_smolstr};
 
-use crate::state::Selection;
+use crate::state::selection::Selection;
 
 /// Something that is to be declared.
 #[derive(Clone, Debug, PartialEq)]

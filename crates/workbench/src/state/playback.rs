@@ -16,8 +16,24 @@ pub struct Playback {
     pub end: f64,
 }
 
+/// What can be asked of whatever plays and steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TransportCommand {
+    /// Starts or stops.
+    TogglePlaying,
+    /// To the next moment (`true`) or the one before (`false`) at which something happens.
+    Step(bool),
+    Start,
+    End,
+    /// So many times as fast.
+    Speed(f64),
+}
+
 /// Seconds that a whole mission takes at rate 1.
 const NORMAL_RUN_SECS: f64 = 30.0;
+
+/// How slow and how fast time can run; 1 is normal.
+const RATES: [f64; 2] = [0.125, 64.0];
 
 impl Default for Playback {
     fn default() -> Self {
@@ -53,12 +69,28 @@ impl Playback {
         }
     }
 
-    /// Adapts to a plan: it ends when the plan's last event can happen at the earliest.
-    pub fn fit(&mut self, plan: &Plan) {
-        let earliest = |window: &Option<tpn::Window>| window.map(|window| number(window.earliest));
-        self.end = plan.windows.iter().filter_map(earliest).fold(0.0, f64::max);
-        self.time = self.time.min(self.end);
+    /// Sets how fast time runs.
+    pub fn set_rate(&mut self, rate: f64) {
+        let [slowest, fastest] = RATES;
+        self.rate = rate.clamp(slowest, fastest);
     }
+
+    /// Lets time run so many times as fast.
+    pub fn speed(&mut self, factor: f64) {
+        self.set_rate(self.rate * factor);
+    }
+
+    /// Adapts to a plan or a run that ends then.
+    pub fn fit(&mut self, end: f64) {
+        self.end = end;
+        self.time = self.time.min(end);
+    }
+}
+
+/// When a plan ends: when its last event can happen at the earliest.
+pub fn end(plan: &Plan) -> f64 {
+    let earliest = |window: &Option<tpn::Window>| window.map(|window| number(window.earliest));
+    plan.windows.iter().filter_map(earliest).fold(0.0, f64::max)
 }
 
 /// A rational as a float, for drawing only.

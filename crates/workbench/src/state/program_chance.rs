@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use executive::model_based::ProgramTally;
 use link::{ProgramChance, Request, Response};
+use text_editing::Document;
 
 use super::automaton::{AutomatonState, FaultSeed, Program, ProgramPart};
-use super::{AppState, Effect, ToastKind};
+use super::window::Window;
 use crate::mission_file;
 
 /// What is asked for, and the runs made so far.
@@ -77,60 +78,66 @@ impl ProgramChanceState {
     }
 
     /// The core was started anew: no more answers come.
-    pub(super) const fn give_up(&mut self) {
+    pub(crate) const fn give_up(&mut self) {
         self.is_running = false;
     }
 }
 
-impl AppState {
-    pub(super) fn apply_to_program_chance(&mut self, command: ProgramChanceCommand) {
+impl AutomatonState {
+    /// Does what a command about the chances of the program asks for.
+    pub(crate) fn apply_to_chance(
+        &mut self,
+        command: ProgramChanceCommand,
+        document: &Document,
+        window: &mut Window,
+    ) {
         match command {
             ProgramChanceCommand::Start => {
-                let state = &self.automaton;
-                if !matches!(state.program(), Some(Program::Bound { .. })) {
+                if !matches!(self.program(), Some(Program::Bound { .. })) {
                     return;
                 }
-                let asked = asked_of(state);
-                let chance = &mut self.automaton.chance;
-                chance.asked = Some((self.document.revision(), asked));
+                let asked = asked_of(self);
+                let chance = &mut self.chance;
+                chance.asked = Some((document.revision(), asked));
                 chance.tally = ProgramTally::default();
                 chance.trouble = None;
                 chance.is_running = true;
-                self.automaton.part = ProgramPart::ManyRuns;
-                self.sample_program_on();
+                self.part = ProgramPart::ManyRuns;
+                self.sample_on(document, window);
             }
-            ProgramChanceCommand::Stop => self.automaton.chance.is_running = false,
+            ProgramChanceCommand::Stop => self.chance.is_running = false,
             ProgramChanceCommand::Set(mut settings) => {
                 settings.runs = settings.runs.clamp(1, MAX_RUNS);
                 settings.most_steps = settings.most_steps.clamp(1, MAX_STEPS_OF_RUN);
-                self.automaton.chance.settings = settings;
+                self.chance.settings = settings;
             }
             ProgramChanceCommand::StepThrough(number) => {
-                let Some((_, chance)) = self.automaton.chance.asked.clone() else { return };
+                let Some((_, chance)) = self.chance.asked.clone() else { return };
                 let seed = FaultSeed { seed: chance.seed, run: Some(number) };
-                self.automaton.show_run(seed, &chance.injected);
+                self.show_run(seed, &chance.injected);
             }
         }
     }
 
     /// Asks for the next runs, unless all are made or the text has changed.
-    fn sample_program_on(&mut self) {
-        let revision = self.document.revision();
-        let chance = &mut self.automaton.chance;
+    fn sample_on(&mut self, document: &Document, window: &mut Window) {
+        let revision = document.revision();
+        let chance = &mut self.chance;
         let from = chance.tally.runs;
         let asked = chance.asked.clone().filter(|(asked, _)| *asked == revision && chance.is_running);
         match asked {
             Some((_, chance)) if from < chance.runs => {
-                let source = self.document.shared_text().into();
-                self.effects.push(Effect::Post(Request::SampleProgram { revision, source, chance, from }));
+                let source = document.shared_text().into();
+                window.post(Request::SampleProgram { revision, source, chance, from });
             }
             _ => chance.is_running = false,
         }
     }
 
-    pub(super) fn take_program_sample(&mut self, answer: Response) {
+    /// Takes runs that were made.
+    pub(crate) fn take_sample(&mut self, answer: Response, document: &Document, window: &mut Window) {
         let Response::ProgramSampled { revision, chance: answered, from, tally } = answer else { return };
-        let chance = &mut self.automaton.chance;
+        let chance = &mut self.chance;
         let is_wanted = chance.is_running
             && chance.asked.as_ref().is_some_and(|(asked, chance)| *asked == revision && *chance == answered)
             && from == chance.tally.runs;
@@ -145,11 +152,11 @@ impl AppState {
                 return;
             }
         }
-        self.sample_program_on();
-        let chance = &self.automaton.chance;
+        self.sample_on(document, window);
+        let chance = &self.chance;
         if !chance.is_running && chance.tally.runs >= answered.runs {
             let text = format!("{} runs made", chance.tally.runs);
-            self.toasts.add(ToastKind::Done, text);
+            window.done(text);
         }
     }
 }

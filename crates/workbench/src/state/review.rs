@@ -11,13 +11,20 @@ use std::sync::Arc;
 use kirk::Search as SearchKind;
 use layout::timeline::before::Before;
 use layout::timeline::rule::RuleTrack;
-use link::{Request, Update};
+use link::Request;
 use review::record::Act;
 use review::{FlightRules, Record, Review, content_hash, plan_hash};
 use smol_str::SmolStr;
 use snapshot::{Robustness, Snapshot, Stage};
+use text_editing::Document;
 
-use crate::state::{AppState, Effect, PlanSettings, ToastKind};
+use crate::effect::{Aside, Effect};
+use crate::host::FileKind;
+use crate::state::chance::ChanceState;
+use crate::state::part::Part;
+use crate::state::settings::{PlanSettings, Settings};
+use crate::state::snapshots::Snapshots;
+use crate::state::window::Window;
 
 /// Something that concerns the review of the open mission.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,13 +59,6 @@ pub struct Person {
     pub role: String,
 }
 
-/// A record that was kept or came with a mission, and cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Aside {
-    pub reason: String,
-    pub text: String,
-}
-
 /// What is known of the review.
 #[derive(Clone, Debug, Default)]
 pub struct ReviewState {
@@ -83,7 +83,7 @@ pub struct ReviewState {
     /// The hash of the plan that is drawn, with the answer that it is of; only while somebody has to know it.
     plan: Option<(Arc<Snapshot>, String)>,
     /// Whether the report is to be written as soon as there is a review for it.
-    pub(super) wants_report: bool,
+    pub(crate) wants_report: bool,
 }
 
 /// A review with how it came about.
@@ -110,17 +110,34 @@ const MAX_DONE: usize = 6;
 impl ReviewState {
     /// The review to show, and whether it is stale: that of the present content and the plan that is drawn if there is
     /// one, otherwise the latest.
-    pub fn shown(&self, search: SearchKind) -> Option<(&Arc<Review>, bool)> {
-        let hash = self.hash();
+    pub fn shown(&self) -> Option<(&Arc<Review>, bool)> {
         let current = self.done.iter().find(|it| {
-            Some(it.review.content_hash.as_str()) == hash
-                && it.search == search
-                && self.plan_hash().is_none_or(|plan_hash| it.review.plan_hash == plan_hash)
+            self.current.as_ref().is_some_and(|current| {
+                (&it.review.content_hash, it.search) == (&current.hash, current.settings.search)
+            }) && self.plan_hash().is_none_or(|plan_hash| it.review.plan_hash == plan_hash)
         });
         match current {
             Some(done) => Some((&done.review, false)),
             None => self.done.first().map(|done| (&done.review, true)),
         }
+    }
+
+    /// The review of the present content, if it has been made.
+    pub fn current(&self) -> Option<&Arc<Review>> {
+        self.shown().filter(|(_, is_stale)| !is_stale).map(|(it, _)| it)
+    }
+
+    /// The rules of the mission over time, as far as the present content has been held against them.
+    pub fn rule_tracks(&self) -> Vec<RuleTrack> {
+        self.current().map(|review| report::rule_tracks(review)).unwrap_or_default()
+    }
+
+    /// When things could be in the plan that was last approved, if the present content is another.
+    pub fn approved_times(&self) -> Option<Before> {
+        let (entry, approved) = self.record.last_approval()?;
+        let review = self.current()?;
+        let is_other = entry.content_hash != review.content_hash || entry.plan_hash != review.plan_hash;
+        if is_other { report::windows_before(approved) } else { None }
     }
 
     /// The hash of the present content, once it is known.
@@ -192,6 +209,12 @@ impl ReviewState {
         self.record.merge(kept);
     }
 
+    /// The core stopped: what was asked of it does not come.
+    pub(crate) fn give_up(&mut self) {
+        self.running = None;
+        self.wants_report = false;
+    }
+
     /// Another mission is open now: forgets the reviews, and sets aside what could not be kept.
     fn leave(&mut self) {
         let record = std::mem::take(&mut self.record);
@@ -203,62 +226,71 @@ impl ReviewState {
     }
 }
 
-impl AppState {
-    pub(super) fn apply_to_review(&mut self, command: ReviewCommand) {
+/// The review with what it is about: what its commands read and change of other parts.
+pub(crate) struct Reviewing<'a> {
+    pub(crate) review: &'a mut Part<ReviewState>,
+    pub(crate) chance: &'a mut Part<ChanceState>,
+    pub(crate) settings: &'a mut Part<Settings>,
+    pub(crate) window: &'a mut Window,
+    pub(crate) document: &'a mut Part<Document>,
+    pub(crate) snapshots: &'a Snapshots,
+    pub(crate) mission: &'a str,
+    /// What the record is kept under.
+    pub(crate) mission_key: SmolStr,
+    pub(crate) unix_millis: i64,
+}
+
+impl Reviewing<'_> {
+    /// Does what a command asks for.
+    pub(crate) fn apply(&mut self, command: ReviewCommand) {
         match command {
-            ReviewCommand::Run => self.run_review(),
+            ReviewCommand::Run => self.run(),
             ReviewCommand::Approve { by, text } => self.approve(&by, text.trim()),
             ReviewCommand::Say { by, act } => self.say(&by, act),
             ReviewCommand::SetRules(rules) => self.set_rules(*rules),
-            ReviewCommand::SaveRules => self.effects.push(Effect::SaveFile {
-                name: format!("{}.rules.json", self.mission),
-                bytes: self.review.record.rules().to_json().into_bytes(),
-            }),
-            ReviewCommand::SaveRecord => self.effects.push(Effect::SaveFile {
-                name: format!("{}.review.json", self.mission),
-                bytes: self.review.record.to_json().into_bytes(),
-            }),
-            ReviewCommand::OpenRecord => self.effects.push(Effect::OpenFile(crate::host::FileKind::Json)),
+            ReviewCommand::SaveRules => self.save_as("rules", self.review.record.rules().to_json()),
+            ReviewCommand::SaveRecord => self.save_as("review", self.review.record.to_json()),
+            ReviewCommand::OpenRecord => self.window.ask(Effect::OpenFile(FileKind::Json)),
             ReviewCommand::SaveAside => {
                 if let Some(aside) = &self.review.aside {
-                    let name = format!("{}.aside.review.json", self.mission);
-                    let bytes = aside.text.clone().into_bytes();
-                    self.effects.push(Effect::SaveFile { name, bytes });
+                    self.save_as("aside.review", aside.text.clone());
                 }
             }
         }
     }
 
-    /// Asks the core for a review of the present text.
-    pub(super) fn run_review(&mut self) {
-        let revision = self.document.revision();
-        let PlanSettings { goal, search, seed, trace } = self.settings.plan.clone();
-        self.review.running = Some((revision, search));
-        self.review.asked = self.review.hash().map(str::to_owned);
-        let source = self.document.shared_text().into();
-        let update = Update { revision, source, goal, search, seed, trace };
-        let rules = self.review.record.rules().rules.clone();
-        self.effects.push(Effect::Post(Request::Review { update, rules }));
+    fn save_as(&mut self, what: &str, text: String) {
+        self.window.save_file(format!("{}.{what}.json", self.mission), text.into_bytes());
     }
 
-    /// Takes a review that was asked for.
-    pub(super) fn take_review(&mut self, revision: u64, review: Arc<Review>) {
+    /// Asks the core for a review of the present text.
+    pub(crate) fn run(&mut self) {
+        let revision = self.document.revision();
+        self.review.running = Some((revision, self.settings.plan.search));
+        self.review.asked = self.review.hash().map(str::to_owned);
+        let update = self.settings.plan.update(revision, self.document.shared_text());
+        let rules = self.review.record.rules().rules.clone();
+        self.window.post(Request::Review { update, rules });
+    }
+
+    /// Takes a review that was asked for. Returns whether a report was waiting for it.
+    pub(crate) fn take(&mut self, revision: u64, review: Arc<Review>) -> bool {
         // What nobody waits for any more may be of another mission.
-        let Some((_, search)) = self.review.running.take_if(|running| running.0 == revision) else { return };
+        let Some((_, search)) = self.review.running.take_if(|running| running.0 == revision) else {
+            return false;
+        };
         self.review.done.retain(|it| it.review.content_hash != review.content_hash || it.search != search);
         self.review.done.insert(0, Done { search, review, robustness: None });
         self.review.done.truncate(MAX_DONE);
-        self.judge_reviews();
-        if std::mem::take(&mut self.review.wants_report) && self.current_review().is_some() {
-            self.write_report();
-        }
+        self.judge();
+        std::mem::take(&mut self.review.wants_report) && self.review.current().is_some()
     }
 
     /// Holds every review against the present rules, and against the runs that were made of its content.
-    pub(crate) fn judge_reviews(&mut self) {
+    pub(crate) fn judge(&mut self) {
         let rules = self.review.record.rules().clone();
         for done in &mut self.review.done {
-            let robustness = self.chance.of_content(&done.review.content_hash);
+            let robustness = self.chance.of_content(&done.review.content_hash).cloned();
             let is_same = match (&robustness, &done.robustness) {
                 (Some(new), Some(old)) => Arc::ptr_eq(new, old),
                 (None, None) => true,
@@ -273,7 +305,7 @@ impl AppState {
 
     fn set_rules(&mut self, rules: FlightRules) {
         if let Some(problem) = rules.problem() {
-            self.toasts.add(ToastKind::Failed, format!("These flight rules cannot be used: {problem}"));
+            self.window.failed(format!("These flight rules cannot be used: {problem}"));
             return;
         }
         if *self.review.record.rules() == rules {
@@ -282,47 +314,23 @@ impl AppState {
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
         let who = self.who(by);
         self.review.record.add(who, Act::Rules { rules });
-        self.keep_review();
-        self.judge_reviews();
+        self.keep();
+        self.judge();
     }
 
     /// Takes flight rules from a file.
-    pub(super) fn import_rules(&mut self, name: &str, text: &str) {
+    pub(crate) fn import_rules(&mut self, name: &str, text: &str) {
         match FlightRules::from_json(text) {
             Ok(rules) => {
                 self.set_rules(rules);
-                self.toasts.add(ToastKind::Done, format!("{name}: these are the flight rules now"));
+                self.window.done(format!("{name}: these are the flight rules now"));
             }
-            Err(reason) => self.toasts.add(ToastKind::Failed, format!("{name}: {reason}")),
+            Err(reason) => self.window.failed(format!("{name}: {reason}")),
         }
     }
 
-    /// The core stopped: what was asked of it does not come.
-    pub(super) fn give_up_review(&mut self) {
-        self.review.running = None;
-        self.review.wants_report = false;
-    }
-
-    /// The review of the present content, if it has been made.
-    pub fn current_review(&self) -> Option<&Arc<Review>> {
-        self.review.shown(self.settings.plan.search).filter(|(_, is_stale)| !is_stale).map(|(it, _)| it)
-    }
-
-    /// The rules of the mission over time, as far as the present content has been held against them.
-    pub fn rule_tracks(&self) -> Vec<RuleTrack> {
-        self.current_review().map(|review| report::rule_tracks(review)).unwrap_or_default()
-    }
-
-    /// When things could be in the plan that was last approved, if the present content is another.
-    pub fn approved_times(&self) -> Option<Before> {
-        let (entry, approved) = self.review.record.last_approval()?;
-        let review = self.current_review()?;
-        let is_other = entry.content_hash != review.content_hash || entry.plan_hash != review.plan_hash;
-        if is_other { report::windows_before(approved) } else { None }
-    }
-
     /// Adds what a file has.
-    pub(super) fn import_record(&mut self, name: &str, text: &str) {
+    pub(crate) fn import_record(&mut self, name: &str, text: &str) {
         match Record::from_json(text) {
             Ok(record) if !self.is_of_open_mission(&record) => {
                 // What is added to a history stays in it for good.
@@ -330,17 +338,17 @@ impl AppState {
                     "{name}: this is the review of “{}”, and nothing in it is about the text that is open. Nothing of it was added",
                     record.mission
                 );
-                self.toasts.add(ToastKind::Failed, words);
+                self.window.failed(words);
             }
             Ok(record) => {
                 let count = self.review.record.merge(record);
                 self.learn_runs();
                 let entries = if count == 1 { "entry" } else { "entries" };
-                self.toasts.add(ToastKind::Done, format!("{name}: {count} new {entries}"));
-                self.keep_review();
+                self.window.done(format!("{name}: {count} new {entries}"));
+                self.keep();
             }
             Err(reason) => {
-                self.toasts.add(ToastKind::Failed, format!("{name}: {reason}. Nothing of it was added"));
+                self.window.failed(format!("{name}: {reason}. Nothing of it was added"));
             }
         }
     }
@@ -358,15 +366,15 @@ impl AppState {
             || record.runs.iter().any(|runs| is_present(&runs.content_hash))
     }
 
-    fn keep_review(&mut self) {
+    fn keep(&mut self) {
         self.review.record.mission = self.mission.to_string();
-        self.effects.push(Effect::KeepReview { joins: true });
+        self.window.ask(Effect::KeepReview { joins: true });
     }
 
     /// The host found this kept under the open mission's name, and this that could not be used before.
-    pub(crate) fn recall_review(&mut self, kept: Option<&str>, aside: Option<String>) {
-        self.review.of = self.mission_key();
-        let set_aside = self.review.set_aside.remove(&self.review.of);
+    pub(crate) fn recall(&mut self, kept: Option<&str>, aside: Option<String>) {
+        self.review.of = self.mission_key.clone();
+        let set_aside = self.review.set_aside.remove(&self.mission_key);
         let reason = "it was found here before, and could not be used".to_owned();
         self.review.aside = aside.map(|text| Aside { reason, text });
         let record = match kept.map(|text| (text, Record::from_json(text))) {
@@ -374,7 +382,7 @@ impl AppState {
             Some((text, Err(reason))) => {
                 // It stays where it is; what is kept from here on goes beside it.
                 let words = format!("The kept review cannot be used: {reason}. It is kept aside");
-                self.toasts.add(ToastKind::Failed, words);
+                self.window.failed(words);
                 self.review.aside = Some(Aside { reason: reason.to_string(), text: text.to_owned() });
                 Record::default()
             }
@@ -384,38 +392,38 @@ impl AppState {
         self.review.record.mission = self.mission.to_string();
         if let Some(set_aside) = set_aside {
             self.review.record.merge(set_aside);
-            self.effects.push(Effect::KeepReview { joins: true });
+            self.window.ask(Effect::KeepReview { joins: true });
         }
         self.learn_runs();
     }
 
     /// The open original has become a mission of its own: what was said of it is said of the mission too.
-    pub(super) fn review_goes_along(&mut self) {
-        self.review.of = self.mission_key();
+    pub(crate) fn go_along(&mut self) {
+        self.review.of = self.mission_key.clone();
         if !self.review.record.is_empty() {
-            self.keep_review();
+            self.keep();
         }
     }
 
     /// Adds what came with a mission.
-    pub(crate) fn join_review(&mut self, record: Record) {
+    pub(crate) fn join(&mut self, record: Record) {
         self.review.record.merge(record);
         self.learn_runs();
-        self.keep_review();
+        self.keep();
     }
 
     /// Another mission is open now.
-    pub(super) fn leave_review(&mut self) {
+    pub(crate) fn leave(&mut self) {
         self.review.leave();
-        self.effects.push(Effect::RecallReview);
+        self.window.ask(Effect::RecallReview);
     }
 
     /// Follows what the present content is. Nothing is hashed twice.
-    pub(super) fn follow_review(&mut self) {
+    pub(crate) fn follow(&mut self) {
         let revision = self.document.revision();
         if self.review.running.is_some_and(|running| running.0 != revision) {
             // A newer text ends the review of the older one. Whoever waits for the first one gets that of the new text.
-            self.give_up_review();
+            self.review.give_up();
             if self.review.done.is_empty() {
                 self.review.asked = None;
             }
@@ -456,14 +464,14 @@ impl AppState {
     fn evaluate_rules(&mut self) {
         let rules = self.review.record.rules();
         if !self.review.is_running()
-            && self.current_review().is_some_and(|review| !review.is_evaluated(rules))
+            && self.review.current().is_some_and(|review| !review.is_evaluated(rules))
         {
-            self.run_review();
+            self.run();
         }
     }
 
     /// Now, as an ISO 8601 time in UTC.
     fn utc_now(&self) -> String {
-        report::calendar::utc_text(self.frame.unix_millis)
+        report::calendar::utc_text(self.unix_millis)
     }
 }

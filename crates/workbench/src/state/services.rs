@@ -5,11 +5,10 @@ use std::collections::BTreeSet;
 use rmpl::{Parse, editor};
 use text_editing::{Caret, Document, EditKind, TextCommand, is_name_character};
 
-use crate::Dialog;
-use crate::state::editing::span_of;
+use crate::dialog::Dialog;
+use crate::state::editing::{Writing, span_of};
 use crate::state::editor::{Popup, PopupAction, PopupItem, PopupKind};
 use crate::state::folding::Folding;
-use crate::state::{AppState, ToastKind};
 
 /// Characters that begin a place where something known can be written.
 const OPENERS: [char; 5] = ['=', '(', '[', ':', '"'];
@@ -17,9 +16,9 @@ const OPENERS: [char; 5] = ['=', '(', '[', ':', '"'];
 /// Entries that a list shows at most; the rest is reached by typing on.
 const MAX_ITEMS: usize = 100;
 
-impl AppState {
+impl Writing<'_> {
     /// Opens, narrows or closes the list at the caret after a key.
-    pub(super) fn follow_popup(&mut self, command: &TextCommand) {
+    pub(crate) fn follow_popup(&mut self, command: &TextCommand) {
         let is_completing = self.editor.popup.as_ref().is_some_and(|it| it.kind == PopupKind::Completion);
         match command {
             TextCommand::Insert(text) => {
@@ -41,7 +40,7 @@ impl AppState {
 
     /// Lists what can be written at the caret. Unless the author asked for it, or a list is open, only where it helps: in
     /// a word of at least two letters, or right behind a sign that asks for something.
-    pub(super) fn complete(&mut self, is_asked: bool) {
+    pub(crate) fn complete(&mut self, is_asked: bool) {
         let is_open = self.editor.popup.take().is_some_and(|popup| popup.kind == PopupKind::Completion);
         let Some(found) = self.completions() else { return };
         let head = self.document.caret().head;
@@ -58,7 +57,7 @@ impl AppState {
         if !found.items.is_empty() {
             self.editor.popup = Some(found);
         } else if is_asked {
-            self.toasts.add(ToastKind::Info, "Nothing is known to go here");
+            self.window.info("Nothing is known to go here");
         }
     }
 
@@ -103,11 +102,11 @@ impl AppState {
     }
 
     /// Lists what mends the problems at the caret, in its line if there are none right there.
-    pub(super) fn list_fixes(&mut self) {
+    pub(crate) fn list_fixes(&mut self) {
         self.editor.popup = None;
         let revision = self.document.revision();
         if self.snapshots.latest().is_none_or(|latest| latest.revision != revision) {
-            self.toasts.add(ToastKind::Info, "The text is still being read");
+            self.window.info("The text is still being read");
             return;
         }
         let caret = span_of(&self.document.caret().range());
@@ -133,14 +132,14 @@ impl AppState {
         let mut seen = BTreeSet::new();
         items.retain(|item| seen.insert(item.label.clone()));
         if items.is_empty() {
-            self.toasts.add(ToastKind::Info, "No fix is known for this line");
+            self.window.info("No fix is known for this line");
             return;
         }
         self.editor.popup = Some(Popup { kind: PopupKind::Fixes, items, chosen: 0, span: caret });
-        self.focus_editor();
+        self.window.focus_editor();
     }
 
-    pub(super) fn list_references(&mut self) {
+    pub(crate) fn list_references(&mut self) {
         let Some(parse) = self.language.parse() else { return };
         let caret = span_of(&self.document.caret().range());
         let items: Vec<PopupItem> = editor::references(parse, caret.start)
@@ -160,25 +159,25 @@ impl AppState {
             })
             .collect();
         if items.is_empty() {
-            self.toasts.add(ToastKind::Info, "There is no name here");
+            self.window.info("There is no name here");
             return;
         }
         self.editor.popup = Some(Popup { kind: PopupKind::References, items, chosen: 0, span: caret });
-        self.focus_editor();
+        self.window.focus_editor();
     }
 
-    pub(super) fn go_to_definition(&mut self) {
+    pub(crate) fn go_to_definition(&mut self) {
         let head = self.document.caret().head as u32;
         match self.language.parse().and_then(|parse| editor::definition(parse, head)) {
             Some(span) => {
                 self.reveal(span);
-                self.focus_editor();
+                self.window.focus_editor();
             }
-            None => self.toasts.add(ToastKind::Info, "This is not declared in the text"),
+            None => self.window.info("This is not declared in the text"),
         }
     }
 
-    pub(super) fn take_from_popup(&mut self, index: Option<usize>) {
+    pub(crate) fn take_from_popup(&mut self, index: Option<usize>) {
         let Some(popup) = self.editor.popup.take() else { return };
         let Some(item) = popup.items.into_iter().nth(index.unwrap_or(popup.chosen)) else { return };
         match item.action {
@@ -191,22 +190,22 @@ impl AppState {
             PopupAction::Edit(edits) => self.document.edit(&edits, EditKind::Single, None),
             PopupAction::Reveal(span) => self.reveal(span),
         }
-        self.focus_editor();
+        self.window.focus_editor();
     }
 
-    pub(super) fn ask_for_name(&mut self) {
+    pub(crate) fn ask_for_name(&mut self) {
         let head = self.document.caret().head as u32;
         let Some(parse) = self.language.parse() else { return };
         match editor::prepare_rename(parse, head) {
             Ok((span, name)) => {
                 self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
-                self.dialog = Some(Dialog::Rename { old: name.clone(), name });
+                self.window.dialog = Some(Dialog::Rename { old: name.clone(), name });
             }
-            Err(problem) => self.toasts.add(ToastKind::Failed, format!("Cannot rename: {problem}")),
+            Err(problem) => self.window.failed(format!("Cannot rename: {problem}")),
         }
     }
 
-    pub(super) fn rename_to(&mut self, name: &str) {
+    pub(crate) fn rename_to(&mut self, name: &str) {
         let start = self.document.caret().range().start as u32;
         let Some(parse) = self.language.parse() else { return };
         match editor::rename(parse, start, name) {
@@ -214,25 +213,25 @@ impl AppState {
                 let count = edits.len();
                 self.document.edit(&edits, EditKind::Single, None);
                 let places = if count == 1 { "place" } else { "places" };
-                self.toasts.add(ToastKind::Done, format!("Renamed in {count} {places}"));
+                self.window.done(format!("Renamed in {count} {places}"));
             }
-            Err(problem) => self.toasts.add(ToastKind::Failed, format!("Cannot rename: {problem}")),
+            Err(problem) => self.window.failed(format!("Cannot rename: {problem}")),
         }
-        self.focus_editor();
+        self.window.focus_editor();
     }
 
-    pub(super) fn format(&mut self) {
+    pub(crate) fn format(&mut self) {
         match self.language.formatted() {
             Some(text) => {
                 self.document.replace_all(&text);
-                self.toasts.add(ToastKind::Done, "Formatted");
+                self.window.done("Formatted");
             }
-            None => self.toasts.add(ToastKind::Info, "The text is formatted already"),
+            None => self.window.info("The text is formatted already"),
         }
     }
 
     /// Folds the innermost open piece around the caret, or opens what is folded at its line.
-    pub(super) fn fold_at_caret(&mut self, folds: bool) {
+    pub(crate) fn fold_at_caret(&mut self, folds: bool) {
         let line = self.document.line_at(self.document.caret().head);
         if !folds && !self.editor.folding.rows().is_folded_at(line) {
             return;
@@ -247,7 +246,7 @@ impl AppState {
     }
 
     /// Folds and unfolds; a caret in what disappears goes to the end of the line that stays.
-    pub(super) fn fold(&mut self, change: impl FnOnce(&mut Folding, &Document, &Parse)) {
+    pub(crate) fn fold(&mut self, change: impl FnOnce(&mut Folding, &Document, &Parse)) {
         let Some(parse) = self.language.parse() else { return };
         change(&mut self.editor.folding, &self.document, parse);
         let line = self.document.line_at(self.document.caret().head);
@@ -257,7 +256,7 @@ impl AppState {
         }
     }
 
-    pub(super) fn expand_selection(&mut self) {
+    pub(crate) fn expand_selection(&mut self) {
         let caret = span_of(&self.document.caret().range());
         let wider = self.language.parse().and_then(|parse| editor::wider_selection(parse, caret));
         if let Some(span) = wider {

@@ -1,11 +1,18 @@
 //! What is remembered between runs: appearance, how to plan, and what each panel shows.
 
+use std::collections::BTreeSet;
+
 use kirk::Search as SearchKind;
 use layout::timeline::{ChartOptions, Grouping};
+use link::{Source, Update};
 use serde::{Deserialize, Serialize};
 use snapshot::Goal;
 
-use crate::state::lesson::Learned;
+use crate::effect::Effect;
+use crate::state::window::Window;
+
+/// The stops of lessons that were answered correctly.
+pub type Learned = BTreeSet<String>;
 
 /// The user's settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,7 +56,45 @@ pub const TEXT_SCALES: [f32; 2] = [0.6, 2.5];
 /// How little and how much heights are exaggerated.
 pub const HEIGHT_SCALES: [f32; 2] = [1.0, 5.0];
 
+/// What can be asked of the settings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingsCommand {
+    SetGoal(Goal),
+    /// How to search.
+    SetSearch(SearchKind),
+    /// Seeds path planning.
+    SetSeed(u64),
+    /// Whether the search is recorded.
+    SetTrace(bool),
+    /// What panels show.
+    SetViews(Box<Views>),
+    /// Light, dark, or as the system has it.
+    SetTheme(ThemeChoice),
+    /// How large text is; 1 is the designed size.
+    SetTextScale(f32),
+}
+
 impl Settings {
+    /// Does what a command asks for.
+    pub(crate) fn apply(&mut self, command: SettingsCommand, window: &mut Window) {
+        match command {
+            SettingsCommand::SetGoal(goal) => self.plan.goal = goal,
+            SettingsCommand::SetSearch(search) => self.plan.search = search,
+            SettingsCommand::SetSeed(seed) => self.plan.seed = seed,
+            SettingsCommand::SetTrace(trace) => self.plan.trace = trace,
+            SettingsCommand::SetViews(views) => self.views = *views,
+            SettingsCommand::SetTheme(theme) => {
+                self.theme = theme;
+                window.ask(Effect::Restyle);
+            }
+            SettingsCommand::SetTextScale(scale) => {
+                let [least, most] = TEXT_SCALES;
+                self.text_scale = ((scale * 10.0).round() / 10.0).clamp(least, most);
+                window.ask(Effect::Restyle);
+            }
+        }
+    }
+
     /// The same with every number where it can be used: what was kept may have been damaged, or written by another
     /// version.
     #[must_use]
@@ -92,7 +137,15 @@ pub struct PlanSettings {
     pub trace: bool,
 }
 
-/// What each panel shows. A panel changes its part with [`crate::command::Command::SetViews`].
+impl PlanSettings {
+    /// What the core is asked to plan: the text of `revision`, in this way.
+    pub fn update(&self, revision: u64, source: impl Into<Source>) -> Update {
+        let Self { goal, search, seed, trace } = self.clone();
+        Update { revision, source: source.into(), goal, search, seed, trace }
+    }
+}
+
+/// What each panel shows. A panel changes its part with [`SettingsCommand::SetViews`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Views {

@@ -6,7 +6,7 @@ use rmpl::Severity;
 use snapshot::Problem;
 use snapshot::{Snapshot, Stage};
 
-use crate::state::files::offer_files;
+use crate::state::imports::offer_files;
 use crate::state::no_plan;
 
 /// Snapshots as they arrived.
@@ -72,16 +72,18 @@ impl Snapshots {
         &self.problems
     }
 
-    /// Shows a compiled network whose plan takes long. Returns whether what is shown has changed.
-    pub fn lose_patience(&mut self, now_secs: f64) -> bool {
-        let Some(latest) = &self.latest else { return false };
-        let is_waiting = latest.stage == Stage::Compiled
-            && latest.network.is_some()
-            && self.shown.as_ref().is_some_and(|shown| shown.revision < latest.revision);
-        if is_waiting && now_secs - self.latest_secs > PATIENCE_SECS {
-            self.shown = Some(Arc::clone(latest));
+    /// Whether a compiled network waits for its plan, while an older one is shown.
+    pub fn is_waiting(&self) -> bool {
+        self.latest.as_ref().zip(self.shown.as_ref()).is_some_and(|(latest, shown)| {
+            latest.stage == Stage::Compiled && latest.network.is_some() && shown.revision < latest.revision
+        })
+    }
+
+    /// Shows a compiled network that waits for its plan, if that takes long.
+    pub fn lose_patience(&mut self, now_secs: f64) {
+        if self.is_waiting() && now_secs - self.latest_secs > PATIENCE_SECS {
+            self.shown.clone_from(&self.latest);
         }
-        is_waiting
     }
 
     /// The text of `revision` is not worked out any more.

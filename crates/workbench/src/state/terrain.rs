@@ -1,20 +1,18 @@
 //! What is done on the terrain: the tool in hand, what it has measured or placed so far, and where the camera is to go.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
 use nalgebra::Point2;
 use rmpl::Span;
 use smol_str::SmolStr;
-use snapshot::MapKey;
-use terrain::Terrain;
 use text_editing::{Caret, EditKind};
 
-use crate::PanelKind;
-use crate::command::ViewAction;
-use crate::state::growth::{Growth, GrowthCommand, GrowthInput};
+use crate::panel_effect::ViewAction;
+use crate::panel_kind::PanelKind;
+use crate::state::editing::Writing;
+use crate::state::growth::{Growth, GrowthCommand};
+use crate::state::part::Part;
 use crate::state::placing::{self, NewThing, VehicleStart};
-use crate::state::{AppState, Selection, Snapshots, ToastKind};
+use crate::state::selection::Selection;
+use crate::state::settings::Settings;
 
 /// What clicks on the ground do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -92,120 +90,100 @@ pub enum TerrainCommand {
     Growth(GrowthCommand),
 }
 
-impl AppState {
-    pub(crate) fn apply_to_terrain(&mut self, command: TerrainCommand) {
+impl TerrainState {
+    /// Does what a command asks for; what is declared is declared in `text`.
+    pub(crate) fn apply(
+        &mut self,
+        command: TerrainCommand,
+        settings: &mut Part<Settings>,
+        text: &mut Writing<'_>,
+    ) {
         match command {
             TerrainCommand::Take(tool) => {
-                let is_in_hand = self.terrain.tool == tool;
-                self.terrain.tool = if is_in_hand { Tool::Look } else { tool };
-                self.terrain.points_m.clear();
-                self.turn_to_terrain();
+                self.tool = if self.tool == tool { Tool::Look } else { tool };
+                self.points_m.clear();
+                text.window.turn_to(PanelKind::Terrain);
             }
             TerrainCommand::Point(at_m) => {
-                if self.terrain.tool == Tool::Measure && self.terrain.points_m.len() >= 2 {
-                    self.terrain.points_m.clear();
+                if self.tool == Tool::Measure && self.points_m.len() >= 2 {
+                    self.points_m.clear();
                 }
-                self.terrain.points_m.push(at_m);
+                self.points_m.push(at_m);
             }
             TerrainCommand::TakeBack => {
-                self.terrain.points_m.pop();
+                self.points_m.pop();
             }
             TerrainCommand::Finish => {
-                let corners_m = std::mem::take(&mut self.terrain.points_m);
+                let corners_m = std::mem::take(&mut self.points_m);
                 if corners_m.len() >= 3 {
-                    self.place(&NewThing::Polygon(corners_m), false);
+                    self.place(&NewThing::Polygon(corners_m), false, text);
                 }
             }
-            TerrainCommand::Place { thing, again } => self.place(&thing, again),
-            TerrainCommand::MoveStart { vehicle, start } => {
-                let Some(program) = self.language.parse().map(rmpl::Parse::program) else { return };
-                if let Some(edits) = placing::move_start(self.document.text(), &program, &vehicle, &start) {
-                    self.document.edit(&edits, EditKind::Single, None);
-                    self.selection = Selection::Vehicle(vehicle);
-                }
-            }
+            TerrainCommand::Place { thing, again } => self.place(&thing, again, text),
+            TerrainCommand::MoveStart { vehicle, start } => text.move_start(vehicle, &start),
             TerrainCommand::View(action) => {
-                self.turn_to_terrain();
-                self.request_view(PanelKind::Terrain, action);
+                text.window.turn_to(PanelKind::Terrain);
+                text.window.view(PanelKind::Terrain, action);
             }
             TerrainCommand::ToggleClearance => {
-                let view = &mut self.settings.views.terrain;
+                let view = &mut settings.views.terrain;
                 view.clearance = !view.clearance;
-                self.turn_to_terrain();
+                text.window.turn_to(PanelKind::Terrain);
             }
             TerrainCommand::Growth(command) => {
-                let input = growth_input(&self.snapshots, &self.maps, &self.selection);
-                self.terrain.growth.apply(command, input);
+                self.growth.apply(command, text.maps.growth_input(text.snapshots, text.selection));
                 if command == GrowthCommand::Toggle {
-                    self.turn_to_terrain();
+                    text.window.turn_to(PanelKind::Terrain);
                 }
             }
         }
     }
 
-    /// A map was imported: texts that name it are worked out anew.
-    pub(super) fn take_map(&mut self, name: &str, [width, height]: [u32; 2], no_data_cells: u64) {
-        let holes = match no_data_cells {
-            0 => String::new(),
-            1 => ", one without data".to_owned(),
-            count => format!(", {count} without data"),
-        };
-        let use_it = format!("A mission uses it by: terrain \"{name}\";");
-        self.toasts
-            .add(ToastKind::Done, format!("{name} is a map of {width} × {height} cells{holes}. {use_it}"));
-    }
-
-    /// Adapts what the terrain shows to the snapshot that is shown now.
-    pub(super) fn follow_with_terrain(&mut self) {
-        let input = growth_input(&self.snapshots, &self.maps, &self.selection);
-        self.terrain.growth.follow(input);
+    /// Declares `thing`, and puts the tool away unless it is wanted again.
+    fn place(&mut self, thing: &NewThing, again: bool, text: &mut Writing<'_>) {
+        if text.place(thing) && !again {
+            self.tool = Tool::Look;
+        }
     }
 
     /// Leaves what is under way on the terrain; whether there was something.
-    pub(super) fn escape_from_terrain(&mut self) -> bool {
-        let had_points = !self.terrain.points_m.is_empty();
-        let had_tool = self.terrain.tool != Tool::Look;
-        self.terrain.points_m.clear();
+    pub(crate) fn escape(&mut self) -> bool {
+        let had_points = !self.points_m.is_empty();
+        let had_tool = self.tool != Tool::Look;
+        self.points_m.clear();
         if !had_points {
-            self.terrain.tool = Tool::Look;
+            self.tool = Tool::Look;
         }
         had_points || had_tool
     }
+}
 
-    fn turn_to_terrain(&mut self) {
-        self.show_panel(PanelKind::Terrain);
-        self.active_panel = PanelKind::Terrain;
+impl Writing<'_> {
+    /// Makes a vehicle start elsewhere, and selects it.
+    fn move_start(&mut self, vehicle: SmolStr, start: &VehicleStart) {
+        let Some(program) = self.language.parse().map(rmpl::Parse::program) else { return };
+        if let Some(edits) = placing::move_start(self.document.text(), &program, &vehicle, start) {
+            self.document.edit(&edits, EditKind::Single, None);
+            **self.selection = Selection::Vehicle(vehicle);
+        }
     }
 
-    /// Declares `thing`, selects it, and shows its name in the text.
-    fn place(&mut self, thing: &NewThing, again: bool) {
+    /// Declares `thing`, selects it, and shows its name in the text; false where nothing can be declared.
+    fn place(&mut self, thing: &NewThing) -> bool {
         let Some(program) = self.language.parse().map(rmpl::Parse::program) else {
-            self.toasts.add(ToastKind::Failed, "A control program has no places");
-            return;
+            self.window.failed("A control program has no places");
+            return false;
         };
         let declared = placing::declare(self.document.text(), &program, thing);
         self.document.edit(&declared.edits, EditKind::Single, None);
         if let Some(start) = self.document.text().find(&declared.text) {
             let name = name_span(start, &declared.text);
             self.document.set_caret(Caret::selecting(name.start as usize, name.end as usize));
-            self.scroll_to(name, true);
+            self.window.scroll_to(name, true);
         }
-        self.selection = declared.selection;
-        if !again {
-            self.terrain.tool = Tool::Look;
-        }
+        **self.selection = declared.selection;
+        true
     }
-}
-
-/// What the growth of a search tree is made from, if the mission and its ground are there.
-fn growth_input<'a>(
-    snapshots: &'a Snapshots,
-    maps: &'a BTreeMap<MapKey, Arc<Terrain>>,
-    selection: &'a Selection,
-) -> Option<GrowthInput<'a>> {
-    let snapshot = snapshots.shown()?;
-    maps.get(snapshot.map.as_ref()?)?;
-    Some(GrowthInput { snapshot, selection })
 }
 
 /// The second word of a declaration that begins at `start`: its name.

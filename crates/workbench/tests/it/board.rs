@@ -6,7 +6,8 @@ use review::Record;
 use serde_json::{Value, json};
 use test_support::App;
 use workbench::command::Command;
-use workbench::host::{FileKind, Remote as _};
+use workbench::host::FileKind;
+use workbench::outside::Remote as _;
 use workbench::state::review::ReviewCommand;
 
 /// The open mission, reviewed, before a board of two roles.
@@ -130,7 +131,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     assert_eq!(status(&app), "lapsed");
     assert_eq!(app.json()["review"]["signed"]["stale"], true);
     // The approved plan lies under the present one, on the timeline and in the report.
-    assert!(app.session.state().approved_times().is_some());
+    assert!(app.session.state().review.approved_times().is_some());
     app.run(Command::WriteReport);
     let page = app.world.saved_text();
     for part in [
@@ -142,7 +143,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     }
     app.dispatch("edit.undo", &json!(null));
     assert_eq!(status(&app), "approved-with-comments");
-    assert_eq!(app.session.state().approved_times(), None);
+    assert_eq!(app.session.state().review.approved_times(), None);
     app.dispatch("edit.redo", &json!(null));
     assert_eq!(status(&app), "lapsed");
     // The board approves the edited plan; what differs is acknowledged anew, what does not is not.
@@ -294,7 +295,7 @@ fn open_json(app: &mut App, text: &str) {
 
 /// What the last message said.
 fn last_toast(app: &App) -> String {
-    app.session.state().toasts.shown().last().map(|toast| toast.text.clone()).unwrap_or_default()
+    app.session.state().window.toasts.shown().last().map(|toast| toast.text.clone()).unwrap_or_default()
 }
 
 /// A history of one comment, with its text altered.
@@ -450,7 +451,7 @@ fn rules_of_the_mission_are_evaluated_as_soon_as_they_are_set() {
     app.settle();
     let held = ("passed".to_owned(), "Way: holds in every execution of the plan".to_owned());
     assert_eq!(lines(&app), [held]);
-    assert_eq!(app.session.state().rule_tracks().len(), 1);
+    assert_eq!(app.session.state().review.rule_tracks().len(), 1);
     // A rule that the plan breaks keeps the board from approving, whatever is acknowledged.
     app.dispatch("review.rules", &json!({ "rules": rule("never Group-Traverse-Path while PATH1=OK") }));
     app.settle();
@@ -462,5 +463,5 @@ fn rules_of_the_mission_are_evaluated_as_soon_as_they_are_set() {
     // With another text it is stale, and drawn no more; with the text again, it is there again.
     let source = app.session.source();
     app.run(Command::SetSource(source.replace("[450,450]", "[440,440]")));
-    assert!(app.session.state().rule_tracks().is_empty());
+    assert!(app.session.state().review.rule_tracks().is_empty());
 }

@@ -6,6 +6,7 @@ use test_support::start;
 use tpn::generate::{Recipe, Tightness, mission};
 use workbench::command::Command;
 use workbench::state::search::Counts;
+use workbench::state::settings::SettingsCommand;
 use workbench::workspace::Workspace;
 
 /// The missions of the page, and random ones that have no plan or barely one.
@@ -34,7 +35,7 @@ fn what_is_counted_of_a_search_is_the_same_wherever_it_stands() {
         app.run(Command::ShowWorkspace(Workspace::Teach));
         app.run(Command::SetSource(source));
         for search in kirk::Search::ALL {
-            app.run(Command::SetSearch(search));
+            app.run(Command::Settings(SettingsCommand::SetSearch(search)));
             let name = format!("{name}, {search:?}");
             let state = app.session.state();
             let shown = state.shown().expect("a snapshot");

@@ -4,13 +4,15 @@
 use serde_json::{Value, json};
 use test_support::{App, start};
 use workbench::command::Command;
-use workbench::host::Remote as _;
+use workbench::description::Description;
 use workbench::lesson::{Answer, COURSE, CourseLesson, Expectation, Glossary, Lesson};
+use workbench::outside::Remote as _;
+use workbench::registry::read_lesson;
 use workbench::state::lesson::LessonCommand;
 
 fn lessons() -> impl Iterator<Item = (&'static CourseLesson, Lesson)> {
     COURSE.iter().flat_map(|chapter| chapter.lessons).map(|lesson| {
-        let (read, errors) = Lesson::read(lesson.name, lesson.text);
+        let (read, errors) = read_lesson(lesson.name, lesson.text);
         assert_eq!(errors, [], "{}", lesson.name);
         (lesson, read)
     })
@@ -92,12 +94,14 @@ fn answer(app: &mut App, answer: &Answer, has_solution: bool) -> Vec<String> {
         }
         return wrong;
     }
-    let Some(right) = answer.right_now(app.session.state()) else {
+    let Some(right) = answer.right_now(&Description::of(app.session.state())) else {
         return vec!["what is right cannot be computed".to_owned()];
     };
     if let Answer::Choice(choices) = answer {
-        let verdicts: Vec<Option<bool>> =
-            choices.iter().map(|choice| choice.is_right.holds(app.session.state())).collect();
+        let verdicts: Vec<Option<bool>> = choices
+            .iter()
+            .map(|choice| choice.is_right.holds(&Description::of(app.session.state())))
+            .collect();
         if verdicts.iter().filter(|it| **it == Some(true)).count() != 1 || verdicts.contains(&None) {
             wrong.push(format!("exactly one choice is right, not {verdicts:?}"));
         }

@@ -3,8 +3,9 @@
 use test_support::App;
 use text_editing::{Motion, TextCommand};
 use workbench::PanelKind;
-use workbench::command::{Command, EditorCommand};
-use workbench::host::Remote as _;
+use workbench::command::Command;
+use workbench::outside::Remote as _;
+use workbench::state::editor::EditorCommand;
 use workbench::state::manual::ManualCommand;
 
 fn showing(source: &str) -> App {

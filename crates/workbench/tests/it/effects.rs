@@ -3,11 +3,16 @@
 use rmpl::Span;
 use test_support::App;
 use text_editing::{Find, TextCommand};
-use workbench::command::{Command, EditorCommand, PictureFormat, ViewAction};
-use workbench::host::{FileKind, Remote as _};
+use workbench::command::Command;
+use workbench::host::FileKind;
+use workbench::outside::Remote as _;
+use workbench::state::editor::EditorCommand;
 use workbench::state::editor::Reveal;
+use workbench::state::settings::SettingsCommand;
 use workbench::state::settings::ThemeChoice;
+use workbench::state::window::WindowCommand;
 use workbench::{Dialog, PanelEffect, PanelKind, WindowEffect};
+use workbench::{PictureFormat, ViewAction};
 
 /// A session with a short text, whose first effects nobody waits for any more.
 fn opened(source: &str) -> App {
@@ -20,7 +25,7 @@ fn opened(source: &str) -> App {
 
 /// What panels and their layout are to do now.
 fn left(app: &mut App) -> Vec<PanelEffect> {
-    app.session.state_mut().panel_effects.take(Some)
+    app.session.state_mut().window.panel_effects.take(Some)
 }
 
 /// What a command leaves for them.
@@ -37,13 +42,13 @@ fn caret(app: &App) -> [usize; 2] {
 #[test]
 fn panels_are_shown_closed_and_put_back_by_the_layout() {
     let mut app = opened("scenario S = { }");
-    let shown = leaves(&mut app, Command::ShowPanel(PanelKind::Distances));
+    let shown = leaves(&mut app, Command::Window(WindowCommand::ShowPanel(PanelKind::Distances)));
     assert_eq!(shown, [PanelEffect::Show(PanelKind::Distances)]);
-    assert_eq!(app.session.state().active_panel, PanelKind::Distances);
-    let closed = leaves(&mut app, Command::ClosePanel(PanelKind::Distances));
+    assert_eq!(app.session.state().window.active_panel, PanelKind::Distances);
+    let closed = leaves(&mut app, Command::Window(WindowCommand::ClosePanel(PanelKind::Distances)));
     assert_eq!(closed, [PanelEffect::Close(PanelKind::Distances)]);
-    assert_eq!(leaves(&mut app, Command::ResetWorkspace), [PanelEffect::ResetLayout]);
-    let saved = leaves(&mut app, Command::SaveNetwork(PictureFormat::Png));
+    assert_eq!(leaves(&mut app, Command::Window(WindowCommand::ResetWorkspace)), [PanelEffect::ResetLayout]);
+    let saved = leaves(&mut app, Command::Window(WindowCommand::SaveNetwork(PictureFormat::Png)));
     let expected = [PanelEffect::SaveDrawing(PictureFormat::Png), PanelEffect::Show(PanelKind::Network)];
     assert_eq!(saved, expected);
 }
@@ -57,8 +62,8 @@ fn a_view_action_goes_to_the_panel_used_last_if_that_has_a_view() {
         (PanelKind::Editor, PanelKind::Network),
         (PanelKind::Problems, PanelKind::Network),
     ] {
-        app.run(Command::Activate(used));
-        let left = leaves(&mut app, Command::View(ViewAction::ZoomIn));
+        app.run(Command::Window(WindowCommand::Activate(used)));
+        let left = leaves(&mut app, Command::Window(WindowCommand::View(ViewAction::ZoomIn)));
         assert_eq!(left, [PanelEffect::View(moved, ViewAction::ZoomIn)], "{used:?}");
     }
 }
@@ -67,21 +72,21 @@ fn a_view_action_goes_to_the_panel_used_last_if_that_has_a_view() {
 fn turning_goes_round_the_panels_on_screen_and_the_keyboard_goes_along() {
     let mut app = opened("scenario S = { }");
     let on_screen = vec![PanelKind::Editor, PanelKind::Network, PanelKind::Timeline];
-    app.session.state_mut().panels_on_screen = on_screen;
-    app.run(Command::Activate(PanelKind::Network));
+    app.session.state_mut().window.panels_on_screen = on_screen;
+    app.run(Command::Window(WindowCommand::Activate(PanelKind::Network)));
     for (forwards, panel, keyboard) in [
         (true, PanelKind::Timeline, PanelEffect::FocusPanel(PanelKind::Timeline)),
         (true, PanelKind::Editor, PanelEffect::FocusEditor),
         (false, PanelKind::Timeline, PanelEffect::FocusPanel(PanelKind::Timeline)),
         (false, PanelKind::Network, PanelEffect::FocusPanel(PanelKind::Network)),
     ] {
-        let left = leaves(&mut app, Command::TurnPanel(forwards));
-        assert_eq!((app.session.state().active_panel, left), (panel, vec![keyboard]));
+        let left = leaves(&mut app, Command::Window(WindowCommand::TurnPanel(forwards)));
+        assert_eq!((app.session.state().window.active_panel, left), (panel, vec![keyboard]));
     }
     // A panel that is gone leads to the first one.
-    app.run(Command::Activate(PanelKind::Search));
-    leaves(&mut app, Command::TurnPanel(true));
-    assert_eq!(app.session.state().active_panel, PanelKind::Editor);
+    app.run(Command::Window(WindowCommand::Activate(PanelKind::Search)));
+    leaves(&mut app, Command::Window(WindowCommand::TurnPanel(true)));
+    assert_eq!(app.session.state().window.active_panel, PanelKind::Editor);
 }
 
 #[test]
@@ -107,11 +112,11 @@ fn escape_takes_back_the_top_thing_first_and_the_find_bar_gives_the_keyboard_bac
     let mut app = opened("primitive Drive(to);\nscenario S = { Drive(A) }");
     app.run(Command::Editor(EditorCommand::Find { replacing: false }));
     app.run(Command::Editor(EditorCommand::Complete));
-    app.run(Command::ShowDialog(Dialog::Explain("E-PARSE".into())));
+    app.run(Command::Window(WindowCommand::ShowDialog(Dialog::Explain("E-PARSE".into()))));
     left(&mut app);
     let open = |app: &App| {
         let state = app.session.state();
-        [state.dialog.is_some(), state.editor.popup.is_some(), state.editor.find.is_some()]
+        [state.window.dialog.is_some(), state.editor.popup.is_some(), state.editor.find.is_some()]
     };
     assert_eq!(open(&app), [true; 3]);
     assert_eq!(leaves(&mut app, Command::Escape), []);
@@ -126,8 +131,8 @@ fn escape_takes_back_the_top_thing_first_and_the_find_bar_gives_the_keyboard_bac
 fn what_only_the_window_can_do_is_left_to_it_once() {
     let mut app = opened("one\ntwo");
     app.session.apply(vec![
-        Command::Copy("words".into()),
-        Command::SetTheme(ThemeChoice::Light),
+        Command::Window(WindowCommand::Copy("words".into())),
+        Command::Settings(SettingsCommand::SetTheme(ThemeChoice::Light)),
         Command::Editor(EditorCommand::CopySelection { cut: true }),
     ]);
     let copy = |text: &str| WindowEffect::Copy(text.to_owned());
@@ -135,7 +140,7 @@ fn what_only_the_window_can_do_is_left_to_it_once() {
     assert_eq!(app.session.take_window_effects(), [copy("words"), WindowEffect::Restyle, copy("one\n")]);
     assert_eq!(app.session.state().document.text(), "two");
     assert_eq!(app.session.take_window_effects(), []);
-    app.session.apply(vec![Command::SetTextScale(99.0)]);
+    app.session.apply(vec![Command::Settings(SettingsCommand::SetTextScale(99.0))]);
     assert_eq!(app.session.state().settings.text_scale, 2.5);
     assert_eq!(app.session.take_window_effects(), [WindowEffect::Restyle]);
 }
@@ -143,7 +148,7 @@ fn what_only_the_window_can_do_is_left_to_it_once() {
 #[test]
 fn files_are_asked_of_the_host_and_saving_ends_what_is_unsaved() {
     let mut app = opened("one");
-    app.run(Command::OpenFile(FileKind::Map));
+    app.run(Command::Window(WindowCommand::OpenFile(FileKind::Map)));
     assert_eq!(*app.world.asked.borrow(), [FileKind::Map]);
     app.run(Command::SetSource("two".into()));
     assert!(app.session.state().document.is_modified());

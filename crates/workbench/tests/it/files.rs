@@ -3,10 +3,11 @@
 use std::rc::Rc;
 
 use text_editing::TextCommand;
-use workbench::command::{Command, EditorCommand};
+use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent, Save};
+use workbench::library::LibraryCommand;
+use workbench::state::editor::EditorCommand;
 use workbench::state::files::FileCommand;
-use workbench::state::missions::LibraryCommand;
 
 use test_support::{App, World, start_in};
 
@@ -261,13 +262,13 @@ fn an_error_in_another_file_is_announced_with_the_name_and_the_line_of_that_file
         &mut app,
         vec![Command::SetSource(rmpl::files::joined([("", MAIN), ("world/places.rmpl", &*broken)]))],
     );
-    let announced = app.session.state().announcement();
+    let announced = workbench::outside::announcement(app.session.state());
     assert!(announced.contains("world/places.rmpl, line 2: "), "{announced}");
     let broken = MAIN.replace("primitive", "primitiv");
     apply(
         &mut app,
         vec![Command::SetSource(rmpl::files::joined([("", &*broken), ("world/places.rmpl", PLACES)]))],
     );
-    let announced = app.session.state().announcement();
+    let announced = workbench::outside::announcement(app.session.state());
     assert!(announced.contains("Line 4: "), "{announced}");
 }

@@ -2,7 +2,8 @@
 
 use serde_json::json;
 use test_support::{App, start};
-use workbench::command::{Command, ViewAction};
+use workbench::ViewAction;
+use workbench::command::Command;
 use workbench::state::lesson::LessonCommand;
 use workbench::state::search::focus::is_key;
 use workbench::state::search::{Recording, SearchCommand};
@@ -86,10 +87,10 @@ fn what_plays_plays_key_steps() {
 fn each_stop_shows_every_drawing_from_where_its_step_is_whatever_was_zoomed_before() {
     let (mut app, _) = lesson();
     for (lesson, stop) in [("choices", 1), ("learning", 0), ("learning", 1)] {
-        app.session.state_mut().panel_effects.take(Some);
+        app.session.state_mut().window.panel_effects.take(Some);
         app.run(Command::Lesson(LessonCommand::Open(lesson.into(), stop)));
         app.settle();
-        let effects: Vec<PanelEffect> = app.session.state_mut().panel_effects.take(Some);
+        let effects: Vec<PanelEffect> = app.session.state_mut().window.panel_effects.take(Some);
         for panel in [PanelKind::Search, PanelKind::Network, PanelKind::Timeline, PanelKind::Distances] {
             let is_view = |it: &&PanelEffect| matches!(it, PanelEffect::View(moved, _) if *moved == panel);
             let last = effects.iter().rfind(is_view).unwrap_or_else(|| panic!("{lesson}, {stop}: {panel:?}"));

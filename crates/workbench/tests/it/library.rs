@@ -4,9 +4,10 @@ use std::rc::Rc;
 
 use serde_json::{Value, json};
 use workbench::command::Command;
-use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::host::{FileKind, HostEvent};
+use workbench::library::LibraryCommand;
 use workbench::library::{Keeping, Mission};
-use workbench::state::missions::LibraryCommand;
+use workbench::outside::Remote as _;
 
 use test_support::host::Shelf;
 use test_support::{App, World, start_in};

@@ -3,6 +3,7 @@
 mod board;
 mod counters;
 mod course;
+mod derived;
 mod editing;
 mod edits;
 mod effects;

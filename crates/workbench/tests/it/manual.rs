@@ -26,7 +26,7 @@ fn every_code_that_a_problem_of_the_page_can_have_has_its_section() {
 #[test]
 fn every_command_with_arguments_stands_in_the_contracts() {
     let contracts = include_str!("../../../../docs/contracts.md");
-    let called = workbench::command::all_commands().filter(|spec| !spec.is_plain());
+    let called = workbench::registry::all_commands().filter(|spec| !spec.is_plain());
     let missing: Vec<&str> =
         called.map(|spec| spec.id).filter(|id| !contracts.contains(&format!("`{id}`"))).collect();
     assert!(missing.is_empty(), "{missing:?}");

@@ -1,8 +1,9 @@
 //! The workbench as a host page drives it, without a window.
 
 use serde_json::{Value, json};
-use workbench::command::all_commands;
-use workbench::host::{HostEvent, Remote as _, RemoteError};
+use workbench::host::{HostEvent, RemoteError};
+use workbench::outside::Remote as _;
+use workbench::registry::all_commands;
 
 #[test]
 fn a_host_page_can_drive_the_app_and_is_told_what_is_wrong_with_a_call() {

@@ -2,11 +2,13 @@
 
 use test_support::App;
 use workbench::PanelKind;
+use workbench::acts::Track;
 use workbench::command::Command;
 use workbench::state::growth::GrowthCommand;
+use workbench::state::playback::TransportCommand;
 use workbench::state::search::SearchCommand;
 use workbench::state::terrain::TerrainCommand;
-use workbench::transport::{Track, TransportCommand};
+use workbench::state::window::WindowCommand;
 use workbench::workspace::Workspace;
 
 /// A session in which the keys drive `track`.
@@ -121,10 +123,10 @@ fn a_step_of_the_search_keeps_the_keys_until_the_user_turns_to_time() {
         (PanelKind::Terrain, Track::Plan),
         (PanelKind::Search, Track::Search),
     ] {
-        app.run(Command::Activate(panel));
+        app.run(Command::Window(WindowCommand::Activate(panel)));
         assert_eq!(app.session.state().track(), track, "{panel:?}");
     }
-    app.run(Command::Activate(PanelKind::Network));
+    app.run(Command::Window(WindowCommand::Activate(PanelKind::Network)));
     app.run(Command::Search(SearchCommand::Close));
     assert_eq!(app.session.state().track(), Track::Plan);
 }
@@ -132,9 +134,9 @@ fn a_step_of_the_search_keeps_the_keys_until_the_user_turns_to_time() {
 #[test]
 fn a_growth_has_the_keys_while_the_user_is_on_the_terrain() {
     let mut app = driving(Track::Growth);
-    app.run(Command::Activate(PanelKind::Editor));
+    app.run(Command::Window(WindowCommand::Activate(PanelKind::Editor)));
     assert_eq!(app.session.state().track(), Track::Plan);
-    app.run(Command::Activate(PanelKind::Terrain));
+    app.run(Command::Window(WindowCommand::Activate(PanelKind::Terrain)));
     assert_eq!(app.session.state().track(), Track::Growth);
     app.run(Command::Terrain(TerrainCommand::Growth(GrowthCommand::Close)));
     assert_eq!(app.session.state().track(), Track::Plan);

@@ -4,11 +4,14 @@ use link::Response;
 use review::review;
 use serde_json::{Value, json};
 use test_support::App;
-use workbench::command::{Command, EditorCommand};
-use workbench::host::{FileKind, HostEvent, Remote as _};
+use workbench::command::Command;
+use workbench::host::{FileKind, HostEvent};
+use workbench::outside::Remote as _;
+use workbench::state::editor::EditorCommand;
 use workbench::state::no_plan::NO_PLAN;
 use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
+use workbench::state::settings::SettingsCommand;
 use workbench::workspace::Workspace;
 
 /// A mission without a plan: a wait of 8 minutes in one of 5.
@@ -101,7 +104,7 @@ fn a_review_of_another_text_is_stale_and_of_another_mission_gone() {
     assert_eq!(app.json()["status"], "broken");
     assert_eq!(stale(&app), true, "errors");
     app.dispatch("edit.undo", &json!(null));
-    app.run(Command::SetSeed(app.session.state().settings.plan.seed + 1));
+    app.run(Command::Settings(SettingsCommand::SetSeed(app.session.state().settings.plan.seed + 1)));
     assert_eq!(stale(&app), true, "another seed");
     app.run(Command::OpenExample("both-paths".into()));
     assert_eq!(app.json()["review"]["hash"], Value::Null, "another mission");

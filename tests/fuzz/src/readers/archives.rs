@@ -42,7 +42,7 @@ fn archives(input: &[u8]) -> Outcome {
                 bytes: input.to_vec(),
                 token: None,
             });
-            read(&format!("{:?}", state.toasts.shown().iter().map(|it| &it.text).collect::<Vec<_>>()))
+            read(&format!("{:?}", state.window.toasts.shown().iter().map(|it| &it.text).collect::<Vec<_>>()))
         }
         Err(reason) => refused(&reason.to_string()),
     }

@@ -57,7 +57,7 @@ fn links(input: &[u8]) -> Outcome {
     };
     let mut state = AppState::new();
     let is_named = open_fragment(&mut state, &fragment);
-    let said: String = state.toasts.shown().iter().map(|toast| toast.text.as_str()).collect();
+    let said: String = state.window.toasts.shown().iter().map(|toast| toast.text.as_str()).collect();
     assert!(
         state.playback.time >= 0.0 && state.playback.time <= state.playback.end,
         "the time is within the plan"

@@ -108,7 +108,7 @@ fn dropped(input: &[u8]) -> Outcome {
     let bytes = input.get(end + 1..).unwrap_or_default().to_vec();
     let mut state = AppState::new();
     state.receive(HostEvent::FileOpened { kind: FileKind::of_name(&name), name, bytes, token: None });
-    let said: String = state.toasts.shown().iter().map(|toast| toast.text.as_str()).collect();
+    let said: String = state.window.toasts.shown().iter().map(|toast| toast.text.as_str()).collect();
     read(&said)
 }
 
@@ -141,7 +141,7 @@ fn commands(input: &[u8]) -> Outcome {
     for line in text_of(input).lines().take(12) {
         let (name, arguments) = line.split_once(' ').unwrap_or((line, "null"));
         let arguments: Value = serde_json::from_str(arguments).unwrap_or(Value::Null);
-        match workbench::command::from_json(&state, name, &arguments) {
+        match workbench::registry::from_json(&state, name, &arguments) {
             Ok(command) => {
                 state.apply(command);
                 led += name;

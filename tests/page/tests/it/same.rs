@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use serde_json::{Value, json};
-use workbench::{host::Remote as _, mission_file::EXAMPLES};
+use workbench::{mission_file::EXAMPLES, outside::Remote as _};
 
 use crate::opened::Opened;
 

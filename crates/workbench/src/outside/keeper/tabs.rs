@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::host::Host;
 use crate::library::{Mission, MissionId, Version};
 use crate::outside::keeper::Keeper;
-use crate::state::{AppState, ToastKind};
+use crate::state::AppState;
 
 /// What a tab says.
 #[derive(Debug, Serialize, Deserialize)]
@@ -97,7 +97,7 @@ impl Keeper {
             state.library.put_version(id, version);
             let text = "This mission is edited in another tab too, and the two differ: what it says there is kept as \
                         a version";
-            state.toasts.add(ToastKind::Failed, text);
+            state.window.failed(text);
         }
     }
 }

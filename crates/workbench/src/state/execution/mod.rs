@@ -15,9 +15,12 @@ use nalgebra::Point2;
 use serde_json::{Value, json};
 use snapshot::{Execution, Snapshot};
 
-use super::terrain::Tool;
-use super::{AppState, Effect, PlanSettings, ToastKind, playback};
+use super::playback::{self, Playback};
+use super::settings::PlanSettings;
+use super::window::Window;
+use crate::effect::Effect;
 use crate::host::FileKind;
+use crate::panel_kind::PanelKind;
 use crate::workspace::Workspace;
 
 pub use moment::{Moment, Pending};
@@ -36,7 +39,7 @@ pub struct ExecutionState {
 
 /// The run at one time.
 #[derive(Debug)]
-struct View {
+pub(crate) struct View {
     base: Arc<Snapshot>,
     run: Arc<Execution>,
     plan: usize,
@@ -127,7 +130,7 @@ impl ExecutionState {
     }
 
     /// The run that was asked for does not come.
-    pub(super) fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         if self.is_working() {
             self.trouble = Some("working the run out was stopped".to_owned());
         }
@@ -139,187 +142,115 @@ impl ExecutionState {
     }
 }
 
-impl AppState {
-    /// What panels draw: while a mission is executed, the plan followed at the time shown with what has happened;
-    /// otherwise [`AppState::shown`].
-    pub fn looked_at(&self) -> Option<&Arc<Snapshot>> {
-        let view = self.execution.view.as_ref().filter(|_| self.is_executing());
-        view.map(|view| &view.snapshot).or_else(|| self.shown())
+impl ExecutionState {
+    /// The plan that is followed at the time shown, with what has happened.
+    pub(crate) fn snapshot(&self) -> Option<&Arc<Snapshot>> {
+        self.view.as_ref().map(|view| &view.snapshot)
     }
 
-    /// Whether a run of the mission is shown.
-    pub fn is_executing(&self) -> bool {
-        let belongs = |run: &Arc<Execution>| {
-            self.shown().is_some_and(|shown| shown.revision == run.revision && shown.plan().is_some())
-        };
-        self.workspace == Workspace::Execute && self.execution.run.as_ref().is_some_and(belongs)
+    /// Whether the core was asked to execute the mission as it is planned, with the present disturbances.
+    pub(crate) fn is_asked(&self, update: &Update) -> bool {
+        self.asked
+            .as_ref()
+            .is_some_and(|(revision, script)| (*revision, script) == (update.revision, &self.script))
     }
 
-    /// The run of the mission, while it is shown.
-    pub fn run_shown(&self) -> Option<&Execution> {
-        self.execution.run.as_deref().filter(|_| self.is_executing())
+    /// What the core is to execute of the mission as it is planned.
+    pub(crate) fn request(&mut self, update: Update) -> Request {
+        self.asked = Some((update.revision, self.script.clone()));
+        self.trouble = None;
+        Request::Execute { update, script: self.script.clone() }
     }
 
-    /// What the planning core is to execute, if it was not asked already.
-    pub(crate) fn run_to_ask_for(&mut self) -> Option<Request> {
-        let update = self.update_shown().filter(|_| self.workspace == Workspace::Execute)?;
-        let wanted = (update.revision, self.execution.script.clone());
-        if self.execution.asked.as_ref() == Some(&wanted) {
-            return None;
-        }
-        let script = wanted.1.clone();
-        self.execution.asked = Some(wanted);
-        self.execution.trouble = None;
-        Some(Request::Execute { update, script })
-    }
-
-    /// The present text as the core was asked to plan it, once it has a plan.
-    pub(crate) fn update_shown(&self) -> Option<Update> {
-        self.update_planned().filter(|_| self.shown().is_some_and(|shown| shown.plan().is_some()))
-    }
-
-    /// The present text as it was planned, whether or not there is a plan; nothing while that is not shown.
-    pub(crate) fn update_planned(&self) -> Option<Update> {
-        let shown = self.shown()?;
-        let revision = self.document.revision();
-        if shown.revision != revision {
-            return None;
-        }
-        let PlanSettings { goal, search, seed, trace } = self.settings.plan.clone();
-        Some(Update { revision, source: Arc::clone(&shown.source).into(), goal, search, seed, trace })
-    }
-
-    pub(super) fn take_run(&mut self, answer: Response) {
+    /// Takes what the core answered about the text of `revision`.
+    pub(crate) fn take(&mut self, answer: Response, revision: u64, window: &mut Window) {
         match answer {
-            Response::Execution(run) if self.is_wanted(&run) => {
-                if let Some(expected) = self.execution.expected.take() {
-                    self.compare(&expected, &run);
+            Response::Execution(run) if run.revision == revision && run.script == self.script => {
+                if let Some(expected) = self.expected.take() {
+                    compare(&expected, &run, window);
                 }
-                self.execution.run = Some(run);
-                self.follow_run();
-                self.fit_time();
+                self.run = Some(run);
             }
-            Response::NotExecuted { revision, reason } if revision == self.document.revision() => {
-                self.execution.trouble = Some(reason);
-                self.execution.run = None;
-                self.execution.view = None;
+            Response::NotExecuted { revision: asked, reason } if asked == revision => {
+                self.trouble = Some(reason);
+                self.run = None;
+                self.view = None;
             }
             _ => {}
         }
     }
 
-    fn is_wanted(&self, run: &Execution) -> bool {
-        run.revision == self.document.revision() && run.script == self.execution.script
-    }
-
-    /// Says whether a replay is the same as what was saved.
-    fn compare(&mut self, expected: &[Entry], run: &Execution) {
-        let differing = expected.iter().zip(&run.log).position(|(one, other)| one != other);
-        let first = differing
-            .or_else(|| (expected.len() != run.log.len()).then(|| expected.len().min(run.log.len())));
-        match first {
-            None => {
-                let text = format!("Replayed exactly: all {} entries agree", expected.len());
-                self.toasts.add(ToastKind::Done, text);
-            }
-            Some(at) => {
-                let text = format!("The replay differs from the saved log at entry {}", at + 1);
-                self.toasts.add(ToastKind::Failed, text);
-            }
-        }
-    }
-
     /// Works out what the time shown shows of the run, if that has changed.
-    pub(crate) fn follow_run(&mut self) {
-        if !self.is_executing() {
-            return;
-        }
-        let Some((run, base)) = self.execution.run.clone().zip(self.shown().cloned()) else { return };
-        let time = self.playback.time;
-        let Some((plan, executed)) = run.plan_at(time) else { return };
+    pub(crate) fn view_at(&self, base: &Arc<Snapshot>, time: f64) -> Option<View> {
+        let run = self.run.clone()?;
+        let (plan, executed) = run.plan_at(time)?;
         let happened = executed.times.iter().flatten().filter(|&&at| has_come(at, time)).count();
-        let is_same = self.execution.view.as_ref().is_some_and(|view| {
+        let is_same = self.view.as_ref().is_some_and(|view| {
             Arc::ptr_eq(&view.run, &run)
-                && Arc::ptr_eq(&view.base, &base)
+                && Arc::ptr_eq(&view.base, base)
                 && (view.plan, view.happened) == (plan, happened)
         });
         if is_same {
-            return;
+            return None;
         }
-        let (snapshot, moment) = moment::at(&base, executed, time);
-        self.execution.view = Some(View { base, run, plan, happened, snapshot: Arc::new(snapshot), moment });
+        let (snapshot, moment) = moment::at(base, executed, time);
+        let (base, snapshot) = (Arc::clone(base), Arc::new(snapshot));
+        Some(View { base, run, plan, happened, snapshot, moment })
     }
 
-    /// Lets time end where the run does, or where the plan does when none is watched.
-    pub(super) fn fit_time(&mut self) {
-        let end = match &self.execution.run {
-            Some(run) if self.is_executing() => Some(playback::number(run.end())),
-            _ => None,
-        };
-        if let Some(end) = end {
-            self.playback.end = end;
-            self.playback.time = self.playback.time.min(end);
-        } else if let Some(plan) = self.shown().cloned().as_ref().and_then(|shown| shown.plan()) {
-            self.playback.fit(plan);
-        }
+    /// Shows the run at another time.
+    pub(crate) fn show(&mut self, view: View) {
+        self.view = Some(view);
     }
 
-    pub(super) fn apply_to_run(&mut self, command: ExecutionCommand) {
+    /// Does what a command asks for, at the time shown, in the mission of this name planned with this seed.
+    pub(crate) fn apply(
+        &mut self,
+        command: ExecutionCommand,
+        (mission, seed): (&str, u64),
+        playback: &mut Playback,
+        window: &mut Window,
+    ) {
         match command {
             ExecutionCommand::Disturb(disturbance) => {
-                let now = self.settle_time();
+                let now = settle_time(playback);
                 if disturbance.since().is_some_and(|since| since < now) {
-                    self.toasts
-                        .add(ToastKind::Failed, "What has happened stays: nothing goes otherwise before now");
+                    window.failed("What has happened stays: nothing goes otherwise before now");
                     return;
                 }
                 self.disturb(disturbance);
             }
             ExecutionCommand::Withdraw(condition) => {
-                let at = self.settle_time();
+                let at = settle_time(playback);
                 self.disturb(Disturbance::Withdrawn { condition, at });
             }
-            ExecutionCommand::Appear { center_m, radius_m, again } => {
-                if !again {
-                    self.terrain.tool = Tool::Look;
-                }
-                if !self.is_executing() {
-                    self.toasts.add(ToastKind::Failed, "Obstacles appear only in a mission that is executed");
-                    return;
-                }
-                let at = self.settle_time();
+            ExecutionCommand::Appear { center_m, radius_m, .. } => {
+                let at = settle_time(playback);
                 let to_tenth = |metres: f64| (metres * 10.0).round() / 10.0;
                 let (x, y) = (to_tenth(center_m.x), to_tenth(center_m.y));
                 let radius = to_tenth(radius_m).max(0.1);
                 self.disturb(Disturbance::Obstacle { at, x, y, radius, low: false });
             }
             ExecutionCommand::SlowDown { vehicle, factor, duration } => {
-                let from = self.settle_time();
+                let from = settle_time(playback);
                 let until = from.checked_add(duration).unwrap_or(from);
                 self.disturb(Disturbance::VehicleSlow { vehicle, factor, from, until });
             }
             ExecutionCommand::TakeBack(index) => {
-                if index < self.execution.script.disturbances.len() {
-                    self.execution.script.disturbances.remove(index);
+                if index < self.script.disturbances.len() {
+                    self.script.disturbances.remove(index);
                 }
             }
-            ExecutionCommand::Oppose(is_opposed) => self.execution.script.adversary = is_opposed,
+            ExecutionCommand::Oppose(is_opposed) => self.script.adversary = is_opposed,
             ExecutionCommand::Reset => {
-                self.execution.script = Script::default();
-                self.execution.expected = None;
-                self.playback.is_playing = false;
-                self.playback.seek(0.0);
+                self.script = Script::default();
+                self.expected = None;
+                playback.is_playing = false;
+                playback.seek(0.0);
             }
-            ExecutionCommand::Save => self.save_run(),
-            ExecutionCommand::Open => self.effects.push(Effect::OpenFile(FileKind::Json)),
+            ExecutionCommand::Save => self.save(mission, seed, window),
+            ExecutionCommand::Open => window.ask(Effect::OpenFile(FileKind::Json)),
         }
-    }
-
-    /// The time shown as an exact one, to which the clock is set: rounded up, so that nothing shown is in the future.
-    fn settle_time(&mut self) -> Time {
-        let time = exact_time(self.playback.time);
-        self.playback.seek(playback::number(time));
-        time
     }
 
     fn disturb(&mut self, disturbance: Disturbance) {
@@ -336,40 +267,70 @@ impl AppState {
                 )
                 && std::mem::discriminant(known) == std::mem::discriminant(&disturbance)
         };
-        self.execution.script.disturbances.retain(|known| !is_replaced(known));
-        self.execution.script.disturbances.push(disturbance);
+        self.script.disturbances.retain(|known| !is_replaced(known));
+        self.script.disturbances.push(disturbance);
     }
 
-    fn save_run(&mut self) {
-        let Some(run) = &self.execution.run else { return };
+    fn save(&self, mission: &str, seed: u64, window: &mut Window) {
+        let Some(run) = &self.run else { return };
         let document = json!({
             "format": "enroute-simulate/1",
-            "mission": self.mission.as_str(),
-            "seed": self.settings.plan.seed,
+            "mission": mission,
+            "seed": seed,
             "status": run.ending,
             "disturbances": run.script.disturbances,
             "log": run.log,
         });
         let bytes = serde_json::to_vec_pretty(&document).unwrap_or_default();
-        self.effects.push(Effect::SaveFile { name: format!("{}-run.json", self.mission), bytes });
+        window.save_file(format!("{mission}-run.json"), bytes);
     }
 
     /// Takes the file of a run, to replay it; false if it is none.
-    pub(crate) fn open_run(&mut self, document: &Value) -> bool {
+    pub(crate) fn open_file(
+        &mut self,
+        document: &Value,
+        plan: &mut PlanSettings,
+        playback: &mut Playback,
+        window: &mut Window,
+    ) -> bool {
         let Ok(script) = serde_json::from_value::<Script>(document.clone()) else { return false };
         let log = document.get("log").cloned().and_then(|log| serde_json::from_value(log).ok());
         if let Some(seed) = document.get("seed").and_then(Value::as_u64) {
-            self.settings.plan.seed = seed;
+            plan.seed = seed;
         }
-        self.workspace = Workspace::Execute;
-        self.show_panel(crate::PanelKind::Execution);
-        self.execution.script = script;
+        window.workspace = Workspace::Execute;
+        window.show(PanelKind::Execution);
+        self.script = script;
         // Even a run that is shown already is compared with the log.
-        self.execution.asked = None;
-        self.execution.expected = log;
-        self.playback.seek(0.0);
+        self.asked = None;
+        self.expected = log;
+        playback.seek(0.0);
         true
     }
+}
+
+/// Says whether a replay is the same as what was saved.
+fn compare(expected: &[Entry], run: &Execution, window: &mut Window) {
+    let differing = expected.iter().zip(&run.log).position(|(one, other)| one != other);
+    let first =
+        differing.or_else(|| (expected.len() != run.log.len()).then(|| expected.len().min(run.log.len())));
+    match first {
+        None => {
+            let text = format!("Replayed exactly: all {} entries agree", expected.len());
+            window.done(text);
+        }
+        Some(at) => {
+            let text = format!("The replay differs from the saved log at entry {}", at + 1);
+            window.failed(text);
+        }
+    }
+}
+
+/// The time shown as an exact one, to which the clock is set: rounded up, so that nothing shown is in the future.
+fn settle_time(playback: &mut Playback) -> Time {
+    let time = exact_time(playback.time);
+    playback.seek(playback::number(time));
+    time
 }
 
 /// A time of the clock as an exact time, not before it.

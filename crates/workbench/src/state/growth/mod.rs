@@ -8,7 +8,7 @@ mod wording;
 
 use std::sync::Arc;
 
-use link::Update;
+use link::request::Update;
 use link::{GrowthStanding, PathGrowth};
 use motion::{GrowthStep, PlannerKind};
 use rmpl::program::World;
@@ -17,9 +17,9 @@ use snapshot::Snapshot;
 use terrain::Obstacle;
 use tpn::OccurrenceId;
 
-use crate::state::Selection;
-
 pub use search::{Counts, LastSample, Search, Standing};
+
+use crate::state::selection::Selection;
 
 /// The growth that is looked at, if one is.
 #[derive(Clone, Debug, Default)]
@@ -219,12 +219,13 @@ impl Growth {
         }
     }
 
+    /// Whether the core is to be asked for searches.
+    pub(crate) const fn wants_answer(&self) -> bool {
+        self.wants_answer
+    }
+
     /// What to ask the core, once whenever that has changed; `update` is the mission that is shown.
-    pub fn take_request(&mut self, update: impl FnOnce() -> Option<Update>) -> Option<PathGrowth> {
-        if !self.wants_answer {
-            return None;
-        }
-        let update = update()?;
+    pub fn take_request(&mut self, update: Update) -> Option<PathGrowth> {
         self.wants_answer = false;
         let shown = self.shown.as_ref()?;
         let planners: Vec<_> = shown.searches.iter().filter_map(Search::wanted).collect();

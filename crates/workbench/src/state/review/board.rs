@@ -6,83 +6,34 @@ use review::{Present, Standing, standing};
 use serde_json::Value;
 use tpn::plan_json::plan_to_json;
 
-use super::Person;
-use crate::state::{AppState, PlanSettings, ToastKind};
+use super::{Person, ReviewState, Reviewing};
+use crate::state::settings::PlanSettings;
 
-impl AppState {
+impl ReviewState {
     /// How the plan stands with its board; `None` before it is known what the plan is about.
     pub fn standing(&self) -> Option<Standing<'_>> {
-        let review = self.current_review().map(AsRef::as_ref);
+        let review = self.current().map(AsRef::as_ref);
         let present = Present {
-            content_hash: self.review.hash()?,
-            plan_hash: review.map(|review| review.plan_hash.as_str()).or(self.review.plan_hash()),
-            rules: self.review.record.rules(),
+            content_hash: self.hash()?,
+            plan_hash: review.map(|review| review.plan_hash.as_str()).or(self.plan_hash()),
+            rules: self.record.rules(),
             review,
         };
-        Some(standing(&self.review.record, &present))
+        Some(standing(&self.record, &present))
     }
 
     /// Somebody with the role that is meant: the only one of the board where none is named.
     pub(crate) fn seated(&self, by: &Person) -> Person {
-        let role = match self.review.record.rules().board.as_slice() {
+        let role = match self.record.rules().board.as_slice() {
             [seat] if by.role.trim().is_empty() => seat.role.clone(),
             _ => by.role.trim().to_owned(),
         };
         Person { name: by.name.trim().to_owned(), role }
     }
 
-    /// Somebody who does something about the present content, now. The name and the role are remembered.
-    pub(super) fn who(&mut self, by: Person) -> Who {
-        self.settings.reviewer.clone_from(&by.name);
-        self.settings.reviewer_role.clone_from(&by.role);
-        let plan_hash = self.current_review().map(|review| review.plan_hash.clone()).unwrap_or_default();
-        Who {
-            by: by.name,
-            role: by.role,
-            time: self.utc_now(),
-            content_hash: self.review.hash().unwrap_or_default().to_owned(),
-            plan_hash,
-        }
-    }
-
-    pub(super) fn approve(&mut self, by: &Person, text: &str) {
-        let by = self.seated(by);
-        let refused = match self.standing() {
-            Some(standing) => standing.may_approve(&by.name, &by.role).err(),
-            None => Some("the mission has not been worked out".to_owned()),
-        };
-        if let Some(reason) = refused {
-            self.toasts.add(ToastKind::Failed, format!("Not approved: {reason}"));
-            return;
-        }
-        let Some(review) = self.current_review().cloned() else { return };
-        let snapshot = self.snapshots.latest();
-        let planned = snapshot.and_then(|it| Some((it.network.as_deref()?, it.plan()?)));
-        let plan = planned.map_or(Value::Null, |(network, plan)| plan_to_json(network, plan));
-        let PlanSettings { goal, seed, .. } = self.settings.plan.clone();
-        let found = self.robustness().cloned();
-        let subject = Subject::new(&review, self.document.text(), goal, seed, plan, found.as_deref());
-        self.toasts.add(ToastKind::Done, format!("Approved by {} ({})", by.name, by.role));
-        let who = self.who(by);
-        self.review.record.approve(who, subject, text.to_owned());
-        self.keep_review();
-    }
-
-    pub(super) fn say(&mut self, by: &Person, act: Act) {
-        let refused = self.may_say(by, &act).err();
-        if let Some(reason) = refused {
-            self.toasts.add(ToastKind::Failed, reason);
-            return;
-        }
-        let by = self.seated(by);
-        let who = self.who(by);
-        self.review.record.add(who, act);
-        self.keep_review();
-    }
-
     /// Whether somebody may do something; `Err` says why not.
     pub fn may_say(&self, by: &Person, act: &Act) -> Result<(), String> {
-        let record = &self.review.record;
+        let record = &self.record;
         let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("there is no entry {of}")));
         let of = of.transpose()?;
         let is_open = |of: &str| {
@@ -91,7 +42,7 @@ impl AppState {
         };
         let is_empty = act.text().trim().is_empty();
         match act {
-            _ if self.review.hash().is_none() => {
+            _ if self.hash().is_none() => {
                 Err("The mission has not been worked out: wait until it is".to_owned())
             }
             _ if by.name.trim().is_empty() => {
@@ -124,6 +75,57 @@ impl AppState {
             _ => Ok(()),
         }
     }
+}
+
+impl Reviewing<'_> {
+    /// Somebody who does something about the present content, now. The name and the role are remembered.
+    pub(super) fn who(&mut self, by: Person) -> Who {
+        self.settings.reviewer.clone_from(&by.name);
+        self.settings.reviewer_role.clone_from(&by.role);
+        let plan_hash = self.review.current().map(|review| review.plan_hash.clone()).unwrap_or_default();
+        Who {
+            by: by.name,
+            role: by.role,
+            time: self.utc_now(),
+            content_hash: self.review.hash().unwrap_or_default().to_owned(),
+            plan_hash,
+        }
+    }
+
+    pub(super) fn approve(&mut self, by: &Person, text: &str) {
+        let by = self.review.seated(by);
+        let refused = match self.review.standing() {
+            Some(standing) => standing.may_approve(&by.name, &by.role).err(),
+            None => Some("the mission has not been worked out".to_owned()),
+        };
+        if let Some(reason) = refused {
+            self.window.failed(format!("Not approved: {reason}"));
+            return;
+        }
+        let Some(review) = self.review.current().cloned() else { return };
+        let snapshot = self.snapshots.latest();
+        let planned = snapshot.and_then(|it| Some((it.network.as_deref()?, it.plan()?)));
+        let plan = planned.map_or(Value::Null, |(network, plan)| plan_to_json(network, plan));
+        let PlanSettings { goal, seed, .. } = self.settings.plan.clone();
+        let found = self.review.hash().and_then(|hash| self.chance.of_content(hash)).cloned();
+        let subject = Subject::new(&review, self.document.text(), goal, seed, plan, found.as_deref());
+        self.window.done(format!("Approved by {} ({})", by.name, by.role));
+        let who = self.who(by);
+        self.review.record.approve(who, subject, text.to_owned());
+        self.keep();
+    }
+
+    pub(super) fn say(&mut self, by: &Person, act: Act) {
+        let refused = self.review.may_say(by, &act).err();
+        if let Some(reason) = refused {
+            self.window.failed(reason);
+            return;
+        }
+        let by = self.review.seated(by);
+        let who = self.who(by);
+        self.review.record.add(who, act);
+        self.keep();
+    }
 
     /// Keeps what the runs of the present content came to, with the mission.
     pub(crate) fn keep_runs(&mut self, content_hash: &str) {
@@ -132,7 +134,7 @@ impl AppState {
         };
         if self.review.hash() == Some(content_hash) {
             self.review.record.keep_runs(Runs::new(content_hash, &found));
-            self.keep_review();
+            self.keep();
         }
     }
 
@@ -141,6 +143,6 @@ impl AppState {
         for runs in &self.review.record.runs {
             self.chance.learn(&runs.content_hash, runs.robustness());
         }
-        self.judge_reviews();
+        self.judge();
     }
 }

@@ -5,7 +5,7 @@ use kirk::{Constraint, Departing, Event, Member, Reason, ReplayStep, Trace, Tree
 use rmpl::Span;
 use tpn::{ArcId, DecisionId, LabelId, Network, NodeId, UseId, UseOrdering};
 
-use crate::state::Selection;
+use crate::state::selection::Selection;
 
 /// What a step is about.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -187,18 +187,19 @@ impl SearchState {
         (self.comparison, self.asked, self.wanted_step) = (None, None, None);
     }
 
-    /// The revision whose comparison is to be asked for now, if it is.
-    pub fn ask_for_comparison(&mut self, shown: Option<&Arc<Snapshot>>, revision: u64) -> Option<u64> {
-        let shown = shown.filter(|it| it.revision == revision && it.stage == Stage::Complete)?;
-        let is_due = self.compares
+    /// Whether the core is to search in both ways for the text of `revision`, which it was not asked before.
+    pub(crate) fn wants_comparison(&self, shown: Option<&Arc<Snapshot>>, revision: u64) -> bool {
+        self.compares
             && self.comparison.is_none()
             && self.asked != Some(revision)
-            && shown.planning.is_some();
-        if !is_due {
-            return None;
-        }
+            && shown.is_some_and(|it| {
+                it.revision == revision && it.stage == Stage::Complete && it.planning.is_some()
+            })
+    }
+
+    /// The core was asked to search the text of `revision` in both ways.
+    pub(crate) const fn note_asked(&mut self, revision: u64) {
         self.asked = Some(revision);
-        self.asked
     }
 
     /// Takes both searches of `shown`. The step of the search that planned, which is of `kind`, is kept.

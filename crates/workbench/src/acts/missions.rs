@@ -1,0 +1,340 @@
+//! What is done with the missions of the library: opening, naming, copying, deleting, and taking them out and in.
+
+use interchange::is_network_file;
+use link::Request;
+use smol_str::SmolStr;
+use terrain::format::{FileFormat, refusal};
+
+use crate::dialog::Dialog;
+use crate::effect::{Aside, Effect};
+use crate::host::{FileKind, Save};
+use crate::library::{LibraryCommand, MapFile, Mission, MissionError, MissionId, MissionKind, Open, joined};
+use crate::limits::{MAX_TEXT_BYTES, too_large};
+use crate::mission_file;
+use crate::state::AppState;
+
+/// What the whole of a mission is called as a file.
+const WHOLE_EXTENSION: &str = "enroute";
+
+impl AppState {
+    pub(super) fn apply_to_library(&mut self, command: LibraryCommand) {
+        let now_millis = self.frame.unix_millis;
+        match command {
+            LibraryCommand::New(template) => {
+                let name = if template.source.is_empty() { "New mission" } else { template.title };
+                let id = self.library.add(name, MissionKind::Own, template.source, now_millis);
+                self.open_mission(&id);
+                self.window.focus_editor();
+            }
+            LibraryCommand::NewFromExample(name) => {
+                if let Some(example) = mission_file::example(&name) {
+                    let name = format!("{} (copy)", example.title);
+                    let id = self.library.add(&name, MissionKind::Example, example.source, now_millis);
+                    self.open_mission(&id);
+                }
+            }
+            LibraryCommand::Open(id) => self.open_mission(&id),
+            LibraryCommand::Rename { id, name } => self.rename_mission(id, &name),
+            LibraryCommand::Duplicate(id) => {
+                let id = id.unwrap_or_else(|| self.mission_of_its_own());
+                if let Some(copy) = self.library.duplicate(&id, now_millis) {
+                    self.open_mission(&copy);
+                    self.window.done(format!("This is \"{}\" now", self.mission));
+                }
+            }
+            LibraryCommand::Delete(id) => self.delete_mission(id),
+            LibraryCommand::Restore(id) => {
+                let last = || self.library.deleted().first().map(|mission| mission.id.clone());
+                if let Some(id) = id.or_else(last) {
+                    self.library.restore(&id);
+                    self.open_mission(&id);
+                }
+            }
+            LibraryCommand::KeepVersion(name) => {
+                self.window.dialog = None;
+                self.mission_of_its_own();
+                let name = name.trim();
+                let name = if name.is_empty() { "Unnamed" } else { name };
+                self.library.keep_version(name, now_millis);
+                self.window.done(format!("The version \"{name}\" is kept"));
+            }
+            LibraryCommand::RestoreVersion(index) => self.restore_version(index),
+            LibraryCommand::TurnIntoRmpl => self.turn_into_rmpl(),
+            LibraryCommand::SaveWhole => self.save(true),
+            LibraryCommand::SaveUnreadable(index) => {
+                if let Some(unreadable) = self.library.unreadable.get(index) {
+                    let name = unreadable.key.replace('/', "-");
+                    let bytes = unreadable.bytes.to_vec();
+                    self.window.save_file(format!("{name}.json"), bytes);
+                }
+            }
+        }
+    }
+
+    /// Notes what the text says now: an original that was edited becomes a mission of its own.
+    pub(crate) fn note_text(&mut self) {
+        let title = self.mission_title().to_owned();
+        if self.library.edited(&title, self.document.text(), self.frame.unix_millis) {
+            self.is_a_mission_now();
+        }
+    }
+
+    /// The id of the open mission; an original becomes a mission of its own.
+    pub(super) fn mission_of_its_own(&mut self) -> MissionId {
+        if let Some(id) = self.library.open_id() {
+            return id.clone();
+        }
+        let (kind, title) = match self.library.open() {
+            Open::Original { kind, .. } => (*kind, self.mission_title().to_owned()),
+            Open::Mission(_) => (MissionKind::Own, self.mission.to_string()),
+        };
+        let name = if kind == MissionKind::Example { format!("{title} (copy)") } else { title };
+        let id = self.library.add(&name, kind, self.document.text(), self.frame.unix_millis);
+        self.library.show(&id);
+        self.is_a_mission_now();
+        id
+    }
+
+    /// What was an original is a mission of the library from here on, with what reviewers said of it.
+    fn is_a_mission_now(&mut self) {
+        if let Some(mission) = self.library.open_mission() {
+            self.mission = mission.name.clone();
+        }
+        self.reviewing().go_along();
+        self.window.ask(Effect::ShowAddress);
+    }
+
+    /// Opens a mission of the library.
+    pub(crate) fn open_mission(&mut self, id: &MissionId) {
+        self.note_text();
+        let Some(mission) = self.library.mission(id) else {
+            self.window.failed("This mission is not in the library of this browser");
+            return;
+        };
+        let (name, text) = (mission.name.clone(), mission.joined_text());
+        let maps = mission.maps.clone();
+        self.set_document_aside();
+        self.library.show(id);
+        self.open(name, &text);
+        if let Some(mut document) = self.library.set_aside.remove(id).filter(|kept| kept.text() == text) {
+            document.count_on_from(self.document.revision());
+            *self.document = document;
+        }
+        for map in maps {
+            match map.bytes {
+                Some(bytes) => self.import_map(map.name, bytes.to_vec()),
+                None => self.window.ask(Effect::ReadMap(id.clone(), map.name)),
+            }
+        }
+        self.window.ask(Effect::ShowAddress);
+    }
+
+    /// Opens a text that is no mission of the library until it is edited.
+    pub(super) fn open_original(&mut self, name: SmolStr, kind: MissionKind, source: &str) {
+        self.note_text();
+        self.set_document_aside();
+        self.library.show_original(kind, source);
+        self.open(name, source);
+        // What is told apart later is what the document holds, in its own form of line breaks.
+        self.library.show_original(kind, self.document.text());
+        self.window.ask(Effect::ShowAddress);
+    }
+
+    /// Another mission is about to be opened: the history of this one stays as long as this run.
+    fn set_document_aside(&mut self) {
+        if let Some(id) = self.library.open_id().cloned() {
+            let document = std::mem::take(&mut *self.document);
+            // The count goes on with the next text.
+            self.document.count_on_from(document.revision());
+            self.library.set_aside.insert(id, document);
+        }
+    }
+
+    fn rename_mission(&mut self, id: Option<MissionId>, name: &str) {
+        self.window.dialog =
+            self.window.dialog.take().filter(|dialog| !matches!(dialog, Dialog::MissionName { .. }));
+        if name.trim().is_empty() || id.is_none() && name.trim() == self.mission_title() {
+            return;
+        }
+        let id = id.unwrap_or_else(|| self.mission_of_its_own());
+        self.library.rename(&id, name, self.frame.unix_millis);
+        if let Some(mission) = self.library.open_mission() {
+            self.mission = mission.name.clone();
+        }
+    }
+
+    fn delete_mission(&mut self, id: Option<MissionId>) {
+        let open = self.library.open_id().cloned();
+        let Some(id) = id.or_else(|| open.clone()) else {
+            self.window.info("Examples stay; only missions of your own can be deleted");
+            return;
+        };
+        self.note_text();
+        let Some(name) = self.library.mission(&id).map(|mission| mission.name.clone()) else { return };
+        self.library.delete(&id, self.frame.unix_millis);
+        if open.as_ref() == Some(&id) {
+            let next = self.library.missions().first().map(|mission| mission.id.clone());
+            let dialog = self.window.dialog.take();
+            match next {
+                Some(next) => self.open_mission(&next),
+                None => self.open_example(mission_file::EXAMPLES[0].name),
+            }
+            self.window.dialog = dialog;
+        }
+        let text = format!("\"{name}\" is deleted; File · Bring back the deleted mission undoes that");
+        self.window.done(text);
+    }
+
+    fn restore_version(&mut self, index: usize) {
+        let Some(mission) = self.library.open_mission() else { return };
+        let Some(version) = mission.versions.get(index) else { return };
+        let text = joined(&version.texts);
+        let name = version.name.clone();
+        self.document.replace_all(&text);
+        self.window.dialog = None;
+        self.window.done(format!("This is the version \"{name}\"; undo takes it back"));
+    }
+
+    /// Lets the user save the open mission: to the file it has, as its text or as a whole; with `asks` to another file,
+    /// as a whole unless the user wants the text.
+    pub(super) fn save(&mut self, asks: bool) {
+        let texts = self.writing().files_to_save();
+        // The text of an example or a link can be saved as it is; anything more is a mission of its own.
+        if asks || texts.len() > 1 {
+            self.mission_of_its_own();
+        }
+        self.note_text();
+        let own = self.library.open_mission();
+        let knows_maps = |mission: &&Mission| mission.maps.iter().all(|map| map.bytes.is_some());
+        let whole = own.filter(knows_maps).map(|mission| {
+            let record = self.review.record();
+            let review = (!record.is_empty()).then(|| serde_json::from_str(&record.to_json()).ok()).flatten();
+            let whole = Mission { review, ..mission.clone() };
+            (format!("{}.{WHOLE_EXTENSION}", self.mission), whole.to_json().into_bytes())
+        });
+        // What is not of its own has no file: another link may go by the same name.
+        let asks_for_file = asks || own.is_none();
+        let mut forms = Vec::new();
+        // The text alone is a file only where it is one.
+        forms.extend(texts.first().filter(|_| texts.len() == 1).cloned());
+        forms.extend(whole.clone());
+        if asks {
+            forms.reverse();
+        }
+        if asks && whole.is_none() || forms.is_empty() {
+            self.window.info("The maps of this mission are still being read; try again");
+            return;
+        }
+        let downloads = if asks { whole.into_iter().collect() } else { texts };
+        let revision = self.document.revision();
+        let mission = self.mission_key().to_string();
+        let save = Save { mission, asks: asks_for_file, forms, revision };
+        self.window.ask(Effect::Save(save, downloads));
+    }
+
+    /// Opens a file as a mission of its own, whatever is open; nothing is opened that does not read as one.
+    pub(super) fn open_mission_file(&mut self, name: &str, bytes: Vec<u8>) {
+        let text = match String::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(error) => return self.open_what_is_no_mission(name, error.into_bytes()),
+        };
+        let refuse = |state: &mut Self, reason: &str| {
+            let text = format!("{name} is not opened: {reason}. What is open stays as it is");
+            state.window.failed(text);
+        };
+        match Mission::from_json(&text) {
+            Ok(mission) => self.open_whole(mission),
+            Err(MissionError::NoMission) if let Some(reason) = too_large(text.len(), MAX_TEXT_BYTES) => {
+                refuse(self, &reason);
+            }
+            Err(MissionError::NoMission) if let Some(missing) = self.writing().missing_file(name) => {
+                if let Err(reason) = self.writing().add_file(&missing, &text) {
+                    refuse(self, &reason);
+                }
+            }
+            Err(MissionError::NoMission) if is_network_file(&text) || reads_as_mission(name, &text) => {
+                let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+                let stem =
+                    stem.strip_suffix(".tpn").or_else(|| stem.strip_suffix(".plandev")).unwrap_or(stem);
+                let id = self.library.add(stem, MissionKind::File, &text, self.frame.unix_millis);
+                self.open_mission(&id);
+            }
+            Err(MissionError::NoMission) => self.open_what_is_no_mission(name, text.into_bytes()),
+            Err(error) => refuse(self, &error.to_string()),
+        }
+    }
+
+    /// A file that is neither mission nor network: a map under another ending, or something that is refused, by its name where
+    /// that is known.
+    fn open_what_is_no_mission(&mut self, name: &str, bytes: Vec<u8>) {
+        if FileFormat::detect(&bytes).is_some() {
+            return self.maps.open_file(name, bytes, &mut self.window);
+        }
+        let reason = refusal(&bytes).map_or_else(|| NO_MISSION.to_owned(), |reason| reason.to_string());
+        let text = format!("{name} is not opened: {reason}. What is open stays as it is");
+        self.window.failed(text);
+    }
+
+    /// Opens what one file held as a mission of its own.
+    pub(super) fn open_whole(&mut self, mission: Mission) {
+        if self.refuses_text(mission.texts.iter().map(|file| file.text.len()).sum()) {
+            return;
+        }
+        let record = mission.review_record();
+        let text = mission.review.as_ref().map(ToString::to_string);
+        let id = self.library.add_whole(mission, self.frame.unix_millis);
+        self.open_mission(&id);
+        match record {
+            Some(Ok(record)) => self.window.ask(Effect::JoinReview(Box::new(record))),
+            Some(Err(reason)) => {
+                let words = format!("The review of this mission cannot be used: {reason}. It is kept aside");
+                self.window.failed(words);
+                let aside = Aside { reason: reason.to_string(), text: text.unwrap_or_default() };
+                self.window.ask(Effect::SetReviewAside(aside));
+            }
+            None => {}
+        }
+    }
+
+    pub(crate) fn import_map(&mut self, name: SmolStr, bytes: Vec<u8>) {
+        // The core reads it, and says what it has found.
+        self.window.post(Request::ImportMap { name, bytes });
+    }
+
+    /// The core can use a map that the user chose just now; the open mission keeps it.
+    pub(super) fn keep_map(&mut self, name: &str) -> bool {
+        let Some(bytes) = self.maps.let_go(name) else { return false };
+        self.mission_of_its_own();
+        let map = MapFile { name: name.into(), bytes: Some(bytes) };
+        self.library.take_map(map, self.frame.unix_millis);
+        true
+    }
+
+    /// Another tab has changed the text of the open mission: this one says the same from here on.
+    pub(crate) fn adopt_text(&mut self, text: &str) {
+        self.document.replace_all(text);
+        self.derive();
+    }
+}
+
+/// Why a file is not opened as a mission, and what is read.
+const NO_MISSION: &str = "it does not read as a mission in RMPL, as a network (plan-schema or Enroute in JSON or EDN, pTPN in XML), \
+                          as a plan of PlanDev, as a control program or as a whole mission (.enroute), and it is no map (PNG, PGM, TIFF, PDS3, ESRI \
+                          ASCII grid, MovingAI or ROS). Places (.geojson), lessons (.md), plans, runs and reviews (.json) are read by \
+                          the endings of their names";
+
+/// Whether a file is a mission: its name says so, or it reads as one.
+fn reads_as_mission(name: &str, text: &str) -> bool {
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+    let says_so = FileKind::Mission.extensions().contains(&extension.as_str())
+        && !["txt", WHOLE_EXTENSION, "json", "edn", "tpn", "ptpn", "xml"].contains(&extension.as_str());
+    let reads = || {
+        let has_error = |all: &[rmpl::Diagnostic]| all.iter().any(|it| it.severity == rmpl::Severity::Error);
+        if rmpl::control::is_control_text(text) {
+            !rmpl::control::parse(text).has_errors()
+        } else {
+            !text.trim().is_empty() && !has_error(&rmpl::parse(text).diagnostics())
+        }
+    };
+    says_so || reads()
+}

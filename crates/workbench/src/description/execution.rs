@@ -1,0 +1,203 @@
+//! The run that is watched, many runs with chance, and pinned events.
+
+use std::collections::BTreeMap;
+
+use exact::{Bound, Time};
+use executive::{Actor, Course, Disturbance, Ending, Entry, Happening};
+use serde::Serialize;
+use serde_json::{Value, json};
+use snapshot::Snapshot;
+use tpn::Network;
+use tpn::plan_json::plan_to_json;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::state::AppState;
+use crate::state::execution::{Pending, has_come};
+use crate::state::selection::duration_name;
+use crate::state::{pins, playback};
+
+/// A run of the mission at the time shown.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Execution {
+    #[cfg_attr(test, ts(type = "\"under-way\" | \"finished\" | \"stopped\""))]
+    pub status: &'static str,
+    /// How the whole run ends.
+    #[cfg_attr(test, ts(type = "\"finished\" | \"stopped\""))]
+    pub ending: Ending,
+    /// Whether a newer run is being worked out.
+    pub is_working: bool,
+    pub time: f64,
+    pub replans: usize,
+    pub under_way: Vec<String>,
+    pub holding: Vec<String>,
+    pub waited_for: Vec<String>,
+    pub deadline: Option<Deadline>,
+    #[cfg_attr(test, ts(type = "Record<string, unknown>[]"))]
+    pub disturbances: Vec<Disturbance>,
+    /// What has happened up to the time shown.
+    #[cfg_attr(test, ts(type = "({ time: Time; event: string } & Record<string, unknown>)[]"))]
+    pub log: Vec<Entry>,
+}
+
+/// The next event that must happen, and its latest time.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Deadline {
+    pub event: String,
+    #[cfg_attr(test, ts(type = "Time"))]
+    pub time: Time,
+}
+
+/// What many runs with chance came to.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Robustness {
+    #[cfg_attr(test, ts(type = "number"))]
+    pub runs: u64,
+    pub is_running: bool,
+    pub probability: f64,
+    /// The 95 % confidence interval.
+    pub interval: [f64; 2],
+    /// The events that broke plans, the worst first.
+    pub worst: Vec<String>,
+}
+
+/// Events pinned to times on the timeline, and the windows that they leave to all events.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Pinned {
+    pub events: BTreeMap<String, f64>,
+    #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
+    pub windows: Value,
+    /// How the run against nature stands, if nature chooses something in this plan.
+    pub run: Option<NatureRun>,
+}
+
+/// A run in which nature's durations are chosen one by one.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[cfg_attr(test, derive(TS))]
+pub struct NatureRun {
+    /// The present.
+    pub now: f64,
+    /// What happened, in the order of time.
+    pub acts: Vec<Act>,
+    /// The durations that nature is choosing, and when each may still end.
+    #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
+    pub under_way: BTreeMap<String, [Value; 2]>,
+    /// What could happen earlier if nature ended something earlier.
+    pub waiting: Vec<Waiting>,
+    /// What happens next if nature lets everything last.
+    pub next: Option<Act>,
+}
+
+/// What somebody does.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Act {
+    pub time: f64,
+    /// What happens at that instant.
+    pub events: Vec<String>,
+    /// The duration that nature ends there; otherwise the executive acts.
+    pub nature: Option<String>,
+}
+
+/// An event that waits for nature.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Waiting {
+    pub event: String,
+    /// The duration whose end it waits for.
+    pub nature: String,
+    /// It waits no longer than until then.
+    pub until: f64,
+}
+
+fn nature_run(network: &Network, course: &Course) -> NatureRun {
+    let act = |act: &executive::Act| Act {
+        time: playback::number(act.time),
+        events: pins::names_of_events(network, &act.events),
+        nature: match act.actor {
+            Actor::Nature(arc) => Some(duration_name(network, arc)),
+            Actor::Executive => None,
+        },
+    };
+    let ends = |window: tpn::Window| [json!(Bound::Finite(window.earliest)), json!(window.latest)];
+    NatureRun {
+        now: playback::number(course.now),
+        acts: course.acts.iter().map(act).collect(),
+        under_way: course
+            .under_way
+            .iter()
+            .map(|it| (duration_name(network, it.natures), ends(it.window)))
+            .collect(),
+        waiting: course
+            .waiting
+            .iter()
+            .map(|it| Waiting {
+                event: pins::event_name(network, it.event),
+                nature: duration_name(network, it.natures),
+                until: playback::number(it.until),
+            })
+            .collect(),
+        next: course.next.as_ref().map(act),
+    }
+}
+
+pub(super) fn execution(state: &AppState) -> Option<Execution> {
+    let run = state.execution.run().filter(|_| state.is_executing())?;
+    let network = state.looked_at().and_then(|shown| shown.network.as_deref())?;
+    let moment = state.execution.moment()?;
+    let time = state.playback.time;
+    let log: Vec<Entry> = run.log.iter().filter(|entry| has_come(entry.time, time)).cloned().collect();
+    let status = match log.last().map(|entry| &entry.happening) {
+        Some(Happening::Finished) => "finished",
+        Some(Happening::Stopped { .. }) => "stopped",
+        _ => "under-way",
+    };
+    let names = |pending: &[Pending]| -> Vec<String> {
+        pending.iter().map(|it| network.occurrences[it.occurrence.index()].name.to_string()).collect()
+    };
+    Some(Execution {
+        status,
+        ending: run.ending,
+        is_working: state.execution.is_working(),
+        time,
+        replans: log.iter().filter(|entry| matches!(entry.happening, Happening::Replanned { .. })).count(),
+        under_way: names(&moment.under_way),
+        holding: names(&moment.holding),
+        waited_for: names(&moment.to_come),
+        deadline: moment
+            .deadline
+            .map(|(event, latest)| Deadline { event: network.event_name(event), time: latest }),
+        disturbances: state.execution.disturbances().to_vec(),
+        log,
+    })
+}
+
+pub(super) fn robustness(state: &AppState) -> Option<Robustness> {
+    let tally = &state.robustness()?.tally;
+    let (low, high) = tally.interval();
+    Some(Robustness {
+        runs: tally.runs,
+        is_running: state.chance.is_running(),
+        probability: tally.probability(),
+        interval: [low, high],
+        worst: tally.worst_events().into_iter().map(|(name, _)| name.to_string()).collect(),
+    })
+}
+
+pub(super) fn pinned(state: &AppState, snapshot: &Snapshot) -> Option<Pinned> {
+    let (network, plan) = (snapshot.network.as_deref()?, state.pins.plan(snapshot)?);
+    let pinned = state.pins.all();
+    let events = pinned
+        .iter()
+        .map(|&(node, time)| (pins::event_name(network, node), playback::number(time)))
+        .collect();
+    let run = state.pins.course(snapshot).map(|course| nature_run(network, course));
+    Some(Pinned { events, windows: plan_to_json(network, plan)["windows"].take(), run })
+}

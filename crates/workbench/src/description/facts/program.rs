@@ -1,0 +1,40 @@
+//! The run of a control program: what is marked, what is believed, and what is true.
+
+use super::{Row, count, truth, words};
+
+pub(super) const VALUES: &[Row] = &[
+    ("program", |it, _| truth(it.program()?.locations > 0 && it.program()?.marked.is_some())),
+    ("moments", |it, _| count(it.program().map_or(0, |run| run.step))),
+    ("locations", |it, _| count(Some(it.program()?.locations).filter(|&count| count > 0)?)),
+    ("marks", |it, _| words(it.program()?.marked.as_ref()?.join(", "))),
+    ("marked", |it, label| truth(it.program()?.marked.as_ref()?.iter().any(|it| it == label))),
+    ("marked-places", |it, _| count(it.moment()?.upcoming.marked.len())),
+    ("goals", |it, _| words(it.program()?.goals.as_ref()?.join(", "))),
+    ("ended", |it, _| truth(it.moment()?.upcoming.marked.is_empty())),
+    ("fired", |it, _| count(it.moment()?.taken.as_ref()?.fired.len())),
+    ("mode", |it, name| {
+        let (model, plant) = it.plant_of_moment()?;
+        let component = model.component_named(name)?;
+        words(model.mode_name(component, plant.belief.most_likely().mode(component)))
+    }),
+    ("true-mode", |it, name| words(it.plant()?.true_state.get(name)?.as_str())),
+    ("believed", |it, _| count(it.plant()?.belief.len())),
+    ("likelihood", |it, _| {
+        let probability = it.plant_of_moment()?.1.belief.highest_probability();
+        words(format!("{:.3} %", percent(&probability.to_string())?))
+    }),
+    ("commands", |it, _| {
+        let named = it.plant()?.next_commands.as_ref()?.iter();
+        let each: Vec<String> = named.map(|(name, value)| format!("{name}.{value}")).collect();
+        words(each.join(", "))
+    }),
+    ("observed", |it, name| words(it.plant()?.observations.as_ref()?.get(name)?.as_str())),
+    ("conflicts", |it, _| count(it.plant()?.conflicts.as_ref()?.len())),
+    ("conflict", |it, _| words(it.plant()?.conflicts.as_ref()?.first()?.as_str())),
+];
+
+/// An exact fraction in percent. Its parts may have more digits than an integer holds.
+fn percent(fraction: &str) -> Option<f64> {
+    let (numerator, denominator) = fraction.split_once('/').unwrap_or((fraction, "1"));
+    Some(numerator.parse::<f64>().ok()? / denominator.parse::<f64>().ok()? * 100.0)
+}

@@ -1,0 +1,52 @@
+//! The recorded search and the step of it that is looked at.
+
+use kirk::Event;
+
+use super::{Row, count, time, truth, words};
+use crate::lesson::{StepKind, Value};
+use crate::state::search::wording::event;
+use crate::state::selection::node_name;
+
+pub(super) const VALUES: &[Row] = &[
+    ("steps", |it, which| count(it.recording(which)?.steps())),
+    ("states", |it, which| count(it.counts(which)?.states as usize)),
+    ("backtracks", |it, which| count(it.counts(which)?.backtracks as usize)),
+    ("failures", |it, which| count(it.counts(which)?.failures as usize)),
+    ("propagations", |it, which| count(it.counts(which)?.propagations as usize)),
+    ("count", |it, kind| {
+        let (_, kind) = StepKind::ALL.into_iter().find(|(name, _)| *name == kind)?;
+        let recording = it.recording("")?;
+        count(recording.trace().events.iter().filter(|entry| kind.is(&entry.event)).count())
+    }),
+    ("step", |it, _| count(it.search().step)),
+    ("step-is", |it, kind| {
+        let (_, kind) = StepKind::ALL.into_iter().find(|(name, _)| *name == kind)?;
+        truth(it.looked_at().is_some_and(|(_, event)| kind.is(event)))
+    }),
+    ("sentence", |it, _| {
+        let (recording, entry) = it.looked_at()?;
+        words(event(recording.network(), recording.trace(), entry))
+    }),
+    ("shortfall", |it, _| {
+        let Event::Inconsistent { cycle } = it.looked_at()?.1 else { return None };
+        let total = exact::Time::checked_sum(cycle.iter().map(|member| member.weight))?;
+        time(total.checked_neg()?)
+    }),
+    ("bound", |it, _| {
+        let (_, Event::Bound { values } | Event::Visit { values, .. }) = it.looked_at()? else {
+            return None;
+        };
+        values.first().copied().map(Value::Number)
+    }),
+    ("cycle", |it, _| {
+        let (recording, event) = it.looked_at()?;
+        let Event::Inconsistent { cycle } = event else { return None };
+        let names: Vec<String> = cycle.iter().map(|it| node_name(recording.network(), it.from)).collect();
+        words(names.join(" → "))
+    }),
+    ("cycle-length", |it, _| {
+        let Event::Inconsistent { cycle } = it.looked_at()?.1 else { return None };
+        count(cycle.len())
+    }),
+    ("compared", |it, _| truth(it.recordings().len() == 2)),
+];

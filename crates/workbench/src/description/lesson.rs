@@ -1,0 +1,128 @@
+//! The lesson and the manual.
+
+use markdown::Block;
+use serde::Serialize;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::lesson::{Answer, COURSE};
+use crate::state::AppState;
+
+/// The lessons; `open` is `null` while the contents of the course are shown.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Lessons {
+    /// The names of the course's lessons, in order.
+    pub course: Vec<&'static str>,
+    /// Stops whose questions were answered rightly: `negative-cycle/2`.
+    pub learned: Vec<String>,
+    /// Whether the panels stand as the lesson wants them.
+    pub beside: bool,
+    pub open: Option<OpenLesson>,
+}
+
+/// The lesson that is open, at its stop.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct OpenLesson {
+    pub name: String,
+    pub title: String,
+    /// From 1.
+    pub stop: usize,
+    pub stops: usize,
+    pub stop_title: String,
+    /// Whether what the stop shows is still worked out.
+    pub is_due: bool,
+    /// What the stop says, without its looks.
+    pub prose: String,
+    pub question: Option<Question>,
+    /// What is wrong in the lesson's file, by line.
+    pub errors: Vec<LessonMistake>,
+}
+
+/// What a stop asks.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Question {
+    #[cfg_attr(test, ts(type = "\"choice\" | \"number\" | \"word\" | \"task\""))]
+    pub kind: &'static str,
+    pub text: String,
+    pub choices: Vec<String>,
+    /// What was answered last.
+    pub given: Option<String>,
+    /// Whether that was right; of a task, whether it is done.
+    pub is_right: Option<bool>,
+}
+
+/// Something wrong in a lesson.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct LessonMistake {
+    /// From 1.
+    pub line: u32,
+    pub message: String,
+}
+
+/// The manual as it is looked at.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Manual {
+    /// `null` while its contents are shown.
+    pub page: Option<&'static str>,
+    pub section: String,
+    pub query: String,
+    /// Where what is looked for stands: `page#section`.
+    pub found: Vec<String>,
+}
+
+pub(super) fn lessons(state: &AppState) -> Lessons {
+    Lessons {
+        course: COURSE.iter().flat_map(|chapter| chapter.lessons).map(|lesson| lesson.name).collect(),
+        learned: state.settings.learned.iter().cloned().collect(),
+        beside: state.lesson.is_beside(),
+        open: open(state),
+    }
+}
+
+fn open(state: &AppState) -> Option<OpenLesson> {
+    let (lesson, stop) = (state.lesson.open()?, state.lesson.stop()?);
+    let errors = state.lesson.errors().iter();
+    Some(OpenLesson {
+        name: lesson.name.clone(),
+        title: lesson.title.clone(),
+        stop: state.lesson.at() + 1,
+        stops: lesson.stops.len(),
+        stop_title: stop.title.clone(),
+        is_due: state.lesson.is_due(),
+        prose: state.lesson_prose().iter().map(Block::plain).collect::<Vec<_>>().join("\n"),
+        question: stop.ask.as_ref().map(|ask| Question {
+            kind: match ask.answer {
+                Answer::Choice(_) => "choice",
+                Answer::Number(..) => "number",
+                Answer::Word(_) => "word",
+                Answer::Task(_) => "task",
+            },
+            text: state.lesson_line(&ask.text),
+            choices: match &ask.answer {
+                Answer::Choice(choices) => choices.iter().map(|it| state.lesson_line(&it.text)).collect(),
+                _ => Vec::new(),
+            },
+            given: state.lesson.given().map(|given| given.text.clone()),
+            is_right: state.lesson.given().map(|given| given.is_right),
+        }),
+        errors: errors.map(|it| LessonMistake { line: it.line, message: it.message.clone() }).collect(),
+    })
+}
+
+pub(super) fn manual(state: &AppState) -> Manual {
+    let place = state.manual.place();
+    let found = state.manual.found().iter();
+    Manual {
+        page: place.map(|(page, _)| page),
+        section: place.map(|(_, section)| section.to_owned()).unwrap_or_default(),
+        query: state.manual.query().to_owned(),
+        found: found.map(|it| format!("{}#{}", it.page, it.section)).collect(),
+    }
+}

@@ -1,0 +1,163 @@
+//! The run of a control program.
+
+use std::collections::BTreeMap;
+
+use hca::Automaton;
+use plant::Model;
+use serde::Serialize;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::state::automaton::{AutomatonState, PlantMoment};
+use crate::state::program_chance::ProgramChanceState;
+
+/// How a control program stands at the step that is looked at.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct ProgramRun {
+    /// The steps taken before this moment.
+    pub step: usize,
+    /// All steps that were taken.
+    pub steps: usize,
+    pub locations: usize,
+    /// The labels of what is marked.
+    pub marked: Option<Vec<String>>,
+    /// The goals that the marked locations assert.
+    pub goals: Option<Vec<String>>,
+    /// The transitions of the step that led here.
+    pub fired: Option<Vec<Fired>>,
+    pub can_step: bool,
+    pub is_playing: bool,
+    pub trouble: Option<String>,
+    /// How likely the program is to reach its end; `null` until many runs were made of the present text.
+    pub chance: Option<ProgramChance>,
+    pub plant: Option<PlantState>,
+}
+
+/// A transition that was taken.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Fired {
+    pub from: String,
+}
+
+/// How likely a program is to reach its end.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct ProgramChance {
+    #[cfg_attr(test, ts(type = "number"))]
+    pub runs: u64,
+    pub is_running: bool,
+    #[cfg_attr(test, ts(type = "number"))]
+    pub reached: u64,
+    pub probability: f64,
+    /// The 95 % confidence interval of the probability.
+    pub interval: [f64; 2],
+    pub mean_steps: f64,
+}
+
+/// What is believed and true of a plant; modes and values by component and variable.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct PlantState {
+    /// Most likely first.
+    pub belief: Vec<Believed>,
+    pub true_state: BTreeMap<String, String>,
+    pub observations: Option<BTreeMap<String, String>>,
+    pub commands: Option<BTreeMap<String, String>>,
+    pub next_commands: Option<BTreeMap<String, String>>,
+    pub unachievable: Vec<Unachievable>,
+    /// Whether no state that was believed possible explains the observations.
+    pub is_unexplained: bool,
+    /// Which assumptions the observations contradict.
+    pub conflicts: Option<Vec<String>>,
+}
+
+/// A state that is believed possible.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Believed {
+    pub state: BTreeMap<String, String>,
+    /// An exact fraction.
+    pub probability: String,
+}
+
+/// A goal that cannot be reached.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct Unachievable {
+    pub goal: String,
+    pub reason: String,
+}
+
+/// The step that is looked at, what is marked there and, with a plant, what is believed, true, observed and commanded;
+/// nothing if the text is no control program.
+pub(super) fn program_run(state: &AutomatonState, revision: u64) -> Option<ProgramRun> {
+    let program = state.program()?;
+    let moment = state.moment();
+    let plant = program.model().zip(moment.and_then(|moment| moment.plant.as_ref()));
+    let strings = |names: &[smol_str::SmolStr]| names.iter().map(ToString::to_string).collect();
+    Some(ProgramRun {
+        step: state.at(),
+        steps: state.moments().len().saturating_sub(1),
+        locations: program.automaton().map_or(0, |automaton| automaton.locations.len()),
+        marked: moment.map(|moment| strings(&moment.upcoming.labels)),
+        goals: moment.map(|moment| strings(&moment.upcoming.goals)),
+        fired: program.automaton().zip(moment).map(|(automaton, moment)| {
+            let taken = moment.taken.iter().flat_map(|taken| &taken.fired);
+            taken.filter_map(|&id| fired(automaton, id)).collect()
+        }),
+        can_step: state.can_step(),
+        is_playing: state.is_playing,
+        trouble: state.error.clone(),
+        chance: chance(&state.chance, revision),
+        plant: plant.map(|(model, moment)| plant_state(model, moment)),
+    })
+}
+
+fn chance(chance: &ProgramChanceState, revision: u64) -> Option<ProgramChance> {
+    let tally = chance.tally(revision)?;
+    let (low, high) = tally.interval();
+    Some(ProgramChance {
+        runs: tally.runs,
+        is_running: chance.is_running(),
+        reached: tally.reached,
+        probability: tally.probability(),
+        interval: [low, high],
+        mean_steps: tally.mean_steps(),
+    })
+}
+
+fn fired(automaton: &Automaton, id: hca::TransitionId) -> Option<Fired> {
+    let transition = automaton.transitions.get(id.0 as usize)?;
+    Some(Fired { from: automaton.location_name(transition.source).clone() })
+}
+
+fn plant_state(model: &Model, moment: &PlantMoment) -> PlantState {
+    let record = moment.record.as_ref();
+    PlantState {
+        belief: moment
+            .belief
+            .states()
+            .map(|(state, probability)| Believed {
+                state: model.state_names(state),
+                probability: probability.to_string(),
+            })
+            .collect(),
+        true_state: model.state_names(&moment.true_state),
+        observations: record.map(|record| model.observation_names(&record.observation)),
+        commands: record.map(|record| model.command_names(&record.commands)),
+        next_commands: moment.next_commands.as_ref().map(|commands| model.command_names(commands)),
+        unachievable: moment
+            .unachievable
+            .iter()
+            .map(|(goal, reason)| Unachievable { goal: goal.to_string(), reason: reason.clone() })
+            .collect(),
+        is_unexplained: record.is_some_and(|record| record.is_unexplained),
+        conflicts: record
+            .map(|record| record.conflicts.iter().map(|conflict| conflict.describe(model)).collect()),
+    }
+}

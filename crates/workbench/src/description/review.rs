@@ -1,0 +1,277 @@
+//! The review of the mission.
+
+use review::record::{Act, Entry, LineKey};
+use review::{FlightRules, Line, PlanStatus, Present, Record, Section, Status};
+use serde::Serialize;
+#[cfg(test)]
+use ts_rs::TS;
+
+use crate::state::AppState;
+
+/// The review of the mission.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Review {
+    /// The hash of what was reviewed; `null` before the first review of this mission.
+    pub hash: Option<String>,
+    /// The hash of the present text, map and seed.
+    pub current_hash: Option<String>,
+    /// The hash of the reviewed plan; empty without one.
+    pub plan_hash: Option<String>,
+    /// Whether the two differ.
+    pub stale: bool,
+    pub running: bool,
+    #[cfg_attr(test, ts(type = "\"information\" | \"passed\" | \"attention\" | \"failed\" | null"))]
+    pub status: Option<Status>,
+    pub counts: Option<ReviewCounts>,
+    /// What the mission is held against: see section 16 of the specification.
+    #[cfg_attr(
+        test,
+        ts(
+            type = "{ margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; rules: { name: string; rule: string; source: string; waivable: boolean }[]; board: { role: string; approvals: number }[] }"
+        )
+    )]
+    pub rules: FlightRules,
+    pub items: Vec<ReviewItem>,
+    /// How the plan stands with its board.
+    #[cfg_attr(
+        test,
+        ts(
+            type = "\"draft\" | \"in-review\" | \"approved\" | \"approved-with-comments\" | \"lapsed\" | null"
+        )
+    )]
+    pub plan_status: Option<PlanStatus>,
+    /// Who has to approve, and who has.
+    pub board: Vec<BoardSeat>,
+    /// What stands in the way of any approval.
+    pub blockers: Vec<String>,
+    /// The latest approval that has not been taken back.
+    pub signed: Option<SignOff>,
+    pub comments: Vec<ReviewComment>,
+    /// Everything that was done, in order.
+    pub history: Vec<HistoryEntry>,
+    /// The digests of the last entries of the history.
+    pub heads: Vec<String>,
+    /// Why a review that was kept for this mission is kept aside and not used, if one is.
+    pub aside: Option<String>,
+    /// Why the history is not kept beyond this visit, if it is not.
+    pub unkept: Option<String>,
+}
+
+/// How many lines of a review stand how.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ReviewCounts {
+    pub passed: usize,
+    pub attention: usize,
+    pub failed: usize,
+    /// Lines that say how things are, with nothing to hold them against.
+    pub information: usize,
+}
+
+/// A line of a review.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ReviewItem {
+    #[cfg_attr(test, ts(type = "string"))]
+    pub section: Section,
+    #[cfg_attr(test, ts(type = "\"information\" | \"passed\" | \"attention\" | \"failed\""))]
+    pub status: Status,
+    pub text: String,
+    /// What it is held against, and where that comes from.
+    pub criterion: Option<String>,
+    /// The line of its place in the text, from 1.
+    pub line: Option<u32>,
+    /// What it is about, by the names of all output.
+    pub names: Vec<String>,
+    /// Who acknowledged it as it is, and why it may be so.
+    #[cfg_attr(test, ts(type = "{ by: string; text: string } | null"))]
+    pub acknowledged: Option<Acknowledged>,
+}
+
+/// Somebody has acknowledged a line.
+#[derive(Debug, Serialize)]
+pub struct Acknowledged {
+    pub by: String,
+    pub text: String,
+}
+
+/// A role of the board.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct BoardSeat {
+    pub role: String,
+    /// How many people have to approve.
+    pub wanted: usize,
+    /// Who has approved the present plan.
+    pub given: Vec<String>,
+}
+
+/// What somebody wrote.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ReviewComment {
+    /// What `review.resolve`, `review.reopen` and `review.withdraw` take.
+    pub id: String,
+    pub author: String,
+    pub role: String,
+    /// An ISO 8601 time in UTC.
+    pub time: String,
+    pub about: Option<String>,
+    pub text: String,
+    pub content_hash: String,
+    /// Whether it is neither resolved nor taken back.
+    pub open: bool,
+}
+
+/// Something that somebody did.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct HistoryEntry {
+    /// Its digest.
+    pub id: String,
+    pub by: String,
+    pub role: String,
+    /// An ISO 8601 time in UTC.
+    pub time: String,
+    /// What was done, in words.
+    pub act: String,
+    /// What was said with it.
+    pub text: String,
+    /// The entry that it is about.
+    pub of: Option<String>,
+    /// The content that it is about.
+    pub hash: String,
+    /// The plan that it is about; empty if none was known.
+    pub plan_hash: String,
+    /// Whether somebody took it back.
+    pub withdrawn: bool,
+}
+
+/// Somebody has approved a plan.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct SignOff {
+    pub name: String,
+    /// An ISO 8601 time in UTC.
+    pub time: String,
+    pub role: String,
+    /// The content that was approved.
+    pub hash: String,
+    /// Whether the present content, plan or rules are others.
+    pub stale: bool,
+}
+
+pub(super) fn review(state: &AppState) -> Review {
+    let record = state.review.record();
+    let standing = state.review.standing();
+    let shown = state.review.shown();
+    Review {
+        hash: shown.map(|(review, _)| review.content_hash.clone()),
+        current_hash: state.review.hash().map(ToString::to_string),
+        plan_hash: shown.map(|(review, _)| review.plan_hash.clone()),
+        stale: shown.is_some_and(|(_, is_stale)| is_stale),
+        running: state.review.is_running(),
+        status: shown.map(|(review, _)| review.status),
+        counts: shown.map(|(review, _)| {
+            let [passed, attention, failed] = review.counts();
+            ReviewCounts { passed, attention, failed, information: review.count(Status::Information) }
+        }),
+        rules: record.rules().clone(),
+        items: shown.map(|(review, _)| items(review, record)).unwrap_or_default(),
+        plan_status: standing.as_ref().map(|standing| standing.status),
+        board: standing.iter().flat_map(|standing| &standing.seats).map(seat).collect(),
+        blockers: standing.as_ref().map(review::Standing::blockers).unwrap_or_default(),
+        signed: signed(state),
+        comments: comments(record),
+        history: history(record),
+        heads: record.heads().map(str::to_owned).collect(),
+        aside: state.review.aside().map(|aside| aside.reason.clone()),
+        unkept: state.review.unkept().map(ToString::to_string),
+    }
+}
+
+fn seat(seat: &review::board::Approvals<'_>) -> BoardSeat {
+    let given = seat.given.iter().map(|entry| entry.by.clone()).collect();
+    BoardSeat { role: seat.role.to_owned(), wanted: seat.wanted, given }
+}
+
+/// The latest approval that has not been taken back.
+fn signed(state: &AppState) -> Option<SignOff> {
+    let record = state.review.record();
+    let (entry, subject) = record.last_approval()?;
+    let review = state.review.current().map(AsRef::as_ref);
+    let present = Present {
+        content_hash: state.review.hash().unwrap_or_default(),
+        plan_hash: review.map(|review| review.plan_hash.as_str()),
+        rules: record.rules(),
+        review,
+    };
+    Some(SignOff {
+        name: entry.by.clone(),
+        time: entry.time.clone(),
+        role: entry.role.clone(),
+        hash: entry.content_hash.clone(),
+        stale: present.difference(entry, subject).is_some(),
+    })
+}
+
+fn comments(record: &Record) -> Vec<ReviewComment> {
+    let open = review::board::open_comments(record);
+    let comment = |entry: &Entry| {
+        let Act::Comment { about, text } = &entry.act else { return None };
+        Some(ReviewComment {
+            id: entry.digest().to_owned(),
+            author: entry.by.clone(),
+            role: entry.role.clone(),
+            time: entry.time.clone(),
+            about: about.clone(),
+            text: text.clone(),
+            content_hash: entry.content_hash.clone(),
+            open: open.iter().any(|it| it.digest() == entry.digest()),
+        })
+    };
+    record.entries().iter().filter_map(comment).collect()
+}
+
+fn history(record: &Record) -> Vec<HistoryEntry> {
+    let withdrawn = record.withdrawn();
+    let entry = |entry: &Entry| HistoryEntry {
+        id: entry.digest().to_owned(),
+        by: entry.by.clone(),
+        role: entry.role.clone(),
+        time: entry.time.clone(),
+        act: entry.act.name().to_owned(),
+        text: entry.act.text().to_owned(),
+        of: entry.act.of().map(str::to_owned),
+        hash: entry.content_hash.clone(),
+        plan_hash: entry.plan_hash.clone(),
+        withdrawn: withdrawn.contains_key(entry.digest()),
+    };
+    record.entries().iter().map(entry).collect()
+}
+
+fn items(review: &review::Review, record: &Record) -> Vec<ReviewItem> {
+    let acknowledged = record.acknowledgements();
+    let by = |section: Section, line: &Line| {
+        let entry = (line.status == Status::Attention)
+            .then(|| acknowledged.get(&LineKey::new(section, line)))
+            .flatten()?;
+        Some(Acknowledged { by: entry.by.clone(), text: entry.act.text().to_owned() })
+    };
+    let mut items = Vec::new();
+    for section in Section::ALL {
+        items.extend(review.lines(section).into_iter().map(|line| ReviewItem {
+            section,
+            status: line.status,
+            text: line.text.clone(),
+            criterion: line.criterion.clone(),
+            line: line.line_number,
+            names: line.names.iter().map(ToString::to_string).collect(),
+            acknowledged: by(section, line),
+        }));
+    }
+    items
+}

@@ -1,0 +1,159 @@
+//! What lessons can know of the live state, by name.
+//!
+//! Each fact says what it means in a sentence; `docs/lessons.md` lists them, which a test holds it to. What a fact comes
+//! to is read from the description of the state.
+
+use super::expression::Value;
+
+/// Something that is known of the state.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Fact {
+    pub name: &'static str,
+    pub of: Of,
+    /// What it is, in a sentence without its full stop.
+    pub meaning: &'static str,
+}
+
+/// What a fact is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// The state as a whole.
+    Nothing,
+    /// Something that stands in parentheses.
+    Something(&'static str),
+    /// The state as a whole, or something in parentheses.
+    Maybe(&'static str),
+}
+
+/// Whoever knows what facts come to.
+pub trait Known {
+    /// What a fact is now, of what stands in its parentheses; nothing while that is not known or does not exist.
+    fn value_of(&self, fact: &str, of: &str) -> Option<Value>;
+}
+
+/// Every fact that a question can ask for.
+pub fn all() -> impl Iterator<Item = &'static Fact> {
+    FACTS.iter()
+}
+
+/// The fact of this name.
+pub fn by_name(name: &str) -> Option<&'static Fact> {
+    all().find(|fact| fact.name == name)
+}
+
+const fn fact(name: &'static str, of: Of, meaning: &'static str) -> Fact {
+    Fact { name, of, meaning }
+}
+
+/// What a count is of.
+const WHICH: Of = Of::Maybe("chronological");
+
+/// The first search, or that of a planner.
+const SEARCH: Of = Of::Maybe("rrt-star");
+
+const FACTS: &[Fact] = &[
+    // The text, its plan and its run.
+    fact("plan", Of::Nothing, "whether there is a plan that holds"),
+    fact("no-plan", Of::Nothing, "whether it is proven that there is no plan"),
+    fact("errors", Of::Nothing, "how many errors the text has"),
+    fact("problem", Of::Something("E-BOUNDS"), "whether the text has a problem of this kind"),
+    fact("says", Of::Something("words"), "whether these words stand in the text, however they are spaced"),
+    fact("events", Of::Nothing, "how many events the network has"),
+    fact("constraints", Of::Nothing, "how many arcs the network has"),
+    fact("decisions", Of::Nothing, "how many decisions the network has"),
+    fact("activities", Of::Nothing, "how many primitive activities the network has"),
+    fact("selected", Of::Something("Drive#1"), "whether the plan does this activity"),
+    fact("choice", Of::Something("D1"), "the alternative that the plan takes of a decision, from 0"),
+    fact("alternatives", Of::Something("D1"), "how many alternatives a decision has"),
+    fact("assertions", Of::Something("LIGHT"), "how many intervals of the text assert a condition"),
+    fact("conflicting", Of::Nothing, "how many pairs of conflicting intervals the plan has"),
+    fact("lower", Of::Something("Drive#1"), "the least duration that is written for it"),
+    fact("upper", Of::Something("Drive#1"), "the greatest duration that is written for it"),
+    fact("earliest", Of::Something("Drive#1.start"), "when an event can happen at the earliest"),
+    fact("latest", Of::Something("Drive#1.start"), "when an event can happen at the latest"),
+    fact("slack", Of::Something("Drive#1.start"), "how long an event can wait"),
+    fact("links", Of::Nothing, "how many conditions have their assertion"),
+    fact(
+        "link",
+        Of::Something("LIGHT"),
+        "the assertion that carries the first requirement of this condition",
+    ),
+    fact("orderings", Of::Nothing, "how many orders planning added between conflicting conditions"),
+    fact("uses-ordered", Of::Nothing, "how many orders planning added between uses of resources"),
+    fact("least", Of::Something("Battery"), "the lowest level in any schedule of the plan"),
+    fact(
+        "greatest",
+        Of::Something("Battery"),
+        "the highest level, or the most that is used at a time, in any schedule",
+    ),
+    fact("end", Of::Nothing, "when the mission ends at the earliest"),
+    fact("reward", Of::Nothing, "what the plan is rewarded with"),
+    fact("cost", Of::Nothing, "what the plan costs"),
+    fact("optimal", Of::Nothing, "whether it is proven that no plan is better"),
+    fact("length", Of::Maybe("Drive#1"), "the metres of all planned paths, or of one traverse"),
+    fact("reasons", Of::Nothing, "how many reasons there are why there is no plan"),
+    fact("ways-out", Of::Nothing, "how many changes are known that would give a plan"),
+    fact("natures-choice", Of::Nothing, "whether nature chooses durations of the plan"),
+    fact("pinned", Of::Something("Drive#1.end"), "the time that an event is pinned to"),
+    fact("selection", Of::Nothing, "the name of what is selected; nothing is the empty word"),
+    fact("selected-kind", Of::Nothing, "what kind of thing is selected, such as occurrence, node or arc"),
+    fact("time", Of::Nothing, "the time shown"),
+    fact("finished", Of::Nothing, "whether the run that is watched reaches the end of the mission"),
+    fact("disturbances", Of::Nothing, "how many disturbances the run has"),
+    // The search.
+    fact("steps", WHICH, "how many steps the search has"),
+    fact("states", WHICH, "how many states it entered"),
+    fact("backtracks", WHICH, "how often it went back"),
+    fact("failures", WHICH, "how many failures it met"),
+    fact("propagations", WHICH, "how often it propagated bounds"),
+    fact("count", Of::Something("threat"), "how many steps of a kind the search has"),
+    fact("step", Of::Nothing, "the number of the step that is looked at; 0 is the plan"),
+    fact("step-is", Of::Something("failure"), "whether the step that is looked at is of this kind"),
+    fact("sentence", Of::Nothing, "what happens at the step that is looked at, in a sentence"),
+    fact("shortfall", Of::Nothing, "how much less than nothing the negative cycle of the step adds up to"),
+    fact(
+        "bound",
+        Of::Nothing,
+        "what the first goal may become at best with the choices of the step, in a best-first search",
+    ),
+    fact("cycle", Of::Nothing, "the events of the negative cycle of the step, in order"),
+    fact("cycle-length", Of::Nothing, "how many bounds the negative cycle of the step goes along"),
+    fact("compared", Of::Nothing, "whether both searches are shown side by side"),
+    // The search for a path.
+    fact("samples", SEARCH, "how many samples are drawn of the search for a path"),
+    fact("all-samples", Of::Nothing, "how many samples the whole search draws"),
+    fact("vertices", SEARCH, "how many vertices its trees have by now, their roots included"),
+    fact("checks", SEARCH, "how many straight pieces of ground it has checked for obstacles"),
+    fact("sample", Of::Nothing, "where the last sample lies"),
+    fact("nearest", Of::Nothing, "the vertex that was nearest to it"),
+    fact("steered", Of::Nothing, "the vertex that was added towards it"),
+    fact("stride", Of::Nothing, "how many metres the tree grew towards it"),
+    fact("blocked", Of::Nothing, "whether an obstacle was in the way of the last sample"),
+    fact("path-found", SEARCH, "whether there is a path by now"),
+    fact("path-length", SEARCH, "the metres of the best path by now"),
+    fact("race", Of::Nothing, "whether all planners are shown side by side"),
+    fact("obstacles", Of::Nothing, "how many obstacles the mission has"),
+    fact(
+        "passes",
+        Of::Something("Ridge, Scarp"),
+        "whether a planned path leads between the middles of two obstacles",
+    ),
+    // Control programs.
+    fact("program", Of::Nothing, "whether the text is a control program that can be run"),
+    fact("moments", Of::Nothing, "how many steps the program has taken"),
+    fact("locations", Of::Nothing, "how many locations its automaton has"),
+    fact("marks", Of::Nothing, "the labels of what is marked, in alphabetical order"),
+    fact("marked", Of::Something("assert x=a"), "whether something with this label is marked"),
+    fact("marked-places", Of::Nothing, "how many locations are marked"),
+    fact("goals", Of::Nothing, "what the marked locations assert"),
+    fact("ended", Of::Nothing, "whether nothing is marked any more"),
+    fact("fired", Of::Nothing, "how many transitions were taken in the last step"),
+    fact("mode", Of::Something("EngineA"), "the mode of a component in the most likely state"),
+    fact("true-mode", Of::Something("EngineA"), "the mode that a component is really in"),
+    fact("believed", Of::Nothing, "how many states are believed possible"),
+    fact("likelihood", Of::Nothing, "the probability of the most likely state, in percent to three decimals"),
+    fact("commands", Of::Nothing, "the commands of the next step"),
+    fact("observed", Of::Something("EngineA.thrust"), "what was observed of a variable in the last step"),
+    fact("conflicts", Of::Nothing, "how many sets of assumptions the last observation contradicts"),
+    fact("conflict", Of::Nothing, "the first of them, in words"),
+];

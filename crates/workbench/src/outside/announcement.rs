@@ -1,0 +1,66 @@
+//! What somebody who does not see the window is told as it happens: where the plan stands, mistakes, steps, messages.
+
+use rmpl::Severity;
+
+use crate::state::AppState;
+use crate::state::search::wording::event;
+use crate::state::snapshots::Status;
+
+/// What is to be said now. It is said when it is other than before; empty while there is nothing new to say.
+pub fn announcement(state: &AppState) -> String {
+    let parts = [plan_words(state), step_words(state), program_words(state), message_words(state)];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    parts.join(" ")
+}
+
+fn plan_words(state: &AppState) -> Option<String> {
+    let problems = state.snapshots.problems();
+    let first = || problems.iter().find(|problem| problem.severity == Severity::Error);
+    let latest = state.snapshots.latest();
+    let verdict = latest.and_then(|latest| latest.planning.as_ref()?.verdict.as_ref());
+    Some(match state.status() {
+        // Said when it takes long, not with every key.
+        Status::Working if state.is_long_at_work() => "Planning.".to_owned(),
+        Status::Working | Status::Empty | Status::Program => return None,
+        Status::Broken => {
+            let count = problems.iter().filter(|it| it.severity == Severity::Error).count();
+            let noun = if count == 1 { "error" } else { "errors" };
+            // As the list of problems has it: of its own file.
+            let place = first().map_or_else(String::new, |problem| {
+                let line = match &problem.file {
+                    Some(file) => format!("{file}, line {}", problem.line),
+                    None => format!("Line {}", problem.line),
+                };
+                format!("{line}: {}", problem.message)
+            });
+            format!("{count} {noun}. {place}.")
+        }
+        Status::NoPlan => {
+            first().map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message))
+        }
+        Status::Undecided => "Not decided whether there is a plan.".to_owned(),
+        Status::Plan if state.is_improving() => "Plan found. A better one is looked for.".to_owned(),
+        Status::Plan => match verdict.map(|verdict| verdict.valid) {
+            Some(true) => "Plan found and verified.".to_owned(),
+            Some(false) => "A plan was found that the checker refuses.".to_owned(),
+            None => "Plan found.".to_owned(),
+        },
+    })
+}
+
+fn step_words(state: &AppState) -> Option<String> {
+    let view = state.search.shown()?;
+    let trace = view.recording.trace();
+    let entry = trace.events.get(view.step.step)?;
+    let words = event(view.recording.network(), trace, &entry.event);
+    Some(format!("Step {} of {}: {words}.", view.step.step + 1, trace.events.len()))
+}
+
+fn program_words(state: &AppState) -> Option<String> {
+    let at = state.automaton.at();
+    (state.automaton.is_control() && at > 0).then(|| format!("Step {at} of the program."))
+}
+
+fn message_words(state: &AppState) -> Option<String> {
+    state.window.toasts.shown().last().map(|toast| toast.text.clone())
+}

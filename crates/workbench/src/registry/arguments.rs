@@ -1,0 +1,70 @@
+//! The arguments of commands that host pages give.
+
+use hca::VariableId;
+use serde_json::Value;
+
+use crate::command::Command;
+use crate::panel_kind::PanelKind;
+use crate::state::AppState;
+use crate::state::automaton::{AutomatonCommand, Program, ProgramPart};
+
+/// The component and its mode by name; without a mode, the component is left to behave.
+pub(super) fn injection(state: &AppState, arguments: &Value) -> Result<Command, String> {
+    let model = state.automaton.program().and_then(Program::model).ok_or("there is no plant")?;
+    let component = text_argument(arguments, "component")?;
+    let (id, mode) = if arguments.get("mode").is_none_or(Value::is_null) {
+        let id = model.component_named(component);
+        (id.ok_or_else(|| format!("the model has no component `{component}`"))?, None)
+    } else {
+        let (id, mode) = model.component_mode(component, text_argument(arguments, "mode")?)?;
+        (id, Some(mode))
+    };
+    Ok(Command::Automaton(AutomatonCommand::Inject(id, mode)))
+}
+
+/// What is known of a variable of a program without a plant; without a value, nothing is.
+pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, String> {
+    let automaton = state.automaton.program().and_then(Program::automaton).ok_or("there is no program")?;
+    let name = text_argument(arguments, "variable")?;
+    let found = automaton.variables.iter().position(|it| it.name == name);
+    let at = found.ok_or_else(|| format!("the program has no variable `{name}`"))?;
+    let value = match arguments.get("value").and_then(Value::as_str) {
+        None => None,
+        Some(value) => {
+            let found = automaton.variables[at].values.iter().position(|it| it == value);
+            Some(found.ok_or_else(|| format!("`{name}` has no value `{value}`"))? as u32)
+        }
+    };
+    Ok(Command::Automaton(AutomatonCommand::Know(VariableId(at as u32), value)))
+}
+
+/// A part of what is shown of a program, by name.
+pub(super) fn part(_: &AppState, arguments: &Value) -> Result<Command, String> {
+    let name = text_argument(arguments, "part")?;
+    let found = ProgramPart::ALL.into_iter().find(|part| part.name() == name);
+    let part = found.ok_or_else(|| {
+        format!(
+            "there is no part \"{name}\"; there are {}",
+            ProgramPart::ALL.map(ProgramPart::name).join(", ")
+        )
+    })?;
+    Ok(Command::Automaton(AutomatonCommand::Show(part)))
+}
+
+pub(super) fn text_argument<'a>(arguments: &'a Value, name: &str) -> Result<&'a str, String> {
+    let value = arguments.get(name).unwrap_or(arguments);
+    value.as_str().ok_or_else(|| format!("it takes {{\"{name}\": text}}"))
+}
+
+pub(super) fn number_argument(arguments: &Value, name: &str) -> Result<f64, String> {
+    let value = arguments.get(name).unwrap_or(arguments);
+    value.as_f64().ok_or_else(|| format!("it takes {{\"{name}\": number}}"))
+}
+
+pub(super) fn panel_argument(arguments: &Value) -> Result<PanelKind, String> {
+    let name = text_argument(arguments, "name")?;
+    PanelKind::by_name(name).ok_or_else(|| {
+        let known: Vec<&str> = PanelKind::ALL.iter().map(|panel| panel.name()).collect();
+        format!("there is no panel \"{name}\"; there are {}", known.join(", "))
+    })
+}

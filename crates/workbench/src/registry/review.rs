@@ -1,0 +1,216 @@
+//! Judging and comparing plans, and documents about them.
+
+use review::record::{Act, LineKey};
+use review::{FlightRules, Section};
+use serde_json::Value;
+
+use super::arguments::text_argument;
+use super::available::{with_approval, with_mission, with_natures_choice, with_pins, with_plan, with_record};
+use super::spec::{called, plain, when};
+use crate::command::Command;
+use crate::dialog::Dialog;
+use crate::registry::spec::{CommandSpec, Group, Scope};
+use crate::state::AppState;
+use crate::state::compare::CompareCommand;
+use crate::state::documents::ScheduleForm;
+use crate::state::pins::PinCommand;
+use crate::state::pins::event_by_name;
+use crate::state::review::{Person, ReviewCommand};
+use crate::state::window::WindowCommand;
+
+/// In the order of the menus.
+pub(super) const COMMANDS: &[CommandSpec] = &[
+    when(
+        plain("review.run", "Review this plan", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Review(ReviewCommand::Run)
+        }),
+        with_mission,
+    ),
+    when(
+        plain("file.report", "Write the report", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::WriteReport
+        }),
+        with_mission,
+    ),
+    when(
+        plain("export.csv", "Export the schedule as CSV…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::Csv)
+        }),
+        with_plan,
+    ),
+    when(
+        plain(
+            "export.json",
+            "Export the schedule as JSON…",
+            Group::Review,
+            &[],
+            Scope::Everywhere,
+            |state| ask_epoch(state, ScheduleForm::Json),
+        ),
+        with_plan,
+    ),
+    when(
+        plain("export.openMct", "Export to Open MCT…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::OpenMct)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("export.icalendar", "Export to a calendar…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::Icalendar)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("export.planDev", "Export to PlanDev…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::PlanDev)
+        }),
+        with_plan,
+    ),
+    when(
+        plain("compare.pin", "Compare from now on", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Compare(CompareCommand::Pin)
+        }),
+        with_plan,
+    ),
+    when(
+        plain(
+            "compare.approved",
+            "Compare with the last approval",
+            Group::Review,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Compare(CompareCommand::WithApproved),
+        ),
+        with_approval,
+    ),
+    plain("compare.file", "Compare with a file…", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Compare(CompareCommand::OpenFile)
+    }),
+    when(
+        plain("review.save", "Save the history of the review", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Review(ReviewCommand::SaveRecord)
+        }),
+        with_record,
+    ),
+    plain("review.open", "Add the history of a review…", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Review(ReviewCommand::OpenRecord)
+    }),
+    called("review.approve", "Approve", Group::Review, |state, arguments| {
+        let by = state.review.seated(&person(arguments, "name")?);
+        let standing = state.review.standing().ok_or("the mission has not been worked out")?;
+        standing.may_approve(&by.name, &by.role)?;
+        Ok(Command::Review(ReviewCommand::Approve { by, text: words(arguments) }))
+    }),
+    called("review.acknowledge", "Acknowledge a line", Group::Review, |state, arguments| {
+        let review = state.review.current().ok_or("the present text has not been reviewed")?;
+        let mut lines = Section::ALL
+            .iter()
+            .flat_map(|&section| review.lines(section).into_iter().map(move |line| (section, line)));
+        let index =
+            arguments.get("item").and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
+        let (section, line) = index
+            .and_then(|index| lines.nth(index))
+            .ok_or("\"item\" is the number of a line of the review")?;
+        said(state, arguments, Act::Acknowledge { line: LineKey::new(section, line), text: words(arguments) })
+    }),
+    called("review.resolve", "Resolve a comment", Group::Review, |state, arguments| {
+        said(state, arguments, Act::Resolve { of: entry(arguments)?, text: words(arguments) })
+    }),
+    called("review.reopen", "Open a comment again", Group::Review, |state, arguments| {
+        said(state, arguments, Act::Reopen { of: entry(arguments)?, text: words(arguments) })
+    }),
+    called("review.withdraw", "Take something back", Group::Review, |state, arguments| {
+        said(state, arguments, Act::Withdraw { of: entry(arguments)?, text: words(arguments) })
+    }),
+    called("review.rules", "Change the flight rules", Group::Review, |state, arguments| {
+        // What is not named stays as it is.
+        let mut rules = serde_json::to_value(state.review.record().rules()).map_err(|it| it.to_string())?;
+        let members = arguments.as_object().ok_or("it takes the rules to change by name")?;
+        if let Some(known) = rules.as_object_mut() {
+            known.extend(members.iter().map(|(name, rule)| (name.clone(), rule.clone())));
+        }
+        let rules: FlightRules = serde_json::from_value(rules).map_err(|it| it.to_string())?;
+        rules.problem().map_or(Ok(()), |problem| Err(problem.to_owned()))?;
+        Ok(Command::Review(ReviewCommand::SetRules(Box::new(rules))))
+    }),
+    plain("review.saveRules", "Save the flight rules", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Review(ReviewCommand::SaveRules)
+    }),
+    called("review.comment", "Comment", Group::Review, |state, arguments| {
+        let about = arguments.get("about").and_then(Value::as_str).map(str::to_owned);
+        let by = person(arguments, "author")?;
+        let act = Act::Comment { about, text: text_argument(arguments, "text")?.trim().to_owned() };
+        state.review.may_say(&by, &act)?;
+        Ok(Command::Review(ReviewCommand::Say { by, act }))
+    }),
+    called("export.schedule", "Export the schedule", Group::Review, |_, arguments| {
+        let name = text_argument(arguments, "as")?;
+        let form = ScheduleForm::by_name(name).ok_or_else(|| {
+            "\"as\" is \"csv\", \"json\", \"open-mct\", \"icalendar\" or \"plandev\"".to_owned()
+        })?;
+        let epoch = arguments.get("epoch").and_then(Value::as_str).unwrap_or_default().to_owned();
+        Ok(Command::WriteSchedule { form, epoch })
+    }),
+    when(
+        plain("plan.release", "Release pinned events", Group::Plan, &[], Scope::Everywhere, |_| {
+            Command::Pins(PinCommand::ReleaseAll)
+        }),
+        with_pins,
+    ),
+    when(
+        plain("strategy.goOn", "Go on to the next event", Group::Plan, &[], Scope::Everywhere, |_| {
+            Command::Pins(PinCommand::GoOn)
+        }),
+        with_natures_choice,
+    ),
+    when(
+        plain("strategy.takeBack", "Take the last step back", Group::Plan, &[], Scope::Everywhere, |_| {
+            Command::Pins(PinCommand::TakeBack)
+        }),
+        with_pins,
+    ),
+    when(
+        called("plan.pin", "Pin an event to a time", Group::Plan, |state, arguments| {
+            let name = arguments.get("event").and_then(Value::as_str);
+            let time = arguments.get("time").and_then(Value::as_f64);
+            let (Some(name), Some(time)) = (name, time.filter(|time| time.abs() < 1e12)) else {
+                return Err("it takes {\"event\": text, \"time\": number}".to_owned());
+            };
+            let network = state.shown().and_then(|shown| shown.network.as_deref());
+            let node = network.and_then(|network| event_by_name(network, name));
+            let node = node.ok_or_else(|| format!("there is no event \"{name}\""))?;
+            // Pins are resolved to a tenth of a unit at least; thousandths are finer than any drag.
+            let time = exact::Time::from_f64_nearest(time, 1000).ok_or("that is no time")?;
+            Ok(Command::Pins(PinCommand::Pin(node, time)))
+        }),
+        with_plan,
+    ),
+];
+
+/// Who does it: the argument `name`, or what it is called, and `role`.
+fn person(arguments: &Value, name: &str) -> Result<Person, String> {
+    let role = arguments.get("role").and_then(Value::as_str).unwrap_or_default();
+    Ok(Person { name: text_argument(arguments, name)?.to_owned(), role: role.to_owned() })
+}
+
+/// What is said with it, if anything.
+fn words(arguments: &Value) -> String {
+    arguments.get("text").and_then(Value::as_str).unwrap_or_default().trim().to_owned()
+}
+
+/// The entry that it is about.
+fn entry(arguments: &Value) -> Result<String, String> {
+    Ok(text_argument(arguments, "id")?.to_owned())
+}
+
+fn said(state: &AppState, arguments: &Value, act: Act) -> Result<Command, String> {
+    let by = person(arguments, "name")?;
+    state.review.may_say(&by, &act)?;
+    Ok(Command::Review(ReviewCommand::Say { by, act }))
+}
+
+/// Asks when the mission starts, beginning with what was said last.
+fn ask_epoch(state: &AppState, form: ScheduleForm) -> Command {
+    Command::Window(WindowCommand::ShowDialog(Dialog::Epoch { form, epoch: state.settings.epoch.clone() }))
+}

@@ -1,0 +1,126 @@
+//! The ground, its camera and its tools.
+
+use super::arguments::{number_argument, text_argument};
+use super::available::{with_goal_of_flight, with_ground, with_paths, with_run, with_vehicles};
+use super::spec::{PLAIN, called, keys, plain, when};
+use crate::command::Command;
+use crate::command::chord::Key;
+use crate::panel_effect::ViewAction;
+use crate::registry::spec::{CommandSpec, Group, Scope};
+use crate::state::growth::{GrowthCommand, Planners};
+use crate::state::terrain::{TerrainCommand, Tool};
+
+/// In the order of the menus.
+pub(super) const COMMANDS: &[CommandSpec] = &[
+    when(
+        plain("terrain.fly", "Fly to the selection", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::FitSelection))
+        }),
+        with_goal_of_flight,
+    ),
+    when(
+        plain("terrain.follow", "Follow the vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::Follow))
+        }),
+        with_vehicles,
+    ),
+    when(
+        plain("terrain.top", "Look straight down", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::TopView))
+        }),
+        with_ground,
+    ),
+    when(
+        plain("terrain.reset", "Show the whole map", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::Fit))
+        }),
+        with_ground,
+    ),
+    when(
+        plain(
+            "terrain.clearance",
+            "Clearance map",
+            Group::Terrain,
+            &[keys(PLAIN, Key::C)],
+            Scope::NotTyping,
+            |_| Command::Terrain(TerrainCommand::ToggleClearance),
+        ),
+        with_ground,
+    ),
+    when(
+        plain(
+            "terrain.growth",
+            "Search tree of a path",
+            Group::Terrain,
+            &[keys(PLAIN, Key::T)],
+            Scope::NotTyping,
+            |_| Command::Terrain(TerrainCommand::Growth(GrowthCommand::Toggle)),
+        ),
+        with_paths,
+    ),
+    called("terrain.growTo", "Draw so many samples", Group::Terrain, |_, arguments| {
+        let samples = number_argument(arguments, "samples")?.max(0.0) as u32;
+        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples))))
+    }),
+    called("terrain.growLeg", "Choose the leg of the search tree", Group::Terrain, |_, arguments| {
+        let leg = number_argument(arguments, "leg")?.max(0.0) as usize;
+        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::ChooseLeg(leg))))
+    }),
+    called("terrain.growBy", "Choose the path planner", Group::Terrain, |_, arguments| {
+        let name = text_argument(arguments, "planner")?;
+        let planners = Planners::named(name).ok_or_else(|| format!("there is no path planner \"{name}\""))?;
+        Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::Choose(planners))))
+    }),
+    when(
+        plain("terrain.measure", "Measure", Group::Terrain, &[keys(PLAIN, Key::M)], Scope::NotTyping, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Measure))
+        }),
+        with_ground,
+    ),
+    when(
+        plain("terrain.location", "Place a location", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Location))
+        }),
+        with_ground,
+    ),
+    when(
+        plain("terrain.circle", "Place a round obstacle", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Circle))
+        }),
+        with_ground,
+    ),
+    when(
+        plain(
+            "terrain.appear",
+            "Let an obstacle appear in the run",
+            Group::Terrain,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Terrain(TerrainCommand::Take(Tool::Appear)),
+        ),
+        with_run,
+    ),
+    when(
+        plain(
+            "terrain.polygon",
+            "Place an obstacle with corners",
+            Group::Terrain,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Terrain(TerrainCommand::Take(Tool::Polygon)),
+        ),
+        with_ground,
+    ),
+    when(
+        plain("terrain.wall", "Draw a wall", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Wall))
+        }),
+        with_ground,
+    ),
+    when(
+        plain("terrain.vehicle", "Place a vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Vehicle(motion::VEHICLE_MODELS[0].name.into())))
+        }),
+        with_ground,
+    ),
+];
