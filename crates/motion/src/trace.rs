@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
 #[cfg(doc)]
-use crate::query::{Failure, Growth, PlannerKind, Query, Settings, Statistics};
+use crate::query::Statistics;
+use crate::query::{Failure, Growth, PlannerKind, Query, Settings};
 use crate::search::Search;
 
 /// All steps of a search. The same arguments give the same trace.

@@ -6,7 +6,6 @@ use markdown::{Block, Content, Document, anchor, plain};
 use rmpl::editor::Topic;
 
 use crate::lesson::Glossary;
-use crate::panel_kind::PanelKind;
 use crate::state::no_plan::NO_PLAN;
 
 /// A page of the manual.

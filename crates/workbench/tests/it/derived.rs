@@ -1,7 +1,7 @@
 //! What is computed after a command: only what depends on what the command changed.
 
-use crate::support::start;
 use serde_json::json;
+use test_support::start;
 use text_editing::TextCommand;
 use workbench::command::Command;
 use workbench::outside::Remote as _;
