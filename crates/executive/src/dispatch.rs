@@ -88,7 +88,6 @@ impl Dispatch {
         matches!(self.propagation, Propagation::Waits(_))
     }
 
-    /// The present.
     pub(crate) const fn now(&self) -> i64 {
         self.now
     }

@@ -36,7 +36,6 @@ pub struct FileSize {
     pub name: String,
     /// When it is needed.
     pub when: When,
-    /// Its bytes.
     pub bytes: u64,
     /// Its bytes as a server hands it out that compresses with Brotli.
     pub compressed: u64,

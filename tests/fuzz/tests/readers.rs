@@ -5,7 +5,16 @@ use std::fs;
 use std::path::Path;
 
 use fuzz::attack::attack;
-use fuzz::readers::{READERS, by_name};
+use fuzz::readers::{READERS, by_name, matching};
+
+#[test]
+fn every_pattern_names_a_file() {
+    for reader in READERS {
+        for pattern in reader.seeds {
+            assert!(!matching(pattern).is_empty(), "{}: nothing is named {pattern}", reader.name);
+        }
+    }
+}
 
 fn holds(name: &str) {
     let reader = by_name(name).expect("a reader of this name");

@@ -16,7 +16,6 @@ use crate::state::{AppState, playback};
 /// Something that other things are computed from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Input {
-    /// The text.
     Text,
     /// The text with its carets.
     Carets,

@@ -234,7 +234,7 @@ pub struct Description<'a> {
 }
 
 impl<'a> Description<'a> {
-    /// Of a state.
+    /// Describes a state.
     pub const fn of(state: &'a AppState) -> Self {
         Self {
             state,

@@ -14,7 +14,7 @@ use crate::state::selection::Selection;
 use crate::state::snapshots::Snapshots;
 use crate::state::window::Window;
 
-/// The maps.
+/// The maps that were read, and those that wait for the core.
 #[derive(Debug, Default)]
 pub struct Maps {
     read: BTreeMap<MapKey, Arc<Terrain>>,
