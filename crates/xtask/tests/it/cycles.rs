@@ -16,8 +16,6 @@ const MAX_FILES: usize = 4;
 /// Crates with a larger circle, how many files it has at most, and why it stands.
 const EXCEPTIONS: &[(&str, usize, &str)] = &[
     ("kirk", 16, "its engines become one"),
-    ("layout", 6, "to be parted"),
-    ("motion", 5, "to be parted"),
     ("panels", 10, "the parts of a panel share what its first file holds"),
     (
         "rmpl",
