@@ -24,7 +24,7 @@ const EXCEPTIONS: &[(&str, usize, &str)] = &[
     ),
     ("terrain", 12, "to be parted"),
     ("text_editing", 6, "to be parted"),
-    ("workbench", 59, "its state is being parted"),
+    ("workbench", 5, "to be parted"),
 ];
 
 /// A module, as the names that lead to it from the root of its crate.
