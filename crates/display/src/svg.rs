@@ -5,6 +5,8 @@
 
 use std::fmt::Write as _;
 
+use markup::escaped;
+
 use crate::color::{Color, ColorRole, Ground, Theme};
 use crate::geometry::{Piece, Point, Rect};
 use crate::list::{DisplayList, Fill, Group, Item, PathEnd, Shape, Stroke, arrow_head, tip};
@@ -243,6 +245,8 @@ impl Writer {
             let width = number((rect.width() - 1.0).max(1.0));
             let _ = write!(self.out, " textLength=\"{width}\" lengthAdjust=\"spacingAndGlyphs\"");
         }
+        // A line of an SVG has no others in it.
+        let words = words.replace(['\n', '\t'], " ");
         let (before, barred) = match text.overbar {
             Some(at) => words.split_at_checked(at as usize).unwrap_or((&words, "")),
             None => (words.as_str(), ""),
@@ -269,22 +273,6 @@ fn number(value: f64) -> String {
         _ if rest % 10 == 0 => format!("{sign}{whole}.{}", rest / 10),
         _ => format!("{sign}{whole}.{rest:02}"),
     }
-}
-
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            // Control characters and two others have no place in XML, not even escaped.
-            _ if character.is_control() || matches!(character, '\u{fffe}' | '\u{ffff}') => out.push(' '),
-            _ => out.push(character),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use markup::graphviz_string;
+
 use crate::automaton::{Automaton, CompositeId, CompositeKind, Element, LocationId};
 
 /// The automaton in the DOT language; a start location has a double border.
@@ -21,9 +23,9 @@ pub fn dot(automaton: &Automaton) -> String {
             let source = automaton.location_name(transition.source);
             let _ = writeln!(
                 out,
-                "  {source} -> {} [label=\"{}\"{head}];",
+                "  {source} -> {} [label={}{head}];",
                 automaton.location_name(*target),
-                escaped(&label)
+                graphviz_string(&label)
             );
         }
     }
@@ -49,8 +51,12 @@ fn composite(automaton: &Automaton, id: CompositeId, depth: usize, out: &mut Str
             (None, CompositeKind::Sequence) => "sequence".into(),
             _ => String::new(),
         };
-        let _ =
-            writeln!(out, "{indent}subgraph cluster_{} {{\n{indent}  label=\"{}\";", id.0, escaped(&label));
+        let _ = writeln!(
+            out,
+            "{indent}subgraph cluster_{} {{\n{indent}  label={};",
+            id.0,
+            graphviz_string(&label)
+        );
     }
     for child in &data.children {
         match child {
@@ -70,11 +76,7 @@ fn node(automaton: &Automaton, id: LocationId, depth: usize, out: &mut String) {
     let indent = "  ".repeat(depth);
     let _ = writeln!(
         out,
-        "{indent}{name} [label=\"{name}: {}\", peripheries={borders}];",
-        escaped(&location.label)
+        "{indent}{name} [label={}, peripheries={borders}];",
+        graphviz_string(&format!("{name}: {}", location.label))
     );
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('\\', "\\\\").replace('"', "\\\"")
 }

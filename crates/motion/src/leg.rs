@@ -18,14 +18,6 @@ pub struct Leg {
     pub statistics: Statistics,
 }
 
-/// A leg that can't be driven, or for which no path was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LegFailure {
-    /// Which leg: 0 goes from the first waypoint to the second.
-    pub leg: usize,
-    pub failure: Failure,
-}
-
 /// How often a leg is searched: obstacles leave several ways around, and one search may miss the shortest.
 const TRIES: u32 = 2;
 
@@ -84,21 +76,4 @@ pub fn find_shortest_path(
         }
     }
     best
-}
-
-/// Paths from each waypoint to the next.
-pub fn plan_legs(
-    space: &ConfigurationSpace,
-    waypoints_m: &[Point2<f64>],
-    seed: u64,
-    stop: &mut dyn FnMut(&Statistics) -> bool,
-) -> Result<Vec<Leg>, LegFailure> {
-    waypoints_m
-        .windows(2)
-        .enumerate()
-        .map(|(leg, pair)| {
-            let query = Query { start_m: pair[0], goal_m: pair[1] };
-            plan_leg(space, query, seed, stop).map_err(|failure| LegFailure { leg, failure })
-        })
-        .collect()
 }

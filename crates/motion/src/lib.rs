@@ -10,7 +10,6 @@
 //!
 //! Nothing here reads a clock or draws unseeded numbers: the same call gives the same bits natively and in wasm.
 
-mod altitude;
 mod convoy;
 mod detour;
 mod driver;
@@ -37,12 +36,11 @@ mod tree;
 mod vehicle;
 mod way_around;
 
-pub use altitude::path_in_space;
 pub use convoy::{Convoy, ConvoyMember, Surroundings};
 pub use driver::{DriveEvent, Driver, DriverSettings};
 pub use fine_world::FineWorld;
 pub use formation::Formation;
-pub use leg::{Leg, LegFailure, find_shortest_path, plan_leg, plan_legs};
+pub use leg::{Leg, find_shortest_path, plan_leg};
 pub use nearest::PointTree;
 pub use path::{Path, length_m};
 pub use query::{Event, Failure, Growth, PlannerKind, Query, Settings, Statistics};

@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
+use markup::escaped;
 use review::record::{Act, Entry, LineKey, Rate, short};
 use review::since::{LineChange, TextChange};
 use review::{PlanStatus, Present, Record, Review, Since, Standing, Status, since, standing};
 
 use crate::Document;
-use crate::escape::escaped;
 use crate::figure;
 use crate::html::readable_time;
 use crate::tables::{status, table, word};

@@ -1,13 +1,13 @@
 //! The review report: one HTML file that needs nothing else, prints well and reads without scripts.
 
 use data_encoding::BASE64;
+use markup::escaped;
 use review::{Record, Review, Status};
 use rmpl::program::TimeUnit;
 use sha2::{Digest as _, Sha256};
 use snapshot::{Robustness, Snapshot};
 use terrain::Terrain;
 
-use crate::escape::escaped;
 use crate::style::STYLE;
 use crate::{board, figure, listing, tables};
 

@@ -5,7 +5,6 @@
 
 mod board;
 pub mod calendar;
-mod escape;
 pub mod export;
 mod figure;
 pub mod geojson;

@@ -1,9 +1,8 @@
 //! The program text, line by line and highlighted; every line can be led to.
 
+use markup::escaped;
 use rmpl::Span;
 use rmpl::editor::{Highlight, HighlightKind, highlight};
-
-use crate::escape::escaped;
 
 /// The text as a table-free listing: one element per line, `id="line-1"` and so on.
 pub(crate) fn listing(source: &str) -> String {

@@ -1,13 +1,13 @@
 //! The tables of a report: one for each section of the review.
 
 use exact::Bound;
+use markup::escaped;
 use review::record::LineKey;
 use review::{Alternative, EventReview, Line, Record, Review, Section, Status};
 use snapshot::Robustness;
 use tpn::{Levels, Supply};
 
 use crate::board;
-use crate::escape::escaped;
 
 /// All sections, each with its heading; one without lines says so.
 pub(crate) fn sections(review: &Review) -> String {

@@ -25,6 +25,6 @@ pub use diagnostic::{Code, Diagnostic, Edit, Fix, MAX_LISTED, Severity, listed};
 pub use diagnostics::explain;
 pub use edits::{Journal, Shift};
 pub use explanation::Explanation;
-pub use format::{format, format_edit};
+pub use format::format;
 pub use parse::{Parse, parse};
 pub use span::{LineColumn, LineIndex, Span};

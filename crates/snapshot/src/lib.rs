@@ -25,6 +25,5 @@ pub use content::{ContentKey, PartKeys};
 pub use drive::{DriveFrame, SimulatedDrive, SimulatedVehicle};
 pub use execution::{Commanded, Executed, Execution};
 pub use goal::Goal;
-pub use ground::ClearanceOverlay;
 pub use problem::{Problem, TextEdit, TextFix};
 pub use robustness::{Robustness, RobustnessSettings, Tally, Uncertainty};

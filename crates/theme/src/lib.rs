@@ -10,7 +10,7 @@ pub mod structure;
 mod style;
 mod tokens;
 
-pub use prose::{Prose, no_hover};
+pub use prose::Prose;
 pub use short::show_markdown;
 #[cfg(not(target_arch = "wasm32"))]
 pub use style::FONTS;

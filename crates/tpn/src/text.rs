@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use exact::Bound;
+use markup::graphviz_string;
 
 use crate::network::{Arc, ArcId, ArcKind, Network, NodeId, Role};
 
@@ -60,9 +61,13 @@ pub fn to_dot(network: &Network) -> String {
     for (index, node) in network.nodes.iter().enumerate() {
         let shape = if node.role == Role::Decision { "doublecircle" } else { "circle" };
         let events: Vec<String> = node.events.iter().map(|&event| network.event_name(event)).collect();
-        let tooltip = quote(&events.join(" = "));
+        let tooltip = graphviz_string(&events.join(" = "));
         let name = node_title(network, NodeId::from_index(index));
-        let _ = writeln!(text, "  n{index} [shape={shape}, label={}, tooltip={tooltip}];", quote(&name));
+        let _ = writeln!(
+            text,
+            "  n{index} [shape={shape}, label={}, tooltip={tooltip}];",
+            graphviz_string(&name)
+        );
     }
     for arc in &network.arcs {
         let mut label = bounds_text(arc);
@@ -77,7 +82,8 @@ pub fn to_dot(network: &Network) -> String {
         } else {
             ""
         };
-        let _ = writeln!(text, "  n{} -> n{} [label={}{style}];", arc.from.0, arc.to.0, quote(&label));
+        let _ =
+            writeln!(text, "  n{} -> n{} [label={}{style}];", arc.from.0, arc.to.0, graphviz_string(&label));
     }
     text.push_str("}\n");
     text
@@ -127,8 +133,4 @@ pub fn kind_name(kind: ArcKind) -> &'static str {
         ArcKind::Path => "path",
         ArcKind::Constraint => "constraint",
     }
-}
-
-fn quote(text: &str) -> String {
-    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
 }

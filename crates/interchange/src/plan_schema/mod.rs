@@ -82,12 +82,6 @@ impl Document {
         read::read(objects)
     }
 
-    /// Whether `text` looks like a plan-schema file in either notation, rather than a mission in RMPL.
-    pub fn looks_like(text: &str) -> bool {
-        let text = text.trim_start_matches('\u{feff}').trim_start();
-        text.starts_with('{') && (text.contains("network-id") || text.contains("tpn-type"))
-    }
-
     /// What the file says and planning does not honour, in words, each with how often: costs and rewards, durations that
     /// are not the executive's to choose, guards, probabilities, and kinds of object that are not known.
     pub fn not_honoured(&self) -> Vec<String> {

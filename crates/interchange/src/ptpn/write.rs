@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use exact::Bound;
+use markup::escaped;
 use rmpl::program::LabelMode;
 
 use super::guard::{Guard, TooManyTerms};
@@ -221,19 +222,4 @@ fn left_out(network: &Network) -> Vec<String> {
 
 fn event(node: NodeId) -> String {
     format!("E{}", node.index())
-}
-
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            // What XML cannot have, not even escaped.
-            it if it.is_control() || matches!(it, '\u{fffe}' | '\u{ffff}') => out.push(' '),
-            it => out.push(it),
-        }
-    }
-    out
 }

@@ -404,18 +404,20 @@ fn a_follower_wider_than_its_leader_decides_where_the_path_leads() {
 }
 
 #[test]
-fn the_clearance_overlay_is_negative_exactly_where_the_vehicle_cannot_be() {
+fn the_clearance_is_negative_exactly_where_the_vehicle_cannot_be() {
     let answer = plan(ENROUTE, 1);
     let world: &World = &answer.program.world;
     let map = answer.map.as_ref().expect("there is ground");
     let model = motion::vehicle_model("ATRV").expect("known");
-    let overlay = snapshot::ClearanceOverlay::new(map, world, model);
+    let obstacles: Vec<_> = world.obstacles.iter().map(|it| snapshot::ground::obstacle(&it.shape)).collect();
+    let space = model.configuration_space(map, &obstacles);
+    let (frame, clearances_m) = (space.frame(), space.clearance_map_m());
     let (squares, half) = answer.occupied("ATRV");
-    assert_eq!(overlay.clearance_m.len(), overlay.frame.cell_count());
-    for index in (0..overlay.clearance_m.len()).step_by(1999) {
-        let center = overlay.frame.center_m(overlay.frame.cell(index));
+    assert_eq!(clearances_m.len(), frame.cell_count());
+    for index in (0..clearances_m.len()).step_by(1999) {
+        let center = frame.center_m(frame.cell(index));
         let free = to_nearest(center, &squares, half) - model.radius_m();
-        let clearance = f64::from(overlay.clearance_m[index]);
+        let clearance = f64::from(clearances_m[index]);
         assert!((free - clearance).abs() < 0.01 || (free < 0.0 && clearance < 0.0), "{free} {clearance}");
     }
 }

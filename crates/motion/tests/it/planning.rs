@@ -3,8 +3,7 @@
 
 use motion::{
     DriveLimits, Failure, Growth, Path, PlannerKind, Query, Root, Search, Settings, ShortcutSettings,
-    Statistics, Trajectory, Tree, drive_path, find_path, find_shortest_path, plan_legs, shorten,
-    vehicle_model,
+    Statistics, Trajectory, Tree, drive_path, find_path, find_shortest_path, shorten, vehicle_model,
 };
 use nalgebra::{Point2, Vector2};
 use terrain::{Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random};
@@ -353,20 +352,6 @@ fn shortening_comes_near_the_shortest_way_around_a_disc() {
         let ratio = path.length_m() / shortest;
         assert!((0.999..1.02).contains(&ratio), "seed {seed}: {ratio} times the shortest");
     }
-}
-
-#[test]
-fn legs_join_at_waypoints_and_a_failure_names_its_leg() {
-    let space = ring(0, 0.3);
-    let waypoints = [[3.0, 3.0], [36.0, 4.0], [36.0, 36.0]].map(Point2::from);
-    let legs = plan_legs(&space, &waypoints, 3, &mut never).unwrap();
-    assert_eq!(legs.len(), 2);
-    for (leg, pair) in legs.iter().zip(waypoints.windows(2)) {
-        assert_eq!([leg.path.points_m[0], *leg.path.points_m.last().unwrap()], [pair[0], pair[1]]);
-    }
-    let blocked = [[3.0, 3.0], [36.0, 4.0], [20.0, 20.0]].map(Point2::from);
-    let failure = plan_legs(&space, &blocked, 3, &mut never).unwrap_err();
-    assert_eq!((failure.leg, failure.failure), (1, Failure::GoalEnclosed));
 }
 
 #[test]

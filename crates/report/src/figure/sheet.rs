@@ -1,6 +1,6 @@
 //! What of the drawings is on paper: sheets on which texts can be read, of A4 and of Letter alike.
 
-use crate::escape::escaped;
+use markup::escaped;
 
 /// How wide a drawing may be on a sheet, in units of the drawing. Between the margins of A4 are 510 points, of Letter 527,
 /// so that a text of 11 units is at least 7 points high.

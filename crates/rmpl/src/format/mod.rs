@@ -6,9 +6,7 @@
 mod layout;
 mod spacing;
 
-use crate::diagnostic::Edit;
 use crate::parse::Parse;
-use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 use layout::{Layout, layout};
@@ -31,23 +29,6 @@ pub fn format(text: &str) -> String {
     } else {
         text.to_owned()
     }
-}
-
-/// The one edit that turns `text` into its formatted form; `None` if it is formatted already.
-pub fn format_edit(text: &str) -> Option<Edit> {
-    let formatted = format(text);
-    if formatted == text {
-        return None;
-    }
-    let same = |(a, b): &(char, char)| a == b;
-    let prefix: usize = text.chars().zip(formatted.chars()).take_while(same).map(|(a, _)| a.len_utf8()).sum();
-    let (old, new) = (&text[prefix..], &formatted[prefix..]);
-    let suffix: usize =
-        old.chars().rev().zip(new.chars().rev()).take_while(same).map(|(a, _)| a.len_utf8()).sum();
-    Some(Edit {
-        span: Span::new(prefix as u32, (text.len() - suffix) as u32),
-        text: new[..new.len() - suffix].to_owned(),
-    })
 }
 
 fn print(parsed: &Parse) -> String {

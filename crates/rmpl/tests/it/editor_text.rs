@@ -1,4 +1,4 @@
-//! Outline, folding, quick fixes, comments, brackets, selections and new lines.
+//! Outline, folding, comments, brackets, selections and new lines.
 
 use crate::fixture::{apply, fixture};
 use rmpl::editor::{self, FoldKind, OutlineKind};
@@ -31,16 +31,6 @@ fn blocks_comments_and_rows_of_locations_fold() {
         shown,
         [(FoldKind::Comment, 1), (FoldKind::Declarations, 1), (FoldKind::Braces, 5), (FoldKind::Braces, 3)]
     );
-}
-
-#[test]
-fn a_quick_fix_is_offered_at_its_place() {
-    let text = "primitive A()[5,3];\nscenario S = { A() }";
-    let parse = parse(text);
-    let fixes = editor::fixes_at(&parse, Span::new(14, 14));
-    assert_eq!(fixes.len(), 1);
-    assert_eq!(apply(text, &fixes[0].1.edits), "primitive A()[3,5];\nscenario S = { A() }");
-    assert!(editor::fixes_at(&parse, Span::new(30, 30)).is_empty());
 }
 
 #[track_caller]

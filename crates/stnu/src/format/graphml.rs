@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
+use markup::escaped;
 use roxmltree::{Document as Xml, Node};
 
 use super::{Document, Draft, DraftEdge, DraftLink, ParseError};
@@ -296,8 +297,4 @@ pub(super) fn write(document: &Document) -> String {
     }
     text.push_str("</graph>\n</graphml>\n");
     text
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -20,11 +20,6 @@ pub struct Prose<'a> {
     pub hover: &'a dyn Fn(&str) -> Option<&'a [Block]>,
 }
 
-/// The hover of links that show nothing.
-pub fn no_hover<'a>(_: &str) -> Option<&'a [Block]> {
-    None
-}
-
 /// Prose is a little larger than what stands on buttons.
 const TEXT: f32 = size::BODY + 1.0;
 const CODE: f32 = size::CODE;

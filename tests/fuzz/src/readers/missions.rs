@@ -101,7 +101,6 @@ fn texts(input: &[u8]) -> Outcome {
     let _ = editor::rename(&parsed, offset, "Other");
     let _ = editor::matching_bracket(&parsed, offset);
     let _ = editor::wider_selection(&parsed, range);
-    let _ = editor::fixes_at(&parsed, range);
     let _ = editor::toggle_comment(text, range);
     let _ = editor::outline(&parsed);
     let _ = editor::folds(&parsed);

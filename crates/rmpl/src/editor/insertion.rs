@@ -1,21 +1,9 @@
-//! Quick fixes at a place.
+//! Options and declarations that are added to a text.
 
 use super::outline::{OutlineKind, outline};
-use crate::diagnostic::{Diagnostic, Edit, Fix};
+use crate::diagnostic::Edit;
 use crate::parse::Parse;
 use crate::span::Span;
-
-/// The fixes of all diagnostics that touch `range`, with the diagnostic that each mends, in textual order.
-pub fn fixes_at(parse: &Parse, range: Span) -> Vec<(Diagnostic, Fix)> {
-    let touches = |span: Span| span.start <= range.end && range.start <= span.end;
-    let concerned = parse.diagnostics().into_iter().filter(|found| touches(found.span));
-    concerned
-        .flat_map(|found| {
-            let fixes = found.fixes.clone();
-            fixes.into_iter().map(move |fix| (found.clone(), fix))
-        })
-        .collect()
-}
 
 /// Gives an option a value: where it is set, or else in a line of its own before the first declaration with a name.
 pub fn set_option(parse: &Parse, name: &str, value: &str) -> Edit {
