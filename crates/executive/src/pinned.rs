@@ -59,15 +59,12 @@ impl PinnedPlan {
     /// A plan without pins. Times are resolved to a tenth of the mission's unit or finer, where 64 bits allow it.
     pub fn new(network: &Network, plan: &Plan) -> Result<Self, PlanError> {
         let tenth = Time::ONE.checked_div(10).unwrap_or_default();
-        let (scale, effect) = match Strategy::new(network, plan, &[tenth])? {
-            Some(strategy) => {
-                let run = run::Run::new(strategy, network.nodes.len())?;
-                (run.scale(), Effect::Run(Box::new(run)))
-            }
-            None => {
-                let constrained = constrained::Constrained::new(network, plan, tenth)?;
-                (constrained.scale(), Effect::Constrained(Box::new(constrained)))
-            }
+        let (scale, effect) = if let Some(strategy) = Strategy::new(network, plan, &[tenth])? {
+            let run = run::Run::new(strategy, network.nodes.len())?;
+            (run.scale(), Effect::Run(Box::new(run)))
+        } else {
+            let constrained = constrained::Constrained::new(network, plan, tenth)?;
+            (constrained.scale(), Effect::Constrained(Box::new(constrained)))
         };
         Ok(Self { pins: Pins::new(), scale, grabbed: None, effect })
     }

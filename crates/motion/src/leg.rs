@@ -1,6 +1,6 @@
 //! Paths for the legs of a traverse: through its waypoints in order.
 
-use nalgebra::{Point2, distance};
+use nalgebra::distance;
 use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 

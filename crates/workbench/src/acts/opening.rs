@@ -12,6 +12,7 @@ use crate::state::manual::ManualCommand;
 use crate::state::pins::Pins;
 use crate::state::playback::Playback;
 use crate::state::selection::Selection;
+use crate::state::terrain::TerrainState;
 use crate::workspace::Workspace;
 
 impl AppState {
@@ -37,7 +38,7 @@ impl AppState {
         self.language.follow(&self.document);
         *self.selection = Selection::None;
         self.hovered = Selection::None;
-        *self.terrain = Default::default();
+        *self.terrain = TerrainState::default();
         *self.pins = Pins::default();
         self.time_range = None;
         *self.playback = Playback { rate: self.playback.rate, ..Playback::default() };

@@ -54,9 +54,9 @@ impl Writing<'_> {
                 let edit = Edit { span: Span::new(start, start), text: text.clone() };
                 self.document.edit(&[edit], EditKind::Single, None);
             }
-            _ => command.apply(&mut self.document),
+            _ => command.apply(self.document),
         }
-        self.language.follow(&self.document);
+        self.language.follow(self.document);
         self.follow_popup(command);
         self.editor.active_secs = self.now_secs;
         self.editor.composition.clear();
@@ -87,7 +87,7 @@ impl Writing<'_> {
             return;
         }
         let Some(shown) = self.snapshots.shown() else { return };
-        let found = Selection::at_offset(shown, offset, &self.selection);
+        let found = Selection::at_offset(shown, offset, self.selection);
         **self.selection = found;
     }
 
@@ -263,14 +263,14 @@ impl Writing<'_> {
         if !self.document.other_carets().is_empty() {
             self.window.ask(Effect::Copy(self.document.all_selected_text()));
             if cut && self.document.carets().iter().any(|caret| !caret.is_empty()) {
-                TextCommand::Insert(String::new()).apply(&mut self.document);
+                TextCommand::Insert(String::new()).apply(self.document);
             }
             return;
         }
         self.editor.copied_line = None;
         if caret.is_empty() {
             // Without a selection, copy and cut mean the line, as in other editors.
-            TextCommand::SelectLine(caret.head).apply(&mut self.document);
+            TextCommand::SelectLine(caret.head).apply(self.document);
             self.editor.copied_line = Some(self.document.selected_text().to_owned());
         }
         self.window.ask(Effect::Copy(self.document.selected_text().to_owned()));

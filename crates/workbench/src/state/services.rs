@@ -184,7 +184,7 @@ impl Writing<'_> {
             PopupAction::Insert(text) => {
                 let end = self.document.caret().head.max(popup.span.end as usize);
                 self.document.insert_template(rmpl::Span::new(popup.span.start, end as u32), &text);
-                self.language.follow(&self.document);
+                self.language.follow(self.document);
                 self.offer();
             }
             PopupAction::Edit(edits) => self.document.edit(&edits, EditKind::Single, None),
@@ -248,7 +248,7 @@ impl Writing<'_> {
     /// Folds and unfolds; a caret in what disappears goes to the end of the line that stays.
     pub(crate) fn fold(&mut self, change: impl FnOnce(&mut Folding, &Document, &Parse)) {
         let Some(parse) = self.language.parse() else { return };
-        change(&mut self.editor.folding, &self.document, parse);
+        change(&mut self.editor.folding, self.document, parse);
         let line = self.document.line_at(self.document.caret().head);
         if let Some(hidden) = self.editor.folding.rows().hiding(line) {
             let end = self.document.line_range(hidden.start.saturating_sub(1)).end;

@@ -143,7 +143,7 @@ impl Window {
             WindowCommand::OpenFile(kind) => self.ask(Effect::OpenFile(kind)),
             WindowCommand::SaveFile { name, bytes } => self.save_file(name, bytes),
             WindowCommand::SavePicture { name, svg, size } => {
-                self.ask(Effect::SavePicture { name, svg, size })
+                self.ask(Effect::SavePicture { name, svg, size });
             }
         }
     }

@@ -133,7 +133,7 @@ impl Reviewing<'_> {
             return;
         };
         if self.review.hash() == Some(content_hash) {
-            self.review.record.keep_runs(Runs::new(content_hash, &found));
+            self.review.record.keep_runs(Runs::new(content_hash, found));
             self.keep();
         }
     }
