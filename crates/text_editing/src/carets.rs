@@ -224,6 +224,14 @@ mod tests {
     }
 
     #[test]
+    fn all_carets_stay_between_characters_when_the_text_around_them_is_replaced() {
+        let mut document = with("abc", &[TextCommand::ToggleCaret(1), TextCommand::ToggleCaret(3)]);
+        document.replace_all("∞");
+        let carets = document.carets();
+        assert!(carets.iter().all(|caret| document.text().is_char_boundary(caret.head)), "{carets:?}");
+    }
+
+    #[test]
     fn as_many_lines_as_carets_are_pasted_one_to_each() {
         let down = TextCommand::AddCaretBelow;
         let document = with("\n\n", &[down.clone(), down, TextCommand::Paste("a\nb\nc".to_owned())]);

@@ -332,6 +332,10 @@ impl Document {
             head: self.boundary_before(after.head),
             goal_column: None,
         };
+        for caret in self.others.iter_mut().chain(&mut self.parked) {
+            caret.anchor = self.text.floor_char_boundary(caret.anchor);
+            caret.head = self.text.floor_char_boundary(caret.head);
+        }
         let after = Carets { main: self.caret, others: self.others.clone() };
         self.record(Step { kind, changes, before, after });
     }
