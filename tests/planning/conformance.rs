@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
 use std::path::Path;
 
-use acceptance::cases::{cases, expect_as_listed, folder, program, read};
+use acceptance::cases::{NOT_COPIED, cases, expect_as_listed, folder, program, read};
 use acceptance::distances::{FAR, Matrix, Scale, of_arcs};
 use acceptance::mission::{all_plans, compile, error_codes, first_plan, network};
 use exact::{Bound, Time};
@@ -362,8 +362,19 @@ fn the_copy_of_the_suite_is_current() {
             .map(|entry| entry.expect("readable").file_name())
             .collect()
     };
-    assert_eq!(names(&folder()), names(&shared), "the copy and the suite do not have the same files");
-    for name in names(&shared) {
+    let is_missing = |name: &std::ffi::OsString| {
+        Path::new(name).file_stem().is_some_and(|stem| NOT_COPIED.iter().any(|missing| stem == *missing))
+    };
+    let (missing, copied): (BTreeSet<_>, BTreeSet<_>) = names(&shared).into_iter().partition(is_missing);
+    assert_eq!(names(&folder()), copied, "the copy and the suite differ by more than what is not copied yet");
+    assert_eq!(
+        missing.len(),
+        2 * NOT_COPIED.len(),
+        "the suite has no such case: take it off the list NOT_COPIED"
+    );
+    let line = format!("the_copy_of_the_suite_is_current: {} cases are not copied yet\n", NOT_COPIED.len());
+    std::io::stdout().write_all(line.as_bytes()).expect("standard output can be written");
+    for name in copied {
         let (original, copy) = (shared.join(&name), folder().join(&name));
         assert_eq!(read(&copy), read(&original), "{} differs from the suite: copy it again", copy.display());
     }

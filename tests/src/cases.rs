@@ -8,6 +8,36 @@ use serde_json::Value;
 /// not pass, so that the list shrinks with every feature that is built.
 pub const NOT_BUILT: [(&str, &str); 0] = [];
 
+/// Cases of the suite that are not copied yet, by the stems of their files: they ask for what is not built.
+pub const NOT_COPIED: [&str; 22] = [
+    // Sequences that are started again at every step (SPEC 8.3, third revision).
+    "h30_always_sequence",
+    "h31_whenever_sequence",
+    // The order within an instant (SPEC 5.3 and SPEC2 10 and 11, third revision).
+    "i01_mutual_support",
+    "i02_support_has_a_beginning",
+    "i03_sequence_order_within_an_instant",
+    "i04_production_before_consumption",
+    "i05_consumption_first_in_the_text",
+    // Levels and what nature chooses, not tried yet.
+    "l01_drain_tightened",
+    "l03_overflow",
+    "l04_overflow_saturating",
+    "l05_charge_between",
+    "l10_jump_and_slope",
+    "n01_weather",
+    "n03_too_early",
+    "n05_safe_alternative",
+    "n08_wait_or_act",
+    "n11_nested_nature",
+    // Programs in time (SPEC3 18).
+    "w01_wait",
+    "w03_timeout_fires",
+    "w06_watchdog",
+    "w07_within",
+    "w11_held",
+];
+
 /// What is missing for a case to pass, if anything is.
 pub fn not_built(case: &Value) -> Option<&'static str> {
     NOT_BUILT.iter().find(|(id, _)| case["id"] == *id).map(|&(_, missing)| missing)

@@ -16,7 +16,7 @@ pub struct Limits {
 }
 
 /// What `cargo xtask dist` and `cargo xtask size` hold the page to.
-pub const LIMITS: Limits = Limits { first_frame: 3_100_000, first_plan: 4_400_000 };
+pub const LIMITS: Limits = Limits { first_frame: 3_200_000, first_plan: 4_600_000 };
 
 /// When the page needs a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -122,7 +122,9 @@ fn when(name: &str) -> When {
         }
         "web/manifest.webmanifest" => When::FirstFrame,
         // The page's modules import each other.
-        _ if name.starts_with("web/") && name.ends_with(".js") => When::FirstFrame,
+        _ if name.starts_with("web/") && Path::new(name).extension().is_some_and(|it| it == "js") => {
+            When::FirstFrame
+        }
         _ => When::Later,
     }
 }

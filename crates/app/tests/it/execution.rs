@@ -175,7 +175,7 @@ fn a_click_on_the_ground_makes_an_obstacle_appear_at_the_time_shown() {
     let state = app.json();
     let obstacle = &state["execution"]["disturbances"][0];
     assert_eq!(obstacle["kind"], "obstacle", "{}", state["execution"]["disturbances"]);
-    assert_eq!((&obstacle["at"], &obstacle["radius"]), (&json!(100), &json!(5)));
+    assert_eq!((&obstacle["at"], &obstacle["radius"]), (&json!(100), &json!(5.0)));
     assert_eq!(state["terrain"]["tool"], "look");
     assert_eq!(state["execution"]["log"], log, "what happened until now stays as it was");
     dispatch(&mut app, "execute.reset", &Value::Null);
@@ -188,7 +188,15 @@ fn the_next_fault_of_the_plant_is_offered_and_sends_the_mission_to_the_other_cam
     let mut app = executing("flyby");
     assert_eq!(app.json()["plan"]["choices"], json!({ "D1": 0 }));
     dispatch(&mut app, "play.seek", &json!({ "time": 1 }));
-    press(&mut app, "Let it happen");
+    // The component and the mode that it can come into by a fault stand first in the lists.
+    let happen = |app: &support::App, then: fn(&egui_kittest::Node<'_>)| {
+        let mut all = app.harness.get_all_by_role_and_label(Role::Button, "Let it happen");
+        then(&all.next().expect("it can happen"));
+    };
+    happen(&app, egui_kittest::Node::scroll_to_me);
+    app.settle();
+    happen(&app, egui_kittest::Node::click);
+    app.settle();
     let fault = json!({ "kind": "fault", "activity": "Start-Up#1", "step": 1, "component": "CameraA", "mode": "Failed" });
     assert_eq!(app.json()["execution"]["disturbances"], json!([fault]));
     dispatch(&mut app, "play.end", &Value::Null);

@@ -143,7 +143,7 @@ fn the_page_is_built_without_the_core() {
         let package =
             packages(&metadata).find(|package| package["name"] == name && package["source"].is_null());
         let dependencies =
-            package.into_iter().flat_map(|package| package["dependencies"].as_array()).flatten();
+            package.into_iter().filter_map(|package| package["dependencies"].as_array()).flatten();
         for dependency in dependencies {
             let is_of_page =
                 dependency["kind"].is_null() && dependency["target"] != "cfg(not(target_arch = \"wasm32\"))";
