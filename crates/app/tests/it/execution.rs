@@ -189,13 +189,13 @@ fn the_next_fault_of_the_plant_is_offered_and_sends_the_mission_to_the_other_cam
     assert_eq!(app.json()["plan"]["choices"], json!({ "D1": 0 }));
     dispatch(&mut app, "play.seek", &json!({ "time": 1 }));
     // The component and the mode that it can come into by a fault stand first in the lists.
-    let happen = |app: &support::App, then: fn(&egui_kittest::Node<'_>)| {
-        let mut all = app.harness.get_all_by_role_and_label(Role::Button, "Let it happen");
-        then(&all.next().expect("it can happen"));
-    };
-    happen(&app, egui_kittest::Node::scroll_to_me);
+    let mut nodes = app.harness.get_all_by_role_and_label(Role::Button, "Let it happen");
+    nodes.next().expect("it can happen").scroll_to_me();
+    drop(nodes);
     app.settle();
-    happen(&app, egui_kittest::Node::click);
+    let mut nodes = app.harness.get_all_by_role_and_label(Role::Button, "Let it happen");
+    nodes.next().expect("it can happen").click();
+    drop(nodes);
     app.settle();
     let fault = json!({ "kind": "fault", "activity": "Start-Up#1", "step": 1, "component": "CameraA", "mode": "Failed" });
     assert_eq!(app.json()["execution"]["disturbances"], json!([fault]));
