@@ -1,6 +1,6 @@
 //! The shared planning core: one mission from text to plan to paths, incrementally, as an immutable snapshot.
 //!
-//! The page's worker, the native window and the command line all run [`Core`]; panels and reports read [`Snapshot`].
+//! The page's worker, the native window and the command line all run [`Core`]; panels and reports read [`snapshot::Snapshot`].
 //! No planning, motion or language rules are here: this crate connects the crates that have them, and keeps each
 //! stage's result so that an edit redoes only what it touched.
 

@@ -54,7 +54,7 @@ fn unit(snapshot: &Snapshot) -> &'static str {
     }
 }
 
-/// The columns of [`csv`].
+/// The columns of [`csv()`].
 pub const CSV_COLUMNS: [&str; 16] = [
     "name",
     "kind",

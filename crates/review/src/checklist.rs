@@ -12,9 +12,9 @@ use super::rules::FlightRules;
 /// A mission, reviewed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Review {
-    /// What was reviewed: see [`content_hash`].
+    /// What was reviewed: see [`content_hash`](crate::content_hash).
     pub content_hash: String,
-    /// The plan that was found: see [`plan_hash`]; empty without one.
+    /// The plan that was found: see [`plan_hash`](crate::plan_hash); empty without one.
     pub plan_hash: String,
     /// What it is held against: see [`Review::judge`].
     pub rules: FlightRules,
@@ -46,7 +46,7 @@ pub struct Review {
     pub runs_programs: bool,
     /// What runs with chance came to, if any were made.
     pub robustness: Option<Line>,
-    /// What was found of the rules of the mission, by what they say: see [`flight_rule::evaluate`].
+    /// What was found of the rules of the mission, by what they say: see [`evaluate`](crate::flight_rule::evaluate).
     pub findings: Vec<Finding>,
     /// The rules of the mission, each held or not.
     pub mission_rules: Vec<Line>,

@@ -1,6 +1,6 @@
 //! What is done: a command goes to the part of the state that owns it, and what takes several parts is done here.
 //!
-//! [`route`](AppState::route) says which command goes where. After it, [`derived`] computes what depends on what has
+//! `AppState::route` says which command goes where. After it, `derived` computes what depends on what has
 //! changed.
 
 mod answers;
