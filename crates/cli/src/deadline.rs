@@ -17,7 +17,7 @@ pub struct TimeLimit {
 const GRACE: Duration = Duration::from_secs(1);
 
 /// The moment; `None` if there is none.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Deadline(Option<Instant>);
 
 /// A limit that ends the process.
@@ -73,6 +73,11 @@ impl Deadline {
     /// Whether the time is up.
     pub fn is_over(self) -> bool {
         self.0.is_some_and(|deadline| Instant::now() >= deadline)
+    }
+
+    /// Milliseconds until the time is up; `None` without a limit.
+    pub fn remaining_millis(self) -> Option<f64> {
+        Some(self.0?.saturating_duration_since(Instant::now()).as_secs_f64() * 1000.0)
     }
 
     /// Whether there was also some time for what the time was up in the middle of.

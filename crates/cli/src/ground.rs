@@ -1,53 +1,18 @@
-//! The ground of a mission on the command line: a terrain that comes with Enroute, or a map file beside the mission.
+//! The map file beside a mission.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use anyhow::Context as _;
-use mission::Grounds;
-use rmpl::Diagnostic;
 use rmpl::program::World;
-use snapshot::MapKey;
-use terrain::Terrain;
 use terrain::format::{FileFormat, attach_label, image_of_label};
 
 use crate::input::{folder_of, inside, read_bytes};
-
-/// The map of a mission that has places, with its key.
-pub type Ground = Option<(MapKey, Arc<Terrain>)>;
 
 /// A larger map file is refused before it is read.
 pub const LARGEST_MAP_BYTES: u64 = 512 << 20;
 
 /// Labels are short texts.
 const LARGEST_LABEL_BYTES: u64 = 1 << 20;
-
-/// The ground that a mission names, read from the folder of the mission's file unless it comes with Enroute. Fails when
-/// it is nowhere, or the file is no map.
-pub fn ground(mission: &Path, world: &World) -> anyhow::Result<(Grounds, Ground)> {
-    let (grounds, found) = ground_or_problem(mission, world)?;
-    let ground = found.map_err(|problem| {
-        let hint = problem.hint.map_or_else(String::new, |hint| format!(" ({hint})"));
-        anyhow::anyhow!("{}{hint}", problem.message)
-    })?;
-    Ok((grounds, ground))
-}
-
-/// The ground as `ground` finds it, or what is wrong with the mission that names it. Fails when the file is no map.
-pub fn ground_or_problem(
-    mission: &Path,
-    world: &World,
-) -> anyhow::Result<(Grounds, Result<Ground, Diagnostic>)> {
-    let mut grounds = Grounds::default();
-    if let Some((name, bytes)) = map_file(mission, world)? {
-        grounds.import(&name, &bytes).map_err(anyhow::Error::msg).with_context(|| cannot_read(&name))?;
-    }
-    let (ground, problems) = grounds.resolve(world);
-    let Some(mut problem) = problems.into_iter().next() else { return Ok((grounds, Ok(ground))) };
-    let beside = "a map file stands in the mission's folder";
-    problem.hint = Some(problem.hint.map_or_else(|| beside.to_owned(), |hint| format!("{hint}; {beside}")));
-    Ok((grounds, Err(problem)))
-}
 
 /// The name and the bytes of the map file that a mission names, if there is such a file beside the mission's.
 pub fn map_file(mission: &Path, world: &World) -> anyhow::Result<Option<(String, Vec<u8>)>> {
@@ -99,6 +64,7 @@ fn with_pds_label(image: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn cannot_read(name: &str) -> String {
+/// That a terrain is of no use, as the start of a sentence.
+pub fn cannot_read(name: &str) -> String {
     format!("the terrain \"{name}\" cannot be used")
 }

@@ -22,13 +22,8 @@ pub fn read_text(path: &Path) -> anyhow::Result<String> {
     })
 }
 
-/// The mission that begins in `path`: its text, joined with those of the files that it imports. These lie in its own
-/// folder, or in folders in there; what is elsewhere, links that lead out included, is no file of the mission.
-pub fn read_mission(path: &Path) -> anyhow::Result<String> {
-    mission_of(path, &read_text(path)?)
-}
-
-/// The same of a file whose text has been read.
+/// The mission that begins in `path`, whose text has been read: joined with those of the files that it imports. These lie in
+/// its own folder, or in folders in there; what is elsewhere, links that lead out included, is no file of the mission.
 pub fn mission_of(path: &Path, text: &str) -> anyhow::Result<String> {
     let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|name| *name != "-") else {
         return Ok(rmpl::files::join("", text, |_| None));

@@ -5,9 +5,9 @@ mod deadline;
 mod diagnostics;
 mod ground;
 mod input;
-mod load;
+mod opened;
 mod output;
-mod worked_out;
+mod target;
 
 use std::process::ExitCode;
 

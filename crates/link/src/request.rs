@@ -91,6 +91,20 @@ pub struct Update {
     pub trace: bool,
 }
 
+impl Update {
+    /// A text whose default goal is planned, with the usual search and the seed 0.
+    pub fn new(revision: u64, source: impl Into<Source>) -> Self {
+        Self {
+            revision,
+            source: source.into(),
+            goal: Goal::Default,
+            search: kirk::Search::default(),
+            seed: 0,
+            trace: false,
+        }
+    }
+}
+
 /// An answer of the core.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Response {

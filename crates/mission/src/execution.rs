@@ -1,7 +1,7 @@
 //! A planned mission executed in the simulated world, planning again with paths when the plan cannot be kept.
 //!
-//! A run follows from its mission, seed and disturbances alone. So whoever watches one with the clock in hand need not
-//! run it step by step: a disturbance at the present moment changes nothing before it, and the run is worked out anew.
+//! A run follows from its mission, seed and disturbances alone. To watch a run, it is not executed step by step: after a
+//! disturbance at the present moment, the whole run is executed again, and nothing before that moment changes.
 
 use std::cell::RefCell;
 use std::sync::Arc;

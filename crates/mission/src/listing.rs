@@ -237,7 +237,7 @@ fn restricted(network: &Network, choices: &[Choice]) -> Network {
 }
 
 /// The network of `problem` with the paths of a plan's traverses; why there is none.
-pub fn network_of(
+pub(crate) fn network_of(
     problem: &Problem<'_>,
     plan: &Plan,
     grounds: &mut Grounds,

@@ -5,10 +5,7 @@ use std::sync::Arc;
 use interchange::Source;
 use rmpl::diagnostics::{network, unreadable_network};
 use rmpl::{Diagnostic, Severity};
-use snapshot::{Problem, Snapshot, Stage};
 use tpn::Network;
-
-use crate::planning;
 
 /// A network as its text says.
 #[derive(Clone, Debug)]
@@ -42,24 +39,5 @@ impl NetworkText {
     /// Whether there is nothing wrong with it.
     pub(crate) fn is_sound(&self) -> bool {
         self.found.iter().all(|found| found.severity != Severity::Error)
-    }
-}
-
-/// What planning finds of a network that a file holds, unless `stop` says so before; there is no program and no ground. Such
-/// a network has no structure that drawings follow, and its parts no places in the text.
-pub fn planned_network(
-    source: Arc<str>,
-    network: Arc<Network>,
-    problems: Vec<Problem>,
-    stop: &mut dyn FnMut() -> bool,
-) -> Snapshot {
-    let outcome = kirk::plan(&network, &kirk::Options::default(), &mut |_: &kirk::Stats| stop());
-    let planned = planning::without_paths(&network, outcome);
-    Snapshot {
-        stage: Stage::Complete,
-        problems: problems.into(),
-        network: Some(network),
-        planning: Some(planned.planning),
-        ..Snapshot::empty(1, source)
     }
 }

@@ -95,7 +95,7 @@ impl<'input> Problem<'input> {
         kirk::plan_except(network, options, self.excluded, &mut self.patient(stop))
     }
 
-    /// Stops a search when `stop` says so, and a little after there is enough.
+    /// Stops a search when `stop` returns true, and a little later than there is enough.
     fn patient(&self, stop: &mut dyn FnMut() -> bool) -> impl FnMut(&Stats) -> bool {
         // Without an objective there is nothing better to look for, and no plan before the last.
         let is_over = self.network.objective.is_empty();
@@ -143,7 +143,7 @@ pub(crate) struct Inserted {
     pub(crate) route: Route,
 }
 
-/// Plans `problem`. When `stop` says so before there is an answer, the outcome's status is [`Status::Limit`].
+/// Plans `problem`. If `stop` returns true before there is an answer, the outcome's status is [`Status::Limit`].
 pub fn plan(
     problem: &Problem<'_>,
     grounds: &mut Grounds,
@@ -287,7 +287,7 @@ struct Unproven {
 /// How many legs that a plan does not have are looked at after the first one; after each plan it is twice as many.
 const LEGS_AT_FIRST: usize = 8;
 
-/// What came of it where movements fit in no order.
+/// The result where movements fit in no order.
 struct NoOrder {
     network: Arc<Network>,
     outcome: Outcome,
@@ -387,8 +387,8 @@ pub(crate) fn least_duration(problem: &Problem<'_>, route: &Route, legs: &[Leg])
     Some(Time::checked_sum(segments.iter().map(|segment| segment.least)).unwrap_or_default())
 }
 
-/// A network that was planned as it is, such as one that came without a program.
-pub fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
+/// A network that was planned as it is.
+pub(crate) fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned {
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(network, plan));
     let planning = Arc::new(Planning {
         outcome,

@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 
 use crate::control::{Control, read_control};
 
-/// Makes runs from number `from` on, as long as `go_on` says so after each; the error says why there can be none.
+/// Makes runs from number `from` on, until `go_on` returns false after a run. The error tells why no run is possible.
 pub fn sample_program(
     source: &str,
     chance: &ProgramChance,

@@ -141,6 +141,16 @@ impl Reading {
         self.program.clone().unwrap_or_else(|| Keyed { key: ContentKey::default(), value: Arc::default() })
     }
 
+    /// Whether the text is a network instead of a mission.
+    pub(crate) fn is_network(&self) -> bool {
+        self.network_text.is_some()
+    }
+
+    /// What is wrong with the text, before it is compiled.
+    pub(crate) fn diagnostics(&self) -> Vec<Diagnostic> {
+        self.parse.diagnostics()
+    }
+
     /// The network that was compiled last.
     pub(crate) fn network(&self) -> Option<Arc<Network>> {
         Some(Arc::clone(&self.compiled.as_ref()?.network.as_ref()?.value))
@@ -225,7 +235,7 @@ impl Compiled {
 
 /// The networks of all scenarios, in textual order, as far as no error prevents one; adds what compiling finds to
 /// `diagnostics`. Only with `keep` do the networks stay: they may be many.
-pub fn compile_scenarios(
+pub(crate) fn compile_scenarios(
     program: &Program,
     diagnostics: &mut Vec<Diagnostic>,
     keep: bool,

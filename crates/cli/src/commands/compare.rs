@@ -14,9 +14,9 @@ use tpn::Window;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
 use crate::input::{mission_of, read_text};
-use crate::load::Target;
+use crate::opened::Opened;
 use crate::output::{Format, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
-use crate::worked_out::work_out_text;
+use crate::target::Target;
 
 /// Compares two plans: what was added, removed, moved, re-chosen or done otherwise.
 ///
@@ -87,7 +87,7 @@ impl Args {
                 activity: None,
                 bounds: None,
             };
-            return self.worked_out(path, &mission_of(path, &text)?, target.goal()?, self.seed);
+            return self.evaluated(path, &mission_of(path, &text)?, target.goal()?, self.seed);
         }
         let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
         if is_record(&value) {
@@ -95,18 +95,19 @@ impl Args {
             let approved = record.last_approval();
             let (_, approved) =
                 approved.with_context(|| format!("nobody has approved in the review {name}"))?;
-            return self.worked_out(path, &approved.source, approved.goal.clone(), approved.seed);
+            return self.evaluated(path, &approved.source, approved.goal.clone(), approved.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;
         Ok(Read { side, source: String::new(), problems: Vec::new() })
     }
 
-    fn worked_out(&self, file: &Path, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
+    fn evaluated(&self, file: &Path, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
         let name = file.display().to_string();
         let deadline = self.time_limit.start();
-        let worked_out = work_out_text(name.clone(), file, source, goal, seed, deadline).context(name)?;
-        let side = Side::of_snapshot(&worked_out.name, &worked_out.snapshot);
-        Ok(Read { side, source: source.to_owned(), problems: worked_out.snapshot.problems.to_vec() })
+        let mission = Opened::new(file, source.to_owned(), goal);
+        let (snapshot, _) = mission.evaluate(seed, deadline).with_context(|| name.clone())?;
+        let side = Side::of_snapshot(&name, &snapshot);
+        Ok(Read { side, source: source.to_owned(), problems: snapshot.problems.to_vec() })
     }
 }
 

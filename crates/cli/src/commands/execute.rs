@@ -7,15 +7,15 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use exact::Time;
 use executive::{Observations, Progress, Waiting};
+use mission::Manner;
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use tpn::{Network, Plan, Window};
 
 use crate::deadline::TimeLimit;
-use crate::diagnostics::print_problems;
 use crate::input::read_json;
-use crate::load::{Loaded, Target};
-use crate::output::{Format, NO, WRONG, YES, column, document, exit, print_json, print_text};
+use crate::output::{Format, NO, YES, column, document, exit, print_json, print_text};
+use crate::target::Target;
 
 /// Says what remains possible of a plan once some of its events have happened.
 #[derive(clap::Args)]
@@ -37,42 +37,33 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let loaded = args.target.load()?;
-    let Some(network) = &loaded.network else {
-        report_errors(args, &loaded)?;
-        return Ok(exit(WRONG));
+    let mut mission = args.target.open()?;
+    let compiled = mission.compile()?;
+    let problems = compiled.problems();
+    let Some(network) = compiled.network().cloned() else {
+        let body = json!({ "consistent": false, "windows": {}, "violations": [] });
+        return mission.refuse(&problems, args.format, ("execute", body));
     };
+    let network = &*network;
     let plan = if let Some(file) = &args.plan {
         let document: Value = read_json(file)?;
         let plans = tpn::plan_json::plans_from_json(network, &document)?;
         plans.into_iter().next().with_context(|| format!("{} holds no plan", file.display()))?
     } else {
-        let deadline = args.time_limit.start();
-        let options = kirk::Options { explain: false, relax: false, ..kirk::Options::default() };
-        let outcome = kirk::plan(network, &options, &mut |_: &kirk::Stats| deadline.is_over());
-        deadline.check(&outcome)?;
-        outcome.plans.into_iter().next().context("the mission has no plan to execute")?
+        let manner = Manner { without_paths: true, ..Manner::unexplained() };
+        let planned = mission.plan(compiled, None, manner, args.time_limit.start())?.planned;
+        planned.planning.outcome.plans.first().cloned().context("the mission has no plan to execute")?
     };
     let observed = observations(network, &read_json(&args.observe)?)?;
     let progress = executive::progress(network, &plan, &observed)?;
     let is_consistent = matches!(progress, Progress::Consistent(..));
     match args.format {
         Format::Json => {
-            print_json(&document("execute", &loaded.problems, progress_json(network, &progress)))?;
+            print_json(&document("execute", &problems, progress_json(network, &progress)))?;
         }
         Format::Text => print_text(&progress_text(network, &plan, &progress))?,
     }
     Ok(exit(if is_consistent { YES } else { NO }))
-}
-
-fn report_errors(args: &Args, loaded: &Loaded) -> anyhow::Result<()> {
-    match args.format {
-        Format::Json => {
-            let body = json!({ "consistent": false, "windows": {}, "violations": [] });
-            print_json(&document("execute", &loaded.problems, body))
-        }
-        Format::Text => print_problems(&loaded.name, &loaded.source, &loaded.problems),
-    }
 }
 
 fn observations(network: &Network, document: &Value) -> anyhow::Result<Observations> {

@@ -12,14 +12,14 @@ use report::export;
 use review::record::Runs;
 use review::{PlanStatus, Present, content_hash, review, standing};
 use serde_json::{Value, json};
+use snapshot::Snapshot;
 
 use crate::commands::import::{parse_degrees, parse_radius};
 use crate::commands::report::read_record;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
-use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_verbatim};
-use crate::worked_out::{WorkedOut, work_out};
+use crate::target::Target;
 
 /// Writes a plan's schedule for other tools.
 #[derive(clap::Args)]
@@ -88,11 +88,12 @@ enum Form {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let worked_out = work_out(&args.target, args.seed, args.time_limit.start())?;
-    let WorkedOut { name, snapshot, .. } = &worked_out;
+    let mission = args.target.open()?;
+    let name = mission.short_name();
+    let (snapshot, _) = mission.evaluate(args.seed, args.time_limit.start())?;
     let is_planned = snapshot.plan().is_some();
     if args.format == Format::Text {
-        print_problems(name, &snapshot.source, &snapshot.problems)?;
+        print_problems(&name, &snapshot.source, &snapshot.problems)?;
     }
     if !is_planned {
         match args.format {
@@ -103,7 +104,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(if snapshot.network.is_some() { NO } else { WRONG }));
     }
-    let text = args.text(&worked_out)?;
+    let text = args.text(&snapshot)?;
     match &args.output {
         Some(path) => {
             std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
@@ -114,7 +115,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 impl Args {
-    fn text(&self, WorkedOut { snapshot, .. }: &WorkedOut) -> anyhow::Result<String> {
+    fn text(&self, snapshot: &Snapshot) -> anyhow::Result<String> {
         let goal = self.target.goal()?;
         let record = self.review.as_deref().map(read_record).transpose()?;
         let hash = content_hash(&snapshot.source, snapshot.map.as_ref(), &goal, self.seed);
@@ -144,7 +145,7 @@ impl Args {
     }
 }
 
-fn calendar(epoch: &str, snapshot: &snapshot::Snapshot) -> anyhow::Result<Calendar> {
+fn calendar(epoch: &str, snapshot: &Snapshot) -> anyhow::Result<Calendar> {
     Calendar::new(epoch, snapshot.program.options.time_unit).with_context(|| {
         format!("--epoch wants a date such as 2004-01-25 or 2004-01-25T05:05:00Z, not `{epoch}`")
     })

@@ -6,8 +6,6 @@ use review::{FlightRules, Line, MissionRule, Status};
 use rmpl::program::Program;
 use serde_json::{Value, json};
 
-use crate::load::Loaded;
-
 /// Each rule with what was found of it.
 #[derive(Default)]
 pub struct HeldRules {
@@ -16,9 +14,7 @@ pub struct HeldRules {
 
 impl HeldRules {
     /// Holds the first plan that was found against the rules.
-    pub fn new(rules: &FlightRules, loaded: &Loaded, planned: &Planned) -> Self {
-        let none = Program::default();
-        let program = loaded.program.as_ref().unwrap_or(&none);
+    pub fn new(rules: &FlightRules, program: &Program, planned: &Planned) -> Self {
         let plan = planned.planning.outcome.plans.first().map(|plan| (planned.network.as_ref(), plan));
         let findings = evaluate_plan(program, plan, &rules.rules, &mut || false);
         let lines = rules.rules.iter().map(|rule| rule.line(&findings));

@@ -1,21 +1,18 @@
 //! `enroute plan`: plans a mission or a network, and says why where there is no plan.
 
-use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::Context as _;
 use clap::ValueEnum;
 use exact::{Bound, Time};
-use kirk::{Failure, Options, Outcome, Search, Stats, Status};
-use mission::planning::{self, Planned};
-use mission::{Paths, repairs};
+use kirk::{Failure, Options, Outcome, Search, Status};
+use mission::planning::Planned;
+use mission::{Compiled, Evaluated, Manner};
 use rmpl::LineIndex;
 use rmpl::files::Files;
-use rmpl::program::Program;
 use serde_json::{Value, json};
 use snapshot::paths_json::{separation_violations_json, traverses_json};
 use snapshot::{Planning, Problem};
@@ -25,11 +22,11 @@ use crate::commands::held_rules::HeldRules;
 use crate::commands::report::read_rules;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::{path_of_file, print_problems};
-use crate::ground::ground;
-use crate::load::{Loaded, Target, parse_threat_gap};
+use crate::opened::Opened;
 use crate::output::{
     Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text, without_timings,
 };
+use crate::target::{Target, parse_threat_gap};
 
 /// Plans a mission: which alternatives, which causal links, which orderings, and the window of every event.
 #[derive(clap::Args)]
@@ -90,21 +87,26 @@ const TRACE_EVENTS: usize = 1_000_000;
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let begun = Instant::now();
     let options = args.options()?;
-    let mut loaded = args.target.load()?;
-    if let (Some(gap), Some(network)) = (options.threat_gap, &mut loaded.network) {
+    let mut mission = args.target.open()?;
+    let mut compiled = mission.compile()?;
+    if let Some(gap) = options.threat_gap {
         // The checker asks for the same gap.
-        network.threat_gap = gap;
+        mission.core.set_threat_gap(&mut compiled, gap);
     }
-    let compile_millis = millis_since(begun);
-    let Some(network) = loaded.network.clone() else { return report_errors(args, &loaded) };
+    let mut problems = compiled.problems();
+    if compiled.network().is_none() {
+        debug_assert!(any_error(&problems), "a file without a network has an error");
+        let body = json!({ "status": "error", "plans": [], "failure": null, "stats": {} });
+        return mission.refuse(&problems, args.format, ("plan", body));
+    }
     let begun = Instant::now();
-    let network = Arc::new(network);
-    let planned = match (&loaded.program, args.no_paths) {
-        (Some(program), false) => args.plan_with_paths(&network, program, &loaded.source, options)?,
-        _ => args.plan_network(&network, options),
-    };
+    let deadline = args.time_limit.start();
+    let without_paths = args.no_paths || compiled.is_network;
+    let ground = if without_paths { None } else { mission.ground(&compiled)? };
+    let most_millis = deadline.remaining_millis();
+    let manner = Manner { options, seed: args.seed, without_paths, with_repairs: true, most_millis };
+    let Evaluated { compiled, planned, .. } = mission.plan(compiled, ground, manner, deadline)?;
     let plan_millis = millis_since(begun);
     if let Some(file) = &args.trace {
         let trace = planned.planning.outcome.trace.as_ref();
@@ -115,27 +117,26 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let outcome = &planned.planning.outcome;
     let rules = match &args.rules {
-        Some(path) => HeldRules::new(&read_rules(path)?, &loaded, &planned),
+        Some(path) => HeldRules::new(&read_rules(path)?, &compiled.program, &planned),
         None => HeldRules::default(),
     };
     match args.format {
         Format::Json => {
-            let mut body = outcome_json(&planned, &loaded, [compile_millis, plan_millis]);
+            let mut body = outcome_json(&planned, &compiled, plan_millis);
             if args.no_timings {
                 without_timings(&mut body["stats"]);
             }
             if args.rules.is_some() {
                 body["rules"] = rules.json();
             }
-            let mut problems = loaded.problems.clone();
-            problems.extend(Problem::all(&planned.warnings, &loaded.source));
+            problems.extend(Problem::all(&planned.warnings, &mission.source));
             print_json(&document("plan", &problems, body))?;
         }
         Format::Text => {
-            let warnings = Problem::all(&planned.warnings, &loaded.source);
-            print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
-            print_problems(&loaded.name, &loaded.source, &warnings)?;
-            print_text(&outcome_text(&planned, &loaded))?;
+            let warnings = Problem::all(&planned.warnings, &mission.source);
+            print_problems(&mission.name, &mission.source, &problems)?;
+            print_problems(&mission.name, &mission.source, &warnings)?;
+            print_text(&outcome_text(&planned, &mission))?;
             print_text(&rules.text())?;
         }
     }
@@ -167,53 +168,6 @@ impl Args {
             ..Options::default()
         })
     }
-
-    fn plan_network(&self, network: &Arc<Network>, options: Options) -> Planned {
-        let deadline = self.time_limit.start();
-        let mut stop = |_: &Stats| deadline.is_over();
-        let outcome = kirk::plan(network, &options, &mut stop);
-        planning::without_paths(network, outcome)
-    }
-
-    fn plan_with_paths(
-        &self,
-        network: &Arc<Network>,
-        program: &Program,
-        source: &str,
-        options: Options,
-    ) -> anyhow::Result<Planned> {
-        let deadline = self.time_limit.start();
-        let enough = Cell::new(false);
-        let (mut grounds, ground) = ground(&self.target.file, &program.world)?;
-        let problem = planning::Problem {
-            ground: ground.as_ref().map(|(key, map)| (key, map)),
-            options,
-            seed: self.seed,
-            enough: Some(&enough),
-            ..planning::Problem::new(network, program)
-        };
-        let mut stop = || {
-            enough.set(deadline.is_over());
-            deadline.is_long_over()
-        };
-        let mut paths = Paths::default();
-        let mut planned = planning::plan(&problem, &mut grounds, &mut paths, &mut stop);
-        let text = (source, &self.target.goal()?);
-        repairs::add(&mut planned, text, &problem, (&mut grounds, &mut paths), &mut stop);
-        Ok(planned)
-    }
-}
-
-fn report_errors(args: &Args, loaded: &Loaded) -> anyhow::Result<ExitCode> {
-    match args.format {
-        Format::Json => {
-            let body = json!({ "status": "error", "plans": [], "failure": null, "stats": {} });
-            print_json(&document("plan", &loaded.problems, body))?;
-        }
-        Format::Text => print_problems(&loaded.name, &loaded.source, &loaded.problems)?,
-    }
-    debug_assert!(any_error(&loaded.problems), "a file without a network has an error");
-    Ok(exit(WRONG))
 }
 
 fn millis_since(begun: Instant) -> f64 {
@@ -229,17 +183,17 @@ fn status_name(status: Status) -> &'static str {
     }
 }
 
-fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis]: [f64; 2]) -> Value {
+fn outcome_json(planned: &Planned, compiled: &Compiled, plan_millis: f64) -> Value {
     let outcome = &planned.planning.outcome;
     let stats = &outcome.stats;
-    let world = loaded.program.as_ref().map(|program| &program.world);
+    let world = (!compiled.is_network).then_some(&compiled.program.world);
     let plan_json = |(network, plan): (&Network, &tpn::Plan)| tpn::plan_json::plan_to_json(network, plan);
     let plans: Vec<Value> = all_plans(planned).map(plan_json).collect();
     let mut body = json!({
         "status": status_name(outcome.status),
         "plans": plans,
         "verdict": planned.planning.verdict,
-        "failure": outcome.failure.as_ref().map(|failure| failure_json(failure, &planned.planning, loaded, &planned.network)),
+        "failure": outcome.failure.as_ref().map(|failure| failure_json(failure, &planned.planning, &compiled.source, &planned.network)),
         "undrivable": planned.planning.undrivable.iter().map(|undrivable| json!({
             "activity": planned.network.occurrences[undrivable.occurrence.index()].name,
             "leg": undrivable.leg,
@@ -252,8 +206,8 @@ fn outcome_json(planned: &Planned, loaded: &Loaded, [compile_millis, plan_millis
         "traverses": world.map(|world| traverses_json(&planned.traverses, &planned.network, world)),
         "encounters": world.map(|world| separation_violations_json(&planned.separation_violations, world)),
         "stats": {
-            "parse_millis": loaded.parse_millis,
-            "compile_millis": compile_millis - loaded.parse_millis,
+            "parse_millis": compiled.timings.parse_millis,
+            "compile_millis": compiled.timings.compile_millis,
             "plan_millis": plan_millis,
             "nodes": stats.nodes,
             "arcs": stats.arcs,
@@ -277,10 +231,10 @@ fn all_plans(planned: &Planned) -> impl Iterator<Item = (&Network, &tpn::Plan)> 
     own.chain(planned.others.iter().map(|listed| (listed.network.as_ref(), &listed.plan)))
 }
 
-fn failure_json(failure: &Failure, planning: &Planning, loaded: &Loaded, network: &Network) -> Value {
-    let (lines, files) = (LineIndex::new(&loaded.source), Files::of(&loaded.source));
+fn failure_json(failure: &Failure, planning: &Planning, source: &str, network: &Network) -> Value {
+    let (lines, files) = (LineIndex::new(source), Files::of(source));
     let span_json = |span: &rmpl::Span| {
-        let place = files.line_column(&loaded.source, &lines, span.start);
+        let place = files.line_column(source, &lines, span.start);
         let file = files.at(span.start);
         let (start, end) = (span.start.saturating_sub(file.start), span.end.saturating_sub(file.start));
         let mut told = json!({ "start": start, "end": end, "line": place.line, "column": place.column });
@@ -341,7 +295,7 @@ fn choices_json(choices: &[tpn::Choice]) -> Value {
         .into()
 }
 
-fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
+fn outcome_text(planned: &Planned, mission: &Opened) -> String {
     let outcome = &planned.planning.outcome;
     let mut text = match outcome.status {
         Status::Plan => String::new(),
@@ -371,7 +325,7 @@ fn outcome_text(planned: &Planned, loaded: &Loaded) -> String {
         }
     }
     if let Some(failure) = &outcome.failure {
-        text.push_str(&failure_text(failure, loaded, &planned.network));
+        text.push_str(&failure_text(failure, mission, &planned.network));
         for label in planned.planning.ways_out() {
             text.push_str(&format!("it would have a plan: {label}\n"));
         }
@@ -469,8 +423,9 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     text
 }
 
-fn failure_text(failure: &Failure, loaded: &Loaded, network: &Network) -> String {
-    let (lines, files) = (LineIndex::new(&loaded.source), Files::of(&loaded.source));
+fn failure_text(failure: &Failure, mission: &Opened, network: &Network) -> String {
+    let source = &*mission.source;
+    let (lines, files) = (LineIndex::new(source), Files::of(source));
     let mut text = String::new();
     for reason in &failure.reasons {
         text.push_str(&format!("{} ({})\n", reason.message, reason.kind.name()));
@@ -478,11 +433,11 @@ fn failure_text(failure: &Failure, loaded: &Loaded, network: &Network) -> String
             text.push_str(&format!("  {line}\n"));
         }
         for span in &reason.spans {
-            let place = files.line_column(&loaded.source, &lines, span.start);
+            let place = files.line_column(source, &lines, span.start);
             let file = files.at(span.start);
             let is_first = file.start == 0;
-            let name = if is_first { loaded.name.clone() } else { path_of_file(&loaded.name, &file.name) };
-            let snippet = loaded.source.get(span.range()).unwrap_or("").lines().next().unwrap_or("");
+            let name = if is_first { mission.name.clone() } else { path_of_file(&mission.name, &file.name) };
+            let snippet = source.get(span.range()).unwrap_or("").lines().next().unwrap_or("");
             text.push_str(&format!("  {name}:{}:{}: {snippet}\n", place.line, place.column));
         }
     }

@@ -12,9 +12,8 @@ use snapshot::{Robustness, RobustnessSettings};
 use crate::deadline::{TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
-use crate::worked_out::{WorkedOut, work_out};
+use crate::target::Target;
 
 /// Reviews a mission: a checklist of its plan, and a report that prints and needs no network.
 #[derive(clap::Args)]
@@ -46,9 +45,10 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let deadline = args.time_limit.start();
-    let worked_out = work_out(&args.target, args.seed, deadline)?;
+    let mission = args.target.open()?;
+    let name = &mission.short_name();
+    let (snapshot, ground) = &mission.evaluate(args.seed, deadline)?;
     let limit = deadline.enforce(Undecided::Review);
-    let WorkedOut { name, snapshot, ground } = &worked_out;
     let mut review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
     let record = args.review.as_deref().map(read_record).transpose()?.unwrap_or_default();
     let rules = match &args.rules {

@@ -9,9 +9,8 @@ use serde_json::{Value, json};
 
 use crate::deadline::{TimeLimit, Undecided};
 use crate::input::read_text;
-use crate::load::Target;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
-use crate::worked_out::{WorkedOut, work_out};
+use crate::target::Target;
 
 /// Checks the history of a review, and says how the plan stands with its board.
 ///
@@ -64,7 +63,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let target =
         Target { file: mission.clone(), scenario: args.scenario.clone(), activity: None, bounds: None };
     let deadline = args.time_limit.start();
-    let WorkedOut { snapshot, .. } = work_out(&target, args.seed, deadline)?;
+    let (snapshot, _) = target.open()?.evaluate(args.seed, deadline)?;
     let limit = deadline.enforce(Undecided::Review);
     let mut review = review(&snapshot, &target.goal()?, args.seed, &mut || false);
     let found = record.runs_of(&review.content_hash).map(Runs::robustness);

@@ -3,23 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
-use std::sync::Arc;
 
 use anyhow::{Context as _, bail, ensure};
-use mission::Paths;
-use mission::planning::{self, Problem};
-use mission::sampling::Sampler;
-use rmpl::program::Program;
+use mission::Manner;
 use serde::{Deserialize, Serialize};
 use snapshot::robustness::Traverses;
 use snapshot::{RobustnessSettings, Tally, Uncertainty};
 
 use crate::deadline::{TimeIsUp, TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
-use crate::ground::ground;
 use crate::input::{read_json, read_text};
-use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, escaped, exit, print_text, print_verbatim};
+use crate::target::Target;
 
 /// Executes a mission's plan many times with chance: how often it reaches its end, and what breaks it.
 ///
@@ -140,11 +135,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>> {
-    let loaded = target.load()?;
-    let nothing = Program::default();
-    let program = loaded.program.as_ref().unwrap_or(&nothing);
-    let Some(network) = loaded.network.clone().map(Arc::new) else {
-        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+    let mut mission = target.open()?;
+    let compiled = mission.compile()?;
+    let problems = compiled.problems();
+    let Some(network) = compiled.network() else {
+        print_problems(&mission.name, &mission.source, &problems)?;
         return Ok(Err(exit(WRONG)));
     };
     let mut uncertainty = match &args.uncertainty {
@@ -155,23 +150,17 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         uncertainty.traverses = Traverses::Driven;
     }
     uncertainty.adversary |= args.adversary;
-    if let Some(problem) = uncertainty.problem(&network) {
+    if let Some(problem) = uncertainty.problem(network) {
         bail!(problem);
     }
-    let (mut grounds, ground) = ground(&target.file, &program.world)?;
-    let mut paths = Paths::default();
-    let problem = Problem {
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        seed: args.path_seed,
-        ..Problem::new(&network, program)
-    };
+    let ground = mission.ground(&compiled)?;
     let deadline = args.time_limit.start();
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
-    deadline.check(&planned.planning.outcome)?;
+    let manner = Manner { seed: args.path_seed, ..Manner::default() };
+    let evaluated = mission.plan(compiled, ground, manner, deadline)?;
     if args.format == Format::Text {
-        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+        print_problems(&mission.name, &mission.source, &problems)?;
     }
-    let Some(sampler) = Sampler::new(&problem, &planned, &uncertainty) else {
+    let Some(sampler) = evaluated.sampler(&uncertainty) else {
         print_text("the mission has no plan to execute; `enroute plan` says why\n")?;
         return Ok(Err(exit(NO)));
     };
@@ -182,12 +171,12 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     let mut number = args.shard.part - 1;
     while number < args.runs {
         ensure!(!deadline.is_over(), TimeIsUp(Undecided::Robustness));
-        sampler.run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)?;
+        mission.core.sample_run((&evaluated, &sampler), &settings, number, &mut tally)?;
         number += args.shard.of;
     }
     limit.answered();
-    let map = ground.as_ref().map(|(key, _)| key);
-    let mission = review::content_hash(&loaded.source, map, &target.goal()?, args.path_seed);
+    let map = evaluated.ground.as_ref().map(|(key, _)| key);
+    let mission = review::content_hash(&mission.source, map, &target.goal()?, args.path_seed);
     let shards = vec![format!("{}/{}", args.shard.part, args.shard.of)];
     let settings = Settings { runs: args.runs, seed: args.seed, uncertainty };
     Ok(Ok(Line::new(mission, settings, shards, tally)))

@@ -2,23 +2,20 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use executive::{Ending, Entry, Happening, Script};
-use mission::Paths;
-use mission::execution::{self, Ran};
-use mission::planning::{self, Problem};
+use mission::Manner;
+use mission::execution::Ran;
 use rmpl::program::Program;
 use serde_json::{Value, json};
-use snapshot::{DriveFrame, Problem as Found, SimulatedDrive};
+use snapshot::{DriveFrame, Problem, SimulatedDrive};
 use tpn::Network;
 
 use crate::deadline::{TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
-use crate::ground::ground;
 use crate::input::read_json;
-use crate::load::Target;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::target::Target;
 
 /// Executes a mission's plan in the simulated world, planning again when the plan cannot be kept.
 #[derive(clap::Args)]
@@ -44,40 +41,29 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let loaded = args.target.load()?;
+    let mut mission = args.target.open()?;
+    let compiled = mission.compile()?;
     let mut script = match &args.disturb {
         Some(file) => read_json::<Script>(file)?,
         None => Script::default(),
     };
     script.adversary |= args.adversary;
-    let disturbances = &script.disturbances;
-    // A network has no activities beside its own, and no ground.
-    let nothing = Program::default();
-    let program = loaded.program.as_ref().unwrap_or(&nothing);
-    let Some(network) = loaded.network.clone().map(Arc::new) else {
-        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+    let mut problems = compiled.problems();
+    if compiled.network().is_none() {
+        print_problems(&mission.name, &mission.source, &problems)?;
         return Ok(exit(WRONG));
-    };
-    let (programs, _) = mission::programs::Programs::compile(program, Some(&network));
-    execution::check_disturbances(&network, program, &programs, disturbances).map_err(anyhow::Error::msg)?;
-    let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
-    let mut paths = Paths::default();
-    let problem = Problem {
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        seed: args.seed,
-        programs: Some(&programs),
-        ..Problem::new(&network, program)
-    };
+    }
+    compiled.check_disturbances(&script).map_err(anyhow::Error::msg)?;
+    let ground = mission.ground(&compiled)?;
     let deadline = args.time_limit.start();
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || deadline.is_over());
-    deadline.check(&planned.planning.outcome)?;
-    let mut problems = loaded.problems.clone();
-    problems.extend(Found::all(&planned.warnings, &loaded.source));
+    let manner = Manner { seed: args.seed, ..Manner::default() };
+    let evaluated = mission.plan(compiled, ground, manner, deadline)?;
+    problems.extend(Problem::all(&evaluated.planned.warnings, &mission.source));
     if matches!(args.format, Format::Text) {
-        print_problems(&loaded.name, &loaded.source, &problems)?;
+        print_problems(&mission.name, &mission.source, &problems)?;
     }
     let limit = deadline.enforce(Undecided::Execution);
-    let executed = execution::execute(&problem, &planned, &script, &mut grounds, &mut paths);
+    let executed = mission.core.run(&evaluated, &script);
     limit.answered();
     let Some(outcome) = executed else {
         match args.format {
@@ -90,15 +76,16 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(exit(NO));
     };
     let Ran { outcome, drives, .. } = outcome?;
+    let drive = |drive| drive_json(drive, &evaluated.network, &evaluated.compiled.program);
     match args.format {
         Format::Text => print_text(&outcome.log.iter().map(line).collect::<String>())?,
         Format::Json => {
             let body = json!({
                 "status": outcome.ending,
                 "seed": args.seed,
-                "disturbances": disturbances,
+                "disturbances": script.disturbances,
                 "log": outcome.log,
-                "drives": drives.iter().map(|drive| drive_json(drive, &network, program)).collect::<Vec<_>>(),
+                "drives": drives.iter().map(drive).collect::<Vec<_>>(),
             });
             print_json(&document("simulate", &problems, body))?;
         }

@@ -5,14 +5,15 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use clap::ValueEnum;
 use interchange::Source;
+use interchange::plan_schema::Document;
+use mission::Compiled;
 use serde_json::json;
+use snapshot::Problem;
 use tpn::Network;
 
 use crate::diagnostics::print_problems;
-use crate::load::{Loaded, Target};
-use crate::output::{
-    Format, NO, WRONG, YES, document, exit, print_error, print_json, print_text, print_verbatim,
-};
+use crate::output::{Format, NO, YES, document, exit, print_error, print_json, print_text, print_verbatim};
+use crate::target::Target;
 
 /// Compiles a mission to its temporal plan network.
 #[derive(clap::Args)]
@@ -53,14 +54,19 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Format::Text => Notation::Text,
         Format::Json => Notation::Json,
     });
-    let loaded = args.target.load()?;
-    let Some(network) = &loaded.network else { return report_errors(notation, args.format, &loaded) };
+    let mut mission = args.target.open()?;
+    let compiled = mission.compile()?;
+    let problems = compiled.problems();
+    let Some(network) = compiled.network() else {
+        let format = if notation == Notation::Json { Format::Json } else { args.format };
+        return mission.refuse(&problems, format, ("tpn", json!({ "nodes": [], "arcs": [] })));
+    };
     if notation != Notation::Json {
-        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+        print_problems(&mission.name, &mission.source, &problems)?;
     }
     match notation {
         Notation::Json => {
-            print_json(&document("tpn", &loaded.problems, tpn::network_json::network_to_json(network)))?;
+            print_json(&document("tpn", &problems, tpn::network_json::network_to_json(network)))?;
         }
         Notation::Text => print_text(&tpn::text::to_text(network))?,
         Notation::Dot => print_verbatim(&tpn::text::to_dot(network))?,
@@ -68,54 +74,45 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Notation::Ptpn => {
             print_verbatim(&interchange::ptpn::write(network).context("this network cannot be a pTPN")?)?;
         }
-        Notation::Rmpl => return print_rmpl(&loaded, network, args.format),
-        Notation::PlanSchema => print_json(&plan_schema(&loaded, network)?)?,
+        Notation::Rmpl => return print_rmpl(&compiled, network, &problems, args.format),
+        // A file that was plan-schema is written as it was read, with what is not understood; anything else is translated.
+        Notation::PlanSchema => print_json(&match as_read(&compiled) {
+            Some(read) => read.to_json(),
+            None => interchange::plan_schema::write(network),
+        })?,
     }
     Ok(exit(YES))
 }
 
-fn report_errors(notation: Notation, format: Format, loaded: &Loaded) -> anyhow::Result<ExitCode> {
-    if notation == Notation::Json || format == Format::Json {
-        print_json(&document("tpn", &loaded.problems, json!({ "nodes": [], "arcs": [] })))?;
-    } else {
-        print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+/// The file of another tool.
+fn as_read(compiled: &Compiled) -> Option<Box<Document>> {
+    match Source::read(&compiled.source) {
+        Ok(Source::PlanSchema(read)) if compiled.is_network => Some(read),
+        _ => None,
     }
-    Ok(exit(WRONG))
-}
-
-/// A file that was plan-schema is written as it was read, with what is not understood; anything else is translated.
-fn plan_schema(loaded: &Loaded, network: &Network) -> anyhow::Result<serde_json::Value> {
-    if loaded.program.is_none()
-        && let Source::PlanSchema(read) =
-            Source::read(&loaded.source).with_context(|| format!("cannot read {}", loaded.name))?
-    {
-        return Ok(read.to_json());
-    }
-    Ok(interchange::plan_schema::write(network))
 }
 
 /// The network as a mission's text, or what keeps it from being one.
-fn print_rmpl(loaded: &Loaded, network: &Network, format: Format) -> anyhow::Result<ExitCode> {
+fn print_rmpl(
+    compiled: &Compiled,
+    network: &Network,
+    problems: &[Problem],
+    format: Format,
+) -> anyhow::Result<ExitCode> {
     let (mut nodes, mut arcs, mut remarks) = (Vec::new(), Vec::new(), Vec::new());
-    if loaded.program.is_none()
-        && let Ok(Source::PlanSchema(read)) = Source::read(&loaded.source)
-    {
+    if let Some(read) = as_read(compiled) {
         remarks.extend(read.not_honoured().iter().map(|said| format!("Not honoured: {said}.")));
         (nodes, arcs) = (read.node_uids, read.arc_uids);
     }
     match (interchange::rmpl_text::write(network, &remarks), format) {
         (Ok(text), Format::Text) => print_verbatim(&text)?,
-        (Ok(text), Format::Json) => print_json(&document("rmpl", &loaded.problems, json!({ "rmpl": text })))?,
+        (Ok(text), Format::Json) => print_json(&document("rmpl", problems, json!({ "rmpl": text })))?,
         (Err(obstacle), format) => {
             let told = obstacle.told(network, &nodes, &arcs);
             match format {
                 Format::Text => print_error(&format!("this network cannot be written in RMPL: {told}")),
                 Format::Json => {
-                    print_json(&document(
-                        "rmpl",
-                        &loaded.problems,
-                        json!({ "rmpl": null, "obstacle": told }),
-                    ))?;
+                    print_json(&document("rmpl", problems, json!({ "rmpl": null, "obstacle": told })))?;
                 }
             }
             return Ok(exit(NO));

@@ -4,17 +4,17 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use mission::{Paths, listing, planning};
+use mission::{Compiled, Manner};
 use serde_json::{Value, json};
 use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
 use tpn::{EventEnd, Network};
 
 use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
-use crate::ground::ground;
 use crate::input::read_json;
-use crate::load::{Loaded, Target, parse_threat_gap};
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::opened::Opened;
+use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
+use crate::target::{Target, parse_threat_gap};
 
 /// Checks a plan against a mission or a network, from the definitions.
 #[derive(clap::Args)]
@@ -38,17 +38,15 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let mut loaded = args.target.load()?;
-    if let (Some(text), Some(network)) = (&args.threat_gap, &mut loaded.network) {
-        network.threat_gap = parse_threat_gap(text)?;
+    let mut mission = args.target.open()?;
+    let mut compiled = mission.compile()?;
+    if let (Some(text), Some(_)) = (&args.threat_gap, compiled.network()) {
+        mission.core.set_threat_gap(&mut compiled, parse_threat_gap(text)?);
     }
     let stated: Value = read_json(&args.plan)?;
-    let Some(network) = &loaded.network else {
-        match args.format {
-            Format::Json => print_json(&document("verify", &loaded.problems, json!({ "valid": null })))?,
-            Format::Text => print_problems(&loaded.name, &loaded.source, &loaded.problems)?,
-        }
-        return Ok(exit(WRONG));
+    let problems = compiled.problems();
+    let Some(network) = compiled.network() else {
+        return mission.refuse(&problems, args.format, ("verify", json!({ "valid": null })));
     };
     let plans: Vec<&Value> = match stated.get("plans").and_then(Value::as_array) {
         Some(plans) => plans.iter().collect(),
@@ -57,7 +55,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     anyhow::ensure!(!plans.is_empty(), "{} has no plan to check", args.plan.display());
     let mut violations = Vec::new();
     for (index, plan) in plans.iter().enumerate() {
-        for mut violation in check(args, &loaded, network, plan)? {
+        for mut violation in check(args, &mut mission, (&compiled, network), plan)? {
             if plans.len() > 1 {
                 violation["plan"] = index.into();
             }
@@ -68,10 +66,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match args.format {
         Format::Json => {
             let body = json!({ "valid": is_valid, "violations": violations });
-            print_json(&document("verify", &loaded.problems, body))?;
+            print_json(&document("verify", &problems, body))?;
         }
         Format::Text => {
-            print_problems(&loaded.name, &loaded.source, &loaded.problems)?;
+            print_problems(&mission.name, &mission.source, &problems)?;
             let mut text = if is_valid { "valid\n".to_owned() } else { "not valid\n".to_owned() };
             for violation in &violations {
                 text.push_str(&format!("  {}\n", violation["message"].as_str().unwrap_or("")));
@@ -84,14 +82,16 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// What is wrong with one plan. What it says of things that the network does not have is wrong with it; a document
 /// that is no plan at all is an error of the call.
-fn check(args: &Args, loaded: &Loaded, network: &Network, stated: &Value) -> anyhow::Result<Vec<Value>> {
-    let extended;
-    let network = if names_path_vertices(stated) || orders_ways(stated) || drives(loaded, network, stated) {
-        extended = with_paths(args, loaded, network, stated)?;
-        &*extended
-    } else {
-        network
-    };
+fn check(
+    args: &Args,
+    mission: &mut Opened,
+    (compiled, network): (&Compiled, &Arc<Network>),
+    stated: &Value,
+) -> anyhow::Result<Vec<Value>> {
+    let moves = names_path_vertices(stated) || orders_ways(stated) || drives(compiled, network, stated);
+    let with_paths =
+        if moves { with_paths(args, mission, (compiled, network), stated)? } else { Arc::clone(network) };
+    let network = &*with_paths;
     let plan = match plan_from_json(network, stated) {
         Ok(plan) => plan,
         Err(error @ PlanError::Unknown { .. }) => {
@@ -126,8 +126,8 @@ fn names_path_vertices(stated: &Value) -> bool {
 
 /// Whether what the plan says of times may follow from paths without vertices: its mission moves vehicles, and without paths
 /// it is not valid.
-fn drives(loaded: &Loaded, network: &Network, stated: &Value) -> bool {
-    let moves = loaded.program.iter().flat_map(|program| &program.primitives).any(|it| it.moves.is_some());
+fn drives(compiled: &Compiled, network: &Network, stated: &Value) -> bool {
+    let moves = compiled.program.primitives.iter().any(|it| it.moves.is_some());
     let is_valid = |plan: tpn::Plan| verify::check_plan(network, &plan).valid;
     moves && !plan_from_json(network, stated).is_ok_and(is_valid)
 }
@@ -150,37 +150,24 @@ fn without_path_vertices(stated: &Value) -> Value {
 /// The network with the paths that planning finds, which the seed determines.
 fn with_paths(
     args: &Args,
-    loaded: &Loaded,
-    network: &Network,
+    mission: &mut Opened,
+    (compiled, network): (&Compiled, &Arc<Network>),
     stated: &Value,
 ) -> anyhow::Result<Arc<Network>> {
-    let network = Arc::new(network.clone());
-    let Some(program) = &loaded.program else { return Ok(network) };
-    let has_paths = |network: &Network| {
-        let mut events = network.nodes.iter().flat_map(|node| &node.events);
-        events.any(|event| matches!(event.end, EventEnd::PathVertex { .. }))
-    };
-    if has_paths(&network) {
-        return Ok(network);
+    let mut events = network.nodes.iter().flat_map(|node| &node.events);
+    if compiled.is_network || events.any(|event| matches!(event.end, EventEnd::PathVertex { .. })) {
+        return Ok(Arc::clone(network));
     }
-    let (mut grounds, ground) = ground(&args.target.file, &program.world)?;
-    let problem = planning::Problem {
-        ground: ground.as_ref().map(|(key, map)| (key, map)),
-        seed: args.seed,
-        ..planning::Problem::new(&network, program)
-    };
-    let mut paths = Paths::default();
-    let deadline = args.time_limit.start();
-    let mut stop = || deadline.is_over();
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut stop);
-    deadline.check(&planned.planning.outcome)?;
+    let ground = mission.ground(compiled)?;
+    let manner = Manner { seed: args.seed, ..Manner::default() };
+    let evaluated = mission.plan(compiled.clone(), ground, manner, args.time_limit.start())?;
     // Another plan than the first one has paths of its own.
-    let is_own = |plan: tpn::Plan| verify::check_plan(&planned.network, &plan).valid;
-    if !plan_from_json(&planned.network, stated).is_ok_and(is_own)
-        && let Ok(plan) = plan_from_json(&network, &without_path_vertices(stated))
+    let own = &evaluated.planned.network;
+    let is_own = |plan: tpn::Plan| verify::check_plan(own, &plan).valid;
+    if !plan_from_json(own, stated).is_ok_and(is_own)
+        && let Ok(plan) = plan_from_json(network, &without_path_vertices(stated))
     {
-        let found = listing::network_of(&problem, &plan, &mut grounds, &mut paths);
-        return Ok(Arc::new(found.map_err(anyhow::Error::msg)?));
+        return Ok(Arc::new(mission.core.network_of(&evaluated, &plan).map_err(anyhow::Error::msg)?));
     }
-    Ok(planned.network)
+    Ok(Arc::clone(own))
 }

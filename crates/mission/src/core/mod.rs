@@ -4,6 +4,7 @@
 //! kept by their inputs. The caller gives the clock, is asked whether to go on, and gets answers as stages complete.
 
 mod control_run;
+mod evaluating;
 mod executions;
 mod path_growth;
 mod planned;
@@ -22,6 +23,7 @@ use terrain::Terrain;
 
 use crate::both_searches;
 use crate::control::ControlTexts;
+use crate::evaluated::{Manner, TRACE_EVENTS};
 use crate::ground::Grounds;
 use crate::host::{CoreHost, Quiet, Unhurried};
 use crate::reading::{Followed, Reading};
@@ -47,13 +49,10 @@ pub struct Core {
 /// Planning that is done within this time is answered once, with the plan.
 const QUICK_MILLIS: f64 = 60.0;
 
-/// Looking for the best plan is begun anew after so long, and each time so many times as long, with the best plan so far
-/// shown.
+/// The search for the best plan starts again after this time, and then each time after this factor longer. The best plan so
+/// far is shown meanwhile.
 const IMPROVING_MILLIS: f64 = 1_000.0;
 const IMPROVING_FACTOR: f64 = 4.0;
-
-/// Events of a search that are kept for stepping through it.
-const TRACE_EVENTS: usize = 200_000;
 
 impl Core {
     /// Does what is asked for. Superseded requests end early and may have answered only in part.
@@ -149,27 +148,21 @@ impl Core {
             return;
         }
         let begun = host.now_millis();
-        self.read(update);
-        let parsed = host.now_millis();
-        let (network, mut diagnostics) = self.reading.compile(&update.goal, &mut self.keys);
-        let program = self.reading.program();
-        let (ground, found) = self.grounds.resolve(&program.value.world);
-        diagnostics.extend(found);
-        let compiled = host.now_millis();
+        let mut compiled = self.compile(update, host);
+        let (ground, found) = self.grounds.resolve(&compiled.program.world);
+        compiled.diagnostics.extend(found);
+        let planning = host.now_millis();
+        let parse_millis = compiled.timings.parse_millis;
         let mut snapshot = Snapshot {
-            problems: Problem::all(&diagnostics, &update.source).into(),
-            program: program.value,
+            problems: compiled.problems().into(),
+            program: Arc::clone(&compiled.program),
             map: ground.as_ref().map(|(key, _)| key.clone()),
-            keys: PartKeys { program: program.key, ..PartKeys::default() },
-            timings: Timings {
-                parse_millis: parsed - begun,
-                compile_millis: compiled - parsed,
-                plan_millis: 0.0,
-            },
+            keys: PartKeys { program: self.reading.program().key, ..PartKeys::default() },
+            timings: Timings { compile_millis: planning - begun - parse_millis, ..compiled.timings },
             ..Snapshot::empty(update.revision, Arc::clone(update.source.text()))
         };
         self.show_ground(ground.as_ref(), host);
-        let Some(network) = network else {
+        let Some(network) = compiled.network.clone() else {
             snapshot.stage = Stage::Complete;
             host.answer(Response::Snapshot(Arc::new(snapshot)));
             return;
@@ -177,14 +170,14 @@ impl Core {
         snapshot.network = Some(Arc::clone(&network.value));
         snapshot.keys.network = network.key;
         let waiting = Some(Arc::new(snapshot.clone()));
-        let mut unhurried = Unhurried { host, waiting, due_millis: compiled + QUICK_MILLIS };
+        let mut unhurried = Unhurried { host, waiting, due_millis: planning + QUICK_MILLIS };
         let is_improved = !network.value.objective.is_empty() && unhurried.wants_first_plans();
         let mut most_millis = if is_improved { IMPROVING_MILLIS } else { f64::INFINITY };
         loop {
             let most = Some(most_millis).filter(|most| most.is_finite());
-            let Some(last) = self.plan(update, &network, ground.as_ref(), most, &mut unhurried) else {
-                return;
-            };
+            let manner = Manner { most_millis: most, ..Manner::of(update) };
+            let last = self.plan_kept(&compiled, &network, ground.as_ref(), manner, &mut unhurried);
+            let Some(last) = last else { return };
             let warnings = Problem::all(&last.planned.warnings, &update.source);
             let mut snapshot = snapshot.clone();
             let mut problems: Vec<Problem> = snapshot.problems.iter().cloned().chain(warnings).collect();
@@ -192,7 +185,7 @@ impl Core {
             snapshot.problems = problems.into();
             last.shown.show(&mut snapshot);
             snapshot.stage = if last.is_final { Stage::Complete } else { Stage::Improving };
-            snapshot.timings.plan_millis = unhurried.now_millis() - compiled;
+            snapshot.timings.plan_millis = unhurried.now_millis() - planning;
             let is_final = last.is_final;
             if is_final || snapshot.plan().is_some() {
                 unhurried.answer(Response::Snapshot(Arc::new(snapshot)));

@@ -67,7 +67,7 @@ impl Core {
         let traverse = evaluated.planned.traverses.iter().find(has_name)?;
         let leg = traverse.legs.get(wanted.leg as usize)?;
         let query = Query { start_m: *leg.points_m.first()?, goal_m: *leg.points_m.last()? };
-        let world = &evaluated.program.world;
+        let world = &evaluated.compiled.program.world;
         let vehicle = world.vehicles.get(*traverse.vehicles.first()? as usize)?;
         let model = motion::vehicle_model(&vehicle.model.text)?;
         let (key, map) = evaluated.ground.as_ref()?;

@@ -3,18 +3,17 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
-use kirk::Options;
-use link::Update;
+use kirk::{Stats, Status};
 use rmpl::Shift;
 use rmpl::program::Program;
 use rmpl::spans::Spans as _;
 use snapshot::content::{Keyed, Keys};
 use snapshot::{ContentKey, MapKey, Planning, SeparationViolation, Snapshot, Traverse, VehicleMotion};
-use terrain::Terrain;
 use tpn::{Network, Plan};
 
+use super::Core;
 use super::executions::Executions;
-use super::{Core, TRACE_EVENTS};
+use crate::evaluated::{Compiled, Ground, Manner};
 use crate::host::CoreHost;
 use crate::planning::{self, Planned};
 use crate::reading::Reading;
@@ -27,8 +26,7 @@ pub(super) struct Last {
     network: Arc<Network>,
     program: Arc<Program>,
     map: Option<MapKey>,
-    options: Options,
-    seed: u64,
+    manner: Manner,
     pub(super) planned: Planned,
     /// Whether no better plan is looked for.
     pub(super) is_final: bool,
@@ -114,27 +112,22 @@ impl Last {
 }
 
 impl Core {
-    /// Plans, unless the plan of the last request still holds: same network, world and options. After `most_millis` the best
-    /// plan so far does.
-    pub(super) fn plan(
+    /// Plans, unless the plan of the last request still holds: same network, world and manner. `None` if that was given up.
+    pub(super) fn plan_kept(
         &mut self,
-        update: &Update,
+        compiled: &Compiled,
         network: &Keyed<Network>,
-        ground: Option<&(MapKey, Arc<Terrain>)>,
-        most_millis: Option<f64>,
+        ground: Option<&Ground>,
+        manner: Manner,
         host: &mut dyn CoreHost,
     ) -> Option<&Last> {
-        let options = Options {
-            search: update.search,
-            trace_events: update.trace.then_some(TRACE_EVENTS),
-            ..Options::default()
-        };
         let map = ground.map(|(key, _)| key.clone());
-        let program = self.reading.program().value;
+        let program = &compiled.program;
         let holds = self.last.as_ref().is_some_and(|last| {
             last.is_final
-                && (last.structure == network.key || last.network == network.value && last.program == program)
-                && (last.options, last.seed, &last.map) == (options, update.seed, &map)
+                && (last.structure == network.key
+                    || last.network == network.value && last.program == *program)
+                && (last.manner, &last.map) == (Manner { most_millis: None, ..manner }, &map)
         });
         if holds {
             if let Some(last) = &mut self.last {
@@ -142,38 +135,57 @@ impl Core {
             }
             return self.last.as_ref();
         }
-        let programs = self.reading.programs();
-        let enough = Cell::new(false);
-        let problem = planning::Problem {
-            ground: ground.map(|(key, map)| (key, map)),
-            options,
-            seed: update.seed,
-            programs: Some(&programs),
-            enough: Some(&enough),
-            ..planning::Problem::new(&network.value, &program)
-        };
-        let due_millis = most_millis.map(|most| host.now_millis() + most);
-        let mut stop = || {
-            enough.set(due_millis.is_some_and(|due| host.now_millis() >= due));
-            host.is_superseded()
-        };
-        let mut planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
-        let text = (&*update.source, &update.goal);
-        let is_proven = |plan: &Plan| plan.quality.is_optimal == Some(true);
-        let is_final = !enough.get() || planned.planning.outcome.plans.first().is_some_and(is_proven);
-        if is_final {
-            repairs::add(&mut planned, text, &problem, (&mut self.grounds, &mut self.paths), &mut stop);
-        }
+        let (planned, is_final) = self.planned(compiled, &network.value, ground, &manner, host);
         if host.is_superseded() {
             return None;
         }
         let shown = Shown::new(&planned, network, self.last.as_ref().map(|last| &last.shown), &mut self.keys);
-        let structure = network.key;
-        let network = Arc::clone(&network.value);
-        let seed = update.seed;
-        let executions = Executions::default();
-        let last =
-            Last { structure, network, program, map, options, seed, planned, is_final, shown, executions };
-        Some(self.last.insert(last))
+        Some(self.last.insert(Last {
+            structure: network.key,
+            network: Arc::clone(&network.value),
+            program: Arc::clone(program),
+            map,
+            manner: Manner { most_millis: None, ..manner },
+            planned,
+            is_final,
+            shown,
+            executions: Executions::default(),
+        }))
+    }
+
+    /// Plans, and tells whether no better plan is to be looked for.
+    pub(super) fn planned(
+        &mut self,
+        compiled: &Compiled,
+        network: &Arc<Network>,
+        ground: Option<&Ground>,
+        manner: &Manner,
+        host: &mut dyn CoreHost,
+    ) -> (Planned, bool) {
+        let enough = Cell::new(false);
+        let problem = planning::Problem {
+            options: manner.options,
+            enough: Some(&enough),
+            ..compiled.problem(network, ground, manner.seed)
+        };
+        let due_millis = manner.most_millis.map(|most| host.now_millis() + most);
+        let mut stop = || {
+            enough.set(due_millis.is_some_and(|due| host.now_millis() >= due));
+            host.is_superseded()
+        };
+        if manner.without_paths {
+            let outcome = kirk::plan(network, &manner.options, &mut |_: &Stats| stop() || enough.get());
+            return (planning::without_paths(network, outcome), !enough.get());
+        }
+        let mut planned = planning::plan(&problem, &mut self.grounds, &mut self.paths, &mut stop);
+        let outcome = &planned.planning.outcome;
+        let is_proven = |plan: &Plan| plan.quality.is_optimal == Some(true);
+        let is_decided = outcome.status == Status::NoPlan || outcome.plans.first().is_some_and(is_proven);
+        let is_final = is_decided || !enough.get();
+        if is_final && manner.with_repairs {
+            let text = (&*compiled.source, &compiled.goal);
+            repairs::add(&mut planned, text, &problem, (&mut self.grounds, &mut self.paths), &mut stop);
+        }
+        (planned, is_final)
     }
 }

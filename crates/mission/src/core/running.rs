@@ -3,45 +3,18 @@
 use std::sync::Arc;
 
 use executive::Script;
-use link::ProgramChance;
-use link::{Response, Update};
-use rmpl::program::Program;
-use snapshot::MapKey;
+use link::{ProgramChance, Response, Update};
 use snapshot::{RobustnessSettings, Tally};
-use terrain::Terrain;
-use tpn::Network;
 
 use super::Core;
+use crate::evaluated::Evaluated;
 use crate::execution;
 use crate::host::CoreHost;
-use crate::planning::{self, Planned};
 use crate::program_chance;
-use crate::programs::Programs;
-use crate::sampling::{Sampled, Sampler};
-
-/// A text with its plan.
-pub(super) struct Evaluated {
-    pub(super) program: Arc<Program>,
-    programs: Arc<Programs>,
-    network: Arc<Network>,
-    pub(super) ground: Option<(MapKey, Arc<Terrain>)>,
-    pub(super) planned: Planned,
-}
+use crate::sampling::Sampled;
 
 /// Runs are made for about this long before the answer says how far they got.
 const SAMPLING_MILLIS: f64 = 120.0;
-
-impl Evaluated {
-    fn problem(&self, update: &Update) -> planning::Problem<'_> {
-        planning::Problem {
-            ground: self.ground.as_ref().map(|(key, map)| (key, map)),
-            options: kirk::Options { search: update.search, ..kirk::Options::default() },
-            seed: update.seed,
-            programs: Some(&self.programs),
-            ..planning::Problem::new(&self.network, &self.program)
-        }
-    }
-}
 
 impl Core {
     pub(super) fn execute(&mut self, update: &Update, script: Script, host: &mut dyn CoreHost) {
@@ -52,18 +25,13 @@ impl Core {
             if let Some(run) = self.last.as_mut().and_then(|last| last.executions.find(&script, revision)) {
                 return Ok(run);
             }
-            let Evaluated { network, program, programs, .. } = &evaluated;
-            execution::check_disturbances(network, program, programs, &script.disturbances)?;
-            let problem = evaluated.problem(update);
-            execution::execute(&problem, &evaluated.planned, &script, &mut self.grounds, &mut self.paths)
-                .ok_or_else(|| NO_PLAN.to_owned())?
-                .map(|ran| {
-                    let (program, planned) = (&evaluated.program, &evaluated.planned);
-                    let run = Arc::new(execution::executed(revision, script, program, planned, ran));
-                    self.last.iter_mut().for_each(|last| last.executions.keep(Arc::clone(&run)));
-                    run
-                })
-                .map_err(|error| error.to_string())
+            evaluated.compiled.check_disturbances(&script)?;
+            let ran = self.run(&evaluated, &script).ok_or_else(|| NO_PLAN.to_owned())?;
+            let ran = ran.map_err(|error| error.to_string())?;
+            let (program, planned) = (&evaluated.compiled.program, &evaluated.planned);
+            let run = Arc::new(execution::executed(revision, script, program, planned, ran));
+            self.last.iter_mut().for_each(|last| last.executions.keep(Arc::clone(&run)));
+            Ok(run)
         });
         host.answer(match executed {
             Ok(run) => Response::Execution(run),
@@ -80,7 +48,7 @@ impl Core {
     ) {
         let revision = update.revision;
         let Some(evaluated) = self.evaluate(update, host) else { return };
-        let sampled = evaluated.and_then(|it| self.sample_evaluated(&it, update, &settings, from, host));
+        let sampled = evaluated.and_then(|it| self.sample_evaluated(&it, revision, &settings, from, host));
         host.answer(match sampled {
             Ok(tally) => Response::Sampled { revision, settings: Box::new(settings), from, tally },
             Err(reason) => Response::NotExecuted { revision, reason },
@@ -90,33 +58,34 @@ impl Core {
     fn sample_evaluated(
         &mut self,
         evaluated: &Evaluated,
-        update: &Update,
+        revision: u64,
         settings: &RobustnessSettings,
         from: u64,
         host: &mut dyn CoreHost,
     ) -> Result<Tally, String> {
         let begun = host.now_millis();
-        let is_known = self.sampler.as_ref().is_some_and(|known| {
-            known.revision == update.revision && known.uncertainty == settings.uncertainty
-        });
-        if !is_known {
-            let sampler = Sampler::new(&evaluated.problem(update), &evaluated.planned, &settings.uncertainty)
-                .ok_or_else(|| NO_PLAN.to_owned())?
-                .map_err(|error| error.to_string())?;
-            let uncertainty = settings.uncertainty.clone();
-            self.sampler = Some(Sampled { revision: update.revision, uncertainty, sampler });
-        }
+        let is_known =
+            |known: &Sampled| known.revision == revision && known.uncertainty == settings.uncertainty;
+        let sampled = match self.sampler.take().filter(is_known) {
+            Some(known) => known,
+            None => Sampled {
+                revision,
+                uncertainty: settings.uncertainty.clone(),
+                sampler: evaluated
+                    .sampler(&settings.uncertainty)
+                    .ok_or_else(|| NO_PLAN.to_owned())?
+                    .map_err(|error| error.to_string())?,
+            },
+        };
         let mut tally = Tally::default();
-        let Some(Sampled { sampler, .. }) = &self.sampler else { return Ok(tally) };
-        let problem = evaluated.problem(update);
         for number in from..settings.runs {
-            sampler
-                .run(&problem, settings, number, &mut self.grounds, &mut self.paths, &mut tally)
+            self.sample_run((evaluated, &sampled.sampler), settings, number, &mut tally)
                 .map_err(|error| error.to_string())?;
             if host.now_millis() - begun > SAMPLING_MILLIS || host.is_superseded() {
                 break;
             }
         }
+        self.sampler = Some(sampled);
         Ok(tally)
     }
 
@@ -133,26 +102,6 @@ impl Core {
         let mut go_on = || host.now_millis() - begun <= SAMPLING_MILLIS && !host.is_superseded();
         let tally = program_chance::sample_control(control, &chance, from, &mut go_on);
         host.answer(Response::ProgramSampled { revision, chance, from, tally });
-    }
-
-    /// The plan of a text; `None` if that was given up for a newer request, an error if it has none.
-    pub(super) fn evaluate(
-        &mut self,
-        update: &Update,
-        host: &mut dyn CoreHost,
-    ) -> Option<Result<Evaluated, String>> {
-        if rmpl::control::is_control_text(&update.source) {
-            return Some(Err("a control program is stepped, not executed".to_owned()));
-        }
-        self.read(update);
-        let (Some(network), _) = self.reading.compile(&update.goal, &mut self.keys) else {
-            return Some(Err("the mission has errors".to_owned()));
-        };
-        let program = self.reading.program().value;
-        let programs = self.reading.programs();
-        let (ground, _) = self.grounds.resolve(&program.world);
-        let planned = self.plan(update, &network, ground.as_ref(), None, host)?.planned.clone();
-        Some(Ok(Evaluated { program, programs, network: network.value, ground, planned }))
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use kirk::Search as SearchKind;
 use link::{Request, Update};
 use review::Record;
 use review::compare::Side;
@@ -133,14 +132,7 @@ impl CompareState {
         self.last_token += 1;
         let token = self.last_token;
         self.waiting = Some((token, name));
-        let update = Update {
-            revision: 0,
-            source: source.into(),
-            goal,
-            search: SearchKind::default(),
-            seed,
-            trace: false,
-        };
+        let update = Update { goal, seed, ..Update::new(0, source) };
         window.post(Request::Evaluate { token, update });
     }
 

@@ -1,6 +1,6 @@
 //! Networks of other tools, networks with uncertainty, and plans.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 use interchange::Source;
 use interchange::plan_schema::Document;
@@ -87,7 +87,7 @@ fn networks(input: &[u8]) -> Outcome {
         Err(reason) => return refused(&reason.to_string()),
     };
     let said = source.not_honoured().join(" ");
-    let network = Arc::new(source.into_network());
+    let network = source.into_network();
     let written = interchange::plan_schema::write(&network);
     assert!(Document::parse(&written.to_string()).is_ok(), "what is written can be read");
     let mut left = 200;
@@ -95,9 +95,10 @@ fn networks(input: &[u8]) -> Outcome {
         left -= 1;
         left <= 0
     };
-    let snapshot = mission::planned_network(text.into(), Arc::clone(&network), Vec::new(), &mut stop);
-    let plan = snapshot.plan();
+    let outcome = kirk::plan(&network, &kirk::Options::default(), &mut |_: &kirk::Stats| stop());
+    let plan = outcome.plans.first();
     if let Some(plan) = plan {
+        let _ = verify::check_plan(&network, plan);
         let plan = tpn::plan_json::plan_to_json(&network, plan);
         assert!(tpn::plan_json::plan_from_json(&network, &plan).is_ok(), "what is written can be read");
     }

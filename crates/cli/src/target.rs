@@ -1,0 +1,63 @@
+//! What a command is about: a mission text, or a network written by another tool, and what of it is planned.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use exact::{Bound, Time};
+use snapshot::Goal;
+
+/// What is to be compiled or planned.
+#[derive(clap::Args, Debug)]
+pub struct Target {
+    /// A mission text, or a network in JSON or EDN (`.tpn.json`, `.tpn.edn`), a pTPN (`.tpn`, `.ptpn`, `.xml`), or a plan of `PlanDev` (`.json`); `-` is standard input.
+    pub file: PathBuf,
+    /// The scenario; the first of the file by default.
+    #[arg(long, conflicts_with = "activity")]
+    pub scenario: Option<String>,
+    /// An activity instead of a scenario.
+    #[arg(long)]
+    pub activity: Option<String>,
+    /// The bounds of the activity's invocation, such as 450,540 or 0,inf.
+    #[arg(long, requires = "activity", value_name = "L,U")]
+    pub bounds: Option<String>,
+}
+
+impl Target {
+    /// What the call asks to be planned.
+    pub fn goal(&self) -> anyhow::Result<Goal> {
+        if let Some(name) = &self.activity {
+            let (lower, upper) = match &self.bounds {
+                Some(bounds) => parse_bounds(bounds)?,
+                None => (Time::ZERO, Bound::Infinite),
+            };
+            return Ok(Goal::Activity { name: name.into(), lower, upper });
+        }
+        // Without a choice, a file without scenarios is an error: nothing in it says what to plan.
+        Ok(self.scenario.as_ref().map_or(Goal::FirstScenario, |name| Goal::Scenario(name.into())))
+    }
+}
+
+/// Whether a file holds a network rather than a mission text.
+pub fn is_network(name: &str, source: &str) -> bool {
+    let is_named_so = [".json", ".edn", ".tpn", ".ptpn", ".xml"].iter().any(|ending| name.ends_with(ending));
+    is_named_so || (name == "-" && interchange::is_network_text(source))
+}
+
+fn parse_bounds(text: &str) -> anyhow::Result<(Time, Bound)> {
+    let explain = || format!("--bounds wants two times such as 450,540 or 0,inf, not `{text}`");
+    let (lower, upper) = text.split_once(',').with_context(explain)?;
+    let lower: Time = lower.parse().with_context(explain)?;
+    let upper: Bound = upper.parse().with_context(explain)?;
+    anyhow::ensure!(
+        !lower.is_negative() && Bound::Finite(lower) <= upper,
+        "--bounds wants 0 ≤ L ≤ U, not `{text}`"
+    );
+    Ok((lower, upper))
+}
+
+/// The value of `--threat-gap`.
+pub fn parse_threat_gap(text: &str) -> anyhow::Result<Time> {
+    let gap: Time = text.parse().with_context(|| format!("--threat-gap wants a time, not `{text}`"))?;
+    anyhow::ensure!(!gap.is_negative(), "--threat-gap must not be negative");
+    Ok(gap)
+}
