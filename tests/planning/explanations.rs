@@ -8,13 +8,11 @@ use std::sync::Arc;
 use acceptance::mission::compile;
 use acceptance::missions::missions;
 use exact::Time;
-use kirk::Search as SearchKind;
 use kirk::{Constraint, CycleMember, Event, ExpansionLimit, Options, Search};
-use link::{Request, Response, Update};
-use mission::{Core, CoreHost};
 use review::{Fate, review};
 use rmpl::program::LabelMode;
-use snapshot::{Goal, Snapshot};
+use snapshot::Goal;
+use test_core::snapshot;
 use tpn::{ArcId, ArcKind, LabelId, Network, Top};
 use workbench::state::search::wording;
 
@@ -194,39 +192,6 @@ fn no_explanation_speaks_of_what_the_mission_has_not() {
     assert!(strange.is_empty(), "{}", strange.join("\n"));
     assert!(told > 10_000, "{told} sentences");
     assert!(reasons_without_conditions > 150, "{reasons_without_conditions} reasons");
-}
-
-#[derive(Default)]
-struct Answers(Option<Arc<Snapshot>>);
-
-impl CoreHost for Answers {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        if let Response::Snapshot(snapshot) = response {
-            self.0 = Some(snapshot);
-        }
-    }
-}
-
-fn snapshot(source: &str) -> Arc<Snapshot> {
-    let update = Update {
-        revision: 1,
-        source: source.into(),
-        goal: Goal::Default,
-        search: SearchKind::default(),
-        seed: 0,
-        trace: false,
-    };
-    let mut answers = Answers::default();
-    Core::default().handle(Request::Update(update), &mut answers);
-    answers.0.expect("an update is always answered")
 }
 
 #[test]

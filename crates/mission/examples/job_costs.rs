@@ -13,7 +13,7 @@ use link::wire::{AskerEnd, CoreEnd};
 use link::{ControlRun, ControlStanding, PathGrowth, Request, Response, Update};
 use mission::{Control, Core, CoreHost, read_control};
 use motion::PlannerKind;
-use snapshot::{Goal, Snapshot};
+use snapshot::Snapshot;
 use tpn::generate::{Recipe, Tightness, mission};
 
 /// The core's host: measures, and passes answers on as bytes.
@@ -162,14 +162,7 @@ fn comment_edit() {
         (2, "comment at its beginning edited", format!("// A longer note.\n{source}")),
         (3, "comment at its end added", format!("// A longer note.\n{source}\n// The end.\n")),
     ] {
-        let update = Update {
-            revision,
-            source: text.into(),
-            goal: Goal::Default,
-            search: kirk::Search::default(),
-            seed: 1,
-            trace: false,
-        };
+        let update = Update { seed: 1, ..Update::new(revision, text) };
         (page.bytes, page.write_millis, page.read_millis) = (0, 0.0, 0.0);
         page.text = Arc::clone(update.source.text());
         let begun = Instant::now();
@@ -193,14 +186,7 @@ fn comment_edit() {
 
 fn growth() {
     let source = include_str!("../../../assets/missions/enroute.rmpl");
-    let update = Update {
-        revision: 1,
-        source: source.into(),
-        goal: Goal::Default,
-        search: kirk::Search::default(),
-        seed: 1,
-        trace: false,
-    };
+    let update = Update { seed: 1, ..Update::new(1, source) };
     let (mut core, mut page) = (Core::default(), page());
     page.text = Arc::clone(update.source.text());
     core.handle(Request::Update(update.clone()), &mut page);

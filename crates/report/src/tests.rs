@@ -4,9 +4,7 @@ mod paper;
 
 use std::sync::Arc;
 
-use kirk::Search as SearchKind;
-use link::{Request, Response, Update};
-use mission::{Core, CoreHost};
+use link::Response;
 use review::record::{Act, LineKey, Subject, Who};
 use review::{PlanStatus, Record, Review, Section, review};
 use rmpl::program::TimeUnit;
@@ -20,30 +18,6 @@ const SCENARIO: &str = include_str!("../../../tests/conformance/t01_enroute_scen
 const MISSION: &str = include_str!("../../../assets/missions/enroute.rmpl");
 const EPOCH: &str = "2004-01-25T05:05:00Z";
 
-#[derive(Default)]
-struct Answers {
-    snapshot: Option<Arc<Snapshot>>,
-    ground: Option<Arc<Terrain>>,
-}
-
-impl CoreHost for Answers {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        match response {
-            Response::Snapshot(snapshot) => self.snapshot = Some(snapshot),
-            Response::Map { map, .. } => self.ground = Some(map),
-            _ => {}
-        }
-    }
-}
-
 struct Planned {
     snapshot: Arc<Snapshot>,
     ground: Option<Arc<Terrain>>,
@@ -51,19 +25,14 @@ struct Planned {
 }
 
 fn planned(source: &str) -> Planned {
-    let update = Update {
-        revision: 1,
-        source: source.into(),
-        goal: Goal::Default,
-        search: SearchKind::default(),
-        seed: 0,
-        trace: false,
-    };
-    let mut answers = Answers::default();
-    Core::default().handle(Request::Update(update), &mut answers);
-    let snapshot = answers.snapshot.expect("an update is always answered");
+    let answers = test_core::answers(source);
+    let snapshot = answers.snapshot();
+    let ground = answers.0.into_iter().find_map(|answer| match answer {
+        Response::Map { map, .. } => Some(map),
+        _ => None,
+    });
     let review = review(&snapshot, &Goal::Default, 0, &mut || false);
-    Planned { snapshot, ground: answers.ground, review }
+    Planned { snapshot, ground, review }
 }
 
 fn report(source: &str, name: &str) -> String {

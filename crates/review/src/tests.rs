@@ -3,48 +3,13 @@
 use std::sync::Arc;
 
 use exact::{Bound, Time};
-use kirk::Search as SearchKind;
-use link::{Request, Response, Update};
-use mission::{Core, CoreHost};
 use snapshot::{Goal, Snapshot};
+pub(super) use test_core::snapshot;
 
 use super::{Fate, Review, Section, Status, TimeRange, content_hash, review};
 
 pub(super) const SCENARIO: &str = include_str!("../../../tests/conformance/t01_enroute_scenario.rmpl");
 pub(super) const MISSION: &str = include_str!("../../../assets/missions/enroute.rmpl");
-
-#[derive(Default)]
-struct Answers(Option<Arc<Snapshot>>);
-
-impl CoreHost for Answers {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        if let Response::Snapshot(snapshot) = response {
-            self.0 = Some(snapshot);
-        }
-    }
-}
-
-pub(super) fn snapshot(source: &str) -> Arc<Snapshot> {
-    let update = Update {
-        revision: 1,
-        source: source.into(),
-        goal: Goal::Default,
-        search: SearchKind::default(),
-        seed: 0,
-        trace: false,
-    };
-    let mut answers = Answers::default();
-    Core::default().handle(Request::Update(update), &mut answers);
-    answers.0.expect("an update is always answered")
-}
 
 pub(super) fn reviewed(source: &str) -> Review {
     review(&snapshot(source), &Goal::Default, 0, &mut || false)

@@ -1,7 +1,6 @@
 //! The link between front end and core on a fake transport: order, superseding, cancelling, silence, crash and retry.
 
 use rmpl::{Edit, Span};
-use snapshot::Goal;
 
 use super::*;
 use crate::JobId;
@@ -52,14 +51,7 @@ fn shown(request: &Request) -> String {
 }
 
 fn text(revision: u64) -> Update {
-    Update {
-        revision,
-        source: "".into(),
-        goal: Goal::default(),
-        search: kirk::Search::default(),
-        seed: 0,
-        trace: false,
-    }
+    Update::new(revision, "")
 }
 
 fn review(revision: u64) -> Request {

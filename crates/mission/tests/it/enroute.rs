@@ -4,58 +4,25 @@ use std::sync::Arc;
 
 use exact::{Bound, Time};
 use link::{Request, Response, Update};
-use mission::{Core, CoreHost};
-use snapshot::{Goal, Snapshot, Stage};
+use mission::Core;
+use snapshot::{Snapshot, Stage};
+use test_core::Answers;
 use tpn::NodeId;
-
-/// Keeps the answers.
-#[derive(Default)]
-struct Collected {
-    snapshots: Vec<Arc<Snapshot>>,
-    maps: usize,
-    comparisons: Vec<Arc<link::BothSearches>>,
-}
-
-impl CoreHost for Collected {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        match response {
-            Response::Snapshot(snapshot) => self.snapshots.push(snapshot),
-            Response::Map { .. } => self.maps += 1,
-            Response::Searches(comparison) => self.comparisons.push(comparison),
-            _ => {}
-        }
-    }
-}
 
 fn source() -> String {
     include_str!("../../../../assets/missions/enroute.rmpl").to_owned()
 }
 
-fn ask(core: &mut Core, collected: &mut Collected, source: &str) -> Arc<Snapshot> {
-    let request = Request::Update(Update {
-        revision: collected.snapshots.len() as u64,
-        source: source.into(),
-        goal: Goal::Default,
-        search: kirk::Search::Chronological,
-        seed: 1,
-        trace: false,
-    });
-    core.handle(request, collected);
-    let last = collected.snapshots.last().expect("every request is answered");
+fn ask(core: &mut Core, answers: &mut Answers, source: &str) -> Arc<Snapshot> {
+    let update = Update::new(answers.0.len() as u64, source);
+    core.handle(Request::Update(Update { search: kirk::Search::Chronological, seed: 1, ..update }), answers);
+    let last = answers.snapshot();
     assert_eq!(last.stage, Stage::Complete);
-    Arc::clone(last)
+    last
 }
 
 fn answer(source: &str) -> Arc<Snapshot> {
-    ask(&mut Core::default(), &mut Collected::default(), source)
+    ask(&mut Core::default(), &mut Answers::default(), source)
 }
 
 fn window(snapshot: &Snapshot, event: &str) -> (Time, Bound) {
@@ -108,26 +75,27 @@ fn both_rovers_drive_from_base_to_the_target_and_the_leader_stays_clear() {
 
 #[test]
 fn a_path_open_for_404_minutes_leaves_no_plan_and_450_brings_it_back() {
-    let (mut core, mut collected) = (Core::default(), Collected::default());
+    let (mut core, mut answers) = (Core::default(), Answers::default());
     let good = source();
     let short = good.replace("PATH1=OK [450,450]", "PATH1=OK [404,404]");
     assert_ne!(good, short);
-    assert!(ask(&mut core, &mut collected, &good).plan().is_some());
-    let failed = ask(&mut core, &mut collected, &short);
+    assert!(ask(&mut core, &mut answers, &good).plan().is_some());
+    let failed = ask(&mut core, &mut answers, &short);
     assert!(failed.plan().is_none());
     let failure = failed.planning.as_ref().and_then(|planning| planning.outcome.failure.clone());
     assert!(!failure.expect("the failure is explained").reasons.is_empty());
-    assert!(ask(&mut core, &mut collected, &good).plan().is_some());
-    assert_eq!(collected.maps, 1, "the ground is sent once");
+    assert!(ask(&mut core, &mut answers, &good).plan().is_some());
+    let maps = answers.0.iter().filter(|it| matches!(it, Response::Map { .. }));
+    assert_eq!(maps.count(), 1, "the ground is sent once");
 }
 
 #[test]
 fn the_same_text_and_seed_give_the_same_snapshot_whatever_came_before() {
     let fresh = answer(&source());
-    let (mut core, mut collected) = (Core::default(), Collected::default());
-    ask(&mut core, &mut collected, &source().replace("North-Ridge", "Other-Ridge"));
-    ask(&mut core, &mut collected, &source().replace("circle (72, 92, 13)", "circle (72, 92, 5)"));
-    let later = ask(&mut core, &mut collected, &source());
+    let (mut core, mut answers) = (Core::default(), Answers::default());
+    ask(&mut core, &mut answers, &source().replace("North-Ridge", "Other-Ridge"));
+    ask(&mut core, &mut answers, &source().replace("circle (72, 92, 13)", "circle (72, 92, 5)"));
+    let later = ask(&mut core, &mut answers, &source());
     // Keys are counted by a core.
     let same = Snapshot { revision: fresh.revision, keys: fresh.keys, ..(*later).clone() };
     assert_eq!(*fresh, same);
@@ -155,17 +123,12 @@ fn a_broken_text_still_gets_a_complete_answer_with_its_problems() {
 
 #[test]
 fn an_answer_with_a_recorded_search_survives_the_way_to_the_page() {
-    let mut collected = Collected::default();
-    let update = Update {
-        revision: 1,
-        source: include_str!("../../../../assets/missions/backjump.rmpl").into(),
-        goal: Goal::Default,
-        search: kirk::Search::Chronological,
-        seed: 1,
-        trace: true,
-    };
-    Core::default().handle(Request::Update(update), &mut collected);
-    let last = collected.snapshots.pop().expect("it is answered");
+    let mut answers = Answers::default();
+    let source = include_str!("../../../../assets/missions/backjump.rmpl");
+    let search = kirk::Search::Chronological;
+    let update = Update { search, seed: 1, trace: true, ..Update::new(1, source) };
+    Core::default().handle(Request::Update(update), &mut answers);
+    let last = answers.snapshot();
     assert!(last.planning.as_ref().is_some_and(|planning| planning.outcome.trace.is_some()));
     let bytes = postcard::to_stdvec(&Response::Snapshot(Arc::clone(&last))).expect("it can be written");
     let back: Response = postcard::from_bytes(&bytes).expect("it can be read");
@@ -174,19 +137,14 @@ fn an_answer_with_a_recorded_search_survives_the_way_to_the_page() {
 
 #[test]
 fn both_searches_of_a_mission_are_recorded_for_comparison() {
-    let mut collected = Collected::default();
+    let mut answers = Answers::default();
     let mut core = Core::default();
-    let update = Update {
-        revision: 7,
-        source: include_str!("../../../../assets/missions/backjump.rmpl").into(),
-        goal: Goal::Default,
-        search: kirk::Search::ConflictDirected,
-        seed: 1,
-        trace: false,
-    };
-    core.handle(Request::Update(update.clone()), &mut collected);
-    core.handle(Request::CompareSearches(update), &mut collected);
-    let comparison = collected.comparisons.pop().expect("it is answered");
+    let source = include_str!("../../../../assets/missions/backjump.rmpl");
+    let search = kirk::Search::ConflictDirected;
+    let update = Update { search, seed: 1, ..Update::new(7, source) };
+    core.handle(Request::Update(update.clone()), &mut answers);
+    core.handle(Request::CompareSearches(update), &mut answers);
+    let Some(Response::Searches(comparison)) = answers.0.pop() else { panic!("it is answered") };
     let [chronological, directed] = &comparison.searches;
     assert_eq!(chronological.search, kirk::Search::Chronological);
     assert_eq!(directed.search, kirk::Search::ConflictDirected);

@@ -1,8 +1,7 @@
 //! Cooperative exploration, from the text to the end of the run: vehicles that drive, a blimp that flies, a map that they
 //! share, and a path that is closed while they are on it.
 
-use executive::{Disturbance, Ending, Happening, Script};
-use mission::execution;
+use executive::{Disturbance, Ending, Happening};
 use mission::sampling::Sampler;
 use snapshot::Execution;
 use snapshot::{RobustnessSettings, Tally, Uncertainty};
@@ -13,16 +12,7 @@ const EXPLORATION: &str = include_str!("../../../../assets/missions/exploration.
 
 /// Executes a mission's plan, with vehicles that drive.
 fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
-    let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
-    let mission = Mission::read(source);
-    mission.with_plan((kirk::Options::default(), 0), |problem, planned, grounds, paths| {
-        let plan = planned.planning.outcome.plans.first().expect("there is a plan");
-        let verdict = verify::check_plan(&planned.network, plan);
-        assert!(verdict.valid, "{:?}", verdict.violations);
-        let ran = execution::execute(problem, &planned, &script, grounds, paths);
-        let ran = ran.expect("there is a plan").expect("its times fit");
-        mission::execution::executed(1, script.clone(), &mission.program, &planned, ran)
-    })
+    Mission::read(source).executed(0, disturbances)
 }
 
 fn violations(execution: &Execution) -> Vec<&str> {

@@ -13,13 +13,7 @@ use crate::support::Mission;
 
 /// Executes a mission's plan.
 fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
-    let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
-    let mission = Mission::read(source);
-    mission.with_plan((kirk::Options::default(), 1), |problem, planned, grounds, paths| {
-        let ran = execution::execute(problem, &planned, &script, grounds, paths);
-        let ran = ran.expect("there is a plan").expect("its times fit");
-        mission::execution::executed(1, script.clone(), &mission.program, &planned, ran)
-    })
+    Mission::read(source).executed(1, disturbances)
 }
 
 fn record(execution: &Execution) -> Vec<(f64, String)> {

@@ -3,55 +3,24 @@
 use std::sync::Arc;
 
 use link::{Request, Response, Update};
-use mission::{Core, CoreHost};
-use review::Review;
-use snapshot::{Execution, Goal, Problem, Snapshot, Stage};
-
-#[derive(Default)]
-struct Answers {
-    snapshot: Option<Arc<Snapshot>>,
-    review: Option<Arc<Review>>,
-    execution: Option<Arc<Execution>>,
-    tally: Option<snapshot::Tally>,
-}
-
-impl CoreHost for Answers {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        match response {
-            Response::Snapshot(snapshot) => self.snapshot = Some(snapshot),
-            Response::Review { review, .. } => self.review = Some(review),
-            Response::Execution(execution) => self.execution = Some(execution),
-            Response::Sampled { tally, .. } => self.tally = Some(tally),
-            _ => {}
-        }
-    }
-}
-
-fn update(revision: u64, source: &str) -> Update {
-    Update {
-        revision,
-        source: source.into(),
-        goal: Goal::Default,
-        search: kirk::Search::default(),
-        seed: 0,
-        trace: false,
-    }
-}
+use mission::Core;
+use snapshot::{Problem, Snapshot, Stage};
+use test_core::Answers;
 
 fn shown(core: &mut Core, revision: u64, source: &str) -> Arc<Snapshot> {
     let mut answers = Answers::default();
-    core.handle(Request::Update(update(revision, source)), &mut answers);
-    let snapshot = answers.snapshot.expect("an answer");
+    core.handle(Request::Update(Update::new(revision, source)), &mut answers);
+    let snapshot = answers.snapshot();
     assert_eq!((snapshot.revision, snapshot.stage), (revision, Stage::Complete));
     snapshot
+}
+
+/// The run that was answered.
+fn run(answers: &Answers) -> String {
+    answers.last(|answer| match answer {
+        Response::Execution(execution) => Some(format!("{execution:?}")),
+        _ => None,
+    })
 }
 
 fn codes(problems: &[Problem]) -> Vec<&str> {
@@ -83,13 +52,12 @@ fn a_network_is_planned_reviewed_and_executed_and_what_is_not_honoured_is_said()
         assert!(snapshot.planning.as_ref().and_then(|it| it.verdict.as_ref()).is_some_and(|it| it.valid));
     }
     let mut answers = Answers::default();
-    let text = update(2, &format!("\u{feff}{CHOICE}"));
+    let text = Update::new(2, format!("\u{feff}{CHOICE}"));
     core.handle(Request::Review { update: text.clone(), rules: Vec::new() }, &mut answers);
-    assert!(answers.review.is_some());
+    assert!(matches!(answers.0.last(), Some(Response::Review { .. })));
     let script = executive::Script::default();
     core.handle(Request::Execute { update: text, script }, &mut answers);
-    let execution = answers.execution.expect("a run");
-    assert!(format!("{execution:?}").contains("Drive"));
+    assert!(run(&answers).contains("Drive"));
 }
 
 #[test]
@@ -139,12 +107,15 @@ fn what_alternatives_that_were_not_taken_would_have_brought_holds_up_no_run() {
     let windows = tpn::plan_json::plan_to_json(network, plan)["windows"].to_string();
     assert!(windows.contains("Drive") && !windows.contains("Rest"), "{windows}");
     let mut answers = Answers::default();
-    core.handle(Request::Sample { update: update(1, &both), settings, from: 0 }, &mut answers);
-    let tally = answers.tally.take().expect("runs");
+    core.handle(Request::Sample { update: Update::new(1, &*both), settings, from: 0 }, &mut answers);
+    let tally = answers.last(|answer| match answer {
+        Response::Sampled { tally, .. } => Some(tally),
+        _ => None,
+    });
     assert_eq!((tally.runs, tally.succeeded), (20, 20), "{tally:?}");
     let script = r#"{"disturbances": [{"kind": "duration", "activity": "Rest#1", "duration": 8}]}"#;
     let script = serde_json::from_str(script).expect("a script");
-    core.handle(Request::Execute { update: update(1, &both), script }, &mut answers);
-    let run = format!("{:?}", answers.execution.expect("a run"));
+    core.handle(Request::Execute { update: Update::new(1, &*both), script }, &mut answers);
+    let run = run(&answers);
     assert!(run.contains("Finished") && run.contains("Drive") && !run.contains("Rest#1.end"), "{run}");
 }

@@ -12,7 +12,7 @@ use link::{
 };
 use mission::{Core, CoreHost};
 use review::{Review, plan_hash};
-use snapshot::{ContentKey, Execution, Goal, Snapshot, Stage};
+use snapshot::{ContentKey, Execution, Snapshot, Stage};
 
 /// Collects answers; gives up after so many looks.
 #[derive(Default)]
@@ -180,14 +180,7 @@ fn a_text_with_errors_and_a_program_without_a_plant_are_answered_too() {
 }
 
 fn update(revision: u64, source: &str) -> Update {
-    Update {
-        revision,
-        source: source.into(),
-        goal: Goal::Default,
-        search: kirk::Search::default(),
-        seed: 1,
-        trace: false,
-    }
+    Update { seed: 1, ..Update::new(revision, source) }
 }
 
 fn planned(core: &mut Core, revision: u64, source: &str) -> Arc<Snapshot> {
@@ -391,14 +384,7 @@ const ERRAND: &str = "primitive Walk()[5,20]; primitive Rest()[1,9]; scenario S[
 
 /// The run of `source` when the walk takes so long.
 fn walked(core: &mut Core, revision: u64, source: &str, duration: i64) -> Arc<Execution> {
-    let update = Update {
-        revision,
-        source: source.into(),
-        goal: Goal::Default,
-        search: kirk::Search::default(),
-        seed: 1,
-        trace: false,
-    };
+    let update = update(revision, source);
     let disturbance = Disturbance::Duration { activity: "Walk#1".into(), duration: Time::from(duration) };
     let script = Script { disturbances: vec![disturbance], ..Script::default() };
     let mut collected = Collected::default();

@@ -2,8 +2,7 @@
 //! with consequences for the plan.
 
 use exact::Time;
-use executive::{Disturbance, Ending, Happening, Script};
-use mission::execution;
+use executive::{Disturbance, Ending, Happening};
 use nalgebra::{Point2, distance};
 use snapshot::Execution;
 use snapshot::SimulatedDrive;
@@ -15,13 +14,7 @@ const DETOUR: &str = include_str!("../../../../assets/missions/detour.rmpl");
 
 /// Executes a mission's plan.
 fn run(source: &str, disturbances: &[Disturbance]) -> Execution {
-    let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
-    let mission = Mission::read(source);
-    mission.with_plan((kirk::Options::default(), 1), |problem, planned, grounds, paths| {
-        let ran = execution::execute(problem, &planned, &script, grounds, paths);
-        let ran = ran.expect("there is a plan").expect("its times fit");
-        mission::execution::executed(1, script.clone(), &mission.program, &planned, ran)
-    })
+    Mission::read(source).executed(1, disturbances)
 }
 
 fn minutes(time: Time) -> f64 {

@@ -1,12 +1,9 @@
 //! Two revisions of the Enroute mission, and plans read from JSON; the figures are those of SPEC 3.6.
 
-use std::sync::Arc;
-
-use kirk::Search as SearchKind;
 use link::{Request, Response, Update};
-use mission::{Core, CoreHost};
+use mission::Core;
 use serde_json::json;
-use snapshot::{Goal, Snapshot};
+use test_core::{Answers, snapshot};
 
 use super::{Change, Comparison, Side, Subject, compare};
 
@@ -14,46 +11,8 @@ const SCENARIO: &str = include_str!("../../../../tests/conformance/t01_enroute_s
 const BOTH: &str = include_str!("../../../../tests/conformance/t03_enroute_both_paths.rmpl");
 const MISSION: &str = include_str!("../../../../assets/missions/enroute.rmpl");
 
-#[derive(Default)]
-struct Answers(Vec<Response>);
-
-impl CoreHost for Answers {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        self.0.push(response);
-    }
-}
-
-fn update(source: &str) -> Update {
-    Update {
-        revision: 1,
-        source: source.into(),
-        goal: Goal::Default,
-        search: SearchKind::default(),
-        seed: 0,
-        trace: false,
-    }
-}
-
-fn worked_out(source: &str) -> Arc<Snapshot> {
-    let mut answers = Answers::default();
-    Core::default().handle(Request::Update(update(source)), &mut answers);
-    let snapshot = answers.0.into_iter().rev().find_map(|response| match response {
-        Response::Snapshot(snapshot) => Some(snapshot),
-        _ => None,
-    });
-    snapshot.expect("an update is always answered")
-}
-
 fn side(source: &str) -> Side {
-    Side::of_snapshot("side", &worked_out(source))
+    Side::of_snapshot("side", &snapshot(source))
 }
 
 fn found<'a>(comparison: &'a Comparison, name: &str) -> Vec<(Change, Subject, &'a str, &'a str)> {
@@ -130,7 +89,7 @@ fn a_withdrawn_condition_re_chooses_the_path_and_its_carrier() {
 
 #[test]
 fn a_plan_saved_as_json_is_the_same_plan() {
-    let snapshot = worked_out(MISSION);
+    let snapshot = snapshot(MISSION);
     let network = snapshot.network.as_deref().expect("it compiles");
     let plan = snapshot.plan().expect("there is a plan");
     let saved = tpn::plan_json::plan_to_json(network, plan);
@@ -182,15 +141,15 @@ fn a_reversed_order_is_re_chosen() {
 fn a_text_worked_out_for_comparing_leaves_the_open_plan_alone() {
     let mut core = Core::default();
     let mut answers = Answers::default();
-    core.handle(Request::Update(update(MISSION)), &mut answers);
+    core.handle(Request::Update(Update::new(1, MISSION)), &mut answers);
     let maps = |answers: &Answers| answers.0.iter().filter(|it| matches!(it, Response::Map { .. })).count();
     assert_eq!(maps(&answers), 1);
-    core.handle(Request::Evaluate { token: 7, update: update(BOTH) }, &mut answers);
+    core.handle(Request::Evaluate { token: 7, update: Update::new(1, BOTH) }, &mut answers);
     let Some(Response::Evaluated { token: 7, snapshot }) = answers.0.last() else {
         panic!("{:?}", answers.0.last());
     };
     assert_eq!(&*snapshot.source, BOTH);
-    core.handle(Request::Update(update(MISSION)), &mut answers);
+    core.handle(Request::Update(Update::new(1, MISSION)), &mut answers);
     assert_eq!(maps(&answers), 1, "the map is not sent again");
 }
 

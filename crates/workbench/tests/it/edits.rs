@@ -1,4 +1,4 @@
-//! An edit on its way from the caret to the core: whatever is typed, dropped, lost or started anew, the core has the text
+//! An edit on its way from the caret to the core: whatever is typed, dropped, lost or started again, the core has the text
 //! of the document, and what it says of it is what a core says that reads the whole text.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use link::wire::{self, AskerEnd, CoreEnd};
 use link::{Job, JobId, Link, LinkEvent, News, Request, Response, Since, Source, Transport, Update};
-use mission::{Core, CoreHost};
+use mission::Core;
 use proptest::prelude::*;
-use snapshot::{Goal, Snapshot};
+use snapshot::Snapshot;
+use test_core::Answers;
 use text_editing::{Caret, Document, Motion, TextCommand};
 use workbench::state::language::Language;
 
@@ -59,23 +60,6 @@ impl Transport for Workers {
     }
 }
 
-#[derive(Default)]
-struct Answers(Vec<Response>);
-
-impl CoreHost for Answers {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, response: Response) {
-        self.0.push(response);
-    }
-}
-
 /// A document that is edited, and the way from it to a core and back.
 struct Desk {
     document: Document,
@@ -90,19 +74,9 @@ struct Desk {
     lost: usize,
 }
 
-fn update(revision: u64, source: Source) -> Update {
-    Update { revision, source, goal: Goal::Default, search: kirk::Search::default(), seed: 0, trace: false }
-}
-
 /// What a core says that reads the whole text.
-fn fresh(text: &Arc<str>) -> Snapshot {
-    let mut answers = Answers::default();
-    Core::default().handle(Request::Update(update(1, Arc::clone(text).into())), &mut answers);
-    let last = answers.0.into_iter().rev().find_map(|answer| match answer {
-        Response::Snapshot(snapshot) => Some(content(&snapshot)),
-        _ => None,
-    });
-    last.expect("a text is answered")
+fn fresh(text: &str) -> Snapshot {
+    content(&test_core::snapshot(text))
 }
 
 fn content(snapshot: &Snapshot) -> Snapshot {
@@ -145,13 +119,13 @@ impl Desk {
         let source = Source::edited(self.document.shared_text(), since);
         self.texts.insert(revision, self.document.shared_text());
         self.posted = revision;
-        self.last_job = Some(self.link.post(Request::Update(update(revision, source))));
+        self.last_job = Some(self.link.post(Request::Update(Update::new(revision, source))));
     }
 
     /// Asks for something else about a text that the core was asked about before.
     fn review(&mut self, which: usize) {
         let Some((&revision, text)) = self.texts.iter().rev().nth(which) else { return };
-        let update = update(revision, Arc::clone(text).into());
+        let update = Update::new(revision, Arc::clone(text));
         self.link.post(Request::Review { update, rules: Vec::new() });
     }
 
@@ -201,7 +175,7 @@ impl Desk {
 
     /// The core's end takes another text for the one that is edited, and nobody is told.
     fn mislead(&mut self) {
-        let other = Request::Update(update(u64::MAX, "another text".into()));
+        let other = Request::Update(Update::new(u64::MAX, "another text"));
         let bytes = wire::write_request(&other).expect("a request is written");
         self.link.transport().running.end.read(&bytes).expect("a request is read");
     }
@@ -267,7 +241,7 @@ fn act(desk: &mut Desk, what: u8, at: usize, piece: usize) {
         24 => desk.review(0),
         25 => desk.review(at % 4),
         26 => {
-            let update = update(desk.document.revision(), MISSIONS[at % 2].into());
+            let update = Update::new(desk.document.revision(), MISSIONS[at % 2]);
             desk.link.post(Request::Evaluate { token: 1, update });
         }
         27 => desk.last_job.into_iter().for_each(|job| desk.link.cancel(job)),

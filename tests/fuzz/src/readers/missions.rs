@@ -162,14 +162,7 @@ impl CoreHost for Bounded {
 
 /// The text as the page asks for it.
 pub(super) fn update_of(text: &str) -> Update {
-    Update {
-        revision: 1,
-        source: text.into(),
-        goal: Goal::Default,
-        search: SearchKind::default(),
-        seed: 1,
-        trace: false,
-    }
+    Update { seed: 1, ..Update::new(1, text) }
 }
 
 /// What was answered last of a text.

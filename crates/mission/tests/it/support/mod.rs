@@ -3,11 +3,13 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
+use executive::{Disturbance, Script};
 use kirk::Options;
+use mission::execution;
 use mission::planning::{self, Planned, Problem};
 use mission::{Grounds, Paths};
 use rmpl::program::Program;
-use snapshot::Goal;
+use snapshot::{Execution, Goal};
 use tpn::Network;
 
 /// A mission without errors.
@@ -57,5 +59,17 @@ impl Mission {
             false
         });
         work(&problem, planned, &mut grounds, &mut paths)
+    }
+
+    /// Executes the mission's plan.
+    pub(crate) fn executed(&self, seed: u64, disturbances: &[Disturbance]) -> Execution {
+        let script = Script { disturbances: disturbances.to_vec(), ..Script::default() };
+        self.with_plan((Options::default(), seed), |problem, planned, grounds, paths| {
+            let verdict = planned.planning.verdict.as_ref().expect("there is a plan");
+            assert!(verdict.valid, "{:?}", verdict.violations);
+            let ran = execution::execute(problem, &planned, &script, grounds, paths);
+            let ran = ran.expect("there is a plan").expect("its times fit");
+            execution::executed(1, script.clone(), &self.program, &planned, ran)
+        })
     }
 }
