@@ -6,12 +6,13 @@ use tpn::generate::Rng;
 use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, Ordering, Plan, UseId, UseOrdering};
 use verify::{check_plan, check_schedule};
 
-use crate::brute_force::{Schedule, schedules, windows};
+use crate::brute_force::{schedules, windows};
+use crate::chance::{pick, thread, times};
 use crate::lasting_brute_force::{
     accepts_resources_at, accepts_states, accepts_states_at, excluding, levels, requirements, supporters,
     threats,
 };
-use crate::missions::{Sketch, closure, network, plan_without_windows, time};
+use crate::missions::{Sketch, closure, network, plan_without_windows};
 
 const HORIZON: i64 = 6;
 /// Missions with more schedules are left out: there are enough others.
@@ -25,25 +26,8 @@ fn tiny_mission(seed: u64) -> String {
         primitive InA() requires X=A uses R 2; primitive FromB() requires at start X=B; primitive NotB() requires not X=B;
         primitive Drink() consumes T 2; primitive Pour() produces T 1 uses R 1; primitive Mix() produces T 2 consumes T 1;
         primitive Hold() uses R 2;";
-    let threads: Vec<String> = (0..rng.between(2, 3)).map(|_| thread(&mut rng)).collect();
+    let threads: Vec<String> = (0..rng.between(2, 3)).map(|_| thread(&mut rng, activity, 12)).collect();
     format!("{declared}\nscenario S[0,{HORIZON}] = {{ {} }}\n", threads.join(", "))
-}
-
-fn thread(rng: &mut Rng) -> String {
-    let lead = match rng.below(3) {
-        0 => String::new(),
-        1 => format!("delay[{0},{0}]; ", rng.below(3)),
-        _ => format!("delay[0,{}]; ", rng.between(1, 4)),
-    };
-    let second = if rng.chance(40) { format!("; {}", part(rng)) } else { String::new() };
-    format!("{{ {lead}{}{second} }}", part(rng))
-}
-
-fn part(rng: &mut Rng) -> String {
-    if rng.chance(12) {
-        return format!("choose {{ {}, {} }}", activity(rng), activity(rng));
-    }
-    activity(rng)
 }
 
 fn activity(rng: &mut Rng) -> String {
@@ -63,10 +47,6 @@ fn activity(rng: &mut Rng) -> String {
         4 => "do { Wait()[1,1]; Wait()[0,1] } using R 2".to_owned(),
         _ => format!("{name}(){bounds}"),
     }
-}
-
-fn pick<'list, T>(rng: &mut Rng, list: &'list [T]) -> Option<&'list T> {
-    if list.is_empty() { None } else { Some(&list[rng.below(list.len() as u64) as usize]) }
 }
 
 /// A plan that is right as far as chance likes; without windows and levels.
@@ -187,10 +167,6 @@ fn verdicts_on_plans_with_state_and_resources_are_those_of_brute_force() {
         accepted > 500 && refused > 500 && refused_for_resources > 100,
         "{accepted} plans were accepted, {refused} refused, {refused_for_resources} for their resources"
     );
-}
-
-fn times(plan: &Plan, at: &Schedule) -> Vec<Option<exact::Time>> {
-    at.iter().zip(&plan.selected_nodes).map(|(&at, &is_selected)| is_selected.then(|| time(at))).collect()
 }
 
 #[test]

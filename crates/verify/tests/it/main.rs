@@ -2,6 +2,7 @@
 //! refused by the right rule with the right names, and every verdict on tiny networks against brute force.
 
 mod brute_force;
+mod chance;
 mod controllability;
 mod game;
 mod lasting_brute_force;

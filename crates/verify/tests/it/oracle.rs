@@ -4,7 +4,8 @@ use tpn::generate::Rng;
 use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, Ordering, Plan, Quality};
 use verify::{check_plan, check_schedule};
 
-use crate::brute_force::{Schedule, accepts_plan, accepts_schedule, conflicting, schedules, windows};
+use crate::brute_force::{accepts_plan, accepts_schedule, conflicting, schedules, windows};
+use crate::chance::{pick, thread, times};
 use crate::missions::{closure, network, time, units};
 
 const HORIZON: i64 = 7;
@@ -15,26 +16,9 @@ const MANY: usize = 4_000;
 fn tiny_mission(seed: u64) -> String {
     let mut rng = Rng::new(seed);
     let gap = rng.below(2);
-    let threads: Vec<String> = (0..rng.between(2, 3)).map(|_| thread(&mut rng)).collect();
+    let threads: Vec<String> = (0..rng.between(2, 3)).map(|_| thread(&mut rng, interval, 15)).collect();
     let lower = rng.below(3);
     format!("option threat_gap = {gap};\nscenario S[{lower},{HORIZON}] = {{ {} }}\n", threads.join(", "))
-}
-
-fn thread(rng: &mut Rng) -> String {
-    let lead = match rng.below(3) {
-        0 => String::new(),
-        1 => format!("delay[{0},{0}]; ", rng.below(3)),
-        _ => format!("delay[0,{}]; ", rng.between(1, 4)),
-    };
-    let second = if rng.chance(40) { format!("; {}", part(rng)) } else { String::new() };
-    format!("{{ {lead}{}{second} }}", part(rng))
-}
-
-fn part(rng: &mut Rng) -> String {
-    if rng.chance(15) {
-        return format!("choose {{ {}, {} }}", interval(rng), interval(rng));
-    }
-    interval(rng)
 }
 
 fn interval(rng: &mut Rng) -> String {
@@ -52,10 +36,6 @@ fn interval(rng: &mut Rng) -> String {
         2 => format!("do {{ B()[0,1]; A()[1,1] }} watching {condition}"),
         _ => format!("{condition}{bounds}"),
     }
-}
-
-fn pick<'list, T>(rng: &mut Rng, list: &'list [T]) -> Option<&'list T> {
-    if list.is_empty() { None } else { Some(&list[rng.below(list.len() as u64) as usize]) }
 }
 
 /// A plan that is right as far as chance likes.
@@ -157,11 +137,6 @@ fn verdicts_on_plans_are_those_of_brute_force() {
         }
     }
     assert!(accepted > 500 && refused > 500, "{accepted} plans were accepted and {refused} refused");
-}
-
-/// A schedule's times as the checker takes them.
-fn times(plan: &Plan, at: &Schedule) -> Vec<Option<exact::Time>> {
-    at.iter().zip(&plan.selected_nodes).map(|(&at, &is_selected)| is_selected.then(|| time(at))).collect()
 }
 
 #[test]
