@@ -47,7 +47,7 @@ enum Propagation {
 #[derive(Clone, Debug)]
 struct Tree {
     unfolding: Unfolding,
-    /// The points that must come after each, as far as one constraint says so.
+    /// The points that must come after each because of one constraint between the two.
     later: Arc<[Vec<PointId>]>,
     /// How many of those that must come before each have not been settled.
     earlier: Vec<u32>,
@@ -125,7 +125,7 @@ impl Dispatch {
         }
     }
 
-    /// Whether everything that must come before a point has been settled, as far as one constraint says so.
+    /// Whether each point that must come before this one, because of one constraint between the two, has its time.
     pub(crate) fn is_enabled(&self, point: PointId) -> bool {
         match &self.propagation {
             Propagation::Tree(tree) => tree.earlier[point.index()] == 0,

@@ -62,7 +62,7 @@ impl Planner {
     }
 
     /// Changes the bounds of an arc. Cheap if the new ones are whole numbers of the network's common unit; otherwise
-    /// the network is prepared anew. Unknown arcs are ignored.
+    /// the network is prepared again. Unknown arcs are ignored.
     pub fn set_bounds(&mut self, arc: ArcId, lower: Time, upper: Bound) {
         let Some(changed) = self.network.arcs.get_mut(arc.index()) else { return };
         let is_structural = crate::wording::is_structural(changed.kind);

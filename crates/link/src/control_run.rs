@@ -1,6 +1,6 @@
 //! A control program as it runs: what comes from outside, and how things stand between its steps.
 //!
-//! A run is asked for by its inputs. Whoever shows it holds the moments that were answered, and gets the others.
+//! A run is asked for by its inputs. The front end holds the moments that were answered, and gets the others.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-//! Between whoever shows a mission and the core that plans it: requests and answers as data, the jobs that they are, the
-//! queue and the rules by which jobs replace each other, and the bytes that travel.
+//! The connection of a front end with the core that plans its mission: requests and answers as data, jobs and their queue, the
+//! rules by which a job replaces another, and the bytes that travel.
 //!
 //! No thread, worker or clock is here: a [`Transport`] has them.
 

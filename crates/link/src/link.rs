@@ -20,7 +20,7 @@ use queue::Queue;
 
 /// Carries jobs to a core.
 pub trait Transport {
-    /// Starts a core that knows nothing. It is the `core`th, from 1; the one before has ended.
+    /// Starts a core that knows nothing. It is the `core`th, from 1; the previous core has ended.
     fn start(&mut self, core: u32);
 
     /// Hands a job to the core, which has none under way. The error says why it cannot.
@@ -52,7 +52,7 @@ pub enum News {
     Failed(String),
 }
 
-/// What happened, for whoever asked.
+/// What happened, for the front end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkEvent {
     /// A job was answered, in full or in part.
@@ -208,7 +208,7 @@ impl<T: Transport> Link<T> {
         }
     }
 
-    /// When [`Link::tick`] has something to do unless the core says something before.
+    /// When [`Link::tick`] has something to do, if the core says nothing until then.
     pub fn due_secs(&self) -> Option<f64> {
         let overdue = self.interrupted_secs.map(|since| since + self.transport.patience_secs());
         let is_watched = self.state == CoreState::Ready && self.queue.under_way().is_some();

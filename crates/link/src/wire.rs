@@ -1,4 +1,4 @@
-//! Requests and answers as bytes, between a core and whoever asks it from another memory.
+//! Requests and answers as bytes, between a core and a front end that does not share its memory.
 //!
 //! Of a text only the edits travel, as long as both ends know which text they are of. Of a snapshot only those parts
 //! travel that are not there already: [`CoreEnd`] knows what it has sent, [`AskerEnd`] holds what has come, and shares
@@ -62,7 +62,7 @@ struct SnapshotChange {
     timings: Timings,
     map: Option<MapKey>,
     keys: PartKeys,
-    /// How its text came from the one of that snapshot; whoever asked has the text itself.
+    /// How its text came from the text of that snapshot. The front end has the text itself.
     shift: Shift,
     problems: Change<Arc<[Problem]>>,
     program: Change<Arc<Program>>,

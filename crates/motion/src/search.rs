@@ -13,7 +13,7 @@ use crate::shortcut::{ShortcutSettings, shorten};
 use crate::trajectory::{Trajectory, drive_path};
 use crate::tree::Tree;
 
-/// A search under way: it holds no reference to the space, which each call gets anew and which must be the same.
+/// A search under way: it holds no reference to the space: each call gets it, and it must be the same.
 #[derive(Clone, Debug)]
 pub struct Search {
     query: Query,

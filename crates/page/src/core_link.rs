@@ -1,5 +1,5 @@
 //! The planning core in its web worker: carries jobs and answers as bytes. What waits, and when a worker is ended and
-//! started anew, `link` decides.
+//! started again, `link` decides.
 
 use std::{
     cell::RefCell,

@@ -29,7 +29,7 @@ pub struct Context<'a> {
     pub clock: &'a dyn Fn() -> f64,
     /// What panels are to do, each once: a panel takes what is meant for it.
     pub effects: &'a RefCell<PanelEffects>,
-    /// Where a panel that lays out its drawing anew says how long that took.
+    /// Where a panel that lays out its drawing again says how long that took.
     pub layout_millis: &'a Cell<Option<f64>>,
 }
 

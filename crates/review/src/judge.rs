@@ -88,7 +88,7 @@ impl Review {
     }
 
     /// Holds everything against `rules`, and against what runs with chance came to, if any were made. What was held
-    /// against other rules before is judged anew.
+    /// against other rules before is judged again.
     pub fn judge(&mut self, rules: &FlightRules, robustness: Option<&Robustness>) {
         self.rules = rules.clone();
         let unit = self.unit.clone();

@@ -3,7 +3,7 @@
 //!
 //! Each entry names the content and the plan that it is about, and is sealed over the entries before it: one that is
 //! altered, missing or put elsewhere is noticed when the document is read. It is no signature: whoever writes the whole
-//! document anew is found out by the last digest alone, which a report prints.
+//! document again is found out by the last digest alone, which a report prints.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;

@@ -43,7 +43,7 @@ impl Stn {
         }
     }
 
-    /// Forgets all edges and starts the potential anew.
+    /// Forgets all edges and starts the potential again.
     pub fn clear(&mut self) {
         self.edges.clear();
         self.first_out.fill(NONE);

@@ -307,7 +307,7 @@ impl Unfolding {
         }
     }
 
-    /// The expected points that have become late since this was asked. Each is told of once, until it is expected anew.
+    /// The expected points that have become late since this was asked. Each is told of once, until it is expected again.
     pub fn take_late(&mut self) -> Vec<PointId> {
         std::mem::take(&mut self.late)
     }

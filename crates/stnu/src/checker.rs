@@ -134,7 +134,7 @@ pub struct Checker {
     activated: Vec<Vec<u32>>,
     /// Paths, as a forest: each node's path goes along its arc and then its next node's path.
     nodes: Vec<Node>,
-    /// Rows as they were before they were found anew.
+    /// Rows as they were before they were found again.
     trail: Vec<(u32, Row)>,
     search: Search,
     visits: Vec<Visit>,
@@ -321,7 +321,7 @@ impl Checker {
         stack.push(Frame { link, awaited, seen: 0, met: NONE });
     }
 
-    /// Finds a link's row anew and bypasses its upper case, or says which links come first and where the paths from their
+    /// Finds a link's row again and bypasses its upper case, or says which links come first and where the paths from their
     /// activations start.
     fn search(&mut self, link: u32) -> Result<Vec<(u32, u32)>, Refusal> {
         let is_done = |other: u32| self.visits[other as usize] == Visit::Done;

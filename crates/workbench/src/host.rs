@@ -106,7 +106,7 @@ pub trait Host {
 pub enum HostEvent {
     /// The planning core answered.
     Answer(Response),
-    /// The planning core stopped while it worked on this revision and has been started anew. The text and the last
+    /// The planning core stopped while it worked on this revision and has been started again. The text and the last
     /// answer are unharmed; the next [`Request::Update`] is answered as usual, the one that stopped it is not
     /// repeated.
     CoreFailed {
@@ -115,7 +115,7 @@ pub enum HostEvent {
         /// What the core said when it stopped.
         message: String,
     },
-    /// The planning core ended and was started anew; what it was at is done again.
+    /// The planning core ended and was started again; what it was at is done again.
     CoreRestarted {
         /// What is known of the reason.
         message: String,

@@ -100,9 +100,9 @@ const FOCUS_TEXT: &str = "(() => { \
     const text = document.querySelector('[role=textbox][aria-label=\"Mission text\"]'); \
     if (document.querySelector(`[aria-activedescendant=${text.id}]`)) return true; \
     text.focus(); return false; })()";
-/// A text longer than this is begun anew.
+/// A longer text is replaced by a new one.
 const LONGEST_TEXT: usize = 1500;
-/// After so many disturbances a context gives way to a fresh one: tabs that were closed leave something behind.
+/// After so many disturbances a context gives way to a fresh one: closed tabs leave memory in use.
 const RUNS_OF_A_CONTEXT: u32 = 100;
 /// Width and height of the page in CSS pixels: small, because it is drawn without a graphics card.
 const SIZE: [u32; 2] = [560, 420];
@@ -168,7 +168,7 @@ struct Page {
 }
 
 impl Page {
-    /// Begins a text anew.
+    /// Replaces the text.
     fn begin(&mut self, text: &str) -> Result<()> {
         self.tab.evaluate(&format!("enroute.setSource({})", json!(text)))?;
         self.tab.wait_until(&format!("enroute.source() === {}", json!(text)))?;

@@ -23,7 +23,7 @@ const OF_EXAMPLES: [&str; 2] = ["--test-run-directory", "--test-args"];
 pub(crate) fn by_us(command: &mut Command) -> Result<&mut Command> {
     let rustdoc = env::var_os("RUSTDOC").unwrap_or_else(|| "rustdoc".into());
     let this = env::current_exe().context("this program does not know where it is")?;
-    // The build of the tests may have replaced this program; Linux then says so behind its path, where the new one is.
+    // The build of the tests may have replaced this program. Linux then appends a word to its path; the new program is at that path.
     let this = this.to_string_lossy().trim_end_matches(" (deleted)").to_owned();
     Ok(command.env(RUSTDOC, rustdoc).env("RUSTDOC", this).env("RUSTDOCFLAGS", "-D warnings"))
 }

@@ -43,7 +43,7 @@ enum Task {
     Bench(bench::Options),
     /// Reloads, closes and starves the page while somebody types, and counts the key presses that are lost.
     Disturb(Disturbances),
-    /// Gives mutated inputs to every reader of other people's data, and prints what came of it, reader by reader.
+    /// Gives mutated inputs to every reader of other people's data, and prints the results of each reader.
     Fuzz(Fuzzing),
     /// Counts the lines of each crate, without its tests.
     Lines {

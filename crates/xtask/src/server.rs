@@ -31,7 +31,7 @@ const PATIENCE: Duration = Duration::from_mins(1);
 /// How long the head of a request may take once it has begun, and each piece of the answer.
 const LONGEST_TRANSFER: Duration = Duration::from_secs(20);
 
-/// Asked by a page that wants to be loaded anew when it was rebuilt; answers how often that happened.
+/// How often the page was rebuilt: a page that asks for this loads itself again when the number changes.
 const BUILDS_PATH: &str = "/dev/builds";
 
 /// What a page that is being developed carries to notice that it was rebuilt.
@@ -65,7 +65,7 @@ struct Answer {
 impl SiteServer {
     /// Serves `folder` at `port`, or at the next free port above it; port 0 is any free port.
     ///
-    /// With `reloading`, the page asks now and then whether it was rebuilt and loads itself anew.
+    /// With `reloading`, the page asks now and then whether it was rebuilt, and loads itself again.
     pub fn start(folder: &Path, port: u16, reloading: bool) -> Result<Self> {
         let listener = bind(port)?;
         let address = listener.local_addr()?;

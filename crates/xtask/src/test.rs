@@ -141,7 +141,7 @@ pub(crate) fn run_parts(options: &Options) -> Result<bool> {
     Ok(count.failed == 0)
 }
 
-/// Runs a check, and says what came of it and how long it took.
+/// Runs a check, and prints its result and how long it took.
 fn timed(name: &str, check: impl FnOnce() -> Result<()>) -> Count {
     let start = Instant::now();
     let outcome = check();

@@ -15,7 +15,7 @@ use clap::Parser;
 use fuzz::attack::attack;
 use fuzz::readers::{READERS, Reader, by_name};
 
-/// Gives mutated inputs to every reader of other people's data, and prints what came of it.
+/// Gives mutated inputs to every reader of other people's data, and prints the results.
 #[derive(Parser)]
 #[command(name = "cargo xtask fuzz", bin_name = "cargo xtask fuzz")]
 struct Arguments {

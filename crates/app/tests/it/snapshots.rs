@@ -1,7 +1,7 @@
 //! Snapshots of the workspaces: every widget with its role, its name and its place, as assistive technologies are told.
 //! They are texts, so that they need no graphics and a change of one panel can be read.
 //!
-//! After an intended change, `UPDATE_SNAPSHOTS=1 cargo test -p app --test it snapshots` writes them anew.
+//! After an intended change, `UPDATE_SNAPSHOTS=1 cargo test -p app --test it snapshots` updates them.
 
 use crate::support;
 use std::fmt::Write as _;

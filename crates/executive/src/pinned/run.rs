@@ -68,7 +68,7 @@ impl Run {
         self.play(self.held.clone(), choices);
     }
 
-    /// Plays the run anew with these choices.
+    /// Plays the run again from its start, with these choices.
     pub(super) fn follow(&mut self, choices: &Pins) {
         self.play(self.strategy.play(), choices);
     }

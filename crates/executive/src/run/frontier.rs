@@ -38,7 +38,7 @@ impl Frontier {
 }
 
 impl Run<'_> {
-    /// Begins the frontier of the present plan anew, if it has one.
+    /// Begins the frontier of the present plan again, if it has one.
     pub(super) fn restart_frontier(&mut self) -> Result<(), PlanError> {
         if self.stage.dispatch.withstands_nature() {
             self.frontier = None;

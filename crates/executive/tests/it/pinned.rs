@@ -13,7 +13,7 @@ fn planned(source: &str) -> (Network, Plan) {
     (network, plan)
 }
 
-/// The windows of the plan with these pins, computed anew.
+/// The windows of the plan with these pins, computed again.
 fn recomputed(network: &Network, plan: &Plan, pins: &[(NodeId, Time)]) -> Vec<Option<Window>> {
     let mut constraints = PlanNetwork::new(network, plan).expect("the plan is consistent");
     let times: Vec<Time> = pins.iter().map(|pin| pin.1).collect();

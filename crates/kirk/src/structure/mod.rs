@@ -136,7 +136,7 @@ pub(crate) enum Relation {
 }
 
 impl Structure {
-    /// Computes all durations anew from the model's bounds.
+    /// Computes all durations again from the model's bounds.
     pub(crate) fn refresh(&mut self, model: &Model) -> Result<(), Unplannable> {
         self.initial.clear();
         self.initial.resize(self.blocks.len(), Duration::NEVER);

@@ -1,7 +1,7 @@
 //! The temporal plan network: drawn from the mission's structure, with what the plan or its failure adds.
 //!
 //! `data` holds what is drawn, `view` where it is seen from, `paint` puts it on the screen. Coordinates come from the
-//! `layout` crate and are computed anew when the network changes.
+//! `layout` crate and are computed again when the network changes.
 
 mod data;
 mod describe;

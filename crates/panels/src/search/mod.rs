@@ -247,14 +247,14 @@ impl SearchPanel {
 }
 
 impl Side {
-    /// Begins anew with another search.
+    /// Starts with another search.
     fn begin(&mut self, recording: &Recording) {
         if self.drawn.as_ref().is_some_and(|drawn| drawn.recording.is(recording)) {
             return;
         }
         let trace = recording.trace();
         if self.drawn.as_ref().is_some_and(|drawn| drawn.recording.trace() == trace) {
-            // The same search, come anew: everything stays where it is.
+            // The same search, come again: everything stays where it is.
             if let Some(drawn) = &mut self.drawn {
                 drawn.recording = recording.clone();
             }

@@ -120,7 +120,7 @@ impl Panel for TimelinePanel {
 }
 
 impl TimelinePanel {
-    /// Makes the chart anew where something that it is made of has changed.
+    /// Makes the chart again where something that it is made of has changed.
     fn prepare(&mut self, context: &Context<'_>, snapshot: &Arc<Snapshot>, network: &Network, plan: &Plan) {
         let state = context.state;
         let (view, step) =

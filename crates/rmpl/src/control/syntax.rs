@@ -58,7 +58,7 @@ pub enum ExpressionKind {
     Parallel(Vec<Expression>),
     /// One after the other.
     Sequence(Vec<Expression>),
-    /// Started anew at every step.
+    /// Started again at every step.
     Always(Box<Expression>),
     /// A choice by the current knowledge; without `otherwise` for `IF-THENNEXT`.
     IfThenNext {

@@ -15,7 +15,7 @@ use crate::state::terrain::TerrainCommand;
 use crate::state::toast::ToastKind;
 use crate::workspace::Workspace;
 
-/// The panels whose view begins anew at each stop.
+/// The panels whose view begins again at each stop.
 const VIEWS: [PanelKind; 4] =
     [PanelKind::Network, PanelKind::Timeline, PanelKind::Terrain, PanelKind::Distances];
 

@@ -1,6 +1,6 @@
 //! `web/enroute.d.ts`, made from the types that are written.
 //!
-//! After an intended change, `UPDATE_TYPES=1 cargo test -p workbench --lib typescript` writes it anew.
+//! After an intended change, `UPDATE_TYPES=1 cargo test -p workbench --lib typescript` updates it.
 
 use std::collections::BTreeSet;
 use std::path::Path;

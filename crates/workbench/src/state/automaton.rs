@@ -280,7 +280,7 @@ impl AutomatonState {
         injected
     }
 
-    /// Starts anew with this fault seed, and with these modes to come into by step and component.
+    /// Starts again with this fault seed, and with these modes to come into by step and component.
     pub fn show_run(&mut self, seed: FaultSeed, injected: &BTreeMap<u32, BTreeMap<SmolStr, SmolStr>>) {
         self.forget_steps();
         self.fault_seed = Some(seed);

@@ -77,7 +77,7 @@ impl ProgramChanceState {
         self.asked.as_ref().map(|(_, chance)| chance)
     }
 
-    /// The core was started anew: no more answers come.
+    /// The core was started again: no more answers come.
     pub(crate) const fn give_up(&mut self) {
         self.is_running = false;
     }

@@ -146,7 +146,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     assert_eq!(app.session.state().review.approved_times(), None);
     app.dispatch("edit.redo", &json!(null));
     assert_eq!(status(&app), "lapsed");
-    // The board approves the edited plan; what differs is acknowledged anew, what does not is not.
+    // The board approves the edited plan; what differs is acknowledged again, what does not is not.
     let left = app.json()["review"]["blockers"].clone();
     app.acknowledge_all("Grace");
     assert_eq!(app.json()["review"]["blockers"], json!([]), "{left}");

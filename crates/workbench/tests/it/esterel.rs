@@ -174,7 +174,7 @@ fn each_idiom_means_what_esterel_says_of_it() {
     assert_eq!(run(app, abort, &[S]), ["assert y=b"], "the handler without the body");
     assert!(has(&run(app, abort, &[NOTHING; 3]), "assert x=a"), "no signal, no abort");
     assert!(!has(&run(app, abort, &[NOTHING; 3]), "assert y=b"), "no signal, no handler");
-    // every: anew at each signal, where the body stands or has ended, and not ended by the signal that began it.
+    // every: again at each signal, where the body stands or has ended, and not ended by the signal that began it.
     let every = "every S do …";
     assert!(has(&run(app, every, &[S]), "assert x=a"));
     let second = run(app, every, &[S, x]);
