@@ -2,12 +2,15 @@
 //!
 //! `cargo doc` reads metadata that only `cargo check` writes, for all dependencies. For examples in documentation cargo calls
 //! rustdoc with the libraries that tests use instead. This program stands in for rustdoc there, and has it read the
-//! documentation of the same crate first.
+//! documentation of the same crate first, unless the library was not built again since that was found sound.
 
 use std::{
     env,
     ffi::{OsStr, OsString},
+    fs,
+    path::{Path, PathBuf},
     process::{Command, ExitCode},
+    time::SystemTime,
 };
 
 use anyhow::{Context as _, Result};
@@ -36,11 +39,59 @@ pub(crate) fn in_place_of_rustdoc() -> Option<ExitCode> {
         Command::new(&rustdoc).args(arguments).status().is_ok_and(|status| status.success())
     };
     let is_documented = without_examples(&arguments).is_none_or(|mut documenting| {
-        documenting.extend(["--out-dir".into(), target_dir().join("doc").into()]);
-        succeeds(&documenting)
+        let record = Record::of(&documenting);
+        documenting.extend(["--out-dir".into(), record.folder.clone().into()]);
+        record.is_current(&documenting) || (succeeds(&documenting) && record.write(&documenting).is_ok())
     });
     let succeeded = succeeds(&arguments) && is_documented;
     Some(if succeeded { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Says with which arguments the documentation of a crate was found sound, and when.
+struct Record {
+    /// Where the crate's documentation is written: in a folder of its own, because rustdoc joins what it finds in a
+    /// folder with what it adds.
+    folder: PathBuf,
+}
+
+impl Record {
+    /// The record for the crate that these arguments name.
+    fn of(arguments: &[OsString]) -> Self {
+        let name = values_of(arguments, "--crate-name").next().unwrap_or(OsStr::new("unnamed"));
+        Self { folder: target_dir().join("doc").join(name) }
+    }
+
+    fn file(&self) -> PathBuf {
+        self.folder.join("checked")
+    }
+
+    /// Whether the documentation was found sound with these arguments after the crate and its libraries were built.
+    /// Cargo builds a library again when any of its sources changes.
+    fn is_current(&self, arguments: &[OsString]) -> bool {
+        let changed = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
+        let is_older = |library: &OsStr, than: SystemTime| {
+            let library = library.to_string_lossy();
+            let path = library.split_once('=').map_or(&*library, |(_, path)| path);
+            changed(Path::new(path)).is_some_and(|changed| changed < than)
+        };
+        changed(&self.file()).is_some_and(|checked| {
+            fs::read_to_string(self.file()).is_ok_and(|kept| kept == lines_of(arguments))
+                && values_of(arguments, "--extern").all(|library| is_older(library, checked))
+        })
+    }
+
+    fn write(&self, arguments: &[OsString]) -> std::io::Result<()> {
+        fs::write(self.file(), lines_of(arguments))
+    }
+}
+
+/// The values that follow an option of this name.
+fn values_of<'a>(arguments: &'a [OsString], name: &str) -> impl Iterator<Item = &'a OsStr> {
+    arguments.windows(2).filter(move |pair| pair[0] == name).map(|pair| pair[1].as_os_str())
+}
+
+fn lines_of(arguments: &[OsString]) -> String {
+    arguments.iter().map(|argument| format!("{}\n", argument.to_string_lossy())).collect()
 }
 
 /// Arguments that have rustdoc read the documentation whose examples these arguments run, if they do.
@@ -70,5 +121,31 @@ mod tests {
         let asked = arguments("--edition=2024 --test src/lib.rs --test-run-directory here --extern a=b");
         assert_eq!(without_examples(&asked), Some(arguments("--edition=2024 src/lib.rs --extern a=b")));
         assert_eq!(without_examples(&arguments("-vV")), None);
+    }
+
+    #[test]
+    fn documentation_is_read_again_when_a_library_or_the_arguments_change() {
+        let folder = env::temp_dir().join(format!("enroute-documentation-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("temporary files can be written");
+        let record = Record { folder: folder.clone() };
+        let library = folder.join("liba.rlib");
+        let at = |seconds| SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(seconds);
+        let build_at = |seconds| {
+            let file = fs::File::create(&library).expect("temporary files can be written");
+            file.set_modified(at(seconds)).expect("times can be set");
+        };
+        let arguments: Vec<OsString> =
+            vec!["--extern".into(), format!("a={}", library.display()).into(), "src/lib.rs".into()];
+        build_at(1);
+        assert!(!record.is_current(&arguments), "nothing is recorded");
+        record.write(&arguments).expect("temporary files can be written");
+        assert!(record.is_current(&arguments));
+        assert!(!record.is_current(&arguments[..2]), "other arguments");
+        let later = SystemTime::now() + std::time::Duration::from_mins(1);
+        build_at(later.duration_since(SystemTime::UNIX_EPOCH).expect("it is after 1970").as_secs());
+        assert!(!record.is_current(&arguments), "the library was built again");
+        fs::remove_file(&library).expect("it is there");
+        assert!(!record.is_current(&arguments), "the library is gone");
+        fs::remove_dir_all(&folder).expect("it is there");
     }
 }

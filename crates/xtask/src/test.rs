@@ -3,8 +3,10 @@
 use std::{
     collections::BTreeSet,
     io::{BufRead as _, BufReader, Read},
+    num::NonZero,
     path::{Path, PathBuf},
     process::{Command, Stdio},
+    sync::atomic::{AtomicUsize, Ordering},
     thread,
     time::Instant,
 };
@@ -249,49 +251,78 @@ fn read_program(artifact: &Value) -> Option<TestProgram> {
     })
 }
 
-/// Runs test programs one after the other as cargo does.
+/// Runs test programs, as many at once as there are processors: a program that waits, or has one long test left, keeps none
+/// idle.
 fn run_programs(programs: &[TestProgram]) -> Result<Count> {
-    let mut all = Count::default();
     ensure!(!programs.is_empty(), "there are no tests");
-    for program in programs {
-        println!("\n{}: {}", program.package, program.name);
-        let mut command = Command::new(&program.executable);
-        command.current_dir(&program.folder).env("CARGO_MANIFEST_DIR", &program.folder);
-        if let Some(cargo) = std::env::var_os("CARGO") {
-            command.env("CARGO", cargo);
+    let next = AtomicUsize::new(0);
+    let run_next = || -> Result<Count> {
+        let mut count = Count::default();
+        while let Some(program) = programs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            count.add(run_program(program, programs.len() == 1)?);
         }
-        all.add(run_counting(linting(&mut command))?);
+        Ok(count)
+    };
+    let count = thread::available_parallelism().map_or(1, NonZero::get).min(programs.len());
+    thread::scope(|scope| {
+        let running: Vec<_> = (0..count).map(|_| scope.spawn(run_next)).collect();
+        let mut all = Count::default();
+        for worker in running {
+            all.add(worker.join().expect("running a program does not panic")?);
+        }
+        Ok(all)
+    })
+}
+
+/// Runs a test program where cargo would run it, alone or beside others.
+fn run_program(program: &TestProgram, is_alone: bool) -> Result<Count> {
+    let mut command = Command::new(&program.executable);
+    command.current_dir(&program.folder).env("CARGO_MANIFEST_DIR", &program.folder);
+    if let Some(cargo) = std::env::var_os("CARGO") {
+        command.env("CARGO", cargo);
     }
-    Ok(all)
+    run_counting(&format!("{}: {}", program.package, program.name), is_alone, linting(&mut command))
 }
 
 /// Links in the documentation lead somewhere, nothing in it is malformed, and its examples do what they say.
 fn check_documentation() -> Result<Count> {
     let mut command = cargo();
     command.args(["test", "--quiet", "--doc", "--workspace", "--no-fail-fast"]);
-    run_counting(linting(documentation::by_us(&mut command)?))
+    run_counting("documentation", false, linting(documentation::by_us(&mut command)?))
 }
 
-/// Runs a command of test programs, showing what it says and adding up the results. One that does not get as far as
-/// running them all counts as a failure.
-fn run_counting(command: &mut Command) -> Result<Count> {
+/// Runs a command of test programs and adds up the results. Shows what it says under a title: line by line if it runs alone,
+/// else in one piece when it has ended. One that does not get as far as running them all counts as a failure.
+fn run_counting(title: &str, is_alone: bool, command: &mut Command) -> Result<Count> {
     let shown = show(command);
     let mut running =
         command.stdout(Stdio::piped()).spawn().with_context(|| format!("`{shown}` could not be started"))?;
     let mut count = Count::default();
+    let mut report = String::new();
+    let mut say = |line: &str| {
+        if is_alone {
+            println!("{line}");
+        } else {
+            report.push_str(line);
+            report.push('\n');
+        }
+    };
+    say("");
+    say(title);
     if let Some(output) = running.stdout.take() {
         for line in BufReader::new(output).lines() {
             let line = line?;
-            println!("{line}");
+            say(&line);
             if let Some(result) = read_result(&line) {
                 count.add(result);
             }
         }
     }
     if !running.wait()?.success() && count.failed == 0 {
-        println!("`{shown}` failed");
+        say(&format!("`{shown}` failed"));
         count.failed = 1;
     }
+    print!("{report}");
     Ok(count)
 }
 
