@@ -40,7 +40,7 @@ fn main() -> Result<()> {
     let flavour = if is_asked("--development") { Flavour::Development } else { Flavour::Release };
     let site = if is_asked("--no-build") { flavour.folder() } else { site::build(flavour)? };
     let server = SiteServer::start(&site, 0, false)?;
-    let browser = Browser::start(Graphics::WebGl2)?;
+    let browser = Browser::start(Graphics::WebGl2, 1.0)?;
     let bench = Bench { begun: Instant::now(), browser, url: server.url().to_owned() };
     let (width, height) = WINDOW;
     println!("milliseconds, p50 / p90 / worst; {flavour:?} build, {width} × {height} pixels\n");

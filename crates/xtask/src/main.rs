@@ -82,7 +82,7 @@ fn disturb_page(options: &Disturbances) -> Result<()> {
         Some(folder) => folder.clone(),
         None => site::build(Flavour::Development)?,
     };
-    let browser = Browser::start(Graphics::WebGl2)?;
+    let browser = Browser::start(Graphics::WebGl2, 1.0)?;
     let losses = disturb::disturb(&browser, &folder, options.runs, options.seed, |made| {
         if made % 100 == 0 {
             eprintln!("{made} of {}", options.runs);

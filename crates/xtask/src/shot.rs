@@ -49,7 +49,7 @@ pub(crate) fn run(options: &Options) -> Result<()> {
     let flavour = if options.release { Flavour::Release } else { Flavour::Development };
     let folder = if options.no_build { flavour.folder() } else { site::build(flavour)? };
     let server = SiteServer::start(&folder, 0, false)?;
-    let browser = Browser::start(if options.webgpu { Graphics::WebGpu } else { Graphics::WebGl2 })?;
+    let browser = Browser::start(if options.webgpu { Graphics::WebGpu } else { Graphics::WebGl2 }, 1.0)?;
     let (width, height) = options.size;
     let tab = browser.open_context()?.open_tab(width, height)?;
     tab.go_to(&format!("{}#{}", server.url(), options.hash.trim_start_matches('#')))?;

@@ -11,15 +11,16 @@ use super::{devtools::Connection, tab::Tab};
 pub struct Context {
     connection: Rc<RefCell<Connection>>,
     id: String,
+    pixel_ratio: f64,
 }
 
 impl Context {
-    pub(super) fn open(address: &str) -> Result<Self> {
+    pub(super) fn open(address: &str, pixel_ratio: f64) -> Result<Self> {
         let mut connection = Connection::open(address)?;
         let created =
             connection.call(None, "Target.createBrowserContext", &json!({ "disposeOnDetach": true }))?;
         let id = created["browserContextId"].as_str().context("the browser opened no context")?.to_owned();
-        Ok(Self { connection: Rc::new(RefCell::new(connection)), id })
+        Ok(Self { connection: Rc::new(RefCell::new(connection)), id, pixel_ratio })
     }
 
     /// Opens an empty tab whose page is this large, in CSS pixels.
@@ -38,6 +39,6 @@ impl Context {
         let session =
             attached["sessionId"].as_str().context("the browser attached to no session")?.to_owned();
         drop(connection);
-        Tab::prepare(Rc::clone(&self.connection), session, width, height)
+        Tab::prepare(Rc::clone(&self.connection), session, [width, height], self.pixel_ratio)
     }
 }

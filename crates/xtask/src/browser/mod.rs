@@ -72,11 +72,13 @@ pub struct Browser {
     process: Child,
     profile: PathBuf,
     address: String,
+    pixel_ratio: f64,
 }
 
 impl Browser {
-    /// Starts Chromium, installing it first where that is possible.
-    pub fn start(graphics: Graphics) -> Result<Self> {
+    /// Starts Chromium, installing it first where that is possible. `pixel_ratio` is the number of pixels for each CSS
+    /// pixel along each side, `devicePixelRatio` to pages.
+    pub fn start(graphics: Graphics, pixel_ratio: f64) -> Result<Self> {
         let program = find_or_install_chromium()?;
         let profile = fresh_profile()?;
         let mut command = Command::new(&program);
@@ -96,9 +98,9 @@ impl Browser {
                 "--disable-dev-shm-usage",
                 "--hide-scrollbars",
                 "--mute-audio",
-                "--force-device-scale-factor=1",
                 "--lang=en-US",
             ])
+            .arg(format!("--force-device-scale-factor={pixel_ratio}"))
             .arg(format!("--user-data-dir={}", profile.display()))
             .args(graphics.switches())
             .arg("about:blank")
@@ -112,7 +114,7 @@ impl Browser {
         let mut process =
             command.spawn().with_context(|| format!("{} could not be started", program.display()))?;
         match wait_for_address(&mut process, "DevTools listening on ") {
-            Ok(address) => Ok(Self { process, profile, address }),
+            Ok(address) => Ok(Self { process, profile, address, pixel_ratio }),
             Err(reason) => {
                 let _ = process.kill();
                 let _ = process.wait();
@@ -124,7 +126,7 @@ impl Browser {
 
     /// Opens a context: nothing that another one stored, cached, or was allowed is known in it.
     pub fn open_context(&self) -> Result<Context> {
-        Context::open(&self.address)
+        Context::open(&self.address, self.pixel_ratio)
     }
 
     fn is_answering(&self) -> bool {
@@ -148,13 +150,14 @@ impl Drop for Browser {
 /// one starts another.
 pub struct SharedBrowser {
     graphics: Graphics,
+    pixel_ratio: f64,
     running: Mutex<Weak<Browser>>,
 }
 
 impl SharedBrowser {
     /// None runs yet.
-    pub const fn new(graphics: Graphics) -> Self {
-        Self { graphics, running: Mutex::new(Weak::new()) }
+    pub const fn new(graphics: Graphics, pixel_ratio: f64) -> Self {
+        Self { graphics, pixel_ratio, running: Mutex::new(Weak::new()) }
     }
 
     /// The browser that runs.
@@ -163,7 +166,7 @@ impl SharedBrowser {
         if let Some(browser) = running.upgrade().filter(|browser| browser.is_answering()) {
             return Ok(browser);
         }
-        let browser = Arc::new(Browser::start(self.graphics)?);
+        let browser = Arc::new(Browser::start(self.graphics, self.pixel_ratio)?);
         *running = Arc::downgrade(&browser);
         Ok(browser)
     }

@@ -25,6 +25,7 @@ const PAGE_WAS_LEFT: &str = "Inspected target navigated or closed";
 pub struct Tab {
     connection: Rc<RefCell<Connection>>,
     session: String,
+    pixel_ratio: f64,
     log: RefCell<Vec<String>>,
 }
 
@@ -58,10 +59,10 @@ impl Tab {
     pub(super) fn prepare(
         connection: Rc<RefCell<Connection>>,
         session: String,
-        width: u32,
-        height: u32,
+        [width, height]: [u32; 2],
+        pixel_ratio: f64,
     ) -> Result<Self> {
-        let tab = Self { connection, session, log: RefCell::default() };
+        let tab = Self { connection, session, pixel_ratio, log: RefCell::default() };
         for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
             tab.call(domain, &json!({}))?;
         }
@@ -76,7 +77,9 @@ impl Tab {
     pub fn resize(&self, width: u32, height: u32) -> Result<()> {
         self.call(
             "Emulation.setDeviceMetricsOverride",
-            &json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false }),
+            &json!({
+                "width": width, "height": height, "deviceScaleFactor": self.pixel_ratio, "mobile": false
+            }),
         )?;
         Ok(())
     }

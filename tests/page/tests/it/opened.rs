@@ -22,11 +22,15 @@ pub(crate) static SITE: LazyLock<PathBuf> =
     LazyLock::new(|| site::build(Flavour::Development).expect("the page can be built"));
 
 /// The browser of all tests that draw with WebGL2, each in a context of its own.
-pub(crate) static BROWSER: SharedBrowser = SharedBrowser::new(Graphics::WebGl2);
+pub(crate) static BROWSER: SharedBrowser = SharedBrowser::new(Graphics::WebGl2, PIXEL_RATIO);
 
 /// The size of the page in CSS pixels.
 const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 800;
+
+/// Pixels for each CSS pixel along each side. The processor draws every one of them, which is most of what these tests
+/// take: a quarter of them takes a third of the time.
+pub(crate) const PIXEL_RATIO: f64 = 0.5;
 
 /// The page in a context of its own.
 pub(crate) struct Opened {
@@ -78,8 +82,11 @@ impl Opened {
 
     fn from_site(site: &Path, graphics: Graphics, fragment: &str) -> Result<Self> {
         let server = SiteServer::start(site, 0, false)?;
-        let browser =
-            if graphics == Graphics::WebGl2 { BROWSER.get()? } else { Arc::new(Browser::start(graphics)?) };
+        let browser = if graphics == Graphics::WebGl2 {
+            BROWSER.get()?
+        } else {
+            Arc::new(Browser::start(graphics, PIXEL_RATIO)?)
+        };
         let context = browser.open_context()?;
         let tab = context.open_tab(WIDTH, HEIGHT)?;
         tab.go_to(&format!("{}#{fragment}", server.url()))?;

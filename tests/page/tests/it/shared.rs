@@ -8,7 +8,7 @@ use xtask::{
     server::SiteServer,
 };
 
-use crate::opened::{BROWSER, SITE};
+use crate::opened::{BROWSER, PIXEL_RATIO, SITE};
 
 #[test]
 fn what_one_context_keeps_no_other_one_finds() -> Result<()> {
@@ -30,7 +30,7 @@ fn what_one_context_keeps_no_other_one_finds() -> Result<()> {
 
 #[test]
 fn a_browser_that_crashed_is_told_and_followed_by_another_one() -> Result<()> {
-    let shared = SharedBrowser::new(Graphics::Nothing);
+    let shared = SharedBrowser::new(Graphics::Nothing, PIXEL_RATIO);
     let crashed = shared.get()?;
     let tab = crashed.open_context()?.open_tab(200, 200)?;
     let refusal = tab.call("Browser.crash", &json!({})).expect_err("nobody is left to answer");
