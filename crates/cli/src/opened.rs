@@ -28,7 +28,6 @@ pub struct Opened {
     pub name: String,
     /// Its text, joined with the texts of the files that it imports.
     pub source: Arc<str>,
-    /// The core.
     pub core: Core,
     file: PathBuf,
     /// Whether the file must be a network, so that it is an error if it cannot be read as one.

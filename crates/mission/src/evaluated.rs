@@ -23,7 +23,6 @@ pub(crate) const TRACE_EVENTS: usize = 200_000;
 /// A text, read and compiled.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    /// The text.
     pub source: Arc<str>,
     /// What of it is to be planned.
     pub goal: Goal,
@@ -86,7 +85,6 @@ impl Manner {
 /// A text with its plan, or with the reasons why there is none.
 #[derive(Clone, Debug)]
 pub struct Evaluated {
-    /// The text.
     pub compiled: Compiled,
     /// The network without paths.
     pub network: Arc<Network>,
