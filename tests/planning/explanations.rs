@@ -3,7 +3,6 @@
 //! the conformance cases and many random missions, by both searches.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 use acceptance::mission::compile;
 use acceptance::missions::missions;
