@@ -22,8 +22,8 @@ pub fn read_text(path: &Path) -> anyhow::Result<String> {
     })
 }
 
-/// The mission that begins in `path`, whose text has been read: joined with those of the files that it imports. These lie in
-/// its own folder, or in folders in there; what is elsewhere, links that lead out included, is no file of the mission.
+/// The text of the mission in `path`, which has been read, joined with the texts of the files that it imports. They must be in
+/// the folder of `path` or below it. A file elsewhere is not imported, even if a symbolic link leads to it.
 pub fn mission_of(path: &Path, text: &str) -> anyhow::Result<String> {
     let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|name| *name != "-") else {
         return Ok(rmpl::files::join("", text, |_| None));

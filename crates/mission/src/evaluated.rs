@@ -136,7 +136,7 @@ impl Evaluated {
         }
     }
 
-    /// The plan made ready for runs with chance; `None` if there is none.
+    /// Prepares the plan for random runs. `None` if there is no plan.
     pub fn sampler(&self, uncertainty: &Uncertainty) -> Option<Result<Sampler, PlanError>> {
         Sampler::new(&self.problem(), &self.planned, uncertainty)
     }

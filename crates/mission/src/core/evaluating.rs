@@ -131,7 +131,7 @@ impl Core {
         execution::execute(&problem, &evaluated.planned, script, &mut self.grounds, &mut self.paths)
     }
 
-    /// Makes run `number` with chance and adds it to `tally`; `sampler` is that of the plan.
+    /// Simulates run `number` with the seed and the uncertainty of `settings`, and adds its result to `tally`.
     pub fn sample_run(
         &mut self,
         (evaluated, sampler): (&Evaluated, &Sampler),
