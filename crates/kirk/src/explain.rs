@@ -9,20 +9,16 @@ use tpn::{Choice, DecisionId, LabelId, Network, OccurrenceKind};
 use typed_index_collections::TiVec;
 
 use crate::failure::{Failure, Member, Reason};
-use crate::model::{INFINITE, Model};
+use crate::model::{UNBOUNDED_BELOW, INFINITE, Model};
 use crate::options::{Stats, Termination, Unlimited};
-use crate::record::RecordedFailure;
-use crate::search::{Choices, Engine, Gaps, Halt, Setup, UNBOUNDED_BELOW};
-use crate::solver::{self, Answer, Problem};
+use crate::solver::{self, Answer, Problem, Touching, Unordered};
 use crate::trace::{Constraint, CycleMember};
 use crate::unplannable::Unplannable;
 use crate::{demanding, whole, wording};
 
 /// Explaining stops adding reasons after this many.
-const MAX_REASONS: u64 = 64;
+const MAX_REASONS: usize = 64;
 
-/// After going back so often, the solver takes over.
-pub(crate) const MAX_BACKTRACKS: u64 = 200;
 /// Conflicts that the solver may meet in all searches of one explanation: a second or two.
 const MAX_CONFLICTS: u64 = 30_000;
 
@@ -71,7 +67,6 @@ impl<'t> Effort<'t> {
     pub(crate) fn solve(
         &mut self,
         model: &Model,
-        gaps: Gaps,
         part: solver::Part<'_>,
     ) -> Option<(Answer, Option<Vec<Member>>)> {
         let mut is_stopped = false;
@@ -79,7 +74,7 @@ impl<'t> Effort<'t> {
             is_stopped |= self.termination.should_stop(stats);
             is_stopped || stats.conflicts >= self.conflicts
         };
-        let told = Problem::new(model, gaps, part, &mut || is_spent(&Stats::default()));
+        let told = Problem::new(model, part, &mut || is_spent(&Stats::default()));
         let (mut problem, mut solver) = told.ok()?;
         let answer = solver.solve(&mut problem, &mut is_spent);
         self.conflicts = self.conflicts.saturating_sub(solver.stats.conflicts);
@@ -109,7 +104,7 @@ pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) ->
     for &member in members {
         part.set(&model, member, true);
     }
-    part.fails(&mut effort).ok()?
+    part.is_refuted(&mut effort)
 }
 
 /// Why no plan makes `choices`, where none does: reasons that rest on these choices and on any others, and on nothing
@@ -123,7 +118,8 @@ pub fn explain_choices(
     explain(network, &model, choices, termination).map_or_else(|_| Vec::new(), |failure| failure.reasons)
 }
 
-/// Explains why there is no plan that makes the choices given.
+/// Explains why there is no plan that makes the choices given: one reason for each part of the choices that fails, the
+/// first complete choice in textual order first.
 pub(crate) fn explain(
     network: &Network,
     model: &Model,
@@ -131,70 +127,95 @@ pub(crate) fn explain(
     termination: &mut dyn Termination,
 ) -> Result<Failure, Unplannable> {
     let mut effort = Effort::for_size(model.num_nodes, termination);
-    if demanding::has_demands(model) {
-        let reasons: Vec<Reason> = whole::reason(network, model, given, &mut effort).into_iter().collect();
-        return Ok(Failure {
-            is_complete: !reasons.is_empty(),
-            reasons,
-            relaxations: Vec::new(),
-            is_of_gap: false,
-        });
-    }
-    let assumed = (!given.is_empty()).then(|| assumed(model, given));
-    let setup = Setup { jumps: true, records_failures: true, assumed, ..Setup::default() };
-    let mut engine = Engine::new(model, setup);
-    let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_REASONS;
-    let is_complete = engine.run(&mut enough)? == Halt::Exhausted;
-    let mut failures = engine.failures.found;
-    failures.sort_by(|left, right| left.choices.cmp(&right.choices));
     let mut reasons: Vec<Reason> = Vec::new();
-    for failure in &failures {
-        let reason = reason(network, model, failure, &mut effort)?;
-        if !reasons.iter().any(|known| known.choices == reason.choices && known.conflict == reason.conflict) {
-            reasons.push(reason);
-        }
+    let mut is_complete = false;
+    let is_by_choices = !demanding::has_demands(model) && model.has_contexts;
+    while is_by_choices && reasons.len() < MAX_REASONS && !effort.is_exhausted() {
+        let excluded = reasons.iter().map(|reason| reason.choices.as_slice()).collect::<Vec<_>>();
+        let choices = match first_completion(model, given, &excluded) {
+            Completion::Found(choices) => choices,
+            Completion::None => {
+                is_complete = !reasons.is_empty();
+                break;
+            }
+            Completion::Unknown => break,
+        };
+        let Some(mut reason) = whole::reason(network, model, &choices, &mut effort) else { break };
+        add_outer_choices(model, &mut reason.choices);
+        reasons.push(reason);
     }
     if !is_complete && let Some(reason) = whole::reason(network, model, given, &mut effort) {
         reasons.insert(0, reason);
-        return Ok(Failure { reasons, is_complete: true, relaxations: Vec::new(), is_of_gap: false });
+        is_complete = true;
     }
-    Ok(Failure { reasons, is_complete, relaxations: Vec::new(), is_of_gap: false })
+    Ok(Failure { is_complete, reasons, relaxations: Vec::new(), is_of_gap: false })
 }
 
-fn reason(
-    network: &Network,
-    model: &Model,
-    failure: &RecordedFailure,
-    effort: &mut Effort<'_>,
-) -> Result<Reason, Unplannable> {
-    let mut part = Part::new(model, &failure.choices);
-    let mut members = failure.members.clone();
-    for &member in &members {
-        part.set(model, member, true);
-    }
-    let mut is_minimal = part.fails(effort)? == Some(true);
-    if is_minimal {
-        // The last members first: what comes late in the text is told only if it matters.
-        for &member in failure.members.iter().rev() {
-            part.set(model, member, false);
-            match part.fails(effort)? {
-                Some(true) => members.retain(|&kept| kept != member),
-                Some(false) => part.set(model, member, true),
-                None => {
-                    part.set(model, member, true);
-                    is_minimal = false;
+/// The first complete choice that is none of those excluded.
+enum Completion {
+    Found(Vec<Choice>),
+    None,
+    /// Looking for it takes too long.
+    Unknown,
+}
+
+/// Looking for a complete choice may take so many steps.
+const MAX_STEPS: usize = 100_000;
+
+/// The first complete choice in textual order that makes the choices given and contains none of `excluded`.
+fn first_completion(model: &Model, given: &[Choice], excluded: &[&[Choice]]) -> Completion {
+    let taken = assumed(model, given);
+    let mut chosen: TiVec<DecisionId, Option<u32>> = vec![None; model.decisions.len()].into();
+    // Each decision on the way with the alternative to try next.
+    let mut path: Vec<(DecisionId, u32)> = Vec::new();
+    for _ in 0..MAX_STEPS {
+        let is_excluded = excluded.iter().any(|choices| {
+            choices.iter().all(|choice| chosen[choice.decision] == Some(choice.alternative))
+        });
+        let first = path.last().map_or(0, |(last, _)| last.index() + 1);
+        let is_open = |&decision: &DecisionId| {
+            let context = model.decisions[decision].context;
+            context.is_none_or(|outer| chosen[outer.decision] == Some(outer.alternative))
+        };
+        let next = (first..model.decisions.len()).map(DecisionId::from_index).find(is_open);
+        match next.filter(|_| !is_excluded) {
+            Some(decision) => path.push((decision, taken[decision].unwrap_or(0))),
+            None if !is_excluded => {
+                let choices = chosen.iter_enumerated();
+                let choices = choices
+                    .filter_map(|(decision, &alternative)| Some(Choice { decision, alternative: alternative? }));
+                return Completion::Found(choices.collect());
+            }
+            None => {
+                // The last decision with an alternative left takes that.
+                loop {
+                    let Some((decision, alternative)) = path.last_mut() else { return Completion::None };
+                    chosen[*decision] = None;
+                    let count = model.decisions[*decision].alternatives.len() as u32;
+                    if taken[*decision].is_none() && *alternative + 1 < count {
+                        *alternative += 1;
+                        break;
+                    }
+                    path.pop();
                 }
             }
         }
+        if let Some(&(decision, alternative)) = path.last() {
+            chosen[decision] = Some(alternative);
+        }
     }
-    let cycle = if is_minimal { part.first_cycle(effort)? } else { failure.cycle.clone() };
-    let choices = failure.choices.clone();
-    let told =
-        wording::Told { network, kind: failure.kind, choices: &choices, conflict: &members, cycle: &cycle };
-    let message = told.message();
-    let spans = spans(network, &members, &cycle);
-    let kind = failure.kind;
-    Ok(Reason { message, spans, choices, kind, conflict: members, cycle, is_minimal, failing_run: None })
+    Completion::Unknown
+}
+
+/// Adds the choices that lead to those that are there.
+fn add_outer_choices(model: &Model, choices: &mut Vec<Choice>) {
+    let mut next = 0;
+    while let Some(&choice) = choices.get(next) {
+        let outer = model.decisions[choice.decision].context;
+        choices.extend(outer.filter(|outer| !choices.contains(outer)));
+        next += 1;
+    }
+    choices.sort_unstable();
 }
 
 /// The places of a conflict: its conditions, then the bounds that take time; without a cycle those that it needs, what
@@ -244,15 +265,15 @@ pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]
     spans
 }
 
-/// Choices of alternatives as a search takes them; those that the network has not are left out.
-fn assumed(model: &Model, choices: &[Choice]) -> Choices {
+/// The alternative of each decision that is chosen; those that the network has not are left out.
+fn assumed(model: &Model, choices: &[Choice]) -> TiVec<DecisionId, Option<u32>> {
     let mut alternatives: TiVec<DecisionId, Option<u32>> = vec![None; model.decisions.len()].into();
     for choice in choices {
         if let Some(taken) = alternatives.get_mut(choice.decision) {
             *taken = Some(choice.alternative);
         }
     }
-    Choices { alternatives, ..Choices::default() }
+    alternatives
 }
 
 /// The planning problem that has only some of the bounds and conditions of another.
@@ -263,6 +284,8 @@ pub(crate) struct Part {
     assumed: TiVec<DecisionId, Option<u32>>,
     /// Whether durations that nature chooses are chosen like all others.
     pub(crate) ignores_nature: bool,
+    /// What holds of the whole mission, whatever is chosen.
+    loosest: Option<Unordered>,
 }
 
 impl Part {
@@ -276,7 +299,8 @@ impl Part {
         Self {
             active_labels: vec![false; model.conditions.labels.len()].into(),
             active_uses: vec![false; model.demands.num_uses()],
-            assumed: assumed(whole, choices).alternatives,
+            assumed: assumed(whole, choices),
+            loosest: Unordered::loosest(whole),
             model,
             ignores_nature: false,
         }
@@ -306,31 +330,6 @@ impl Part {
         self.assumed[decision] = alternative;
     }
 
-    /// Whether the part has no plan; `None` if that takes too long to find out.
-    fn fails(&self, effort: &mut Effort<'_>) -> Result<Option<bool>, Unplannable> {
-        if !effort.spend() {
-            return Ok(None);
-        }
-        if !self.model.constraints.is_empty() {
-            return Ok(self.is_refuted(effort));
-        }
-        let mut engine = Engine::new(&self.model, self.setup(false));
-        let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_BACKTRACKS;
-        match engine.run(&mut enough)? {
-            Halt::Solution => return Ok(Some(false)),
-            Halt::Exhausted => return Ok(Some(true)),
-            Halt::Stopped => {}
-        }
-        if let Some(fails) = self.is_refuted(effort) {
-            return Ok(Some(fails));
-        }
-        Ok(match engine.run(&mut |stats: &Stats| effort.is_spent(stats))? {
-            Halt::Solution => Some(false),
-            Halt::Exhausted => Some(true),
-            Halt::Stopped => None,
-        })
-    }
-
     /// Whether the solver proves that the part has no plan, or finds one; `None` if that takes too long, or if gaps
     /// alone decide.
     pub(crate) fn is_refuted(&self, effort: &mut Effort<'_>) -> Option<bool> {
@@ -348,36 +347,13 @@ impl Part {
             active_uses: Some(&self.active_uses),
             ignores_nature: self.ignores_nature,
             wants_core,
+            lists_all: false,
+            touching: Touching::Loosely,
+            loosest: self.loosest.as_ref(),
         };
-        match effort.solve(&self.model, Gaps::Trusted, part)? {
-            (Answer::Solved, _) => return Some(Refuted::No),
-            (Answer::Unsolvable, core) if self.model.gap == 0 => return Some(Refuted::By(core)),
-            _ => {}
-        }
-        let (answer, core) = effort.solve(&self.model, Gaps::Ignored, part)?;
-        (answer == Answer::Unsolvable).then_some(Refuted::By(core))
-    }
-
-    /// A contradiction among the bounds of the part, if there is one to show.
-    fn first_cycle(&self, effort: &mut Effort<'_>) -> Result<Vec<CycleMember>, Unplannable> {
-        let mut engine = Engine::new(&self.model, self.setup(true));
-        engine.run(&mut |stats: &Stats| effort.is_spent(stats))?;
-        Ok(engine
-            .failures
-            .found
-            .into_iter()
-            .map(|failure| failure.cycle)
-            .find(|cycle| !cycle.is_empty())
-            .unwrap_or_default())
-    }
-
-    fn setup(&self, records_failures: bool) -> Setup {
-        Setup {
-            jumps: true,
-            records_failures,
-            active_labels: Some(self.active_labels.clone()),
-            assumed: Some(Choices { alternatives: self.assumed.clone(), ..Choices::default() }),
-            ..Setup::default()
+        match effort.solve(&self.model, part)? {
+            (Answer::Unsolvable, core) => Some(Refuted::By(core)),
+            _ => Some(Refuted::No),
         }
     }
 }

@@ -26,14 +26,8 @@ macro_rules! ids {
 }
 
 ids! {
-    /// A choice point on the stack of the search, from the bottom.
-    LevelId;
-    /// A part of the program whose conditions conflict only with each other.
-    EnclosedId;
     /// A literal among the distinct ones of its variable.
     LiteralId;
-    /// What follows from some choices for the network of the look-ahead.
-    ConsequenceId;
     /// A choice point of the solver.
     ChoicePointId;
     /// A clause of the solver, from the problem or learned.

@@ -7,17 +7,14 @@
 mod answer;
 mod antichain;
 mod before;
+mod choices;
+mod chronological;
 mod conditions;
-mod controllable;
 mod demanding;
 mod demands;
-mod enclosed;
 mod explain;
 mod failure;
 mod ids;
-mod leaf;
-mod levels;
-mod lookahead;
 mod model;
 mod nature_run;
 mod nesting;
@@ -25,12 +22,8 @@ mod options;
 mod partial_order;
 mod planner;
 mod precedence;
-mod record;
 mod relax;
 mod replay;
-mod search;
-mod selection;
-mod solution;
 mod solver;
 mod structure;
 mod trace;
@@ -81,5 +74,5 @@ pub fn plan_except(
 ) -> Outcome {
     let model = Model::new(network, options.threat_gap);
     let outcome = model.and_then(|model| answer(network, &model, options, excluded, termination));
-    outcome.map_or_else(Outcome::of_size, |(outcome, _)| outcome)
+    outcome.unwrap_or_else(Outcome::of_size)
 }

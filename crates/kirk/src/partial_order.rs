@@ -34,13 +34,21 @@ pub(crate) struct Solution {
     pub(crate) times: TiVec<NodeId, i64>,
 }
 
+/// A plan that holds in every schedule.
+pub(crate) struct Built {
+    pub(crate) plan: Plan,
+    /// Whether it orders a pair in one way that its other orders put in the other way already, so that both intervals last
+    /// no time: another plan leaves that open.
+    pub(crate) is_narrower: bool,
+}
+
 /// The plan of a solution; `None` if intervals that the solution only lets touch are not forced to, so that the gap
 /// between them that SPEC 5.3 asks for is not there.
 pub(crate) fn plan(
     network: &Network,
     model: &Model,
     solution: &Solution,
-) -> Result<Option<Plan>, Unplannable> {
+) -> Result<Option<Built>, Unplannable> {
     let mut choices = choices(&solution.alternatives);
     let (selected_nodes, selected_arcs) = closure(network, &choices);
     // What is decided inside an alternative that is not taken is no part of the plan.
@@ -54,16 +62,22 @@ pub(crate) fn plan(
         stn: Stn::new(model.num_nodes),
         windows: (Vec::new(), Vec::new()),
         num_edges: 0,
+        is_narrower: false,
     };
     if !making.add_arcs()? {
         return Ok(None);
     }
-    let causal_links = making.add_links()?;
+    let mut causal_links = making.add_links()?;
+    making.find_windows()?;
+    let mut conflict_order = Vec::new();
+    let threats = making.find_threats(&mut conflict_order)?;
+    causal_links.extend(making.add_lasting_links()?);
+    causal_links.sort_unstable();
     making.add_departures()?;
     making.find_windows()?;
     let mut orderings_added = Vec::new();
-    let mut conflict_order = making.order_kept(&mut orderings_added)?;
-    if !making.order_conflicts(&mut conflict_order, &mut orderings_added)? {
+    conflict_order.extend(making.order_kept(&mut orderings_added)?);
+    if !making.resolve(threats, &mut conflict_order, &mut orderings_added)? {
         return Ok(None);
     }
     conflict_order.sort_by_key(|order| (order.first.min(order.then), order.first.max(order.then)));
@@ -82,7 +96,7 @@ pub(crate) fn plan(
     }
     let windows = making.windows(&selected_nodes)?;
     let quality = model.demands.quality(&selected_arcs, &windows);
-    Ok(Some(Plan {
+    let plan = Plan {
         choices,
         selected_nodes,
         selected_arcs,
@@ -93,7 +107,8 @@ pub(crate) fn plan(
         levels,
         quality,
         windows,
-    }))
+    };
+    Ok(Some(Built { plan, is_narrower: making.is_narrower }))
 }
 
 fn choices(alternatives: &Alternatives) -> Vec<Choice> {
@@ -117,6 +132,7 @@ struct Making<'a> {
     /// Distances from and to the start with all links and no order yet: still bounds with orders.
     windows: (Vec<i64>, Vec<i64>),
     num_edges: usize,
+    is_narrower: bool,
 }
 
 const fn point(node: NodeId) -> PointId {
@@ -155,22 +171,28 @@ impl Making<'_> {
         done(self.stn.insert(point(later), point(earlier), -least, 0))
     }
 
+    /// Links of variables that are known only where they are asserted.
     fn add_links(&mut self) -> Result<Vec<CausalLink>, Unplannable> {
-        let mut links: Vec<CausalLink> =
-            self.solution.kept.links.iter().map(|&(ask, tell)| CausalLink { ask, tell }).collect();
         let carried = self.solution.carriers.iter_enumerated();
         let carried = carried.filter_map(|(ask, &tell)| Some(CausalLink { ask, tell: tell? }));
-        links.extend(carried.filter(|link| self.is_selected[self.model.conditions.labels[link.ask].arc]));
-        links.sort_unstable();
+        let links: Vec<CausalLink> = carried
+            .filter(|link| self.is_selected[self.model.conditions.labels[link.ask].arc])
+            .collect();
         for link in &links {
             let (start, end) = self.network.interval(link.ask);
-            if self.network.is_lasting(link.ask) {
-                self.insert(self.network.ready(link.tell), start, 0)?;
-            } else {
-                let (from, to) = self.network.interval(link.tell);
-                self.insert(from, start, 0)?;
-                self.insert(end, to, 0)?;
-            }
+            let (from, to) = self.network.interval(link.tell);
+            self.insert(from, start, 0)?;
+            self.insert(end, to, 0)?;
+        }
+        Ok(links)
+    }
+
+    /// Links of variables that keep their values.
+    fn add_lasting_links(&mut self) -> Result<Vec<CausalLink>, Unplannable> {
+        let links: Vec<CausalLink> =
+            self.solution.kept.links.iter().map(|&(ask, tell)| CausalLink { ask, tell }).collect();
+        for link in &links {
+            self.insert(self.network.ready(link.tell), self.network.interval(link.ask).0, 0)?;
         }
         Ok(links)
     }
@@ -288,38 +310,40 @@ impl Making<'_> {
         Ok(order)
     }
 
-    /// Orders conflicting pairs of variables that are known only where they are asserted (SPEC 5.3). `false` if a pair
-    /// has no room for the gap.
-    fn order_conflicts(
-        &mut self,
-        order: &mut Vec<Ordering>,
-        added: &mut Vec<Ordering>,
-    ) -> Result<bool, Unplannable> {
+    /// The conflicting pairs of variables that are known only where they are asserted which arcs and links do not put in
+    /// order (SPEC 5.3); the others are added to `order`.
+    fn find_threats(&mut self, order: &mut Vec<Ordering>) -> Result<Vec<(LabelId, LabelId)>, Unplannable> {
         let labels: Vec<LabelId> = self.selected_labels().collect();
-        let mut pairs: Vec<(i64, LabelId, LabelId)> = Vec::new();
+        let mut threats = Vec::new();
         for &left in &labels {
             for right in self.model.conditions.later_conflicts(left) {
-                if self.is_selected[self.model.conditions.labels[right].arc] {
-                    let touches = self.room(left, right).max(self.room(right, left)) < self.model.gap;
-                    pairs.push((i64::from(touches), left, right));
+                if !self.is_selected[self.model.conditions.labels[right].arc] {
+                    continue;
+                }
+                let gap_left = self.gap_before(right, self.model.gap_after[left]);
+                let gap_right = self.gap_before(left, self.model.gap_after[right]);
+                let (one, other) = (self.network.interval(left), self.network.interval(right));
+                if self.is_entailed(one.1, other.0, gap_left)? {
+                    order.push(Ordering { first: left, then: right });
+                } else if self.is_entailed(other.1, one.0, gap_right)? {
+                    order.push(Ordering { first: right, then: left });
+                } else {
+                    threats.push((left, right));
                 }
             }
         }
-        // What only touches may be ordered by what follows from the others.
-        pairs.sort_unstable();
+        Ok(threats)
+    }
+
+    /// Orders threats as the solution's times do. `false` if one has no room for the gap, which no solution's have.
+    fn resolve(
+        &mut self,
+        threats: Vec<(LabelId, LabelId)>,
+        order: &mut Vec<Ordering>,
+        added: &mut Vec<Ordering>,
+    ) -> Result<bool, Unplannable> {
         let ordered: BTreeSet<(LabelId, LabelId)> = self.solution.orders.iter().copied().collect();
-        for (_, left, right) in pairs {
-            let gap_left = self.gap_before(right, self.model.gap_after[left]);
-            let gap_right = self.gap_before(left, self.model.gap_after[right]);
-            let (one, other) = (self.network.interval(left), self.network.interval(right));
-            if self.is_entailed(one.1, other.0, gap_left)? {
-                order.push(Ordering { first: left, then: right });
-                continue;
-            }
-            if self.is_entailed(other.1, one.0, gap_right)? {
-                order.push(Ordering { first: right, then: left });
-                continue;
-            }
+        for (left, right) in threats {
             let is_left_first = if ordered.contains(&(left, right)) == ordered.contains(&(right, left)) {
                 self.room(left, right) >= self.room(right, left)
             } else {
@@ -327,11 +351,26 @@ impl Making<'_> {
             };
             let (first, then) = if is_left_first { (left, right) } else { (right, left) };
             let (end, start) = (self.network.interval(first).1, self.network.interval(then).0);
-            if !self.insert(end, start, self.gap_before(then, self.model.gap))? {
+            let gap = self.gap_before(then, self.model.gap);
+            order.push(Ordering { first, then });
+            if self.is_entailed(end, start, gap)? {
+                continue;
+            }
+            let (then_end, first_start) = (self.network.interval(then).1, self.network.interval(first).0);
+            self.is_narrower |= self.is_entailed(then_end, first_start, self.gap_before(first, self.model.gap))?;
+            if !self.insert(end, start, gap)? {
                 return Ok(false);
             }
-            order.push(Ordering { first, then });
             added.push(Ordering { first, then });
+        }
+        // What is in both orders at once, as intervals without length at one instant are, is in the textual one.
+        for order in order.iter_mut().filter(|order| order.then < order.first) {
+            let Ordering { first, then } = *order;
+            let (end, start) = (self.network.interval(then).1, self.network.interval(first).0);
+            let gap = self.gap_before(first, self.model.gap_after[then]);
+            if gap == 0 && !self.network.is_lasting(first) && self.is_entailed(end, start, 0)? {
+                *order = Ordering { first: then, then: first };
+            }
         }
         Ok(true)
     }

@@ -1,13 +1,11 @@
 //! Planning again and again while bounds change: what does not depend on them is kept.
 
-use std::collections::BTreeMap;
-
 use exact::{Bound, Time};
 use tpn::{ArcId, Network, Plan};
 
+use crate::choices::Choices;
 use crate::model::Model;
-use crate::options::{Options, Outcome, Search, Termination};
-use crate::search::Choices;
+use crate::options::{Options, Outcome, Termination};
 use crate::unplannable::Unplannable;
 use crate::{answer, demanding};
 
@@ -15,38 +13,15 @@ use crate::{answer, demanding};
 ///
 /// A conflict-directed search keeps what the last plan chose as long as that still is a plan, so that a small change
 /// changes little: it may be another plan than [`crate::plan`] finds. A chronological search answers as [`crate::plan`]
-/// does, whatever was asked before: while no bound is wider than when the network was last searched, all that failed then
-/// still fails, and the choices of the plan found then need only be checked. Where that does not hold, or where gaps alone
-/// made something fail, the network is searched again.
+/// does, whatever was asked before.
 #[derive(Clone, Debug)]
 pub struct Planner {
     network: Network,
     threat_gap: Option<Time>,
     /// The network prepared, if times fit.
     model: Result<Model, Unplannable>,
-    last: Option<Searched>,
-}
-
-/// What the last search proved.
-#[derive(Clone, Debug)]
-struct Searched {
-    search: Search,
-    /// What the first plan chose.
-    choices: Choices,
-    /// Times that fitted the plan found last, by node; empty before.
-    schedule: Vec<i64>,
-    /// The bounds it was searched with, where they are others now.
-    changed: BTreeMap<ArcId, (i64, i64)>,
-}
-
-impl Searched {
-    /// Whether all bounds are within those that were searched with.
-    fn covers(&self, model: &Model) -> bool {
-        self.changed.iter().all(|(&arc, &(lower, upper))| {
-            let now = &model.arcs[arc];
-            now.lower >= lower && now.upper <= upper
-        })
-    }
+    /// What the last plan chose, where the next one is to choose the same.
+    last: Option<Choices>,
 }
 
 impl Planner {
@@ -80,29 +55,22 @@ impl Planner {
             Ok(model) => model,
             Err(overflow) => return Outcome::of_size(*overflow),
         };
-        let is_repeatable = !options.all && options.trace_events.is_none();
-        if is_repeatable
-            && let Some(last) = &mut self.last
-            && last.search == options.search
-            && (options.search.learns() || last.covers(model))
-            && let Ok(Some(outcome)) =
-                answer::with_choices(model, &last.choices, &mut last.schedule, termination)
+        let is_repeatable = !options.all && options.best <= 1 && options.trace_events.is_none();
+        let is_kept = is_repeatable && options.search.learns() && !demanding::has_demands(model);
+        if is_kept
+            && let Some(last) = &self.last
+            && let Ok(Some(outcome)) = demanding::keep(&self.network, model, last, termination)
         {
             return outcome;
         }
-        let (outcome, has_doubts) = match answer::answer(&self.network, model, options, &[], termination) {
-            Ok(answer) => answer,
+        let outcome = match answer::answer(&self.network, model, options, &[], termination) {
+            Ok(outcome) => outcome,
             Err(overflow) => {
                 self.last = None;
                 return Outcome::of_size(overflow);
             }
         };
-        let can_be_kept = if options.search.learns() { !demanding::has_demands(model) } else { !has_doubts };
-        self.last = outcome.plans.first().filter(|_| is_repeatable && can_be_kept).map(|plan| {
-            let choices = choices_of(model, plan, options.search);
-            let schedule = choices.times.clone();
-            Searched { search: options.search, choices, schedule, changed: BTreeMap::new() }
-        });
+        self.last = outcome.plans.first().filter(|_| is_kept).map(|plan| choices_of(model, plan));
         outcome
     }
 
@@ -113,10 +81,6 @@ impl Planner {
         if lower < 0 {
             return Ok(false);
         }
-        if let Some(last) = &mut self.last {
-            let before = &model.arcs[arc];
-            last.changed.entry(arc).or_insert((before.lower, before.upper));
-        }
         model.set_bounds(&self.network, arc, lower, upper);
         let Some(mut structure) = model.structure.take() else { return Ok(true) };
         let is_kept = structure.set_arc(model, arc)?;
@@ -125,8 +89,8 @@ impl Planner {
     }
 }
 
-/// What a plan chose. A search that tries orders in their textual order is not told how the plan orders them.
-fn choices_of(model: &Model, plan: &Plan, search: Search) -> Choices {
+/// What a plan chose.
+fn choices_of(model: &Model, plan: &Plan) -> Choices {
     let mut choices = Choices {
         alternatives: vec![None; model.decisions.len()].into(),
         carriers: vec![None; model.conditions.labels.len()].into(),
@@ -137,12 +101,6 @@ fn choices_of(model: &Model, plan: &Plan, search: Search) -> Choices {
     }
     for link in &plan.causal_links {
         choices.carriers[link.ask] = Some(link.tell);
-    }
-    if search.learns() {
-        let earliest =
-            plan.windows.iter().map(|window| window.as_ref().map_or(Time::ZERO, |window| window.earliest));
-        let times: Result<Vec<i64>, _> = earliest.map(|time| model.units(time)).collect();
-        choices.times = times.unwrap_or_default();
     }
     choices
 }

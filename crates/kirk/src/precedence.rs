@@ -10,8 +10,8 @@ use crate::trace::{Departing, TreeChoice};
 /// `to − from ≤ weight`.
 pub(crate) type StnEdge = (PointId, PointId, i64);
 
-/// What a choice says about times. `may_touch` is whether conflicting intervals need no gap between them.
-pub(crate) fn edges(model: &Model, choice: TreeChoice, may_touch: bool) -> Vec<StnEdge> {
+/// What a choice says about times.
+pub(crate) fn edges(model: &Model, choice: TreeChoice) -> Vec<StnEdge> {
     match choice {
         TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } | TreeChoice::Later { .. } => Vec::new(),
         TreeChoice::Link(link) => {
@@ -26,11 +26,8 @@ pub(crate) fn edges(model: &Model, choice: TreeChoice, may_touch: bool) -> Vec<S
             }
         }
         TreeChoice::Order(order) => {
-            let gap = match (model.conditions.labels[order.first].is_lasting, may_touch) {
-                (true, _) => 0,
-                (false, true) => model.gap_before(order.then, model.gap_after[order.first]),
-                (false, false) => model.gap_before(order.then, model.gap),
-            };
+            let is_lasting = model.conditions.labels[order.first].is_lasting;
+            let gap = if is_lasting { 0 } else { model.gap_before(order.then, model.gap) };
             vec![(model.interval(order.then).0, model.interval(order.first).1, -gap)]
         }
         TreeChoice::UseOrder(order) => use_order(model, order).into_iter().collect(),

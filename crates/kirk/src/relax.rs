@@ -6,15 +6,14 @@ use exact::{Bound, Time};
 use rmpl::Span;
 use tpn::{ArcId, Network};
 
-use crate::explain::{Effort, MAX_BACKTRACKS};
+use crate::explain::Effort;
 use crate::failure::{Failure, Member, Relaxation};
 use crate::model::{INFINITE, Model};
 use crate::options::{Options, Search, Stats, Status, Termination};
-use crate::search::{Engine, Gaps, Halt, Setup};
 use crate::solver::{Answer, Part};
 use crate::trace::Constraint;
 use crate::unplannable::Unplannable;
-use crate::{answer, demanding, wording};
+use crate::{answer, wording};
 
 /// At most so many are offered.
 const MAX_RELAXATIONS: usize = 8;
@@ -27,8 +26,10 @@ pub(crate) fn relaxations(
     termination: &mut dyn Termination,
 ) -> Result<Vec<Relaxation>, Unplannable> {
     let effort = Effort::for_size(model.num_nodes, termination);
-    let mut trial =
-        Trial { network, model: model.clone(), is_demanding: demanding::has_demands(model), effort };
+    if !model.has_contexts {
+        return Ok(Vec::new());
+    }
+    let mut trial = Trial { network, model: model.clone(), effort };
     let mut found: Vec<Relaxation> = Vec::new();
     for (arcs, is_lower) in candidates(network, failure) {
         if let Some(new) = trial.closest(&arcs, is_lower)? {
@@ -68,7 +69,7 @@ pub(crate) fn has_plan_without_gap(
         termination.should_stop(stats) || stats.conflicts.max(stats.backtracks) > MAX_CONFLICTS
     };
     let without = Model::new(network, options.threat_gap)?;
-    let (outcome, _) = answer::answer(network, &without, &options, &[], &mut enough)?;
+    let outcome = answer::answer(network, &without, &options, &[], &mut enough)?;
     Ok(outcome.status == Status::Plan)
 }
 
@@ -121,8 +122,6 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
 struct Trial<'a> {
     network: &'a Network,
     model: Model,
-    /// Whether only the solver plans it.
-    is_demanding: bool,
     effort: Effort<'a>,
 }
 
@@ -185,25 +184,12 @@ impl Trial<'_> {
             self.model.set_bounds(self.network, arc, new_lower, new_upper);
         }
         self.model.refresh_structure()?;
-        let setup = Setup { jumps: true, by_structure: true, gaps: Gaps::Trusted, ..Setup::default() };
-        let Self { model, effort, is_demanding, .. } = self;
-        let mut enough = |stats: &Stats| effort.is_spent(stats) || stats.backtracks > MAX_BACKTRACKS;
-        let mut halt =
-            if *is_demanding { Halt::Stopped } else { Engine::new(model, setup).run(&mut enough)? };
-        if halt == Halt::Stopped
-            && effort.searches > 0
-            && model.has_contexts
-            && effort
-                .solve(model, Gaps::Trusted, Part::default())
-                .is_some_and(|(answer, _)| answer == Answer::Solved)
-        {
-            halt = Halt::Solution;
-        }
+        let solved = self.effort.solve(&self.model, Part::default());
         for &arc in arcs {
             self.model.set_bounds(self.network, arc, lower, upper);
         }
         self.model.refresh_structure()?;
-        Ok(halt == Halt::Solution)
+        Ok(solved.is_some_and(|(answer, _)| answer == Answer::Solved))
     }
 }
 

@@ -19,7 +19,7 @@ use typed_index_collections::TiVec;
 
 use crate::model::{Context, INFINITE, Model, point};
 use crate::precedence;
-use crate::search::UNBOUNDED_BELOW;
+use crate::model::UNBOUNDED_BELOW;
 use crate::trace::{Constraint, CycleMember, Departing, Event, Trace, TreeChoice, TreeNodeId};
 
 /// Replays a [`Trace`] on the network it was recorded on.
@@ -202,17 +202,7 @@ impl Replay {
                 result.uses.clone_from(uses);
             }
         }
-        let may_touch =
-            trace.events.get(..=result.step).unwrap_or_default().iter().rev().find_map(|entry| match &entry
-                .event
-            {
-                Event::Begin(round) => Some(round.may_touch),
-                _ => None,
-            });
-        // A plan has the gaps that it can have.
-        let is_kept = frames.last().is_some_and(|frame| frame.kept.is_some());
-        let may_touch = may_touch.unwrap_or(false) && !is_kept;
-        let windows = self.windows(result, may_touch);
+        let windows = self.windows(result);
         result.windows = windows.unwrap_or_else(|Overflow { .. }| vec![None; self.model.num_nodes]);
     }
 
@@ -249,7 +239,7 @@ impl Replay {
     }
 
     /// Propagates the constraints of a step again.
-    fn windows(&self, step: &ReplayStep, may_touch: bool) -> Result<Vec<Option<Window>>, Overflow> {
+    fn windows(&self, step: &ReplayStep) -> Result<Vec<Option<Window>>, Overflow> {
         let model = &self.model;
         let mut stn = Stn::new(model.num_nodes);
         let failed: Vec<Constraint> = step.cycle.iter().map(|member| member.constraint).collect();
@@ -276,12 +266,12 @@ impl Replay {
             if failed.contains(&constraint) {
                 continue;
             }
-            for (from, to, weight) in precedence::edges(model, choice, may_touch) {
+            for (from, to, weight) in precedence::edges(model, choice) {
                 let _ = stn.insert(from, to, weight, 0);
             }
         }
         for &(used, by) in &step.starts {
-            for (from, to, weight) in precedence::edges(model, TreeChoice::Start { used, by }, may_touch) {
+            for (from, to, weight) in precedence::edges(model, TreeChoice::Start { used, by }) {
                 let _ = stn.insert(from, to, weight, 0);
             }
         }

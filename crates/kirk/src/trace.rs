@@ -130,7 +130,7 @@ pub enum Event {
         /// The orders along the circle.
         orders: Vec<TreeChoice>,
     },
-    /// Intervals that only touch are not forced to, and there is no room for the gap between them (SPEC 5.3).
+    /// Conflicting intervals touch, and nothing chosen forces them to (SPEC 5.3).
     NoRoomForGap,
     /// From now on the choices are never all made again.
     Learn {
@@ -185,8 +185,6 @@ pub struct SearchRound {
     pub is_in_textual_order: bool,
     /// Whether the state that may lead to the best plan goes on, and not what was decided last.
     pub is_best_first: bool,
-    /// Whether conflicting intervals may touch: there is no plan with a gap between all of them (SPEC 5.3).
-    pub may_touch: bool,
     /// The values of the first goals in the best plan so far: the last one of these is to be better, the others as good.
     pub values: Vec<Rational>,
     /// What no plan makes better of the last of these, whatever is chosen.

@@ -95,11 +95,10 @@ fn learning_json(network: &Network, event: &Event) -> Value {
     };
     let uses = |uses: &[UseId]| -> Vec<String> { uses.iter().map(|&used| network.use_name(used)).collect() };
     match event {
-        Event::Begin(SearchRound { is_in_textual_order, is_best_first, may_touch, values, bound }) => json!({
+        Event::Begin(SearchRound { is_in_textual_order, is_best_first, values, bound }) => json!({
             "event": "begin",
             "textual": is_in_textual_order,
             "best-first": is_best_first,
-            "touching": may_touch,
             "values": values,
             "bound": bound,
         }),

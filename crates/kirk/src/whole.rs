@@ -10,7 +10,7 @@ use tpn::{Choice, LabelId, Network, ResourceId, UseId, VariableId};
 use crate::explain::{Effort, Part, Refuted, spans};
 use crate::failure::{FailureKind, Member, Reason};
 use crate::model::{Context, INFINITE, Model, node};
-use crate::search::UNBOUNDED_BELOW;
+use crate::model::UNBOUNDED_BELOW;
 use crate::trace::{Constraint, CycleMember};
 use crate::wording;
 

@@ -4,7 +4,7 @@ use tpn::Plan;
 
 use super::{Attempt, Searching};
 use crate::partial_order;
-use crate::solver::{Frontier, LeastSums, Problem, Solver, Visit};
+use crate::solver::{Frontier, LeastSums, Problem, Solver, Touching, Visit};
 use crate::trace::Event;
 use crate::unplannable::Unplannable;
 
@@ -15,58 +15,39 @@ impl Searching<'_> {
     pub(super) fn best_first(&mut self) -> Result<Option<Option<Plan>>, Unplannable> {
         let model = self.model;
         let goals = &model.demands.goals;
-        let mut best: Option<(LeastSums, Plan)> = None;
-        for &gaps in self.gaps() {
-            let limits = vec![None; goals.len()];
-            let attempt = self.recorded_problem(gaps, &limits, true)?;
-            let Some(Attempt { mut problem, mut solver, .. }) = attempt else { break };
-            let mut frontier = Frontier::new(goals.len());
-            let than = best.as_ref().map(|(sums, _)| sums.clone());
-            let (visit, found) = loop {
-                let visit = self.visit_best(&mut problem, &mut solver, &mut frontier, than.as_ref());
-                if visit != Visit::Solution {
-                    break (visit, None);
-                }
-                let solution = problem.whole_solution(&solver);
-                if let Some(plan) = partial_order::plan(self.network, model, &solution)? {
-                    break (visit, Some(plan));
-                }
-                solver.record_failed(Event::NoRoomForGap);
-                problem.forbid(&mut solver);
-            };
-            if let Some(plan) = found {
-                solver.record_solution(|| Event::Keep {
-                    orders: plan.orderings_added.clone(),
-                    uses: plan.uses_ordered.clone(),
-                });
-                let sums = goals.iter().map(|goal| goal.sum(model, &plan)).collect::<Result<_, _>>()?;
-                let is_promised = frontier.visited >= sums;
-                best = Some((sums, plan));
-                if !is_promised {
-                    self.record = solver.record.take();
-                    return Ok(None);
-                }
-            }
-            if matches!(visit, Visit::Solution | Visit::NothingBetter) {
-                solver.close(&frontier);
-            }
-            self.record = solver.record.take();
-            match visit {
-                Visit::Solution | Visit::NothingBetter => {}
-                Visit::TooManyStates => return Ok(None),
-                Visit::Stopped => {
-                    let open = frontier.least().into_iter().flatten().zip(goals).enumerate();
-                    let is_open =
-                        |at: usize, least: i64| best.as_ref().is_none_or(|(sums, _)| sums[at] > least);
-                    self.bound = open
-                        .filter(|&(at, (&least, _))| is_open(at, least))
-                        .map(|(_, (&least, goal))| goal.value(least))
-                        .next();
-                    break;
-                }
-            }
+        let limits = vec![None; goals.len()];
+        let attempt = self.recorded_problem(&limits, true, Touching::Where)?;
+        let Some(Attempt { mut problem, mut solver, .. }) = attempt else { return Ok(Some(None)) };
+        let mut frontier = Frontier::new(goals.len());
+        let visit = self.visit_best(&mut problem, &mut solver, &mut frontier);
+        let mut found = None;
+        if visit == Visit::Solution {
+            let solution = problem.whole_solution(&solver);
+            found = partial_order::plan(self.network, model, &solution)?.map(|built| built.plan);
+            debug_assert!(found.is_some(), "every solution is a plan");
         }
-        let Some((_, mut plan)) = best else { return Ok(Some(None)) };
+        let mut is_promised = visit != Visit::Solution;
+        if let Some(plan) = &found {
+            solver.record_solution(|| Event::Keep {
+                orders: plan.orderings_added.clone(),
+                uses: plan.uses_ordered.clone(),
+            });
+            let sums: LeastSums =
+                goals.iter().map(|goal| goal.sum(model, plan)).collect::<Result<_, Unplannable>>()?;
+            is_promised = frontier.visited >= sums;
+        }
+        if is_promised && matches!(visit, Visit::Solution | Visit::NothingBetter) {
+            solver.close(&frontier);
+        }
+        self.record = solver.record.take();
+        if !is_promised || visit == Visit::TooManyStates {
+            return Ok(None);
+        }
+        if visit == Visit::Stopped {
+            let mut open = frontier.least().into_iter().flatten().zip(goals);
+            self.bound = open.next().map(|(&least, goal)| goal.value(least));
+        }
+        let Some(mut plan) = found else { return Ok(Some(None)) };
         self.tell_values(&plan)?;
         let is_whole = goals.iter().all(|goal| goal.is_whole);
         plan.quality.is_optimal = Some(!self.is_stopped && is_whole);
@@ -78,11 +59,10 @@ impl Searching<'_> {
         problem: &mut Problem<'_>,
         solver: &mut Solver,
         frontier: &mut Frontier,
-        than: Option<&LeastSums>,
     ) -> Visit {
         solver.stats = self.stats;
         let (termination, is_stopped) = (&mut self.termination, &mut self.is_stopped);
-        let visit = solver.visit_best(problem, frontier, than, &mut |stats| {
+        let visit = solver.visit_best(problem, frontier, &mut |stats| {
             *is_stopped |= termination.should_stop(stats);
             *is_stopped
         });

@@ -7,17 +7,17 @@
 
 mod best_first;
 
+use std::collections::BTreeSet;
+
 use exact::Rational;
 use tpn::{Choice, LabelId, Network, Ordering, Plan};
 
-use crate::conditions::VariableIndex;
-use crate::controllable;
+use crate::choices::Choices;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
 use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Stats, Status, Termination};
-use crate::partial_order;
-use crate::search::Gaps;
-use crate::solver::{Answer, GoalSums, Growth, Part, Problem, Record, Solver, Unencoded};
+use crate::partial_order::{self, Built};
+use crate::solver::{Answer, GoalSums, Growth, Part, Problem, Record, Solver, Touching, Unencoded};
 use crate::structure::Relation;
 use crate::trace::{Event, SearchRound};
 use crate::unplannable::Unplannable;
@@ -25,14 +25,12 @@ use crate::unplannable::Unplannable;
 /// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
 const MAX_CONFLICTS_IN_ORDER: u64 = 5_000;
 
+/// How many conflicts it may take to find out that choices that were a plan still are.
+const MAX_CONFLICTS_TO_KEEP: u64 = 500;
+
 /// Whether the network has anything that only the solver plans. Quadratic in the changes of a variable.
 pub(crate) fn has_demands(model: &Model) -> bool {
     model.has_uncertainty || has_executives_demands(model)
-}
-
-/// Whether durations that nature chooses are all that only the solver plans.
-pub(crate) fn is_only_natures(model: &Model) -> bool {
-    model.has_uncertainty && !has_executives_demands(model)
 }
 
 fn has_executives_demands(model: &Model) -> bool {
@@ -90,6 +88,46 @@ pub(crate) fn nested_changes(model: &Model, selected_arcs: &[bool]) -> Vec<Order
     order
 }
 
+/// The plan that makes the same choices as another one, if there is one.
+pub(crate) fn keep(
+    network: &Network,
+    model: &Model,
+    choices: &Choices,
+    termination: &mut dyn Termination,
+) -> Result<Option<Outcome>, Unplannable> {
+    if !model.has_contexts {
+        return Ok(None);
+    }
+    let part = Part { alternatives: Some(&choices.alternatives), ..Part::default() };
+    let stats = Stats {
+        nodes: model.num_nodes as u64,
+        arcs: model.arcs.len() as u64,
+        decisions: model.decisions.len() as u64,
+        ..Stats::default()
+    };
+    let Ok((mut problem, mut solver)) = Problem::new(model, part, &mut || termination.should_stop(&stats))
+    else {
+        return Ok(None);
+    };
+    solver.stats = stats;
+    problem.prefer_links(&mut solver, choices);
+    let mut enough =
+        |stats: &Stats| termination.should_stop(stats) || stats.conflicts > MAX_CONFLICTS_TO_KEEP;
+    if solver.solve(&mut problem, &mut enough) != Answer::Solved {
+        return Ok(None);
+    }
+    let built = partial_order::plan(network, model, &problem.whole_solution(&solver))?;
+    Ok(built.map(|built| Outcome {
+        status: Status::Plan,
+        plans: vec![built.plan],
+        bound: None,
+        failure: None,
+        stats: solver.stats,
+        trace: None,
+        unplannable: None,
+    }))
+}
+
 /// Plans; why there is no plan is explained elsewhere.
 pub(crate) fn search(
     network: &Network,
@@ -98,11 +136,6 @@ pub(crate) fn search(
     excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
 ) -> Result<Outcome, Unplannable> {
-    if excluded.is_empty()
-        && let Some(outcome) = controllable::first_plan(network, model, options, termination)?
-    {
-        return Ok(outcome);
-    }
     let has_goals = !model.demands.goals.is_empty();
     let mut searching = Searching {
         network,
@@ -116,7 +149,7 @@ pub(crate) fn search(
         record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
         // Without an objective no state is better than another.
         is_best_first: has_goals && options.search == Search::BestFirst,
-        passes_over: false,
+        is_listing: options.all || options.best > 1 || !excluded.is_empty(),
     };
     searching.stats.nodes = model.num_nodes as u64;
     searching.stats.arcs = model.arcs.len() as u64;
@@ -149,13 +182,9 @@ struct Searching<'a> {
     /// What is told of all searches; the solver has it while it searches.
     record: Option<Box<Record>>,
     is_best_first: bool,
-    /// Whether something better may have been passed over.
-    passes_over: bool,
+    /// Whether several plans are looked for.
+    is_listing: bool,
 }
-
-/// After so many solutions in which intervals touch without need, and which become plans that are no better than those
-/// known, no better one is looked for among what touches.
-const MAX_BEYOND: u32 = 5_000;
 
 /// What came of looking for the next plan of a problem.
 enum Next {
@@ -176,26 +205,20 @@ impl<'a> Searching<'a> {
         }
     }
 
-    /// The ways to treat gaps, in the order in which they are tried: a plan in which intervals are forced to touch is
-    /// found where none is that leaves room (SPEC 5.3).
-    fn gaps(&self) -> &'static [Gaps] {
-        let has_conflicts = self.model.conditions.variables.iter().any(VariableIndex::has_conflict);
-        if self.model.gap == 0 || !has_conflicts { &[Gaps::Ignored] } else { &[Gaps::Trusted, Gaps::Ignored] }
-    }
-
     /// A problem and its solver, which goes on with the record. `None` if it was stopped meanwhile.
     fn recorded_problem(
         &mut self,
-        gaps: Gaps,
         limits: &Limits,
         is_in_order: bool,
+        touching: Touching,
     ) -> Result<Option<Attempt<'a>>, Unplannable> {
         let (termination, stats) = (&mut self.termination, &self.stats);
-        let attempt = Problem::new(self.model, gaps, Part::default(), &mut || termination.should_stop(stats))
+        let part = Part { touching, lists_all: self.is_listing, ..Part::default() };
+        let attempt = Problem::new(self.model, part, &mut || termination.should_stop(stats))
             .and_then(|encoded| self.attempt(encoded, limits, is_in_order));
         match attempt {
             Ok(mut attempt) => {
-                self.begin_record(&mut attempt, gaps, limits);
+                self.begin_record(&mut attempt, limits);
                 Ok(Some(attempt))
             }
             Err(Unencoded::Stopped) => {
@@ -208,7 +231,7 @@ impl<'a> Searching<'a> {
     }
 
     /// Goes on with the record in a solver that begins to search within these limits.
-    fn begin_record(&mut self, attempt: &mut Attempt<'a>, gaps: Gaps, limits: &Limits) {
+    fn begin_record(&mut self, attempt: &mut Attempt<'a>, limits: &Limits) {
         let Some(record) = self.record.take() else { return };
         let goals = self.model.demands.goals.iter().zip(limits);
         let values = goals.map_while(|(goal, limit)| limit.map(|limit| (goal, limit)));
@@ -220,7 +243,6 @@ impl<'a> Searching<'a> {
         let round = SearchRound {
             is_in_textual_order: attempt.solver.is_in_textual_order,
             is_best_first: self.is_best_first,
-            may_touch: gaps == Gaps::Ignored && self.gaps().len() > 1,
             bound: values
                 .last()
                 .map(|(goal, _)| goal.value(attempt.problem.goal_bound(&attempt.solver, goal))),
@@ -278,7 +300,6 @@ impl<'a> Searching<'a> {
         most: Option<u64>,
     ) -> Result<Next, Unplannable> {
         let model = self.model;
-        let mut num_beyond = 0;
         loop {
             match self.solve(problem, solver, most) {
                 None => return Ok(Next::Stopped),
@@ -286,22 +307,21 @@ impl<'a> Searching<'a> {
                 Some(true) => {}
             }
             let solution = problem.whole_solution(solver);
-            let plan = partial_order::plan(self.network, model, &solution)?;
-            let is_within = plan.as_ref().map_or(Ok(true), |plan| self.is_within(plan, limits))?;
-            if let Some(plan) = plan.filter(|_| is_within) {
+            let built = partial_order::plan(self.network, model, &solution)?;
+            if built.as_ref().is_some_and(|built| self.is_listing && built.is_narrower) {
+                problem.forbid(solver);
+                solver.record_restart(problem);
+                continue;
+            }
+            if let Some(Built { plan, .. }) = built {
+                debug_assert!(self.is_within(&plan, limits)?, "a plan is as good as its solution");
                 solver.record_solution(|| Event::Keep {
                     orders: plan.orderings_added.clone(),
                     uses: plan.uses_ordered.clone(),
                 });
                 return Ok(Next::Plan(Box::new(plan)));
             }
-            num_beyond += u32::from(!is_within);
-            if num_beyond > MAX_BEYOND {
-                self.passes_over = true;
-                return Ok(Next::Nothing);
-            }
-            // Intervals that touch without need: another order, link or choice may do.
-            solver.record_failed(Event::NoRoomForGap);
+            debug_assert!(false, "every solution is a plan");
             problem.forbid(solver);
             solver.record_restart(problem);
         }
@@ -339,17 +359,19 @@ impl<'a> Searching<'a> {
     }
 
     fn first(&mut self) -> Result<Option<Plan>, Unplannable> {
-        for &gaps in self.gaps() {
-            for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
-                let attempt = self.recorded_problem(gaps, &Vec::new(), most.is_some())?;
-                let Some(Attempt { mut problem, mut solver, .. }) = attempt else { return Ok(None) };
-                let next = self.next_plan((&mut problem, &mut solver), &Vec::new(), most)?;
-                self.record = solver.record.take();
-                match next {
-                    Next::Plan(plan) => return Ok(Some(*plan)),
-                    Next::Nothing => break,
-                    Next::Stopped if self.is_stopped => return Ok(None),
-                    Next::Stopped => {}
+        let limits = Vec::new();
+        let attempt = self.recorded_problem(&limits, true, Touching::Unneeded)?;
+        let Some(mut attempt) = attempt else { return Ok(None) };
+        for most in [Some(MAX_CONFLICTS_IN_ORDER), None] {
+            let next = self.next_plan((&mut attempt.problem, &mut attempt.solver), &limits, most)?;
+            self.record = attempt.solver.record.take();
+            match next {
+                Next::Plan(plan) => return Ok(Some(*plan)),
+                Next::Nothing => return Ok(None),
+                Next::Stopped if self.is_stopped => return Ok(None),
+                Next::Stopped => {
+                    attempt.solver.is_in_textual_order = false;
+                    self.begin_record(&mut attempt, &limits);
                 }
             }
         }
@@ -359,52 +381,48 @@ impl<'a> Searching<'a> {
     /// Every plan that differs in its choices, its links, or the order of what excludes each other.
     fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), Unplannable> {
         let mut plans: Vec<Plan> = Vec::new();
-        for &gaps in self.gaps() {
-            let Some(attempt) = self.recorded_problem(gaps, &Vec::new(), true)? else {
+        let attempt = self.recorded_problem(&Vec::new(), true, Touching::Where)?;
+        let Some(Attempt { mut problem, mut solver, .. }) = attempt else {
+            return Ok((Status::Limit, plans));
+        };
+        let (termination, stats) = (&mut *self.termination, self.stats);
+        let mut stop = || termination.should_stop(&stats);
+        match problem.order_all_pairs(&mut solver, &mut Growth::new(&mut stop)) {
+            Ok(()) => {}
+            Err(Unencoded::Stopped) => {
+                self.record = solver.record.take();
                 return Ok((Status::Limit, plans));
-            };
-            let Attempt { mut problem, mut solver, .. } = attempt;
-            let (termination, stats) = (&mut *self.termination, self.stats);
-            let mut stop = || termination.should_stop(&stats);
-            match problem.order_all_pairs(&mut solver, &mut Growth::new(&mut stop)) {
-                Ok(()) => {}
-                Err(Unencoded::Stopped) => {
-                    self.record = solver.record.take();
-                    return Ok((Status::Limit, plans));
-                }
-                Err(_) => return Err(Unplannable::Links),
             }
-            solver.record_choice_points(&problem);
-            loop {
-                match self.next_plan((&mut problem, &mut solver), &Vec::new(), None)? {
-                    Next::Stopped => {
-                        self.record = solver.record.take();
-                        return Ok((Status::Limit, plans));
-                    }
-                    Next::Nothing => break,
-                    Next::Plan(plan) => {
-                        let is_known = plans.iter().any(|known| {
-                            (&known.choices, &known.causal_links, &known.conflict_order)
-                                == (&plan.choices, &plan.causal_links, &plan.conflict_order)
-                        });
-                        if !is_known {
-                            if let Some(record) = &mut solver.record {
-                                record.tell_plan(plans.len() as u32);
-                            }
-                            plans.push(*plan);
-                        }
-                        if plans.len() >= most {
-                            self.record = solver.record.take();
-                            return Ok((Status::Limit, plans));
-                        }
-                        problem.forbid(&mut solver);
-                        solver.record_restart(&problem);
-                    }
-                }
-            }
-            self.record = solver.record.take();
+            Err(_) => return Err(Unplannable::Links),
         }
-        let status = if plans.is_empty() { Status::NoPlan } else { Status::Plan };
+        solver.record_choice_points(&problem);
+        let mut known = BTreeSet::new();
+        let is_complete = loop {
+            let plan = match self.next_plan((&mut problem, &mut solver), &Vec::new(), None)? {
+                Next::Stopped => break false,
+                Next::Nothing => break true,
+                Next::Plan(plan) => plan,
+            };
+            // Those that differ only in how uses are ordered are one.
+            let told = (plan.choices.clone(), plan.causal_links.clone(), plan.conflict_order.clone());
+            if known.insert(told) {
+                if let Some(record) = &mut solver.record {
+                    record.tell_plan(plans.len() as u32);
+                }
+                plans.push(*plan);
+                if plans.len() >= most {
+                    break false;
+                }
+            }
+            problem.forbid(&mut solver);
+            solver.record_restart(&problem);
+        };
+        self.record = solver.record.take();
+        let status = match (is_complete, plans.is_empty()) {
+            (false, _) => Status::Limit,
+            (true, true) => Status::NoPlan,
+            (true, false) => Status::Plan,
+        };
         Ok((status, plans))
     }
 
@@ -420,12 +438,12 @@ impl<'a> Searching<'a> {
         let model = self.model;
         let mut limits: Limits = vec![None; model.demands.goals.len()];
         self.incumbent = None;
-        let Some(mut plan) = self.better(&mut Improving::default(), &limits)? else {
+        let Some(mut plan) = self.better(&mut None, &limits)? else {
             return Ok(None);
         };
         self.tell_values(&plan)?;
         for goal in 0..model.demands.goals.len() {
-            let mut improving = Improving::default();
+            let mut improving = None;
             loop {
                 let value = model.demands.goals[goal].sum(model, &plan)?;
                 limits[goal] = Some(value - 1);
@@ -444,7 +462,7 @@ impl<'a> Searching<'a> {
             }
         }
         let is_whole = model.demands.goals.iter().all(|goal| goal.is_whole);
-        plan.quality.is_optimal = Some(!self.is_stopped && !self.passes_over && is_whole);
+        plan.quality.is_optimal = Some(!self.is_stopped && is_whole);
         Ok(Some(plan))
     }
 
@@ -459,8 +477,8 @@ impl<'a> Searching<'a> {
 
     /// What follows for a goal from the limits of those before it, whatever is decided.
     fn proven_bound(&self, goal: usize, limits: &Limits) -> Option<Rational> {
-        let gaps = if self.model.gap == 0 { Gaps::Ignored } else { Gaps::Trusted };
-        let encoded = Problem::new(self.model, gaps, Part::default(), &mut || false).ok()?;
+        let part = Part { touching: Touching::Where, ..Part::default() };
+        let encoded = Problem::new(self.model, part, &mut || false).ok()?;
         let Attempt { problem, solver, .. } = self.attempt(encoded, limits, false).ok()?;
         let goal = &self.model.demands.goals[goal];
         Some(goal.value(problem.goal_bound(&solver, goal)))
@@ -474,30 +492,26 @@ impl<'a> Searching<'a> {
         limits: &Limits,
     ) -> Result<Option<Plan>, Unplannable> {
         let limit = limits.iter().rev().find_map(|limit| *limit).unwrap_or(0);
-        while let Some(&gaps) = self.gaps().get(improving.exhausted) {
-            let mut attempt = match improving.attempt.take() {
-                Some((mut attempt, last_limit)) => {
-                    Problem::lower_goal(&mut attempt.solver, &attempt.sums, last_limit - limit);
-                    self.begin_record(&mut attempt, gaps, limits);
-                    attempt
-                }
-                None => match self.recorded_problem(gaps, limits, false)? {
-                    Some(attempt) => attempt,
-                    None => return Ok(None),
-                },
-            };
-            let next = self.next_plan((&mut attempt.problem, &mut attempt.solver), limits, None)?;
-            self.record = attempt.solver.record.take();
-            match next {
-                Next::Plan(found) => {
-                    improving.attempt = Some((attempt, limit));
-                    return Ok(Some(*found));
-                }
-                Next::Nothing => improving.exhausted += 1,
-                Next::Stopped => return Ok(None),
+        let mut attempt = match improving.take() {
+            Some((mut attempt, last_limit)) => {
+                Problem::lower_goal(&mut attempt.solver, &attempt.sums, last_limit - limit);
+                self.begin_record(&mut attempt, limits);
+                attempt
             }
-        }
-        Ok(None)
+            None => match self.recorded_problem(limits, false, Touching::Unneeded)? {
+                Some(attempt) => attempt,
+                None => return Ok(None),
+            },
+        };
+        let next = self.next_plan((&mut attempt.problem, &mut attempt.solver), limits, None)?;
+        self.record = attempt.solver.record.take();
+        Ok(match next {
+            Next::Plan(found) => {
+                *improving = Some((attempt, limit));
+                Some(*found)
+            }
+            Next::Nothing | Next::Stopped => None,
+        })
     }
 }
 
@@ -509,14 +523,8 @@ struct Attempt<'m> {
     sums: GoalSums,
 }
 
-/// Attempts to reach less and less of one goal.
-#[derive(Default)]
-struct Improving<'m> {
-    /// How many ways to treat gaps have nothing better to give.
-    exhausted: usize,
-    /// What the last attempt was at, with its limit.
-    attempt: Option<(Attempt<'m>, i64)>,
-}
+/// The last attempt to reach less and less of one goal, with its limit.
+type Improving<'m> = Option<(Attempt<'m>, i64)>;
 
 #[cfg(test)]
 mod tests {

@@ -101,14 +101,9 @@ impl Solver {
         &mut self,
         problem: &mut Problem<'_>,
         frontier: &mut Frontier,
-        than: Option<&LeastSums>,
         stop: &mut dyn FnMut(&Stats) -> bool,
     ) -> Visit {
         while let Some(mut open) = frontier.open.pop() {
-            if than.is_some_and(|than| open.least.0 >= *than) {
-                frontier.open.push(open);
-                return Visit::NothingBetter;
-            }
             if stop(&self.stats) || frontier.states.len() > MAX_STATES {
                 let is_stopped = frontier.states.len() <= MAX_STATES;
                 frontier.open.push(open);
@@ -301,7 +296,7 @@ impl Solver {
     /// Looks at a state in which everything that counts is decided.
     fn look_at_leaf(&mut self, problem: &mut Problem<'_>, stop: &mut dyn FnMut(&Stats) -> bool) -> Leaf {
         self.stats.leaves += 1;
-        let is_broken = self.add_pairs(problem) || problem.break_circles(self);
+        let is_broken = self.is_broken(problem);
         let sharing = if is_broken { Sharing::Restarted } else { problem.share(self) };
         let is_changed = match sharing {
             Sharing::Restarted => true,

@@ -20,7 +20,7 @@ use super::resources::{Task, ids};
 use crate::antichain::heaviest_antichain;
 use crate::demands::ModelSupply;
 use crate::model::{INFINITE, ModelArc};
-use crate::search::UNBOUNDED_BELOW;
+use crate::model::UNBOUNDED_BELOW;
 use crate::trace::Event;
 
 /// Larger conflicts are not made minimal.
@@ -117,7 +117,7 @@ impl Problem<'_> {
         for (&(left, right), &[left_first, right_first]) in &self.orders {
             for (first, then, order) in [(left, right, left_first), (right, left, right_first)] {
                 let (over, begun) = (self.intervals[first].end, self.intervals[then].start);
-                let gap = self.order_gap(first);
+                let gap = self.model.gap;
                 if solver.trail.holds(order) && gap > self.gap_between(first, then) && !natures[begun] {
                     let rests_on: Vec<Literal> = chosen.iter().copied().chain([order]).collect();
                     in_force.add((begun, over, -gap), &rests_on);
@@ -126,7 +126,7 @@ impl Problem<'_> {
         }
     }
 
-    fn chosen<'s>(&'s self, solver: &'s Solver) -> impl Iterator<Item = Literal> + 's {
+    pub(super) fn chosen<'s>(&'s self, solver: &'s Solver) -> impl Iterator<Item = Literal> + 's {
         self.alternatives.iter().flatten().copied().filter(|&taken| solver.trail.holds(taken))
     }
 

@@ -6,7 +6,7 @@
 use tpn::LabelId;
 use typed_index_collections::TiVec;
 
-use super::encode::{Interval, Problem};
+use super::encode::{DueGap, Interval, Problem};
 use super::literal::{Literal, Side};
 use super::queue::PropagationQueue;
 use super::refutation::Premise;
@@ -21,8 +21,9 @@ const MAX_TASKS: usize = 200;
 #[derive(Clone, Debug)]
 struct Exclusion {
     tasks: Vec<Interval>,
-    /// The least time between one and the next.
+    /// The least time between one and the next, where `when` holds.
     gap: i64,
+    when: Literal,
     premise: Premise,
 }
 
@@ -47,33 +48,41 @@ struct Task {
     presence: Literal,
 }
 
+/// The least time between one task and the next, and what makes it due.
+#[derive(Clone, Copy, Debug)]
+struct Gap {
+    gap: i64,
+    when: Literal,
+}
+
 impl Disjunctives {
     /// Finds sets among the labels of one variable that must be kept apart, `gap` between each two.
-    pub(crate) fn add(&mut self, problem: &Problem<'_>, labels: &[LabelId], premise: Premise) {
+    pub(crate) fn add(&mut self, problem: &mut Problem<'_>, labels: &[LabelId], premise: Premise) {
         let mut is_covered = vec![false; labels.len()];
         for (first, &seed) in labels.iter().enumerate() {
             if is_covered[first] || labels.len() > MAX_TASKS {
                 continue;
             }
             let mut members = vec![seed];
-            let mut is_gap_due = true;
+            let mut due = DueGap::Always;
             for (position, &label) in labels.iter().enumerate() {
                 if position == first || problem.intervals[label].duration == 0 {
                     continue;
                 }
                 let relations =
                     members.iter().map(|&member| problem.exclusion(member.min(label), member.max(label)));
-                let relations: Option<Vec<bool>> = relations.collect();
+                let relations: Option<Vec<DueGap>> = relations.collect();
                 if let Some(relations) = relations {
-                    is_gap_due &= relations.iter().all(|&is_gap_due| is_gap_due);
+                    due = relations.into_iter().fold(due, DueGap::min);
                     members.push(label);
                     is_covered[position] = true;
                 }
             }
             if members.len() > 2 {
-                let gap = if is_gap_due { problem.least_gap() } else { 0 };
                 let tasks = members.iter().map(|&label| problem.intervals[label]).collect();
-                self.add_set(Exclusion { tasks, gap, premise });
+                let when = if due == DueGap::Assumed { problem.touches.none } else { Literal::TRUE };
+                let gap = if due == DueGap::Never { 0 } else { problem.model.gap };
+                self.add_set(Exclusion { tasks, gap, when, premise });
             }
         }
     }
@@ -82,13 +91,13 @@ impl Disjunctives {
     pub(crate) fn add_tasks(&mut self, mut tasks: Vec<Interval>, premise: Premise) {
         tasks.retain(|task| task.duration > 0);
         if tasks.len() > 2 && tasks.len() <= MAX_TASKS {
-            self.add_set(Exclusion { tasks, gap: 0, premise });
+            self.add_set(Exclusion { tasks, gap: 0, when: Literal::TRUE, premise });
         }
     }
 
     fn add_set(&mut self, set: Exclusion) {
         let sides = |task: &Interval| [task.start.lower(), task.end.upper(), task.presence.side];
-        self.queue.add(set.tasks.iter().flat_map(sides));
+        self.queue.add(set.tasks.iter().flat_map(sides).chain([set.when.side]));
         self.sets.push(set);
     }
 
@@ -97,6 +106,8 @@ impl Disjunctives {
         let Some(id) = self.queue.pop() else { return Ok(false) };
         let set = &self.sets[id];
         trail.premise = set.premise;
+        let gap = if trail.holds(set.when) { set.gap } else { 0 };
+        let gap = Gap { gap, when: if gap > 0 { set.when } else { Literal::TRUE } };
         for is_forward in [true, false] {
             self.present.clear();
             for task in set.tasks.iter().filter(|task| trail.holds(task.presence)) {
@@ -116,10 +127,10 @@ impl Disjunctives {
             }
             self.present.sort_by_key(|task| std::cmp::Reverse(task.earliest));
             if is_forward {
-                check_load(&self.present, set.gap)?;
+                check_load(&self.present, gap)?;
             }
             if self.present.len() <= MAX_EDGE_FINDING {
-                find_last(trail, &self.present, set.gap)?;
+                find_last(trail, &self.present, gap)?;
             }
         }
         Ok(true)
@@ -127,7 +138,7 @@ impl Disjunctives {
 }
 
 /// Whether tasks between two times need more than there is between them. Tasks come latest first.
-fn check_load(tasks: &[Task], gap: i64) -> Result<(), Conflict> {
+fn check_load(tasks: &[Task], Gap { gap, when }: Gap) -> Result<(), Conflict> {
     for limit in tasks.iter().map(|task| task.latest) {
         let mut needed = -gap;
         for task in tasks {
@@ -136,7 +147,7 @@ fn check_load(tasks: &[Task], gap: i64) -> Result<(), Conflict> {
             }
             needed += task.duration + gap;
             if task.earliest + needed > limit {
-                return Err(within(tasks, task.earliest, limit));
+                return Err(within(tasks, task.earliest, limit, when));
             }
         }
     }
@@ -144,7 +155,7 @@ fn check_load(tasks: &[Task], gap: i64) -> Result<(), Conflict> {
 }
 
 /// Tasks that must come after all of some others start when these can be over. Tasks come latest first.
-fn find_last(trail: &mut Trail, tasks: &[Task], gap: i64) -> Result<(), Conflict> {
+fn find_last(trail: &mut Trail, tasks: &[Task], Gap { gap, when }: Gap) -> Result<(), Conflict> {
     for limit in tasks.iter().map(|task| task.latest) {
         if !is_tight(tasks, limit, gap) {
             continue;
@@ -166,8 +177,8 @@ fn find_last(trail: &mut Trail, tasks: &[Task], gap: i64) -> Result<(), Conflict
             if let Some((from, begin, over, over_from)) = found
                 && over > last.earliest
             {
-                let mut reason = within(tasks, from, limit);
-                reason.extend(within(tasks, over_from, limit));
+                let mut reason = within(tasks, from, limit, when);
+                reason.extend(within(tasks, over_from, limit, Literal::TRUE));
                 reason.push(Literal::new(last.start, -begin));
                 reason.push(last.presence);
                 reason.retain(|literal| *literal != Literal::TRUE);
@@ -193,9 +204,9 @@ fn is_tight(tasks: &[Task], limit: i64, gap: i64) -> bool {
     longest != i64::MIN && over + longest > limit
 }
 
-/// That all tasks that lie between two times do.
-fn within(tasks: &[Task], from: i64, limit: i64) -> Conflict {
-    let mut reason = Vec::new();
+/// That all tasks that lie between two times do, and the gap between them is due.
+fn within(tasks: &[Task], from: i64, limit: i64, when: Literal) -> Conflict {
+    let mut reason = vec![when];
     for task in tasks.iter().filter(|task| task.earliest >= from && task.latest <= limit) {
         reason.push(Literal::new(task.start, -from));
         reason.push(Literal::new(task.end, limit));

@@ -12,11 +12,13 @@ use super::lasting::Sides;
 use super::literal::{Literal, Side, Variable};
 use super::refutation::Premise;
 use super::resources::Shares;
+use super::touching::{Touches, Touching, Unordered};
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
 use crate::failure::Member;
 use crate::model::{Alternatives, Context, INFINITE, Model, ModelArc, node};
 use crate::partial_order::Solution;
-use crate::search::{Choices, Gaps, UNBOUNDED_BELOW};
+use crate::choices::Choices;
+use crate::model::UNBOUNDED_BELOW;
 use crate::structure::Relation;
 use crate::trace::{Constraint, TreeChoice};
 
@@ -30,8 +32,18 @@ pub(crate) struct Interval {
     pub(crate) duration: i64,
 }
 
+/// The gap between two intervals that exclude each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum DueGap {
+    /// They may touch.
+    Never,
+    /// As long as it is assumed that none touch.
+    Assumed,
+    Always,
+}
+
 /// What a search is asked for, beside the model.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Part<'a> {
     /// The labels that count; all if `None`. Assertions that do not count still support.
     pub(crate) active_labels: Option<&'a TiSlice<LabelId, bool>>,
@@ -43,13 +55,38 @@ pub(crate) struct Part<'a> {
     pub(crate) ignores_nature: bool,
     /// Whether it is to be known what a refutation rests on.
     pub(crate) wants_core: bool,
+    /// Whether plans are listed that differ only in alternatives of which one is as good as the other.
+    pub(crate) lists_all: bool,
+    /// What is assumed of pairs that touch, where the mission has a gap.
+    pub(crate) touching: Touching,
+    /// What holds of the whole mission, whatever is chosen, if this is a part of one.
+    pub(crate) loosest: Option<&'a Unordered>,
+}
+
+impl Default for Part<'_> {
+    fn default() -> Self {
+        Self {
+            active_labels: None,
+            alternatives: None,
+            active_uses: None,
+            ignores_nature: false,
+            wants_core: false,
+            lists_all: false,
+            touching: Touching::Unneeded,
+            loosest: None,
+        }
+    }
 }
 
 /// How a planning problem is told to the solver.
 #[derive(Clone, Debug)]
 pub(crate) struct Problem<'m> {
     pub(crate) model: &'m Model,
-    gaps: Gaps,
+    pub(super) touches: Touches,
+    /// What holds whatever is chosen, once that has been looked at.
+    pub(super) loosest: Option<Option<Unordered>>,
+    /// By label: when it ends at the latest and starts at the earliest, by arcs alone.
+    pub(super) windows: TiVec<LabelId, (i64, i64)>,
     pub(crate) intervals: TiVec<LabelId, Interval>,
     /// Labels that count, in textual order.
     pub(crate) labels_by_variable: TiVec<VariableId, Vec<LabelId>>,
@@ -76,7 +113,6 @@ impl<'m> Problem<'m> {
     /// The problem and a solver that knows it, unless it is stopped before. The model's contexts must be known.
     pub(crate) fn new(
         model: &'m Model,
-        gaps: Gaps,
         part: Part<'_>,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(Self, Solver), Unencoded> {
@@ -90,10 +126,14 @@ impl<'m> Problem<'m> {
         if part.wants_core {
             solver.keep_derivations();
         }
+        let rule = if model.gap == 0 { Touching::Always } else { part.touching };
+        let touches = Touches::new(&mut solver, rule);
         let alternatives = add_alternatives(model, &mut solver);
         let mut problem = Self {
             model,
-            gaps,
+            touches,
+            loosest: (rule == Touching::Loosely).then(|| part.loosest.cloned()),
+            windows: TiVec::new(),
             intervals: TiVec::new(),
             labels_by_variable: vec![Vec::new(); model.conditions.variables.len()].into(),
             orders: BTreeMap::new(),
@@ -114,8 +154,10 @@ impl<'m> Problem<'m> {
         problem.add_arcs(&mut solver);
         problem.add_intervals(&mut solver, part);
         problem.sweep(&mut solver);
+        problem.begin_touching(&mut solver);
         solver.propagate_at_root(growth.stop)?;
         if !solver.is_contradictory {
+            problem.keep_windows(&solver);
             problem.add_links(&mut solver, part, &mut growth)?;
             problem.add_lasting(&mut solver, part, &mut growth)?;
             problem.add_resources(&solver, part);
@@ -208,14 +250,9 @@ impl<'m> Problem<'m> {
         solver.at_least_one(literals);
     }
 
-    /// What must lie between the end of a labelled interval and the start of one that excludes it, at most.
-    pub(crate) fn order_gap(&self, label: LabelId) -> i64 {
-        if self.gaps == Gaps::Ignored { self.gap_after(label) } else { self.model.gap }
-    }
-
-    /// What must lie between two labelled intervals that exclude each other, whatever else is chosen.
-    pub(crate) fn gap_between(&self, first: LabelId, then: LabelId) -> i64 {
-        self.model.gap_before(then, self.order_gap(first))
+    /// What must lie between two labelled intervals that exclude each other, unless they may touch.
+    pub(crate) fn gap_between(&self, _first: LabelId, then: LabelId) -> i64 {
+        self.model.gap_before(then, self.model.gap)
     }
 
     /// What counts as ordered where it follows from the rest.
@@ -231,19 +268,38 @@ impl<'m> Problem<'m> {
             && !self.is_nested(left, right)
     }
 
-    /// Whether two labels never overlap, and then whether the gap is due between them.
-    pub(crate) fn exclusion(&self, left: LabelId, right: LabelId) -> Option<bool> {
+    /// Whether two labels never overlap, and then the gap that is due between them.
+    pub(crate) fn exclusion(&mut self, left: LabelId, right: LabelId) -> Option<DueGap> {
         let arc = |label: LabelId| self.model.conditions.labels[label].arc;
         let structure = self.model.structure.as_ref();
         if structure.is_some_and(|structure| structure.relation(arc(left), arc(right)) != Relation::Open) {
-            return Some(false);
+            return Some(DueGap::Never);
         }
-        (self.model.conditions.conflict(left, right) && arc(left) != arc(right)).then_some(true)
+        if !self.model.conditions.conflict(left, right) || arc(left) == arc(right) {
+            return None;
+        }
+        let is_due = self.gap_between(left, right).min(self.gap_between(right, left)) > 0
+            && !self.is_ordered_by_windows((left, right));
+        Some(match (is_due, is_due && self.never_touches((left, right))) {
+            (false, _) => DueGap::Never,
+            (true, false) => DueGap::Assumed,
+            (true, true) => DueGap::Always,
+        })
     }
 
-    /// The least gap that an order of two labels asks for.
-    pub(crate) fn least_gap(&self) -> i64 {
-        if self.gaps == Gaps::Ignored { 0 } else { self.model.gap }
+    fn keep_windows(&mut self, solver: &Solver) {
+        let windows = self.intervals.iter().map(|interval| {
+            (solver.trail.most(interval.end), solver.trail.least(interval.start))
+        });
+        self.windows = windows.collect();
+    }
+
+    /// Whether arcs alone put one before the other whatever is chosen, touching where that counts.
+    pub(super) fn is_ordered_by_windows(&self, (left, right): (LabelId, LabelId)) -> bool {
+        let before = |first: LabelId, then: LabelId| {
+            self.windows[first].0 + self.gap_after(first) <= self.windows[then].1
+        };
+        before(left, right) || before(right, left)
     }
 
     fn is_nested(&self, left: LabelId, right: LabelId) -> bool {
@@ -299,7 +355,7 @@ impl<'m> Problem<'m> {
             solver.add_choice_point(choice_point, 0.0);
         }
         let Some(given) = part.alternatives else {
-            if self.model.tells_plans_apart() {
+            if part.lists_all || self.model.tells_plans_apart() {
                 return;
             }
             for decision in self.model.decisions.keys() {

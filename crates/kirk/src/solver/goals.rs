@@ -11,6 +11,7 @@ use super::linear;
 use super::literal::{Literal, Variable};
 use super::relaxation::{self, Relaxation, Row, SCALE};
 use super::{ChoicePointKind, Solver};
+use crate::choices::Choices;
 use crate::demands::ModelGoal;
 use crate::ids::LinearId;
 
@@ -86,6 +87,22 @@ impl Problem<'_> {
     pub(crate) fn prefer(&self, solver: &mut Solver, choices: &[Choice]) {
         for choice in choices {
             self.prefer_option(solver, choice.decision, choice.alternative as usize);
+        }
+    }
+
+    /// Tries these links first.
+    pub(crate) fn prefer_links(&self, solver: &mut Solver, choices: &Choices) {
+        for (ask, options) in &self.carriers {
+            let preferred = choices.carriers[*ask];
+            let position = options.iter().position(|&(tell, _)| Some(tell) == preferred);
+            if let (Some(position), Some(&(_, link))) = (position, options.first()) {
+                for &id in &solver.choice_points_of[link.side.variable()] {
+                    let choice_point = &mut solver.choice_points[id];
+                    if (choice_point.kind == ChoicePointKind::Carriers { ask: *ask }) {
+                        choice_point.last = Some(position as u32);
+                    }
+                }
+            }
         }
     }
 

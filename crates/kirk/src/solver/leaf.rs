@@ -8,6 +8,7 @@ use super::encode::Problem;
 use super::growth::{Growth, ORDER, Unencoded};
 use super::literal::Literal;
 use super::refutation::Premise;
+use super::touching::{Touching, Unordered};
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::failure::Member;
 use crate::trace::Event;
@@ -20,13 +21,18 @@ impl Solver {
     pub(super) fn add_pairs(&mut self, problem: &mut Problem<'_>) -> bool {
         let mut new: BTreeSet<(LabelId, LabelId)> = BTreeSet::new();
         let mut exclusive: Vec<VariableId> = Vec::new();
+        let mut unordered: Option<Unordered> = None;
         for variable in problem.labels_by_variable.keys() {
             let present: Vec<LabelId> = problem.labels_by_variable[variable]
                 .iter()
                 .copied()
                 .filter(|&label| self.trail.holds(problem.intervals[label].presence))
                 .collect();
-            let broken = self.broken_pairs(problem, &present);
+            let mut broken = self.broken_pairs(problem, &present);
+            if problem.touches.rule != Touching::Always && !broken.is_empty() {
+                let unordered = unordered.get_or_insert_with(|| problem.unordered(self));
+                broken.retain(|&pair| !unordered.relates(problem.model, pair));
+            }
             if broken.is_empty() {
                 continue;
             }
@@ -75,7 +81,7 @@ impl Solver {
                         && exists(right)
                         && problem.can_be_together(left, right)
                         && problem.must_be_ordered((left, right))
-                        && !self.is_ordered_by_windows(problem, (left, right))
+                        && !problem.is_ordered_by_windows((left, right))
                 }));
                 growth.add(ORDER * (pairs.len() - before))?;
             }
@@ -117,13 +123,14 @@ impl Solver {
             })
             .collect();
         by_start.sort_unstable();
+        let gap = problem.model.gap;
         let mut broken = Vec::new();
         let mut running: Vec<(i64, LabelId)> = Vec::new();
         for &(start, end, label) in &by_start {
-            running.retain(|&(other_end, other)| other_end + problem.order_gap(other) > start);
+            running.retain(|&(other_end, _)| other_end + gap > start);
             for &(_, other) in &running {
                 let pair = (label.min(other), label.max(other));
-                if problem.must_be_ordered(pair) && !self.is_ordered_by_windows(problem, pair) {
+                if problem.must_be_ordered(pair) && !problem.is_ordered_by_windows(pair) {
                     broken.push(pair);
                 }
             }
@@ -137,7 +144,7 @@ impl Solver {
         for (position, &left) in present.iter().enumerate() {
             for &right in &present[position + 1..] {
                 if problem.must_be_ordered((left, right))
-                    && !self.is_ordered_by_windows(problem, (left, right))
+                    && !problem.is_ordered_by_windows((left, right))
                 {
                     pairs.push((left, right));
                     if pairs.len() > MAX_PAIRS_AT_ONCE {
@@ -149,23 +156,16 @@ impl Solver {
         pairs
     }
 
-    /// Whether windows put one before the other, touching where that counts.
-    fn is_ordered_by_windows(&self, problem: &Problem<'_>, (left, right): (LabelId, LabelId)) -> bool {
-        let before = |first: LabelId, then: LabelId| {
-            let (first_end, then_start) = (problem.intervals[first].end, problem.intervals[then].start);
-            self.trail.most(first_end) + problem.gap_after(first) <= self.trail.least(then_start)
-        };
-        before(left, right) || before(right, left)
-    }
-
     fn add_pair(&mut self, problem: &mut Problem<'_>, left: LabelId, right: LabelId) {
         problem.known_pairs.insert((left, right));
         self.tell_from([left, right].map(Member::Condition));
         let (one, other) = (problem.intervals[left], problem.intervals[right]);
         let when = [one.presence, other.presence];
         let left_first = self.boolean();
+        let touch = problem.touch(self, (left, right));
+        self.tell_from([left, right].map(Member::Condition));
         // Where both exist in any case, the second order is the first one's opposite.
-        let is_certain = self.are_certain(&when);
+        let is_certain = touch.is_none() && self.are_certain(&when);
         let right_first = if is_certain { !left_first } else { self.boolean() };
         self.resize();
         if !is_certain {
@@ -174,7 +174,8 @@ impl Solver {
                     self.imply(order, presence);
                 }
             }
-            self.at_least_one([!when[0], !when[1], left_first, right_first]);
+            let orders = [!when[0], !when[1], left_first, right_first];
+            self.at_least_one(orders.into_iter().chain(touch));
         }
         for (order, (first, then), gap) in [
             (left_first, (one, other), problem.gap_between(left, right)),
@@ -184,10 +185,8 @@ impl Solver {
         }
         problem.orders.insert((left, right), [left_first, right_first]);
         let kind = ChoicePointKind::Orders { left, right };
-        self.add_choice_point(
-            ChoicePoint { when: when.to_vec(), kind, options: vec![left_first, right_first], last: None },
-            0.0,
-        );
+        let options = [left_first, right_first].into_iter().chain(touch).collect();
+        self.add_choice_point(ChoicePoint { when: when.to_vec(), kind, options, last: None }, 0.0);
     }
 
     /// The option of a choice point to try first.
@@ -205,7 +204,9 @@ impl Solver {
         let mut open = choice_point.options.iter().copied().filter(is_open);
         match choice_point.kind {
             ChoicePointKind::Alternatives | ChoicePointKind::Carriers { .. } => open.next(),
-            ChoicePointKind::Orders { .. } | ChoicePointKind::Sides | ChoicePointKind::Resolvers => {
+            // That a pair touches follows where neither order is left.
+            ChoicePointKind::Orders { .. } => choice_point.options[..2].iter().copied().filter(is_open).max_by_key(|&option| self.slack(option)),
+            ChoicePointKind::Sides | ChoicePointKind::Resolvers => {
                 open.max_by_key(|&option| self.slack(option))
             }
         }

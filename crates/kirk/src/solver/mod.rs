@@ -39,6 +39,7 @@ mod refutation;
 mod relaxation;
 mod resources;
 mod simplex;
+mod touching;
 mod tours;
 mod trail;
 
@@ -70,6 +71,7 @@ pub(crate) use growth::{Growth, Unencoded};
 pub(crate) use lasting::Kept;
 pub(crate) use record::Record;
 pub(crate) use refutation::Premise;
+pub(crate) use touching::{Touching, Unordered};
 
 /// How a search came to an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +136,8 @@ pub(crate) struct Solver {
     is_interrupted: bool,
     analysis: Analysis,
     is_contradictory: bool,
+    /// What is decided first, until it is refuted.
+    assumption: Option<Literal>,
     conflicts_until_restart: u64,
     restarts: u64,
     max_learned: usize,
@@ -187,6 +191,7 @@ impl Solver {
             is_interrupted: false,
             analysis: Analysis::default(),
             is_contradictory: false,
+            assumption: None,
             conflicts_until_restart: RESTART_UNIT,
             restarts: 0,
             max_learned: 4_000,
@@ -365,7 +370,7 @@ impl Solver {
                     self.stats.expanded += 1;
                 } else {
                     self.stats.leaves += 1;
-                    let is_broken = self.add_pairs(problem) || problem.break_circles(self);
+                    let is_broken = self.is_broken(problem);
                     let sharing = if is_broken { Sharing::Restarted } else { problem.share(self) };
                     if sharing == Sharing::Restarted {
                         self.record_restart(problem);
@@ -388,6 +393,11 @@ impl Solver {
                 return Answer::Stopped;
             }
         }
+    }
+
+    /// Adds what the present solution breaks, in which everything is decided. `false` if it breaks nothing.
+    fn is_broken(&mut self, problem: &mut Problem<'_>) -> bool {
+        self.add_pairs(problem) || problem.refute_touches(self) || problem.break_circles(self)
     }
 
     /// Propagates what follows without decisions, unless that is known already to fail.
@@ -585,6 +595,13 @@ impl Solver {
 
     /// Makes the next decision. `false` if everything that counts is decided.
     fn decide(&mut self) -> bool {
+        if let Some(assumed) = self.assumption.filter(|&assumed| self.trail.is_open(assumed)) {
+            self.trail.open_level();
+            let _ = self.trail.set(assumed, trail::Cause::Decision);
+            let state = self.recorded_state();
+            self.record_again(state);
+            return true;
+        }
         while let Some(id) = self.activity.pop() {
             let choice_point = &self.choice_points[id];
             let counts = choice_point.when.iter().all(|&when| self.trail.holds(when));

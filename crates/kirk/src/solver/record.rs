@@ -19,7 +19,7 @@ use super::{ChoicePointKind, Solver};
 use crate::ids::EventId;
 use crate::model::{INFINITE, Model, node, point};
 use crate::precedence;
-use crate::search::UNBOUNDED_BELOW;
+use crate::model::UNBOUNDED_BELOW;
 use crate::trace::{
     Constraint, CycleMember, Event, Recorder, SearchRound, Trace, TreeChoice, TreeNodeId, TreeStatus,
 };
@@ -36,8 +36,6 @@ pub(crate) struct Record {
     starts: BTreeMap<Literal, TreeChoice>,
     /// How many events of the trail have been told.
     seen: usize,
-    /// Whether conflicting intervals may touch.
-    may_touch: bool,
     /// The state of the last plan.
     solution: TreeNodeId,
     /// Whether better and better plans are looked for, in searches of their own.
@@ -63,7 +61,6 @@ impl Record {
             names: BTreeMap::new(),
             starts: BTreeMap::new(),
             seen: 0,
-            may_touch: false,
             solution: 0,
             has_goals,
             told: None,
@@ -176,7 +173,7 @@ impl Solver {
         let Some(record) = self.recording() else { return };
         record.path.truncate(1);
         record.seen = 0;
-        record.may_touch = round.may_touch;
+        
         record.told = round.is_best_first.then(BTreeMap::new);
         record.tell(Event::Begin(round));
         self.name_choices(problem);
@@ -576,7 +573,7 @@ impl Solver {
             }
             for &choice in names {
                 let Some(constraint) = constraint(choice) else { continue };
-                for (from, to, weight) in precedence::edges(model, choice, record.may_touch) {
+                for (from, to, weight) in precedence::edges(model, choice) {
                     stn.push(from, to, weight, constraints.len() as u32);
                     constraints.push(constraint);
                 }

@@ -4,12 +4,8 @@ use tpn::{ArcId, BlockId, BlockKind, Network, NodeId};
 use typed_index_collections::TiVec;
 
 use super::{Shape, Structure, TreeBlock};
-use crate::enclosed::Enclosed;
 use crate::model::{INFINITE, Model};
 use crate::unplannable::Unplannable;
-
-/// Parts of more blocks are not looked at for enclosed conditions.
-const MAX_ENCLOSED_BLOCKS: usize = 64;
 
 impl Structure {
     /// `None` if the blocks do not account for their own arcs, as in networks changed by other tools.
@@ -23,8 +19,6 @@ impl Structure {
             // Every decision has its block, or the model would have no contexts.
             decision_blocks: vec![root; network.decisions.len()].into(),
             arc_blocks: vec![None; network.arcs.len()].into(),
-            root,
-            enclosed: TiVec::new(),
         };
         for block in &network.blocks {
             if !structure.add_block(block, model) {
@@ -42,7 +36,6 @@ impl Structure {
                 return Ok(None);
             }
         }
-        structure.find_enclosed(model);
         structure.refresh(model)?;
         Ok(Some(structure))
     }
@@ -94,10 +87,6 @@ impl Structure {
         for &arc in arcs {
             self.arc_blocks[arc] = Some(id);
         }
-        let inside = |test: fn(&TreeBlock) -> bool| children.iter().any(|&at| test(&self.blocks[at]));
-        let has_choices = matches!(shape, Shape::Choice(_)) || inside(|child| child.has_choices);
-        let has_labels = arcs.iter().any(|&arc| !model.conditions.labels_of(arc).is_empty())
-            || inside(|child| child.has_labels);
         self.blocks.push(TreeBlock {
             parent: None,
             position: 0,
@@ -107,89 +96,10 @@ impl Structure {
             own_arcs: (first_arc as u32, arcs.len() as u32),
             around: (0, 0),
             own: (0, INFINITE),
-            has_choices,
-            has_labels,
-            enclosed: None,
-            is_inside_enclosed: false,
             ends: (block.start, block.end),
             around_arcs: (None, None),
         });
         true
-    }
-
-    /// Finds, for each variable, the smallest block with all its labels, and keeps those that are enclosed.
-    pub(super) fn find_enclosed(&mut self, model: &Model) {
-        let conditions = &model.conditions;
-        let mut num_arcs_at: TiVec<NodeId, u32> = vec![0; model.num_nodes].into();
-        for arc in &model.arcs {
-            num_arcs_at[arc.from] += 1;
-            num_arcs_at[arc.to] += 1;
-        }
-        for variable in &conditions.variables {
-            let mut blocks =
-                variable.labels.iter().map(|&label| self.arc_blocks[conditions.labels[label].arc]);
-            let Some(first) = blocks.next() else { continue };
-            let common = blocks.fold(first, |common, block| self.common_ancestor(common?, block?));
-            let Some(common) = common else { continue };
-            let block = &self.blocks[common];
-            // How long the whole mission may take is up to the search, which orders it only once.
-            if self.is_whole(common)
-                || block.has_choices
-                || block.enclosed.is_some()
-                || block.is_inside_enclosed
-            {
-                continue;
-            }
-            let Some(inside) = self.blocks_inside(common) else { continue };
-            let mut arcs = self.own_arcs(common).to_vec();
-            for &id in &inside {
-                let (enter, leave) = self.blocks[id].around_arcs;
-                arcs.extend([enter, leave].into_iter().flatten());
-                arcs.extend_from_slice(self.own_arcs(id));
-            }
-            let Some(enclosed) = Enclosed::new(model, &num_arcs_at, block.ends, arcs) else { continue };
-            self.blocks[common].enclosed = Some(self.enclosed.push_and_get_key(enclosed));
-            for id in inside {
-                self.blocks[id].is_inside_enclosed = true;
-            }
-        }
-    }
-
-    /// Whether a block is all there is, but for bounds around it.
-    fn is_whole(&self, mut id: BlockId) -> bool {
-        while let Some(parent) = self.blocks[id].parent {
-            if self.children(parent).len() > 1 {
-                return false;
-            }
-            id = parent;
-        }
-        true
-    }
-
-    /// The blocks inside another; `None` if there are many.
-    fn blocks_inside(&self, id: BlockId) -> Option<Vec<BlockId>> {
-        let mut inside = self.children(id).to_vec();
-        let mut next = 0;
-        while let Some(&id) = inside.get(next) {
-            inside.extend_from_slice(self.children(id));
-            next += 1;
-            if inside.len() > MAX_ENCLOSED_BLOCKS {
-                return None;
-            }
-        }
-        Some(inside)
-    }
-
-    /// The smallest block that holds two others, if there is one.
-    fn common_ancestor(&self, mut left: BlockId, mut right: BlockId) -> Option<BlockId> {
-        while left != right {
-            if self.blocks[left].depth >= self.blocks[right].depth {
-                left = self.blocks[left].parent?;
-            } else {
-                right = self.blocks[right].parent?;
-            }
-        }
-        Some(left)
     }
 
     /// Finds the arcs around the children of a block; `false` if one is missing.

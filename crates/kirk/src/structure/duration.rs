@@ -3,27 +3,11 @@
 use tpn::{ArcId, BlockId};
 
 use super::{Duration, Shape, Structure, bounds, intersect, sum_of};
-use crate::enclosed::Durations;
 use crate::model::{INFINITE, Model};
 use crate::unplannable::Unplannable;
 
 impl Structure {
-    pub(super) fn initial_duration(&self, model: &Model, id: BlockId) -> Result<Duration, Unplannable> {
-        let duration = self.nested_duration(id)?;
-        let Some(enclosed) = self.blocks[id].enclosed.filter(|_| !duration.is_empty()) else {
-            return Ok(duration);
-        };
-        Ok(match self.enclosed[enclosed].durations(model) {
-            Durations::Never => Duration::NEVER,
-            Durations::Unknown => duration,
-            Durations::Between(lower, upper) => {
-                let (lower, upper) = intersect((duration.lower, duration.upper()), (lower, upper));
-                Duration::new(lower, upper)
-            }
-        })
-    }
-
-    fn nested_duration(&self, id: BlockId) -> Result<Duration, Unplannable> {
+    pub(super) fn initial_duration(&self, id: BlockId) -> Result<Duration, Unplannable> {
         let block = &self.blocks[id];
         let children = self.children(id);
         let parts = children.iter().map(|&child| {

@@ -1,20 +1,15 @@
-//! The program's structure as a tree of durations: the fast half of phase 1.
+//! The program's structure as a tree of durations.
 //!
 //! A block touches the rest of its network only in its first and its last event, so all that its inside demands is
 //! one interval for its duration. Intervals of a sequence add up, those of parallel branches and spanning bounds
-//! intersect, and a choice that is still open has a relaxation: the least interval that holds those of its alternatives.
-//! An empty interval on the way up means that no completion of the choices made so far is consistent; this is exact
-//! once all are made, and finds most failures long before. One choice costs time proportional to the depth of its block.
+//! intersect, and a choice has a relaxation: the least interval that contains those of its alternatives.
 
 mod blocks;
-mod decide;
 mod duration;
 
-use tpn::{ArcId, BlockId, Choice, DecisionId, NodeId};
+use tpn::{ArcId, BlockId, DecisionId, NodeId};
 use typed_index_collections::TiVec;
 
-use crate::enclosed::Enclosed;
-use crate::ids::EnclosedId;
 use crate::model::{INFINITE, Model};
 use crate::unplannable::Unplannable;
 
@@ -31,9 +26,6 @@ pub(crate) struct Structure {
     decision_blocks: TiVec<DecisionId, BlockId>,
     /// The block that each arc is a leaf or a spanning arc of; `None` for arcs between blocks.
     arc_blocks: TiVec<ArcId, Option<BlockId>>,
-    root: BlockId,
-    /// Blocks without choices whose assertions conflict only with each other.
-    enclosed: TiVec<EnclosedId, Enclosed>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -51,13 +43,6 @@ struct TreeBlock {
     around: (i64, i64),
     /// The bounds of its own arcs.
     own: (i64, i64),
-    /// Whether there is a choice in it.
-    has_choices: bool,
-    has_labels: bool,
-    /// What it is among the enclosed ones, if its conditions conflict only with each other.
-    enclosed: Option<EnclosedId>,
-    /// Whether it is inside a block that is in `enclosed`.
-    is_inside_enclosed: bool,
     /// Its first and last event.
     ends: (NodeId, NodeId),
     /// The arcs that lead to it from the parent's first event and from it to the parent's last or the next sibling's
@@ -106,24 +91,6 @@ impl Duration {
     }
 }
 
-/// A block relaxed to the least and greatest duration that it can have, whatever is chosen in it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BlockRelaxation {
-    pub(crate) from: NodeId,
-    pub(crate) to: NodeId,
-    pub(crate) lower: i64,
-    pub(crate) upper: i64,
-    /// The choice that it is; `None` for a part without labels.
-    pub(crate) decision: Option<DecisionId>,
-}
-
-/// The tree during a search.
-#[derive(Clone, Debug)]
-pub(crate) struct TreeState {
-    durations: TiVec<BlockId, Duration>,
-    trail: Vec<(BlockId, Duration)>,
-}
-
 /// How one of two blocks stands to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Relation {
@@ -143,7 +110,7 @@ impl Structure {
         for id in self.blocks.keys() {
             self.blocks[id].own = self.own_bounds(model, id);
             self.blocks[id].around = self.around(model, id)?;
-            self.initial[id] = self.initial_duration(model, id)?;
+            self.initial[id] = self.initial_duration(id)?;
         }
         Ok(())
     }
@@ -155,9 +122,8 @@ impl Structure {
         self.blocks[own].own = self.own_bounds(model, own);
         let mut above = Some(own);
         while let Some(id) = above {
-            let duration = self.initial_duration(model, id)?;
-            let is_inside_enclosed = self.blocks[id].is_inside_enclosed;
-            if duration == self.initial[id] && !is_inside_enclosed {
+            let duration = self.initial_duration(id)?;
+            if duration == self.initial[id] {
                 break;
             }
             self.initial[id] = duration;
@@ -180,19 +146,6 @@ impl Structure {
         &self.own_arcs[first as usize..(first + count) as usize]
     }
 
-    /// The node where a decision is made.
-    pub(crate) fn decision_node(&self, decision: DecisionId) -> NodeId {
-        self.blocks[self.decision_blocks[decision]].ends.0
-    }
-
-    /// The duration of a choice if its first possible alternative is taken.
-    pub(crate) fn first_alternative(&self, decision: DecisionId) -> Result<Option<(i64, i64)>, Unplannable> {
-        let children = self.children(self.decision_blocks[decision]);
-        let first = children.iter().find(|&&child| !self.initial[child].is_empty());
-        let duration = first.map(|&child| self.with_around(self.initial[child], child));
-        Ok(duration.transpose()?.map(|duration| (duration.lower, duration.upper())))
-    }
-
     /// The first and last event of a choice, and how long it can take whatever is chosen.
     pub(crate) fn initial_bounds(&self, decision: DecisionId) -> (NodeId, NodeId, i64, i64) {
         let block = self.decision_blocks[decision];
@@ -200,104 +153,31 @@ impl Structure {
         (from, to, self.initial[block].lower, self.initial[block].upper())
     }
 
-    pub(crate) fn start(&self) -> TreeState {
-        TreeState { durations: self.initial.clone(), trail: Vec::new() }
+    /// How long a choice can take whichever alternatives are taken in it; `None` if they have nothing in common.
+    pub(crate) fn common_bounds(&self, decision: DecisionId) -> Option<(i64, i64)> {
+        self.common_duration(self.decision_blocks[decision])
     }
 
-    /// Whether the mission has no consistent selection at all, whatever is chosen.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.initial[self.root].is_empty()
-    }
-
-    /// Calls `arrive` with the arcs, and `relaxation` with the relaxations of label-free parts and open choices, that an
-    /// alternative brings.
-    pub(crate) fn emit_alternative(
-        &self,
-        choice: Choice,
-        arrive: &mut impl FnMut(ArcId),
-        relaxation: &mut impl FnMut(BlockRelaxation),
-    ) {
-        let child = self.child(self.decision_blocks[choice.decision], choice.alternative);
-        self.emit_around(child, arrive);
-        self.emit(child, arrive, relaxation);
-    }
-
-    /// The same for what every plan has.
-    pub(crate) fn emit_root(
-        &self,
-        arrive: &mut impl FnMut(ArcId),
-        relaxation: &mut impl FnMut(BlockRelaxation),
-    ) {
-        self.emit(self.root, arrive, relaxation);
-    }
-
-    /// The part without labels that a decision belongs to, as large as possible, with its present duration; `None` if
-    /// the decision has labels in its alternatives.
-    pub(crate) fn label_free_part(
-        &self,
-        state: &TreeState,
-        decision: DecisionId,
-    ) -> Option<(BlockId, BlockRelaxation)> {
-        let mut id = self.decision_blocks[decision];
-        if self.blocks[id].has_labels {
-            return None;
-        }
-        while let Some(parent) = self.blocks[id].parent.filter(|&parent| !self.blocks[parent].has_labels) {
-            id = parent;
-        }
-        let (from, to) = self.blocks[id].ends;
-        let duration = state.durations[id];
-        Some((
-            id,
-            BlockRelaxation { from, to, lower: duration.lower, upper: duration.upper(), decision: None },
-        ))
-    }
-
-    fn emit(
-        &self,
-        id: BlockId,
-        arrive: &mut impl FnMut(ArcId),
-        relaxation: &mut impl FnMut(BlockRelaxation),
-    ) {
+    fn common_duration(&self, id: BlockId) -> Option<(i64, i64)> {
         let block = &self.blocks[id];
-        let decision = if let Shape::Choice(decision) = block.shape { Some(decision) } else { None };
-        if !block.has_labels || decision.is_some() {
-            let duration = self.initial[id];
-            let (from, to) = block.ends;
-            relaxation(BlockRelaxation {
-                from,
-                to,
-                lower: duration.lower,
-                upper: duration.upper(),
-                decision,
-            });
-            return;
-        }
-        if block.enclosed.is_some() {
-            let duration = self.initial[id];
-            let (from, to) = block.ends;
-            relaxation(BlockRelaxation {
-                from,
-                to,
-                lower: duration.lower,
-                upper: duration.upper(),
-                decision: None,
-            });
-        }
-        for &arc in self.own_arcs(id) {
-            arrive(arc);
-        }
+        let mut common = match block.shape {
+            Shape::Leaf | Shape::Guard | Shape::Intersection => block.own,
+            Shape::Sequence => (0, 0),
+            Shape::Choice(_) => (i64::MIN, INFINITE),
+        };
         for &child in self.children(id) {
-            self.emit_around(child, arrive);
-            self.emit(child, arrive, relaxation);
+            let (lower, upper) = self.common_duration(child)?;
+            let part = self.with_around(Duration::new(lower, upper), child).ok()?;
+            let part = (part.lower, part.upper());
+            common = match block.shape {
+                Shape::Sequence | Shape::Guard => {
+                    let sum = sum_of(Duration::new(common.0, common.1), Duration::new(part.0, part.1))?;
+                    (sum.lower, sum.upper())
+                }
+                Shape::Leaf | Shape::Intersection | Shape::Choice(_) => intersect(common, part),
+            };
         }
-    }
-
-    fn emit_around(&self, id: BlockId, arrive: &mut impl FnMut(ArcId)) {
-        let (enter, leave) = self.blocks[id].around_arcs;
-        for arc in [enter, leave].into_iter().flatten() {
-            arrive(arc);
-        }
+        (common.0 <= common.1).then_some(common)
     }
 
     /// What the nesting alone says about two arcs.
@@ -328,11 +208,6 @@ impl Structure {
             }
             _ => Relation::Open,
         }
-    }
-
-    /// What a block's duration and the arcs around it come to.
-    fn contribution(&self, state: &TreeState, id: BlockId) -> Result<Duration, Unplannable> {
-        self.with_around(state.durations[id], id)
     }
 
     /// The duration of a block with that of the arcs around it.

@@ -228,7 +228,7 @@ fn joined(names: &[String]) -> String {
 }
 
 fn begin(network: &Network, round: &SearchRound) -> String {
-    let SearchRound { is_in_textual_order, is_best_first, may_touch, values, bound } = round;
+    let SearchRound { is_in_textual_order, is_best_first, values, bound } = round;
     if let Some(goal) = values.len().checked_sub(1).and_then(|last| network.objective.get(last)) {
         let more = if goal.is_maximized { "more" } else { "less" };
         let measure = measure(goal);
@@ -238,20 +238,15 @@ fn begin(network: &Network, round: &SearchRound) -> String {
             goals(network, values)
         );
     }
-    if *is_best_first && !*may_touch {
+    if *is_best_first {
         return "Always go on where the best plan may still be. The first plan that is finished is the best one."
             .to_owned();
     }
-    match (may_touch, is_in_textual_order, network.objective.is_empty()) {
-        (true, ..) => {
-            "No plan leaves a gap between all conflicting intervals: search again, and let them touch."
-        }
-        (false, true, _) => {
-            "Search in the order of the text. Each failure teaches what never to choose together again."
-        }
-        (false, false, false) => "Look for some plan first, and then for better and better ones.",
-        (false, false, true) => {
-            "Too many failures in the order of the text: search again, and choose first what failures are about."
+    match (is_in_textual_order, network.objective.is_empty()) {
+        (true, _) => "Search in the order of the text. Each failure teaches what never to choose together again.",
+        (false, false) => "Look for some plan first, and then for better and better ones.",
+        (false, true) => {
+            "Too many failures in the order of the text: choose first what failures are about."
         }
     }
     .to_owned()
