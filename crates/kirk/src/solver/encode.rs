@@ -513,18 +513,28 @@ impl<'m> Problem<'m> {
         }
     }
 
-    /// Bounds along the arcs, each node after those before it.
+    /// Bounds along the arcs, each node after those before it, until none moves any more.
     fn sweep(&self, solver: &mut Solver) {
         solver.tell_structure();
-        let mut carry = |side| {
-            let Solver { differences, trail, is_contradictory, .. } = solver;
-            if !*is_contradictory && let Err(conflict) = differences.carry_on(trail, side) {
-                solver.refute(&conflict);
+        let first = solver.trail.events.len();
+        let points = || self.model.order.iter().map(|point| self.times[node(*point)]);
+        for _ in 0..MAX_SWEEPS {
+            let before = solver.trail.events.len();
+            let forward = points().map(Variable::lower);
+            for side in forward.chain(points().rev().map(Variable::upper)) {
+                let Solver { differences, trail, is_contradictory, .. } = solver;
+                if *is_contradictory {
+                    return;
+                }
+                if let Err(conflict) = differences.carry_on(trail, side) {
+                    solver.refute(&conflict);
+                }
             }
-        };
-        let time = |point: &PointId| self.times[node(*point)];
-        self.model.order.iter().for_each(|point| carry(time(point).lower()));
-        self.model.order.iter().rev().for_each(|point| carry(time(point).upper()));
+            if solver.trail.events.len() == before {
+                solver.settled = first..before;
+                return;
+            }
+        }
     }
 
     fn add_links(
@@ -604,6 +614,9 @@ impl<'m> Problem<'m> {
         self.model.can_be_together(left, right)
     }
 }
+
+/// Bounds that move more often along all arcs are left to propagation.
+const MAX_SWEEPS: usize = 4;
 
 /// Between which times everything fits: more than all bounds together.
 fn reach(model: &Model) -> Result<(i64, i64), Unencoded> {

@@ -128,8 +128,16 @@ pub(crate) struct Solver {
     /// By side of a Boolean: choice points that begin to count.
     reached: TiVec<Side, Vec<ChoicePointId>>,
     activity: Activity,
-    /// How many events have been propagated.
+    /// How many events have been propagated along clauses and choice points.
     head: usize,
+    /// How many have been propagated to the theories.
+    theory_head: usize,
+    /// The events whose bounds need not be carried on, for all bounds are settled that they move.
+    settled: std::ops::Range<usize>,
+    /// So many decisions are made before what they mean for times is looked at.
+    burst: usize,
+    /// How many decisions were made one by one since many at once failed.
+    single_decisions: u32,
     /// What propagation has done since it last looked whether to stop.
     steps: u32,
     /// Whether a propagation was stopped before its end.
@@ -166,6 +174,9 @@ const STEPS_BETWEEN_LOOKS: u32 = 1 << 13;
 /// What a look at a set of tasks counts as.
 const STEPS_OF_SETS: u32 = 1 << 6;
 
+/// After many decisions at once have failed, so many are made one by one.
+const SINGLE_DECISIONS: u32 = 16;
+
 /// Conflicts in the unit of the restart sequence.
 const RESTART_UNIT: u64 = 64;
 
@@ -187,6 +198,10 @@ impl Solver {
             reached: TiVec::new(),
             activity: Activity::new(),
             head: 0,
+            theory_head: 0,
+            settled: 0..0,
+            burst: 1,
+            single_decisions: 0,
             steps: 0,
             is_interrupted: false,
             analysis: Analysis::default(),
@@ -366,8 +381,13 @@ impl Solver {
                     self.restart();
                     self.record_restart(problem);
                 }
+                self.decide_many(stop);
                 if self.decide() {
                     self.stats.expanded += 1;
+                    self.single_decisions += 1;
+                    if self.burst == 0 && self.single_decisions >= SINGLE_DECISIONS {
+                        (self.burst, self.single_decisions) = (1, 0);
+                    }
                 } else {
                     self.stats.leaves += 1;
                     let is_broken = self.is_broken(problem);
@@ -426,7 +446,7 @@ impl Solver {
 
     fn propagate(&mut self, stop: &mut dyn FnMut(&Stats) -> bool) -> Result<Propagated, Conflict> {
         if std::mem::take(&mut self.is_interrupted) {
-            self.head = 0;
+            (self.head, self.theory_head) = (0, 0);
             self.alternatives.queue.push_all();
             self.disjunctives.queue.push_all();
             self.cumulatives.queue.push_all();
@@ -438,28 +458,25 @@ impl Solver {
         self.origin = Origin::Other;
         loop {
             self.trail.premise = Premise::Structure;
-            while self.head < self.trail.events.len() {
-                let event = EventId::from(self.head);
-                self.head += 1;
-                let side = self.trail.events[event].side;
+            self.propagate_choices()?;
+            while self.theory_head < self.trail.events.len() {
+                let event = EventId::from(self.theory_head);
+                self.theory_head += 1;
                 if self.is_stopped_after(1, stop) {
                     return Ok(Propagated::InPart);
                 }
-                self.clauses.propagate(&mut self.trail, event)?;
-                for position in 0..self.implied[side].len() {
-                    let implied = self.implied[side][position];
-                    self.trail.set(implied.decided(), trail::Cause::Implied(side))?;
+                let side = self.trail.events[event].side;
+                if !self.settled.contains(&usize::from(event)) {
+                    self.differences.moved(&mut self.trail, event)?;
                 }
-                self.exclude_others(side)?;
-                for position in 0..self.reached[side].len() {
-                    self.activity.insert(self.reached[side][position]);
-                }
-                self.differences.moved(&mut self.trail, event)?;
                 self.alternatives.queue.moved(side);
                 self.disjunctives.queue.moved(side);
                 self.cumulatives.queue.moved(side);
                 self.linears.queue.moved(side);
                 self.tours.queue.moved(side);
+            }
+            if self.head < self.trail.events.len() {
+                continue;
             }
             if self.differences.propagate(&mut self.trail)? {
                 continue;
@@ -485,6 +502,54 @@ impl Solver {
                 return Ok(Propagated::InPart);
             }
         }
+    }
+
+    /// Propagates what new events mean to clauses and choice points.
+    fn propagate_choices(&mut self) -> Result<(), Conflict> {
+        while self.head < self.trail.events.len() {
+            let event = EventId::from(self.head);
+            self.head += 1;
+            let side = self.trail.events[event].side;
+            self.clauses.propagate(&mut self.trail, event)?;
+            for position in 0..self.implied[side].len() {
+                let implied = self.implied[side][position];
+                self.trail.set(implied.decided(), trail::Cause::Implied(side))?;
+            }
+            self.exclude_others(side)?;
+            for position in 0..self.reached[side].len() {
+                self.activity.insert(self.reached[side][position]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes decisions one after the other before anything is looked at but clauses and choice points: where times leave
+    /// room, their bounds move once for many decisions. If that ends in a failure, everything is taken back.
+    fn decide_many(&mut self, stop: &mut dyn FnMut(&Stats) -> bool) {
+        if !self.is_in_textual_order || self.burst == 0 || self.record.is_some() {
+            return;
+        }
+        let (level, expanded) = (self.trail.level(), self.stats.expanded);
+        for _ in 0..self.burst {
+            if !self.decide() {
+                break;
+            }
+            self.stats.expanded += 1;
+            if self.propagate_choices().is_err() {
+                return self.give_up_burst(level, expanded);
+            }
+        }
+        match self.propagate(stop) {
+            Ok(_) => self.burst *= 2,
+            Err(_) => self.give_up_burst(level, expanded),
+        }
+    }
+
+    fn give_up_burst(&mut self, level: u32, expanded: u64) {
+        self.stats.expanded = expanded;
+        self.retract(level);
+        // The next few decisions are made one by one.
+        self.burst = 0;
     }
 
     /// Of alternatives at most one is taken.
@@ -554,6 +619,7 @@ impl Solver {
         self.conclude_by(event, &reason);
         self.trail.undo_last();
         self.head = self.head.min(self.trail.events.len());
+        self.theory_head = self.theory_head.min(self.trail.events.len());
         if let Some(record) = &mut self.record {
             record.retract(self.trail.level(), self.trail.events.len());
         }
@@ -583,6 +649,7 @@ impl Solver {
             }
         });
         self.head = self.head.min(self.trail.events.len());
+        self.theory_head = self.theory_head.min(self.trail.events.len());
         if let Some(record) = &mut self.record {
             record.retract(self.trail.level(), self.trail.events.len());
         }
