@@ -15,9 +15,7 @@ use typed_index_collections::TiVec;
 use crate::demanding;
 use crate::model::{INFINITE, Model, ModelArc, UNBOUNDED_BELOW, node, point};
 use crate::options::{Options, Outcome, Stats, Status, Termination};
-use crate::trace::{
-    Constraint, CycleMember, Event, Recorder, TreeChoice, TreeNodeId, TreeStatus,
-};
+use crate::trace::{Constraint, CycleMember, Event, Recorder, TreeChoice, TreeNodeId, TreeStatus};
 use crate::unplannable::Unplannable;
 
 /// The plans of a network as the paper's search finds them.
@@ -82,9 +80,17 @@ struct Level {
 enum Kind {
     Decision(DecisionId),
     /// `position` among the selected requirements; `tells` are the candidates.
-    Link { position: usize, ask: LabelId, tells: Vec<LabelId> },
+    Link {
+        position: usize,
+        ask: LabelId,
+        tells: Vec<LabelId>,
+    },
     /// `position` among the conflicting pairs.
-    Threat { position: usize, left: LabelId, right: LabelId },
+    Threat {
+        position: usize,
+        left: LabelId,
+        right: LabelId,
+    },
 }
 
 impl Kind {

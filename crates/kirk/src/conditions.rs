@@ -51,11 +51,6 @@ pub(crate) struct VariableIndex {
 }
 
 impl VariableIndex {
-    /// Whether any two labels of a variable that does not last cannot hold together, so that there is a gap to keep.
-    pub(crate) fn has_conflict(&self) -> bool {
-        !self.labels.is_empty() && self.conflicts.contains(&true)
-    }
-
     /// Where the squares have a pair of literals.
     fn cell(&self, left: LiteralId, right: LiteralId) -> usize {
         usize::from(left) * self.num_literals + usize::from(right)
@@ -183,14 +178,6 @@ impl Conditions {
     pub(crate) fn labels_of(&self, arc: ArcId) -> &[LabelId] {
         let arc = arc.index();
         &self.arc_labels[self.arc_start[arc] as usize..self.arc_start[arc + 1] as usize]
-    }
-
-    /// The labels that conflict with `label`, selected or not.
-    pub(crate) fn conflicts(&self, label: LabelId) -> impl Iterator<Item = LabelId> + '_ {
-        let own = &self.labels[label];
-        let variable = &self.variables[own.variable];
-        let row = variable.conflicts_of(own.literal);
-        variable.labels.iter().copied().filter(move |&other| row[usize::from(self.labels[other].literal)])
     }
 
     /// The labels after `label`, in textual order, that conflict with it, selected or not.

@@ -9,7 +9,7 @@ use tpn::{Choice, DecisionId, LabelId, Network, OccurrenceKind};
 use typed_index_collections::TiVec;
 
 use crate::failure::{Failure, Member, Reason};
-use crate::model::{UNBOUNDED_BELOW, INFINITE, Model};
+use crate::model::{INFINITE, Model, UNBOUNDED_BELOW};
 use crate::options::{Stats, Termination, Unlimited};
 use crate::solver::{self, Answer, Problem, Touching, Unordered};
 use crate::trace::{Constraint, CycleMember};
@@ -26,8 +26,6 @@ const MAX_CONFLICTS: u64 = 30_000;
 pub(crate) struct Effort<'t> {
     /// Searches left.
     pub(crate) searches: usize,
-    /// Alternatives that one search may try.
-    expansions: u64,
     /// Conflicts that the solver may still meet.
     conflicts: u64,
     termination: &'t mut dyn Termination,
@@ -36,12 +34,7 @@ pub(crate) struct Effort<'t> {
 impl<'t> Effort<'t> {
     pub(crate) fn for_size(num_nodes: usize, termination: &'t mut dyn Termination) -> Self {
         let size = num_nodes.max(1);
-        Self {
-            searches: (1_000_000 / size).clamp(60, 5_000),
-            expansions: (2_000_000 / size as u64).clamp(200, 10_000),
-            conflicts: MAX_CONFLICTS,
-            termination,
-        }
+        Self { searches: (1_000_000 / size).clamp(60, 5_000), conflicts: MAX_CONFLICTS, termination }
     }
 
     /// Whether there is nothing left to spend.
@@ -52,14 +45,6 @@ impl<'t> Effort<'t> {
     pub(crate) fn spend(&mut self) -> bool {
         self.searches = self.searches.saturating_sub(1);
         self.searches > 0
-    }
-
-    /// Whether one search has done enough. Nothing more is searched once the termination condition says so.
-    pub(crate) fn is_spent(&mut self, stats: &Stats) -> bool {
-        if self.termination.should_stop(stats) {
-            self.searches = 0;
-        }
-        self.searches == 0 || stats.expanded >= self.expansions
     }
 
     /// What the solver says of a part of a problem, unless that takes too long; with what a refutation rests on, if that
@@ -169,9 +154,9 @@ fn first_completion(model: &Model, given: &[Choice], excluded: &[&[Choice]]) -> 
     // Each decision on the way with the alternative to try next.
     let mut path: Vec<(DecisionId, u32)> = Vec::new();
     for _ in 0..MAX_STEPS {
-        let is_excluded = excluded.iter().any(|choices| {
-            choices.iter().all(|choice| chosen[choice.decision] == Some(choice.alternative))
-        });
+        let is_excluded = excluded
+            .iter()
+            .any(|choices| choices.iter().all(|choice| chosen[choice.decision] == Some(choice.alternative)));
         let first = path.last().map_or(0, |(last, _)| last.index() + 1);
         let is_open = |&decision: &DecisionId| {
             let context = model.decisions[decision].context;
@@ -182,8 +167,9 @@ fn first_completion(model: &Model, given: &[Choice], excluded: &[&[Choice]]) -> 
             Some(decision) => path.push((decision, taken[decision].unwrap_or(0))),
             None if !is_excluded => {
                 let choices = chosen.iter_enumerated();
-                let choices = choices
-                    .filter_map(|(decision, &alternative)| Some(Choice { decision, alternative: alternative? }));
+                let choices = choices.filter_map(|(decision, &alternative)| {
+                    Some(Choice { decision, alternative: alternative? })
+                });
                 return Completion::Found(choices.collect());
             }
             None => {

@@ -15,6 +15,7 @@ mod demands;
 mod explain;
 mod failure;
 mod ids;
+mod instants;
 mod model;
 mod nature_run;
 mod nesting;

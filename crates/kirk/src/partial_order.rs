@@ -14,10 +14,11 @@ use tpn::{
 use typed_index_collections::TiVec;
 
 use crate::antichain::heaviest_antichain;
-use crate::before::Before;
+use crate::before::Before as Earlier;
 use crate::demands::{ModelSupply, ModelUse, ResourceDemand};
+use crate::instants::{self, Before};
 use crate::model::{Alternatives, INFINITE, Model};
-use crate::solver::Kept;
+use crate::solver::{Kept, turns};
 use crate::unplannable::Unplannable;
 
 /// What a solution chooses, and times that fit.
@@ -63,6 +64,8 @@ pub(crate) fn plan(
         windows: (Vec::new(), Vec::new()),
         num_edges: 0,
         is_narrower: false,
+        happens_after: TiVec::new(),
+        positions: TiVec::new(),
     };
     if !making.add_arcs()? {
         return Ok(None);
@@ -75,6 +78,7 @@ pub(crate) fn plan(
     causal_links.sort_unstable();
     making.add_departures()?;
     making.find_windows()?;
+    making.order_instants(&causal_links);
     let mut orderings_added = Vec::new();
     conflict_order.extend(making.order_kept(&mut orderings_added)?);
     if !making.resolve(threats, &mut conflict_order, &mut orderings_added)? {
@@ -133,6 +137,10 @@ struct Making<'a> {
     windows: (Vec<i64>, Vec<i64>),
     num_edges: usize,
     is_narrower: bool,
+    /// What happens right before each event among those at its time (SPEC 10.4); empty where nothing needs that order.
+    happens_after: TiVec<NodeId, Vec<NodeId>>,
+    /// An order by time, and within an instant by what happens before what.
+    positions: TiVec<NodeId, u32>,
 }
 
 const fn point(node: NodeId) -> PointId {
@@ -175,9 +183,8 @@ impl Making<'_> {
     fn add_links(&mut self) -> Result<Vec<CausalLink>, Unplannable> {
         let carried = self.solution.carriers.iter_enumerated();
         let carried = carried.filter_map(|(ask, &tell)| Some(CausalLink { ask, tell: tell? }));
-        let links: Vec<CausalLink> = carried
-            .filter(|link| self.is_selected[self.model.conditions.labels[link.ask].arc])
-            .collect();
+        let links: Vec<CausalLink> =
+            carried.filter(|link| self.is_selected[self.model.conditions.labels[link.ask].arc]).collect();
         for link in &links {
             let (start, end) = self.network.interval(link.ask);
             let (from, to) = self.network.interval(link.tell);
@@ -248,19 +255,113 @@ impl Making<'_> {
         }
     }
 
-    /// Makes sure that one event is no later than another. Whether that had to be added.
+    /// Which events happen before which within an instant, by arcs and links, and an order of all in which the solution's
+    /// own orders hold, too.
+    fn order_instants(&mut self, links: &[CausalLink]) {
+        let (network, model) = (self.network, self.model);
+        let demands = &model.demands;
+        if demands.variables.is_empty() && demands.resources.is_empty() {
+            return;
+        }
+        let mut before: Vec<(NodeId, NodeId)> = Vec::new();
+        for (id, arc) in model.arcs.iter_enumerated() {
+            if self.is_selected[id] && arc.lower >= 0 {
+                before.push((arc.from, arc.to));
+            }
+        }
+        for link in links.iter().filter(|link| network.is_lasting(link.ask)) {
+            before.push((network.ready(link.tell), network.interval(link.ask).0));
+        }
+        self.happens_after = vec![Vec::new(); model.num_nodes].into();
+        for &(first, then) in &before {
+            self.note_before(first, then);
+        }
+        for &(first, then) in &self.solution.kept.sides {
+            before.push((network.interval(first).1, network.interval(then).0));
+        }
+        for &(ask, change) in &self.solution.kept.kept_before {
+            before.push((network.interval(ask).1, network.interval(change).0));
+        }
+        for &(first, then) in &self.solution.uses_ordered {
+            let Precedence { earlier, later, .. } = UseOrdering { first, then }.precedence(network);
+            before.push((earlier, later));
+        }
+        let mut times: TiVec<NodeId, Option<i64>> = vec![None; model.num_nodes].into();
+        for (id, arc) in model.arcs.iter_enumerated() {
+            if self.is_selected[id] {
+                for node in [arc.from, arc.to] {
+                    times[node] = Some(self.time(node));
+                }
+            }
+        }
+        let before = before.into_iter().map(|(first, then)| Before { first, then, reason: () });
+        let before: Vec<Before<()>> = before.collect();
+        let positions = instants::order(&times, &before, &turns(model));
+        debug_assert!(positions.is_ok(), "solutions have no circles");
+        self.positions = positions.unwrap_or_else(|_| vec![0; model.num_nodes].into());
+    }
+
+    /// Takes note that one event happens before another, if they are at one time.
+    fn note_before(&mut self, first: NodeId, then: NodeId) {
+        if first != then && self.time(first) == self.time(then) {
+            self.happens_after[then].push(first);
+        }
+    }
+
+    /// Whether one event happens before another in every schedule (SPEC 10.4).
+    fn happens_before(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, Unplannable> {
+        if earlier == later {
+            return Ok(true);
+        }
+        Ok(self.is_entailed(earlier, later, 0)? && self.is_before_within_instant(earlier, later)?)
+    }
+
+    /// Whether one event that is no later than another in any schedule happens before it, where they are at one time.
+    fn is_before_within_instant(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, Unplannable> {
+        // Only where both are at one instant in every schedule it takes more.
+        let may_be_apart = self.time(earlier) != self.time(later) || !self.is_entailed(later, earlier, 0)?;
+        Ok(may_be_apart || self.is_noted(earlier, later))
+    }
+
+    /// Whether one event leads to another along what happens before what within their instant.
+    fn is_noted(&self, earlier: NodeId, later: NodeId) -> bool {
+        let mut seen: BTreeSet<NodeId> = BTreeSet::new();
+        let mut open = vec![later];
+        while let Some(node) = open.pop() {
+            for &before in &self.happens_after[node] {
+                if before == earlier {
+                    return true;
+                }
+                if seen.insert(before) {
+                    open.push(before);
+                }
+            }
+        }
+        false
+    }
+
+    /// Makes sure that one event happens before another. Whether that had to be added.
     fn ensure(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, Unplannable> {
-        if self.is_entailed(earlier, later, 0)? {
+        if self.happens_before(earlier, later)? {
             return Ok(false);
         }
-        self.insert(earlier, later, 0)
+        let is_added = self.insert(earlier, later, 0)?;
+        if is_added {
+            self.note_before(earlier, later);
+        }
+        Ok(is_added)
+    }
+
+    /// Where an event stands among all.
+    fn position(&self, node: NodeId) -> u32 {
+        self.positions[node]
     }
 
     /// Orders what excludes or breaks each other among variables that keep their values (SPEC 10.2).
     fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, Unplannable> {
         let network = self.network;
         let mut order = Vec::new();
-        let before = Before::new(&self.solution.kept.sides);
+        let before = Earlier::new(&self.solution.kept.sides);
         // What follows closely first: the rest follows from that.
         let mut sides = self.solution.kept.sides.clone();
         sides.sort_by_key(|&(first, then)| (self.room(first, then), first, then));
@@ -357,7 +458,8 @@ impl Making<'_> {
                 continue;
             }
             let (then_end, first_start) = (self.network.interval(then).1, self.network.interval(first).0);
-            self.is_narrower |= self.is_entailed(then_end, first_start, self.gap_before(first, self.model.gap))?;
+            self.is_narrower |=
+                self.is_entailed(then_end, first_start, self.gap_before(first, self.model.gap))?;
             if !self.insert(end, start, gap)? {
                 return Ok(false);
             }
@@ -419,7 +521,7 @@ impl Making<'_> {
         capacity: i64,
         added: &mut Vec<UseOrdering>,
     ) -> Result<(), Unplannable> {
-        uses.sort_by_key(|used| (self.time(used.start), self.time(used.end), used.id));
+        uses.sort_by_key(|used| (self.position(used.start), self.position(used.end), used.id));
         let mut free = capacity;
         // Uses that are over or running, with what they still have to hand on.
         let mut held: Vec<(ModelUse, i64)> = Vec::new();
@@ -429,8 +531,8 @@ impl Making<'_> {
             for (position, &(giver, amount)) in held.iter().enumerate() {
                 if needed > 0
                     && amount > 0
-                    && self.time(giver.end) <= self.time(used.start)
-                    && self.is_entailed(giver.end, used.start, 0)?
+                    && self.position(giver.end) <= self.position(used.start)
+                    && self.happens_before(giver.end, used.start)?
                 {
                     given.push(position);
                     needed -= amount.min(needed);
@@ -443,16 +545,18 @@ impl Making<'_> {
             let mut others: Vec<usize> = (0..held.len())
                 .filter(|position| {
                     let (giver, amount) = held[*position];
-                    amount > 0 && !given.contains(position) && self.time(giver.end) <= self.time(used.start)
+                    amount > 0
+                        && !given.contains(position)
+                        && self.position(giver.end) <= self.position(used.start)
                 })
                 .collect();
-            others.sort_by_key(|&position| std::cmp::Reverse((self.time(held[position].0.end), position)));
+            others.sort_by_key(|&at| std::cmp::Reverse((self.position(held[at].0.end), at)));
             for position in others {
                 if needed == 0 {
                     break;
                 }
                 let (giver, amount) = held[position];
-                self.insert(giver.end, used.start, 0)?;
+                self.ensure(giver.end, used.start)?;
                 added.push(UseOrdering { first: giver.id, then: used.id });
                 given.push(position);
                 needed -= amount.min(needed);
@@ -477,32 +581,27 @@ impl Making<'_> {
         level: i64,
         added: &mut Vec<UseOrdering>,
     ) -> Result<(), Unplannable> {
-        let mut by_time: Vec<&ModelUse> = uses.iter().collect();
-        by_time.sort_by_key(|used| (self.time(used.moment()), used.id));
-        for used in by_time {
-            // First what the times order for good, then what they let happen at one time.
-            let now = self.time(used.moment());
+        let mut in_order: Vec<&ModelUse> = uses.iter().collect();
+        in_order.sort_by_key(|used| (self.position(used.moment()), used.id));
+        for used in in_order {
+            let (now, at) = (self.time(used.moment()), self.position(used.moment()));
             let mut others: Vec<&ModelUse> = uses.iter().filter(|other| other.id != used.id).collect();
+            // First what the times order for good, then what they let happen at one time.
             others.sort_by_key(|other| {
                 let then = self.time(other.moment());
                 (then == now, then.abs_diff(now), other.id)
             });
-            for together in [false, true] {
-                for &other in &others {
-                    if self.is_in_range(uses, used, range, level)? {
-                        break;
-                    }
-                    let then = self.time(other.moment());
-                    let same_change = other.change == used.change;
-                    // Of its own kind the others come later, of the other kind before.
-                    let (first, later) = if same_change { (used, other) } else { (other, used) };
-                    let fits = if same_change { now <= then } else { then <= now };
-                    if fits && self.ensure(first.moment(), later.moment())? {
-                        added.push(UseOrdering { first: first.id, then: later.id });
-                    }
-                    if together && then == now && self.ensure(later.moment(), first.moment())? {
-                        added.push(UseOrdering { first: later.id, then: first.id });
-                    }
+            for other in others {
+                if self.is_in_range(uses, used, range, level)? {
+                    break;
+                }
+                let then = self.position(other.moment());
+                // Of its own kind the others come later, of the other kind before.
+                let is_same_change = other.change == used.change;
+                let (first, later) = if is_same_change { (used, other) } else { (other, used) };
+                let fits = if is_same_change { at <= then } else { then <= at };
+                if fits && self.ensure(first.moment(), later.moment())? {
+                    added.push(UseOrdering { first: first.id, then: later.id });
                 }
             }
         }
@@ -530,22 +629,24 @@ impl Making<'_> {
             self.stn.distances_to(point(now), &mut until_now)?;
             self.stn.distances_from(point(now), &mut since_now)?;
         }
+        let happens_before =
+            |making: &mut Self, earlier: NodeId, later: NodeId| {
+                let (row, other) = if earlier == now { (&until_now, later) } else { (&since_now, earlier) };
+                match row.get(other.index()) {
+                    Some(&distance) => Ok(earlier == later
+                        || (distance <= 0 && making.is_before_within_instant(earlier, later)?)),
+                    None => making.happens_before(earlier, later),
+                }
+            };
         for other in uses {
             let then = other.moment();
-            let mut is_before = |earlier: NodeId, later: NodeId| match (
-                until_now.get(then.index()),
-                since_now.get(then.index()),
-            ) {
-                (Some(&until), Some(&since)) => Ok(if earlier == now { until <= 0 } else { since <= 0 }),
-                _ => self.is_entailed(earlier, later, 0),
-            };
             let counts = if other.id == used.id {
                 true
             } else if other.change == used.change {
-                // Unless it comes after.
-                !is_before(now, then)? || is_before(then, now)?
+                // Unless it comes after; what changes at the same event counts.
+                now == then || !happens_before(self, now, then)?
             } else {
-                is_before(then, now)?
+                happens_before(self, then, now)?
             };
             if counts {
                 extreme += if other.change == Change::Produces { other.amount } else { -other.amount };
@@ -564,7 +665,10 @@ impl Making<'_> {
                 for (first, used) in uses.iter().enumerate() {
                     self.stn.distances_to(point(used.end), &mut row)?;
                     for (then, other) in uses.iter().enumerate() {
-                        is_before[first][then] = first != then && row[other.start.index()] <= 0;
+                        is_before[first][then] = first != then
+                            && row[other.start.index()] <= 0
+                            && (used.end == other.start
+                                || self.is_before_within_instant(used.end, other.start)?);
                     }
                 }
                 let weights: Vec<i64> = uses.iter().map(|used| used.amount).collect();

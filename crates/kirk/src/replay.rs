@@ -17,9 +17,9 @@ use tpn::{
 };
 use typed_index_collections::TiVec;
 
+use crate::model::UNBOUNDED_BELOW;
 use crate::model::{Context, INFINITE, Model, point};
 use crate::precedence;
-use crate::model::UNBOUNDED_BELOW;
 use crate::trace::{Constraint, CycleMember, Departing, Event, Trace, TreeChoice, TreeNodeId};
 
 /// Replays a [`Trace`] on the network it was recorded on.
@@ -120,7 +120,7 @@ impl Replay {
             result.cycle.clone_from(cycle);
         }
         look_at(trace, step, &mut result);
-        self.collect(trace, &frames, &mut result);
+        self.collect(&frames, &mut result);
         result
     }
 
@@ -173,7 +173,7 @@ impl Replay {
         frame
     }
 
-    fn collect(&self, trace: &Trace, frames: &[Frame], result: &mut ReplayStep) {
+    fn collect(&self, frames: &[Frame], result: &mut ReplayStep) {
         result.tree_node = frames.last().map_or(0, |frame| frame.tree_node);
         // What was learned later may say in a state what was chosen below it.
         let mut known = BTreeSet::new();

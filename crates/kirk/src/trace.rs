@@ -430,19 +430,6 @@ impl Recorder {
         Some(self.trace.tree.len() as TreeNodeId - 1)
     }
 
-    /// The search leaves the alternatives of a choice point, `first` and those after it, of which `entered` were entered,
-    /// for a failure that has nothing to do with it.
-    pub(crate) fn leave(&mut self, first: TreeNodeId, entered: u32, count: u32) {
-        for alternative in 0..count {
-            let Some(node) = self.trace.tree.get_mut((first + alternative) as usize) else { return };
-            match node.status {
-                TreeStatus::Decision => node.status = TreeStatus::Failed,
-                TreeStatus::Unexplored if alternative >= entered => node.status = TreeStatus::Excluded,
-                _ => {}
-            }
-        }
-    }
-
     pub(crate) fn set_status(&mut self, node: TreeNodeId, status: TreeStatus) {
         if let Some(node) = self.trace.tree.get_mut(node as usize) {
             node.status = status;

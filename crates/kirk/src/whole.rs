@@ -9,8 +9,8 @@ use tpn::{Choice, LabelId, Network, ResourceId, UseId, VariableId};
 
 use crate::explain::{Effort, Part, Refuted, spans};
 use crate::failure::{FailureKind, Member, Reason};
-use crate::model::{Context, INFINITE, Model, node};
 use crate::model::UNBOUNDED_BELOW;
+use crate::model::{Context, INFINITE, Model, node};
 use crate::trace::{Constraint, CycleMember};
 use crate::wording;
 

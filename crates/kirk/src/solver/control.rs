@@ -19,8 +19,8 @@ use super::refutation::Premise;
 use super::resources::{Task, ids};
 use crate::antichain::heaviest_antichain;
 use crate::demands::ModelSupply;
-use crate::model::{INFINITE, ModelArc};
 use crate::model::UNBOUNDED_BELOW;
+use crate::model::{INFINITE, ModelArc};
 use crate::trace::Event;
 
 /// Larger conflicts are not made minimal.

@@ -2,23 +2,23 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use stn::PointId;
 use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, VariableId};
 use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
 use super::growth::{Growth, LINK, Unencoded};
+use super::instants::Instants;
 use super::lasting::Sides;
 use super::literal::{Literal, Side, Variable};
 use super::refutation::Premise;
 use super::resources::Shares;
 use super::touching::{Touches, Touching, Unordered};
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
+use crate::choices::Choices;
 use crate::failure::Member;
+use crate::model::UNBOUNDED_BELOW;
 use crate::model::{Alternatives, Context, INFINITE, Model, ModelArc, node};
 use crate::partial_order::Solution;
-use crate::choices::Choices;
-use crate::model::UNBOUNDED_BELOW;
 use crate::structure::Relation;
 use crate::trace::{Constraint, TreeChoice};
 
@@ -100,6 +100,7 @@ pub(crate) struct Problem<'m> {
     pub(super) ready: TiVec<LabelId, Variable>,
     pub(super) sides: Sides,
     pub(super) shares: Shares,
+    pub(super) instants: Instants,
     /// By decision and alternative.
     pub(super) alternatives: TiVec<DecisionId, Vec<Literal>>,
     /// Requirements with the assertions that may carry them.
@@ -143,6 +144,7 @@ impl<'m> Problem<'m> {
             ready: TiVec::new(),
             sides: Sides::default(),
             shares: Shares::default(),
+            instants: Instants::new(model),
             alternatives,
             carriers: Vec::new(),
             contexts: node_contexts(model),
@@ -288,9 +290,10 @@ impl<'m> Problem<'m> {
     }
 
     fn keep_windows(&mut self, solver: &Solver) {
-        let windows = self.intervals.iter().map(|interval| {
-            (solver.trail.most(interval.end), solver.trail.least(interval.start))
-        });
+        let windows = self
+            .intervals
+            .iter()
+            .map(|interval| (solver.trail.most(interval.end), solver.trail.least(interval.start)));
         self.windows = windows.collect();
     }
 
@@ -592,7 +595,63 @@ impl<'m> Problem<'m> {
                 break;
             }
         }
+        self.share_carriers(solver, growth)
+    }
+
+    /// Requirements whose intervals exclude each other rest on different assertions where none lasts long enough for two.
+    fn share_carriers(&self, solver: &mut Solver, growth: &mut Growth<'_>) -> Result<(), Unencoded> {
+        let mut links: BTreeMap<LabelId, Vec<(LabelId, Literal)>> = BTreeMap::new();
+        for (ask, options) in &self.carriers {
+            for &(tell, link) in options {
+                links.entry(tell).or_default().push((*ask, link));
+            }
+        }
+        // Many assertions may have the same requirements and bounds.
+        let mut known: BTreeMap<(Vec<LabelId>, i64), Vec<Vec<usize>>> = BTreeMap::new();
+        for (tell, links) in links {
+            if links.len() < 2 || links.len() > MAX_SHARING || solver.takes_nothing_for_granted() {
+                continue;
+            }
+            let upper = self.model.arcs[self.model.conditions.labels[tell].arc].upper;
+            let asks: Vec<LabelId> = links.iter().map(|&(ask, _)| ask).collect();
+            growth.look_at(asks.len())?;
+            let sets =
+                known.entry((asks.clone(), upper)).or_insert_with(|| self.exclusive_sets(&asks, upper));
+            for set in sets.iter() {
+                solver.add_at_most_one(set.iter().map(|&at| links[at].1).collect());
+            }
+        }
         Ok(())
+    }
+
+    /// Sets of requirements no two of which fit into a time, each with as many members as are found one after the other.
+    fn exclusive_sets(&self, asks: &[LabelId], time: i64) -> Vec<Vec<usize>> {
+        let excludes = |one: LabelId, other: LabelId| {
+            let arc = |label: LabelId| self.model.conditions.labels[label].arc;
+            let labels = |label: LabelId| self.model.conditions.labels_of(arc(label));
+            self.intervals[one].duration + self.intervals[other].duration > time
+                && labels(one).iter().any(|&left| {
+                    labels(other).iter().any(|&right| self.model.conditions.conflict(left, right))
+                })
+        };
+        let mut sets: Vec<Vec<usize>> = Vec::new();
+        let mut is_covered = vec![false; asks.len()];
+        for first in 0..asks.len() {
+            if is_covered[first] {
+                continue;
+            }
+            let mut set = vec![first];
+            for other in first + 1..asks.len() {
+                if set.iter().all(|&member| excludes(asks[member], asks[other])) {
+                    set.push(other);
+                    is_covered[other] = true;
+                }
+            }
+            if set.len() > 1 {
+                sets.push(set);
+            }
+        }
+        sets
     }
 
     /// Whether an assertion could carry a requirement, by their alternatives, durations and windows.
@@ -614,6 +673,9 @@ impl<'m> Problem<'m> {
         self.model.can_be_together(left, right)
     }
 }
+
+/// Of more requirements that one assertion may carry it is not looked at which exclude each other.
+const MAX_SHARING: usize = 1_000;
 
 /// Bounds that move more often along all arcs are left to propagation.
 const MAX_SWEEPS: usize = 4;

@@ -17,7 +17,7 @@ use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::LastingVariable;
 use crate::failure::Member;
 use crate::structure::Relation;
-use crate::trace::{Departing, Event, TreeChoice};
+use crate::trace::{Departing, TreeChoice};
 
 /// Pairs of so few movements as a tour may have.
 const MAX_PAIRS: usize = MAX_MOVEMENTS * MAX_MOVEMENTS;
@@ -30,11 +30,11 @@ const MANY_EFFECTS: usize = 5;
 pub(crate) struct Sides {
     /// The literals of both orders of each pair of changes that exclude each other and that nesting does not order, the
     /// textually earlier one first.
-    orders: BTreeMap<(LabelId, LabelId), [Literal; 2]>,
+    pub(super) orders: BTreeMap<(LabelId, LabelId), [Literal; 2]>,
     /// What each requirement may rest on.
-    carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
+    pub(super) carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
     /// That a requirement is over before a change that would break it.
-    kept_before: Vec<(Ordering, Literal)>,
+    pub(super) kept_before: Vec<(Ordering, Literal)>,
     /// That a movement sets out where another change has left its vehicle.
     pub(super) departures: Vec<(Departing, Literal)>,
     /// How long a movement takes at least, by the literal of where it begins.
@@ -48,6 +48,8 @@ pub(crate) struct Kept {
     pub(crate) links: Vec<(LabelId, LabelId)>,
     /// Each selected pair of changes that exclude each other, the earlier one first.
     pub(crate) sides: Vec<(LabelId, LabelId)>,
+    /// Requirements that are over before a change that would break them, the requirement first.
+    pub(crate) kept_before: Vec<(LabelId, LabelId)>,
 }
 
 impl Problem<'_> {
@@ -273,13 +275,12 @@ impl Problem<'_> {
     /// Whether a requirement could rest on a change, by their alternatives and windows.
     fn can_give(&self, solver: &Solver, ask: LabelId, change: LabelId) -> bool {
         let labels = &self.model.conditions.labels;
-        let (asked, given) = (self.intervals[ask], self.intervals[change]);
-        // What is nested after the requirement comes too late, unless both are at one instant.
-        let is_instant = asked.duration == 0 && (given.duration == 0 || !labels[change].is_changing);
-        let comes_too_late = !is_instant && self.model.nested_order(change, ask) == Relation::After;
+        // What is nested after the requirement comes too late, within an instant as well.
+        let comes_too_late = self.model.nested_order(change, ask) == Relation::After;
+        // Nothing rests on its own effect.
+        let is_own_effect = labels[change].is_changing && labels[change].arc == labels[ask].arc;
         self.model.conditions.gives(change, ask)
-            // Nothing rests on its own effect.
-            && labels[change].arc != labels[ask].arc
+            && !is_own_effect
             && self.can_be_together(ask, change)
             && !comes_too_late
             && (solver.takes_nothing_for_granted() || self.fit_windows(solver, ask, change))
@@ -441,6 +442,8 @@ impl Problem<'_> {
                 kept.links.push((*ask, *change));
             }
         }
+        let over = self.sides.kept_before.iter().filter(|(_, after)| solver.trail.holds(*after));
+        kept.kept_before = over.map(|(order, _)| (order.first, order.then)).collect();
         for variable in &self.model.demands.variables {
             let changes: Vec<LabelId> =
                 variable.changes.iter().copied().filter(|&change| exists(change)).collect();
@@ -464,63 +467,4 @@ impl Problem<'_> {
         let orders = self.sides.orders.values().flatten().copied();
         links.chain(orders).filter(|&literal| solver.trail.holds(literal)).collect()
     }
-
-    /// Forbids circles among the sides of changes without length (SPEC 10.2). `false` if there is none.
-    pub(super) fn break_circles(&self, solver: &mut Solver) -> bool {
-        let is_instant = |label: LabelId| {
-            let interval = self.intervals[label];
-            solver.trail.holds(interval.presence)
-                && solver.trail.least(interval.start) == solver.trail.least(interval.end)
-        };
-        let mut next: BTreeMap<LabelId, Vec<(LabelId, Literal)>> = BTreeMap::new();
-        for (&(left, right), &[left_first, right_first]) in &self.sides.orders {
-            if is_instant(left) && is_instant(right) {
-                if solver.trail.holds(left_first) {
-                    next.entry(left).or_default().push((right, left_first));
-                } else {
-                    next.entry(right).or_default().push((left, right_first));
-                }
-            }
-        }
-        let Some(circle) = circle(&next) else { return false };
-        solver.record_refusal(&circle, |orders| Event::Circle { orders });
-        solver.retract(0);
-        solver.tell_from_premises([Premise::Unknown]);
-        solver.at_least_one(circle.into_iter().map(|order| !order));
-        true
-    }
-}
-
-/// The literals along a circle, if there is one.
-fn circle(next: &BTreeMap<LabelId, Vec<(LabelId, Literal)>>) -> Option<Vec<Literal>> {
-    let mut is_done: BTreeMap<LabelId, bool> = BTreeMap::new();
-    for &start in next.keys() {
-        let mut path: Vec<(LabelId, usize, Option<Literal>)> = Vec::new();
-        is_done.entry(start).or_insert_with(|| {
-            path.push((start, 0, None));
-            false
-        });
-        while let Some((at, position, _)) = path.last_mut() {
-            let step = next.get(at).and_then(|steps| steps.get(*position)).copied();
-            *position += 1;
-            let Some((target, order)) = step else {
-                is_done.insert(*at, true);
-                path.pop();
-                continue;
-            };
-            match is_done.get(&target) {
-                Some(true) => {}
-                Some(false) => {
-                    let from = path.iter().position(|&(label, _, _)| label == target).unwrap_or(0);
-                    let along = path[from + 1..].iter().filter_map(|&(_, _, order)| order);
-                    return Some(along.chain([order]).collect());
-                }
-                None => {
-                    is_done.insert(target, false);
-                    path.push((target, 0, Some(order)));
-                }
-            }
-        }
-    }
-    None
 }

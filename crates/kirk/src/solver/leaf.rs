@@ -143,9 +143,7 @@ impl Solver {
         let mut pairs = Vec::new();
         for (position, &left) in present.iter().enumerate() {
             for &right in &present[position + 1..] {
-                if problem.must_be_ordered((left, right))
-                    && !problem.is_ordered_by_windows((left, right))
-                {
+                if problem.must_be_ordered((left, right)) && !problem.is_ordered_by_windows((left, right)) {
                     pairs.push((left, right));
                     if pairs.len() > MAX_PAIRS_AT_ONCE {
                         return pairs;
@@ -205,7 +203,11 @@ impl Solver {
         match choice_point.kind {
             ChoicePointKind::Alternatives | ChoicePointKind::Carriers { .. } => open.next(),
             // That a pair touches follows where neither order is left.
-            ChoicePointKind::Orders { .. } => choice_point.options[..2].iter().copied().filter(is_open).max_by_key(|&option| self.slack(option)),
+            ChoicePointKind::Orders { .. } => choice_point.options[..2]
+                .iter()
+                .copied()
+                .filter(is_open)
+                .max_by_key(|&option| self.slack(option)),
             ChoicePointKind::Sides | ChoicePointKind::Resolvers => {
                 open.max_by_key(|&option| self.slack(option))
             }

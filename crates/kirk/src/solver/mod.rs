@@ -28,6 +28,7 @@ mod disjunctive;
 mod encode;
 mod goals;
 mod growth;
+mod instants;
 mod interchangeable;
 mod lasting;
 mod leaf;
@@ -68,6 +69,7 @@ pub(crate) use best_first::{Frontier, LeastSums, Visit};
 pub(crate) use encode::{Part, Problem};
 pub(crate) use goals::GoalSums;
 pub(crate) use growth::{Growth, Unencoded};
+pub(crate) use instants::turns;
 pub(crate) use lasting::Kept;
 pub(crate) use record::Record;
 pub(crate) use refutation::Premise;
@@ -122,6 +124,9 @@ pub(crate) struct Solver {
     implied: TiVec<Side, Vec<Side>>,
     /// The choice point whose options exclude each other, of variables that have one.
     exclusive: TiVec<Variable, Option<ChoicePointId>>,
+    /// Further sets of Booleans of which at most one holds, and those that a variable is in.
+    at_most_one: Vec<Vec<Literal>>,
+    at_most_one_of: TiVec<Variable, Vec<u32>>,
     choice_points: TiVec<ChoicePointId, ChoicePoint>,
     /// The choice points that a variable belongs to.
     choice_points_of: TiVec<Variable, Vec<ChoicePointId>>,
@@ -193,6 +198,8 @@ impl Solver {
             tours: Tours::default(),
             implied: TiVec::new(),
             exclusive: TiVec::new(),
+            at_most_one: Vec::new(),
+            at_most_one_of: TiVec::new(),
             choice_points: TiVec::new(),
             choice_points_of: TiVec::new(),
             reached: TiVec::new(),
@@ -239,6 +246,7 @@ impl Solver {
         self.implied.resize(count * 2, Vec::new());
         self.reached.resize(count * 2, Vec::new());
         self.exclusive.resize(count, None);
+        self.at_most_one_of.resize(count, Vec::new());
         self.choice_points_of.resize(count, Vec::new());
         self.linears.queue.resize(count);
         self.tours.queue.resize(count);
@@ -552,12 +560,30 @@ impl Solver {
         self.burst = 0;
     }
 
+    /// At most one of these Booleans holds. At the root.
+    fn add_at_most_one(&mut self, literals: Vec<Literal>) {
+        let id = self.at_most_one.len() as u32;
+        for literal in &literals {
+            self.at_most_one_of[literal.side.variable()].push(id);
+        }
+        self.at_most_one.push(literals);
+    }
+
     /// Of alternatives at most one is taken.
     fn exclude_others(&mut self, side: Side) -> Result<(), Conflict> {
-        let Some(choice_point) = self.exclusive[side.variable()].filter(|_| side == side.variable().lower())
-        else {
+        if side != side.variable().lower() {
             return Ok(());
-        };
+        }
+        for position in 0..self.at_most_one_of[side.variable()].len() {
+            let id = self.at_most_one_of[side.variable()][position] as usize;
+            for at in 0..self.at_most_one[id].len() {
+                let other = self.at_most_one[id][at];
+                if other.side != side {
+                    self.trail.set(!other, trail::Cause::Implied(side))?;
+                }
+            }
+        }
+        let Some(choice_point) = self.exclusive[side.variable()] else { return Ok(()) };
         for position in 0..self.choice_points[choice_point].options.len() {
             let other = self.choice_points[choice_point].options[position];
             if other.side != side {

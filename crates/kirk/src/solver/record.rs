@@ -17,9 +17,9 @@ use super::literal::{Literal, Side};
 use super::trail::{Cause, Conflict};
 use super::{ChoicePointKind, Solver};
 use crate::ids::EventId;
+use crate::model::UNBOUNDED_BELOW;
 use crate::model::{INFINITE, Model, node, point};
 use crate::precedence;
-use crate::model::UNBOUNDED_BELOW;
 use crate::trace::{
     Constraint, CycleMember, Event, Recorder, SearchRound, Trace, TreeChoice, TreeNodeId, TreeStatus,
 };
@@ -173,7 +173,7 @@ impl Solver {
         let Some(record) = self.recording() else { return };
         record.path.truncate(1);
         record.seen = 0;
-        
+
         record.told = round.is_best_first.then(BTreeMap::new);
         record.tell(Event::Begin(round));
         self.name_choices(problem);
@@ -195,14 +195,6 @@ impl Solver {
     /// Takes note of choice points that were added at the root.
     pub(crate) fn record_choice_points(&mut self, problem: &Problem<'_>) {
         self.name_choices(problem);
-    }
-
-    /// Tells that the present state is no plan after all.
-    pub(crate) fn record_failed(&mut self, event: Event) {
-        if let Some(record) = self.recording() {
-            record.tell(event);
-            record.set_status(TreeStatus::Failed);
-        }
     }
 
     /// Tells that the search goes back to its root, where there may be new choice points.

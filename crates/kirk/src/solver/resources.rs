@@ -7,14 +7,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::program::Change;
-use tpn::{UseId, UseOrdering};
+use tpn::{NodeId, UseId, UseOrdering};
 
 use super::encode::{Interval, Part, Problem};
+use super::instants::Instants;
 use super::literal::{Literal, Variable};
 use super::refutation::Premise;
 use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
-use crate::demands::ModelSupply;
+use crate::demands::{ModelSupply, ModelUse};
 use crate::failure::Member;
 use crate::trace::{Event, TreeChoice};
 
@@ -30,9 +31,16 @@ pub(super) struct Task {
     pub(super) amount: i64,
     /// Otherwise it takes nothing, but still gives.
     pub(super) is_active: bool,
+    pub(super) start: NodeId,
+    pub(super) end: NodeId,
 }
 
 impl Task {
+    /// The event at which it changes a reservoir's level.
+    pub(super) fn moment_node(&self) -> NodeId {
+        if self.change == Change::Produces { self.end } else { self.start }
+    }
+
     /// When it changes a reservoir's level.
     pub(super) fn moment(&self) -> Variable {
         if self.change == Change::Produces { self.interval.end } else { self.interval.start }
@@ -74,6 +82,11 @@ impl Shares {
         self.orders.iter().map(move |(&pair, &order)| (order, name(pair)))
     }
 
+    /// That one use comes before another, by both.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (&(UseId, UseId), &Literal)> {
+        self.orders.iter()
+    }
+
     /// The literals of all orders.
     pub(super) fn orders(&self) -> impl Iterator<Item = Literal> + '_ {
         self.orders.values().copied()
@@ -93,7 +106,8 @@ impl Problem<'_> {
                     presence: self.presence(arc.context),
                     duration: if (arc.from, arc.to) == (used.start, used.end) { arc.lower.max(0) } else { 0 },
                 };
-                Task { id: used.id, interval, change: used.change, amount: used.amount, is_active }
+                let ModelUse { id, change, amount, start, end, .. } = *used;
+                Task { id, interval, change, amount, is_active, start, end }
             });
             let exists = |task: &Task| {
                 solver.takes_nothing_for_granted() || !solver.trail.fails(task.interval.presence)
@@ -121,7 +135,7 @@ impl Problem<'_> {
             match shared.supply {
                 ModelSupply::Reusable { capacity } => {
                     let active: Vec<Task> = present.into_iter().filter(|task| task.is_active).collect();
-                    let critical = overloads(solver, &active, capacity);
+                    let critical = overloads(&self.instants, &active, capacity);
                     if !critical.is_empty() && !shared.has_exclusion {
                         excluding.push(index);
                     }
@@ -129,7 +143,13 @@ impl Problem<'_> {
                     found.extend(critical.into_iter().map(|tasks| Critical::Overload { tasks, is_crowded }));
                 }
                 ModelSupply::Reservoir { least, greatest, level } => {
-                    found.extend(out_of_range(solver, &shared.tasks, (least, greatest), level));
+                    found.extend(out_of_range(
+                        solver,
+                        &self.instants,
+                        &shared.tasks,
+                        (least, greatest),
+                        level,
+                    ));
                 }
             }
         }
@@ -355,27 +375,19 @@ const MAX_OVERLOADS: usize = 32;
 
 /// Minimal sets of uses that overlap in the least times and are too much together, in order of time; once a set is found,
 /// the last of it to start counts no more.
-fn overloads(solver: &Solver, present: &[Task], capacity: i64) -> Vec<Vec<Task>> {
-    let times =
-        |task: &Task| (solver.trail.least(task.interval.start), solver.trail.least(task.interval.end));
+fn overloads(instants: &Instants, present: &[Task], capacity: i64) -> Vec<Vec<Task>> {
+    let at = |node: NodeId| instants.position(node);
     let mut by_start: Vec<&Task> = present.iter().collect();
-    by_start.sort_by_key(|task| (times(task), task.id));
+    by_start.sort_by_key(|task| (at(task.start), at(task.end), task.id));
     let mut running: Vec<&Task> = Vec::new();
     let mut found = Vec::new();
     for &task in &by_start {
-        let (start, end) = times(task);
-        // What has no length counts inside another, not where that begins.
-        running.retain(|other| times(other).1 > start);
-        let together: Vec<&Task> = if start == end {
-            running.iter().copied().filter(|other| times(other).0 < start).chain([task]).collect()
-        } else {
-            running.push(task);
-            running.iter().copied().filter(|other| times(other).0 < times(other).1).collect()
-        };
-        let sum: i64 = together.iter().map(|task| task.amount).sum();
+        running.retain(|other| at(other.end) > at(task.start));
+        running.push(task);
+        let sum: i64 = running.iter().map(|task| task.amount).sum();
         if sum > capacity {
-            found.push(minimal(together, sum - capacity));
-            running.retain(|other| other.id != task.id);
+            found.push(minimal(running.clone(), sum - capacity));
+            running.pop();
             if found.len() == MAX_OVERLOADS {
                 break;
             }
@@ -398,30 +410,31 @@ pub(super) fn minimal(mut tasks: Vec<&Task>, mut excess: i64) -> Vec<Task> {
     tasks.into_iter().copied().collect()
 }
 
-/// The first instant at which a reservoir's level leaves its range. What the solution does not select may come before that
-/// in another one.
+/// The first event after which a reservoir's level is out of its range. What the solution does not select may come before
+/// that in another one.
 fn out_of_range(
     solver: &Solver,
+    instants: &Instants,
     tasks: &[Task],
     (least, greatest): (i64, i64),
     initial: i64,
 ) -> Option<Critical> {
-    let time = |task: &Task| solver.trail.least(task.moment());
-    let mut by_time: Vec<&Task> =
+    let mut in_order: Vec<&Task> =
         tasks.iter().filter(|task| solver.trail.holds(task.interval.presence)).collect();
-    by_time.sort_by_key(|task| (time(task), task.id));
+    in_order.sort_by_key(|task| (instants.position(task.moment_node()), task.id));
     // What is not active counts only where it helps.
     let (mut low, mut high) = (initial, initial);
-    let mut at = 0;
-    while at < by_time.len() {
-        let now = time(by_time[at]);
-        while at < by_time.len() && time(by_time[at]) == now {
-            let Task { change, amount, is_active, .. } = *by_time[at];
-            let gain = if change == Change::Produces { amount } else { -amount };
-            low += if is_active || gain > 0 { gain } else { 0 };
-            high += if is_active || gain < 0 { gain } else { 0 };
-            at += 1;
+    let mut from = 0;
+    while from < in_order.len() {
+        // Changes at one event are one change.
+        let event = in_order[from].moment_node();
+        let count = in_order[from..].iter().take_while(|task| task.moment_node() == event).count();
+        for task in &in_order[from..from + count] {
+            let gain = if task.change == Change::Produces { task.amount } else { -task.amount };
+            low += if task.is_active || gain > 0 { gain } else { 0 };
+            high += if task.is_active || gain < 0 { gain } else { 0 };
         }
+        from += count;
         let (excess, early_change) = if low < least {
             (least - low, Change::Consumes)
         } else if high > greatest {
@@ -430,7 +443,7 @@ fn out_of_range(
             continue;
         };
         let (counted, mending): (Vec<&Task>, Vec<&Task>) =
-            by_time[..at].iter().copied().partition(|task| task.change == early_change);
+            in_order[..from].iter().copied().partition(|task| task.change == early_change);
         let counted = counted.into_iter().filter(|task| task.is_active).collect();
         let is_late =
             |task: &&Task| task.change != early_change && mending.iter().all(|counted| counted.id != task.id);

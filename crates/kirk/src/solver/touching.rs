@@ -15,8 +15,8 @@ use super::Solver;
 use super::encode::Problem;
 use super::literal::Literal;
 use super::refutation::Premise;
-use crate::model::{Context, INFINITE, Model, ModelArc, point};
 use crate::model::UNBOUNDED_BELOW;
+use crate::model::{Context, INFINITE, Model, ModelArc, point};
 use crate::trace::Event;
 
 /// What a search assumes about pairs that touch.

@@ -243,11 +243,11 @@ fn begin(network: &Network, round: &SearchRound) -> String {
             .to_owned();
     }
     match (is_in_textual_order, network.objective.is_empty()) {
-        (true, _) => "Search in the order of the text. Each failure teaches what never to choose together again.",
-        (false, false) => "Look for some plan first, and then for better and better ones.",
-        (false, true) => {
-            "Too many failures in the order of the text: choose first what failures are about."
+        (true, _) => {
+            "Search in the order of the text. Each failure teaches what never to choose together again."
         }
+        (false, false) => "Look for some plan first, and then for better and better ones.",
+        (false, true) => "Too many failures in the order of the text: choose first what failures are about.",
     }
     .to_owned()
 }
