@@ -62,6 +62,24 @@ impl Plan {
         links.chain(orderings).chain(uses).collect()
     }
 
+    /// Which events come first where several happen at one time (SPEC 10.4): pairs of an earlier and a later event, whose
+    /// transitive closure is the order within an instant. It follows the text, the causal links of variables that keep
+    /// their values, and the orderings that planning chose; a valid plan has no cycle of such pairs. Nothing is before the
+    /// start.
+    pub fn instant_order(&self, network: &Network) -> Vec<[NodeId; 2]> {
+        let selected = network.arcs.iter().zip(&self.selected_arcs).filter(|(_, is_selected)| **is_selected);
+        let forward = selected.map(|(arc, _)| arc).filter(|arc| !arc.lower.is_negative());
+        let arcs = forward.map(|arc| [arc.from, arc.to]);
+        let pair = |precedence: Precedence| [precedence.earlier, precedence.later];
+        let links = self.causal_links.iter().filter(|link| network.is_lasting(link.ask));
+        let links = links.flat_map(|link| link.precedences(network)).map(pair);
+        let orderings = self.orderings_added.iter().filter(|ordering| network.is_lasting(ordering.first));
+        let orderings = orderings.map(|ordering| pair(self.ordering_precedence(network, ordering, &[])));
+        let uses = self.uses_ordered.iter().map(|ordering| pair(ordering.precedence(network)));
+        let pairs = arcs.chain(links).chain(orderings).chain(uses);
+        pairs.filter(|&[earlier, later]| earlier != later && later != network.start).collect()
+    }
+
     /// Whether an event is of something that the plan selects. Alternatives of foreign networks may end at one node, which has
     /// the ends of all of them.
     pub fn has_event(&self, network: &Network, event: EventRef) -> bool {
@@ -196,4 +214,92 @@ pub struct Quality {
 pub struct Window {
     pub earliest: Time,
     pub latest: Bound,
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use crate::network::{Network, NodeId};
+    use crate::{Plan, Top, plan_json};
+
+    fn network(text: &str) -> Network {
+        let parsed = rmpl::parse(text);
+        let (network, diagnostics) = crate::compile(&parsed.program(), &Top::Scenario(None));
+        network.unwrap_or_else(|| panic!("{text} has errors: {diagnostics:?}"))
+    }
+
+    fn plan(network: &Network, links: &serde_json::Value, orderings: &serde_json::Value) -> Plan {
+        let stated = json!({
+            "choices": {}, "causal_links": links, "orderings_added": orderings["states"],
+            "uses_ordered": orderings["uses"], "windows": {},
+        });
+        plan_json::plan_from_json(network, &stated).expect("the plan is of the network")
+    }
+
+    /// Whether the pairs lead from one event to another.
+    fn is_before(network: &Network, plan: &Plan, earlier: &str, later: &str) -> bool {
+        let names = plan_json::Names::new(network);
+        let event = |name: &str| names.event(name).expect("the network has the event");
+        let pairs = plan.instant_order(network);
+        let mut reached: Vec<NodeId> = vec![event(earlier)];
+        let mut next = 0;
+        while let Some(&node) = reached.get(next) {
+            next += 1;
+            for [_, then] in pairs.iter().filter(|[first, _]| *first == node) {
+                if !reached.contains(then) {
+                    reached.push(*then);
+                }
+            }
+        }
+        reached.contains(&event(later))
+    }
+
+    #[test]
+    fn the_order_within_an_instant_follows_the_text_the_links_and_the_orderings() {
+        let text = "state LAMP : {OFF, ON} = OFF; resource Tank 0..9 = 0; resource Arm; \
+            primitive Light()[0,5] sets LAMP=ON; primitive Look()[0,5] requires LAMP=ON; \
+            primitive Dim()[0,5] sets LAMP=OFF; \
+            primitive Fill()[0,5] uses Arm produces Tank 2; primitive Pour()[0,5] uses Arm consumes Tank 2; \
+            scenario Day[0,9] = { { Light(); delay[0,2] }, Look(), Dim(), Fill(), Pour() }";
+        let network = network(text);
+        let bare = plan(&network, &json!([]), &json!({"states": [], "uses": []}));
+        assert!(is_before(&network, &bare, "Light#1.start", "Light#1.end"));
+        assert!(is_before(&network, &bare, "scenario#1.start", "Look#1.start"));
+        assert!(is_before(&network, &bare, "Light#1.end", "delay#1.end"));
+        for (earlier, later) in [
+            ("Light#1.end", "Light#1.start"),
+            ("Light#1.end", "Look#1.start"),
+            ("Look#1.end", "Dim#1.start"),
+            ("Fill#1.end", "Pour#1.start"),
+        ] {
+            assert!(!is_before(&network, &bare, earlier, later), "{earlier} before {later}");
+        }
+        let links = json!([{"ask": "Ask(LAMP=ON)@Look#1", "tell": "Set(LAMP=ON)@Light#1"}]);
+        let states = json!([["Ask(LAMP=ON)@Look#1", "Set(LAMP=OFF)@Dim#1"]]);
+        let linked = plan(&network, &links, &json!({"states": states, "uses": []}));
+        assert!(is_before(&network, &linked, "Light#1.end", "Look#1.start"));
+        assert!(is_before(&network, &linked, "Look#1.end", "Dim#1.start"));
+        assert!(!is_before(&network, &linked, "Dim#1.start", "Look#1.end"));
+        let moments = json!([["Produces(Tank)@Fill#1", "Consumes(Tank)@Pour#1"]]);
+        let poured = plan(&network, &json!([]), &json!({"states": [], "uses": moments}));
+        assert!(is_before(&network, &poured, "Fill#1.end", "Pour#1.start"));
+        assert!(!is_before(&network, &poured, "Pour#1.start", "Fill#1.end"));
+        let shared = json!([["Uses(Arm)@Pour#1", "Uses(Arm)@Fill#1"]]);
+        let shared = plan(&network, &json!([]), &json!({"states": [], "uses": shared}));
+        assert!(is_before(&network, &shared, "Pour#1.end", "Fill#1.start"));
+        assert!(!is_before(&network, &shared, "Pour#1.start", "Look#1.end"));
+    }
+
+    #[test]
+    fn conditions_that_do_not_last_order_nothing_within_an_instant() {
+        let text = "var SUN : {UP, DOWN}; primitive Look()[0,5]; \
+            scenario Day[0,9] = { SUN=UP [0,5], do Look() maintaining SUN=UP, SUN=DOWN [1,2] }";
+        let network = network(text);
+        let links = json!([{"ask": "Ask(SUN=UP)@Look#1", "tell": "Tell(SUN=UP)@Tell(SUN=UP)#1"}]);
+        let orderings = json!([["Ask(SUN=UP)@Look#1", "Tell(SUN=DOWN)@Tell(SUN=DOWN)#1"]]);
+        let plan = plan(&network, &links, &json!({"states": orderings, "uses": []}));
+        assert!(!is_before(&network, &plan, "Tell(SUN=UP)#1.start", "Look#1.start"));
+        assert!(!is_before(&network, &plan, "Look#1.end", "Tell(SUN=DOWN)#1.start"));
+    }
 }
