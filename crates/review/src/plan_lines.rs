@@ -446,7 +446,8 @@ fn interval_text(name: &str) -> String {
     if owner.starts_with("Tell(") || owner.starts_with("Ask(") {
         return owner.to_owned();
     }
-    let inside = condition.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
+    let inside =
+        condition.split_once('(').and_then(|(_, rest)| rest.rsplit_once(')')).map(|(inside, _)| inside);
     if condition.starts_with("Set(") {
         return format!("the change to {} by {owner}", inside.unwrap_or(condition));
     }

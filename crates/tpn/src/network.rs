@@ -683,18 +683,23 @@ impl Network {
         self.objective.iter().flat_map(|goal| &goal.terms).any(|&(_, measure)| counted(measure))
     }
 
-    /// The name of a use: `Uses(Power)@Radio#1`.
+    /// The name of a use: `Uses(Power)@Radio#1`. Of several by one owner the second is `Uses(Power)#2@Radio#1`.
     pub fn use_name(&self, used: UseId) -> String {
-        let used = &self.uses[used.index()];
-        let verb = match used.change {
+        let of = &self.uses[used.index()];
+        let verb = match of.change {
             Change::Uses => "Uses",
             Change::Consumes => "Consumes",
             Change::Produces => "Produces",
         };
-        let resource = &self.resources[used.resource.index()].name;
-        match used.owner {
-            Some(owner) => format!("{verb}({resource})@{}", self.occurrences[owner.index()].name),
-            None => format!("{verb}({resource})@arc{}", used.arc.0),
+        let resource = &self.resources[of.resource.index()].name;
+        let is_alike = |other: &&Use| {
+            (other.resource, other.change, other.owner) == (of.resource, of.change, of.owner)
+                && (of.owner.is_some() || other.arc == of.arc)
+        };
+        let count = ordinal(self.uses[..used.index()].iter().filter(is_alike).count());
+        match of.owner {
+            Some(owner) => format!("{verb}({resource}){count}@{}", self.occurrences[owner.index()].name),
+            None => format!("{verb}({resource}){count}@arc{}", of.arc.0),
         }
     }
 
@@ -708,19 +713,40 @@ impl Network {
         }
     }
 
-    /// The name of a labelled interval: `Ask(PATH1=OK)@Group-Traverse-Path#1`, `Set(ARM=OUT)@Deploy#1`, `Init(ARM=IN)`.
+    /// The name of a labelled interval: `Ask(PATH1=OK)@Group-Traverse-Path#1`, `Set(ARM=OUT)@Deploy#1`, `Init(ARM=IN)`. Of
+    /// several by one owner the second is `Ask(ARM=OUT)#2@Dig#1`.
     pub fn label_name(&self, label: LabelId) -> String {
-        let label = &self.labels[label.index()];
-        let mode = label.verb();
-        match label.owner {
-            _ if label.extent == Extent::Initial => format!("{mode}({})", label.text),
-            Some(owner) => format!("{mode}({})@{}", label.text, self.occurrences[owner.index()].name),
-            None => format!("{mode}({})@arc{}", label.text, label.arc.0),
+        let of = &self.labels[label.index()];
+        let mode = of.verb();
+        let count = ordinal(self.earlier_namesakes(label));
+        match of.owner {
+            _ if of.extent == Extent::Initial => format!("{mode}({}){count}", of.text),
+            Some(owner) => format!("{mode}({}){count}@{}", of.text, self.occurrences[owner.index()].name),
+            None => format!("{mode}({}){count}@arc{}", of.text, of.arc.0),
         }
+    }
+
+    /// How many labels before this one have its owner, what it does, and its condition. They begin at one event: arcs
+    /// of one owner do.
+    fn earlier_namesakes(&self, label: LabelId) -> usize {
+        let of = &self.labels[label.index()];
+        let from = self.arcs[of.arc.index()].from;
+        let arcs = self.nodes[from.index()].out_arcs.iter();
+        let labels = arcs.flat_map(|arc| &self.arcs[arc.index()].labels);
+        let is_alike = |other: &Label| {
+            (other.owner, other.verb(), &other.text) == (of.owner, of.verb(), &of.text)
+                && (of.owner.is_some() || other.arc == of.arc)
+        };
+        labels.filter(|&&other| other < label && is_alike(&self.labels[other.index()])).count()
     }
 
     /// The printed name of a decision: `D1`.
     pub fn decision_name(decision: DecisionId) -> String {
         format!("D{}", decision.0 + 1)
     }
+}
+
+/// `#2` for what one other of the same name comes before; nothing for the first.
+fn ordinal(earlier: usize) -> String {
+    if earlier == 0 { String::new() } else { format!("#{}", earlier + 1) }
 }
