@@ -8,8 +8,7 @@ use crate::entailment::Precedence;
 /// between each element and those that come directly after it (Fulkerson 1956). Elements that all others come before
 /// or after divide the order, so that a sequence needs no flow; otherwise O(elements² · relations) at worst.
 pub(crate) fn heaviest_antichain(weights: &[i128], order: &Precedence) -> (i128, Vec<usize>) {
-    // Of intervals without length at one instant each precedes the other: then by position, which keeps the relation
-    // transitive.
+    // Of intervals that are one event each precedes the other: then by position, which keeps the relation transitive.
     let precedes = |one: usize, other: usize| {
         order.is_before(one, other) && (one < other || !order.is_before(other, one))
     };

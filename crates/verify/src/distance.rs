@@ -1,7 +1,7 @@
 //! Exact shortest distances of a distance graph: a feasible potential or a negative cycle, and single rows.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 /// An edge `to − from ≤ weight`, with the index of what put it there.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +45,56 @@ impl Distances {
     /// Numbers such that no edge is shorter than the difference between that of its end and that of its start.
     pub(crate) fn potential(&self) -> &[i128] {
         &self.potential
+    }
+
+    /// For each node a number that it shares with the nodes at one time with it in every schedule. Nodes whose distance is
+    /// fixed are those that edges without slack join both ways. O(nodes + edges).
+    pub(crate) fn instants(&self) -> Vec<u32> {
+        let count = self.potential.len();
+        let is_tight = |edge: &Edge| {
+            self.potential[edge.from as usize] + edge.weight == self.potential[edge.to as usize]
+        };
+        // Kosaraju and Sharir 1981: backwards through the components in the order in which a search forwards leaves them.
+        let mut left = Vec::with_capacity(count);
+        let mut is_seen = vec![false; count];
+        for root in 0..count as u32 {
+            if std::mem::replace(&mut is_seen[root as usize], true) {
+                continue;
+            }
+            let mut path = vec![(root, 0)];
+            while let Some((node, next)) = path.last_mut() {
+                let Some(edge) = self.edges_from(*node).get(*next) else {
+                    left.push(*node);
+                    path.pop();
+                    continue;
+                };
+                *next += 1;
+                if is_tight(edge) && !std::mem::replace(&mut is_seen[edge.to as usize], true) {
+                    path.push((edge.to, 0));
+                }
+            }
+        }
+        let mut component = vec![u32::MAX; count];
+        for &root in left.iter().rev() {
+            let mut open = vec![root];
+            while let Some(node) = open.pop() {
+                if component[node as usize] != u32::MAX {
+                    continue;
+                }
+                component[node as usize] = root;
+                let range =
+                    self.in_starts[node as usize] as usize..self.in_starts[node as usize + 1] as usize;
+                let edges = self.incoming[range].iter().map(|&edge| &self.edges[edge as usize]);
+                let beyond = edges.filter(|edge| is_tight(edge)).map(|edge| edge.from);
+                open.extend(beyond.filter(|&node| component[node as usize] == u32::MAX));
+            }
+        }
+        let mut numbers = BTreeMap::new();
+        let mut number = |node: usize| {
+            let next = numbers.len() as u32;
+            *numbers.entry((component[node], self.potential[node])).or_insert(next)
+        };
+        (0..count).map(&mut number).collect()
     }
 
     /// Distances from `source` to every node; `None` where there is no path. O(edges · log nodes).

@@ -1,12 +1,14 @@
-//! What all schedules of a plan keep: exact windows, distances, and which of many intervals always precede which.
+//! What all schedules of a plan keep: exact windows, distances, and which events and intervals happen before which.
 
 use tpn::NodeId;
 
 use crate::distance::Distances;
+use crate::instant::InstantOrder;
 
 /// The closed temporal network of a plan.
 pub(crate) struct Entailment {
     distances: Distances,
+    order: InstantOrder,
     /// Per node: the latest time after the start, if bounded.
     pub(crate) latest: Vec<Option<i128>>,
     /// Per node: the earliest time after the start, if bounded.
@@ -14,10 +16,10 @@ pub(crate) struct Entailment {
 }
 
 impl Entailment {
-    pub(crate) fn new(distances: Distances, start: NodeId) -> Self {
+    pub(crate) fn new(distances: Distances, order: InstantOrder, start: NodeId) -> Self {
         let latest = distances.row(start.0);
         let earliest = distances.column(start.0).into_iter().map(|distance| distance.map(|to| -to)).collect();
-        Self { distances, latest, earliest }
+        Self { distances, order, latest, earliest }
     }
 
     /// Whether `later − earlier ≥ least` in every schedule.
@@ -30,10 +32,15 @@ impl Entailment {
         self.distances.between(later.0, earlier.0).is_some_and(|distance| distance <= -least)
     }
 
-    /// Whether `earlier ≤ later` in every schedule, if the windows alone tell.
-    fn is_no_later_by_windows(&self, earlier: NodeId, later: NodeId) -> Option<bool> {
-        if earlier == later {
-            return Some(true);
+    /// Whether one event happens before another in the plan (SPEC 10.4).
+    pub(crate) fn happens_before(&self, earlier: NodeId, later: NodeId) -> bool {
+        self.order.is_before(earlier, later).unwrap_or_else(|| self.is_at_least(earlier, later, 0))
+    }
+
+    /// Whether one event happens before another, if the windows and the order of their instant alone tell.
+    fn is_before_by_windows(&self, earlier: NodeId, later: NodeId) -> Option<bool> {
+        if let Some(is_before) = self.order.is_before(earlier, later) {
+            return Some(is_before);
         }
         let (one, other) = (earlier.index(), later.index());
         if let (Some(at_least), Some(at_most)) = (self.earliest[other], self.latest[one])
@@ -60,8 +67,8 @@ pub(crate) struct Span {
     pub(crate) end: NodeId,
 }
 
-/// For each pair of some intervals, whether one ends no later than the other starts in every schedule. None of the
-/// intervals may end before it starts, so that the relation is transitive.
+/// For each pair of some intervals, whether one's end happens before the other's start in the plan (SPEC 10.4). The start
+/// of each must happen before its end, so that the relation is transitive.
 #[derive(Clone, Debug)]
 pub(crate) struct Precedence {
     words: usize,
@@ -92,13 +99,13 @@ impl Precedence {
             // The nearest first: what precedes it follows.
             for &other in sequence[..position].iter().rev() {
                 if !made.is_before(other, one) {
-                    let by_windows = entailment.is_no_later_by_windows(spans[other].end, spans[one].start);
+                    let by_windows = entailment.is_before_by_windows(spans[other].end, spans[one].start);
                     if by_windows.unwrap_or_else(|| to_start.is_at_most_zero(spans[other].end)) {
                         made.add(other, one);
                     }
                 }
                 if !made.is_before(one, other) {
-                    let by_windows = entailment.is_no_later_by_windows(spans[one].end, spans[other].start);
+                    let by_windows = entailment.is_before_by_windows(spans[one].end, spans[other].start);
                     if by_windows.unwrap_or_else(|| to_end.is_at_most_zero(spans[other].start)) {
                         made.add(one, other);
                     }
@@ -108,7 +115,7 @@ impl Precedence {
         made
     }
 
-    /// Whether `one` ends no later than `other` starts. Nothing comes before itself.
+    /// Whether the end of `one` happens before the start of `other`. No interval comes before itself.
     pub(crate) fn is_before(&self, one: usize, other: usize) -> bool {
         self.after[one * self.words + other / 64] >> (other % 64) & 1 == 1
     }

@@ -10,6 +10,7 @@ mod controllability;
 mod departure;
 mod distance;
 mod entailment;
+mod instant;
 mod labels;
 mod plan;
 mod schedule;
@@ -53,7 +54,8 @@ pub enum Rule {
     Form,
     /// Start and end are selected; of a selected node all out-arcs, of a decision exactly one; nothing else.
     Selection,
-    /// The selected arcs and the added constraints have no negative cycle.
+    /// The selected arcs and the added constraints have no negative cycle, and no cycle of events of which each happens
+    /// before the next (SPEC 10.4).
     Temporal,
     /// Every Ask lies inside a supporting Tell; of a state variable it has a producer whose value is one it allows.
     Support,

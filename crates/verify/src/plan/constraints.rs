@@ -6,6 +6,7 @@ use tpn::{ArcId, CausalLink, LabelId, Network, NodeId, Ordering, Plan, UseOrderi
 
 use crate::departure::{self, Movement};
 use crate::distance::Edge;
+use crate::instant::Step;
 use crate::labels::{self, interval};
 use crate::uncertainty::natures_events;
 use crate::{Rule, Violation, amounts, node_name};
@@ -23,6 +24,8 @@ enum Reason {
 /// The plan's temporal constraints as edges over integers: times multiplied by the common denominator.
 pub(super) struct Constraints {
     pub(super) edges: Vec<Edge>,
+    /// What puts one event before another where both happen at one time (SPEC 10.4).
+    pub(super) steps: Vec<Step>,
     /// What each constraint is, by the edges' `reason`.
     reasons: Vec<Reason>,
     pub(super) scale: i128,
@@ -44,7 +47,14 @@ impl Constraints {
                 return None;
             }
         }
-        let mut made = Self { edges: Vec::new(), reasons: Vec::new(), scale, gap: 0, bounds: Vec::new() };
+        let mut made = Self {
+            edges: Vec::new(),
+            steps: Vec::new(),
+            reasons: Vec::new(),
+            scale,
+            gap: 0,
+            bounds: Vec::new(),
+        };
         made.gap = made.scaled(network.threat_gap);
         for (index, arc) in network.arcs.iter().enumerate() {
             let (lower, upper) = (made.scaled(arc.lower), arc.upper.finite().map(|upper| made.scaled(upper)));
@@ -52,6 +62,10 @@ impl Constraints {
             if plan.selected_arcs[index] {
                 let reason = Reason::Arc(ArcId::from_index(index));
                 made.add(arc.from, arc.to, lower, upper, reason);
+                // Nothing is before the start.
+                if lower >= 0 && arc.to != network.start {
+                    made.put_before(arc.from, arc.to);
+                }
             }
         }
         let natures = natures_events(network, &plan.selected_arcs);
@@ -59,7 +73,9 @@ impl Constraints {
             let (ask, tell) = (interval(network, link.ask), interval(network, link.tell));
             made.add(ready(network, link.tell), ask.start, 0, None, Reason::Link(link));
             // What lasts need not be asserted any longer.
-            if !labels::is_lasting(network, link.ask) {
+            if labels::is_lasting(network, link.ask) {
+                made.put_before(ready(network, link.tell), ask.start);
+            } else {
                 made.add(ask.end, tell.end, 0, None, Reason::Link(link));
             }
         }
@@ -68,10 +84,14 @@ impl Constraints {
             // Before what begins at nature's event there is no gap (SPEC 13.1).
             let gap = if gap && !natures[later.index()] { made.gap } else { 0 };
             made.add(earlier, later, gap, None, Reason::Order(ordering));
+            if labels::is_lasting(network, ordering.first) {
+                made.put_before(earlier, later);
+            }
         }
         for &ordering in &plan.uses_ordered {
             let (earlier, later) = ordered_moments(network, ordering);
             made.add(earlier, later, 0, None, Reason::Uses(ordering));
+            made.put_before(earlier, later);
         }
         for movement in departure::of_plan(network, plan) {
             if let Some(least) = movement.least {
@@ -96,6 +116,13 @@ impl Constraints {
         self.edges.push(Edge { from: to.0, to: from.0, weight: -lower, reason: index });
         if let Some(upper) = upper {
             self.edges.push(Edge { from: from.0, to: to.0, weight: upper, reason: index });
+        }
+    }
+
+    /// The constraint that was added last also says which event is first at one instant. An event is before itself anyway.
+    fn put_before(&mut self, from: NodeId, to: NodeId) {
+        if from != to {
+            self.steps.push(Step { from, to, reason: self.reasons.len() as u32 - 1 });
         }
     }
 
@@ -143,6 +170,19 @@ impl Constraints {
             cycle.iter().map(|edge| describe(network, self.reasons[edge.reason as usize])).collect();
         let events = cycle.iter().map(|edge| node_name(network, NodeId(edge.from))).collect();
         let message = format!("these constraints contradict each other: {}", reasons.join("; "));
+        Violation::new(Rule::Temporal, message).with_events(events)
+    }
+
+    /// A cycle of events at one instant, in the author's terms.
+    pub(super) fn describe_circle(&self, network: &Network, circle: &[Step]) -> Violation {
+        let reasons: Vec<String> =
+            circle.iter().map(|step| describe(network, self.reasons[step.reason as usize])).collect();
+        let events: Vec<String> = circle.iter().map(|step| node_name(network, step.from)).collect();
+        let message = format!(
+            "each of {} would have to happen before the next, and the last before the first: {}",
+            events.join(", "),
+            reasons.join("; ")
+        );
         Violation::new(Rule::Temporal, message).with_events(events)
     }
 }

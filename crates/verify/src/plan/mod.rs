@@ -1,5 +1,5 @@
-//! The check of a plan (SPEC 5.5, 10.2, 11 to 13): its selection, its constraints, its links, its orders, its windows, the
-//! resources it uses, what it is worth, and that it withstands nature.
+//! The check of a plan (SPEC 5.5, 10 to 13): its selection, its constraints, its links, its orders, those within an instant
+//! too, its windows, the resources it uses, what it is worth, and that it withstands nature.
 
 mod constraints;
 mod controllability;
@@ -16,6 +16,7 @@ use tpn::{LabelId, Network, NodeId, Plan, Window};
 
 use crate::distance::Distances;
 use crate::entailment::{Entailment, Span};
+use crate::instant::InstantOrder;
 use crate::labels::{self, interval};
 use crate::selection;
 use crate::{Rule, Verdict, Violation, node_name, state as lasting};
@@ -64,28 +65,31 @@ pub fn check_plan(network: &Network, plan: &Plan) -> Verdict {
         let message = "the bounds are too large, or their denominators too different, to be checked exactly";
         return Verdict::new(vec![Violation::new(Rule::Form, message)]);
     };
-    match Distances::new(network.nodes.len(), constraints.edges.clone()) {
-        Err(cycle) => violations.push(constraints.describe_cycle(network, &cycle)),
-        Ok(distances) => {
-            let checker = Checker {
-                network,
-                plan,
-                scale: constraints.scale,
-                gap: constraints.gap,
-                entailment: Entailment::new(distances, network.start),
-            };
-            let mut stated = Stated::new(plan);
-            checker.check_containment(&mut violations);
-            checker.check_conflicts(&mut stated, &mut violations);
-            checker.check_states(&mut stated, &mut violations);
-            checker.check_departures(&mut violations);
-            stated.check_rest(network, plan, &mut violations);
-            checker.check_resources(&mut violations);
-            checker.check_windows(&mut violations);
-            checker.check_quality(&mut violations);
-            controllability::check_controllability(network, plan, &constraints, &mut violations);
-        }
-    }
+    let distances = match Distances::new(network.nodes.len(), constraints.edges.clone()) {
+        Ok(distances) => distances,
+        Err(cycle) => return Verdict::new(vec![constraints.describe_cycle(network, &cycle)]),
+    };
+    let order = match InstantOrder::new(&distances, &constraints.steps) {
+        Ok(order) => order,
+        Err(circle) => return Verdict::new(vec![constraints.describe_circle(network, &circle)]),
+    };
+    let checker = Checker {
+        network,
+        plan,
+        scale: constraints.scale,
+        gap: constraints.gap,
+        entailment: Entailment::new(distances, order, network.start),
+    };
+    let mut stated = Stated::new(plan);
+    checker.check_containment(&mut violations);
+    checker.check_conflicts(&mut stated, &mut violations);
+    checker.check_states(&mut stated, &mut violations);
+    checker.check_departures(&mut violations);
+    stated.check_rest(network, plan, &mut violations);
+    checker.check_resources(&mut violations);
+    checker.check_windows(&mut violations);
+    checker.check_quality(&mut violations);
+    controllability::check_controllability(network, plan, &constraints, &mut violations);
     Verdict::new(violations)
 }
 
@@ -156,7 +160,7 @@ impl Checker<'_> {
 
     /// Whether an interval never ends before it starts.
     fn is_forward(&self, span: Span) -> bool {
-        self.entailment.is_at_least(span.start, span.end, 0)
+        self.entailment.happens_before(span.start, span.end)
     }
 
     /// Networks of programs have no such intervals; those that are read may.

@@ -81,8 +81,8 @@ impl Stated {
             );
         }
         for ordering in &plan.orderings_added {
-            // Intervals of no length at one instant are each before the other: then the stated order, which has been
-            // looked at, may be the other one.
+            // Intervals without length, of a variable that does not last, may be at one instant: then each is before the
+            // other, and the stated order, which has been looked at, may be the other one.
             if !self.is_said(ordering.first, ordering.then) && !self.is_said(ordering.then, ordering.first) {
                 let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
                 complain(

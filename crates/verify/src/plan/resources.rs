@@ -109,13 +109,16 @@ impl Checker<'_> {
         for (index, event) in shared.uses.iter().enumerate() {
             let mut reached = level;
             for (other, another) in shared.uses.iter().enumerate() {
-                let is_no_later = other == index || order.is_before(other, index);
-                let is_no_earlier = other == index || order.is_before(index, other);
-                let may_come_first = !is_no_earlier || is_no_later;
+                let happens_before = other == index || order.is_before(other, index);
+                let happens_after = other == index || order.is_before(index, other);
+                let may_come_first = !happens_after || happens_before;
                 // The worst case counts all that may have happened in its own direction, and of the other direction
                 // only what must have.
-                let is_counted =
-                    if another.is_production == event.is_production { may_come_first } else { is_no_later };
+                let is_counted = if another.is_production == event.is_production {
+                    may_come_first
+                } else {
+                    happens_before
+                };
                 if is_counted {
                     reached += if another.is_production { another.amount } else { -another.amount };
                 }

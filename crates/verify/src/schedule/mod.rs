@@ -1,5 +1,6 @@
-//! The check of a schedule (SPEC 5.5, 10.2, 11): one time for each selected event. It needs no links and no orderings.
+//! The check of a schedule (SPEC 5.5, 10, 11): one time for each selected event. It needs no links and no orderings.
 
+mod order;
 mod resources;
 mod state;
 
@@ -23,8 +24,9 @@ pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Time>> {
 /// other starts, instants and intervals without length included. An interval that begins at an event that nature
 /// executes may begin at such an instant: there is no gap before it (SPEC 13.1).
 ///
-/// What happens at one instant may happen in any order that keeps the rules of state that lasts (SPEC 10.2). A reservoir is
-/// looked at after each instant, and uses without length that happen at one instant do not add up (SPEC 11).
+/// What happens at one instant may happen in any order that follows the text and keeps the rules of state that lasts and of
+/// resources (SPEC 10.4). That is decided for twelve events at one instant, whatever they are about, and for as many as one
+/// likes whose order is plain; a schedule for which it cannot be decided is refused, with [`Rule::Form`].
 pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Time>]) -> Verdict {
     if let Err(verdict) = selection::check_form(network, plan) {
         return verdict;
@@ -52,6 +54,10 @@ pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Time>]) ->
         schedule.check_conflicts(&mut violations);
         schedule.check_states(&mut violations);
         schedule.check_resources(&mut violations);
+        // What times alone forbid is told apart; the order within instants says no more then.
+        if violations.is_empty() {
+            schedule.check_order(&mut violations);
+        }
     }
     Verdict::new(violations)
 }

@@ -1,4 +1,5 @@
-//! Resources in a schedule (SPEC 11): how much is used at each time, and the level after each instant.
+//! Resources in a schedule (SPEC 11): how much is used at each time at least, and the level after each instant, whatever the
+//! order of what happens at it.
 
 use exact::{Bound, Time};
 
@@ -77,7 +78,7 @@ impl Schedule<'_> {
         }
     }
 
-    /// The level after each instant, whatever the order of what happens at it.
+    /// The level after each instant.
     fn check_reservoir(
         &self,
         shared: &Shared,

@@ -1,9 +1,4 @@
-//! State that lasts in a schedule (SPEC 10.2): rules 1 and 2 with every time known.
-//!
-//! Only producers without length that happen at one instant leave their order open; the schedule is accepted if some
-//! order of them keeps every rule.
-
-use std::collections::{BTreeMap, BTreeSet};
+//! State that lasts in a schedule (SPEC 10.2): what rules 1 and 2 and movements forbid whatever the order within instants.
 
 use exact::{Bound, Time};
 use tpn::LabelId;
@@ -12,16 +7,6 @@ use super::Schedule;
 use crate::departure;
 use crate::state::{self, Producer, Requirement, State, owner_name};
 use crate::{Rule, Violation};
-
-/// How a producer can carry a requirement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Support {
-    No,
-    /// It does, however ties are decided.
-    Always,
-    /// It does if it is the last of the producers of its instant.
-    IfLast,
-}
 
 impl Schedule<'_> {
     pub(super) fn check_states(&self, violations: &mut Vec<Violation>) {
@@ -91,17 +76,12 @@ impl Schedule<'_> {
 
     /// Rule 1: each requirement has a producer that makes it hold from its start to its end.
     fn check_requirements(&self, state: &State, violations: &mut Vec<Violation>) {
-        // By instant: which producers may be the last of it, for each requirement that rests on it.
-        let mut last: BTreeMap<Time, Vec<(LabelId, BTreeSet<LabelId>)>> = BTreeMap::new();
         for requirement in &state.requirements {
-            let threats: Vec<&Producer> = (state.producers.iter())
-                .filter(|it| {
-                    it.threatens(requirement, self.network)
-                        && self.time(it.start) < self.time(requirement.end)
-                })
-                .collect();
+            let threats = state.producers.iter().filter(|it| {
+                it.threatens(requirement, self.network) && self.time(it.start) < self.time(requirement.end)
+            });
             let mut latest = [None; 2];
-            for threat in &threats {
+            for threat in threats {
                 let end = Some((self.time(threat.end), threat.label));
                 if end > latest[0] {
                     latest = [end, latest[0]];
@@ -109,72 +89,25 @@ impl Schedule<'_> {
                     latest[1] = end;
                 }
             }
-            let supports: Vec<(&Producer, Support)> = (state.producers.iter())
-                .map(|it| (it, self.support(it, requirement, &threats, latest)))
-                .filter(|&(_, support)| support != Support::No)
-                .collect();
-            if supports.iter().any(|&(_, support)| support == Support::Always) {
-                continue;
-            }
-            let candidates: BTreeSet<LabelId> = supports.iter().map(|(it, _)| it.label).collect();
-            match supports.first() {
-                // All of them are at the last instant at which anything threatens the requirement.
-                Some((producer, _)) => {
-                    last.entry(self.time(producer.start)).or_default().push((requirement.label, candidates));
-                }
-                None => violations.push(self.unsupported(requirement, latest[0].map(|(_, label)| label))),
-            }
-        }
-        for (time, requirements) in last {
-            let mut common = requirements[0].1.clone();
-            for (_, candidates) in &requirements[1..] {
-                common.retain(|label| candidates.contains(label));
-            }
-            if common.is_empty() {
-                let labels = requirements.iter().map(|&(label, _)| label);
-                let names: Vec<String> = labels.map(|label| self.network.label_name(label)).collect();
-                let variable = &self.network.variables[state.variable.index()].name;
-                let message = format!(
-                    "{} need different last values of {variable} at {}",
-                    names.join(" and "),
-                    Bound::Finite(time)
-                );
-                violations.push(Violation::new(Rule::State, message).with_intervals(names));
+            if !state.producers.iter().any(|it| self.may_support(it, requirement, latest)) {
+                violations.push(self.unsupported(requirement, latest[0].map(|(_, label)| label)));
             }
         }
     }
 
-    /// Whether a producer can carry a requirement: what threatens it and starts before it ends comes before the producer.
-    /// `latest` are the threats with the latest two ends.
-    fn support(
+    /// Whether a producer makes a requirement hold in some order of each instant: what threatens the requirement and starts
+    /// before it ends comes before the producer. `latest` are the threats with the latest two ends.
+    fn may_support(
         &self,
         producer: &Producer,
         requirement: &Requirement,
-        threats: &[&Producer],
         latest: [Option<(Time, LabelId)>; 2],
-    ) -> Support {
+    ) -> bool {
         let is_ready = self.time(producer.ready) <= self.time(requirement.start);
-        if !is_ready || !producer.supports(requirement, self.network) {
-            return Support::No;
-        }
-        let start = self.time(producer.start);
         let other = latest.into_iter().flatten().find(|&(_, label)| label != producer.label);
-        if other.is_some_and(|(end, _)| end > start) {
-            return Support::No;
-        }
-        // Those at the same instant, without length as the producer itself, may come before or after it.
-        let is_tied = |threat: &&Producer| {
-            threat.label != producer.label
-                && !threat.is_initial
-                && self.time(producer.end) <= self.time(threat.start)
-                && self.time(threat.end) <= start
-        };
-        match (threats.iter().any(is_tied), producer.is_initial) {
-            (false, _) => Support::Always,
-            // The initial value is before all others.
-            (true, true) => Support::No,
-            (true, false) => Support::IfLast,
-        }
+        is_ready
+            && producer.supports(requirement, self.network)
+            && other.is_none_or(|(end, _)| end <= self.time(producer.start))
     }
 
     fn unsupported(&self, requirement: &Requirement, threat: Option<LabelId>) -> Violation {

@@ -1,5 +1,5 @@
-//! A second checker of state that lasts and of resources, naive on purpose: the definitions of SPEC 10.2 and 11 read off
-//! all schedules in whole units, with every order of producers and every set of uses tried.
+//! A second checker of state that lasts and of resources, naive on purpose: the definitions of SPEC 10 and 11 read off all
+//! schedules in whole units, with every order of the events within each instant and every set of uses tried.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -87,12 +87,113 @@ pub fn supporters(network: &Network, plan: &Plan, ask: LabelId) -> Vec<LabelId> 
     producers
 }
 
-fn is_always(schedules: &[Schedule], one: NodeId, other: NodeId) -> bool {
-    schedules.iter().all(|at| at[one.index()] <= at[other.index()])
+/// What happens before what in a plan (SPEC 10.4).
+pub struct Before<'plan> {
+    schedules: &'plan [Schedule],
+    /// The relation `≺`, closed: row by row, whether it puts an event before another.
+    order: Vec<Vec<bool>>,
 }
 
-/// Whether SPEC 10.2 accepts a plan with these schedules, and the plan says all of it.
-pub fn accepts_states(network: &Network, plan: &Plan, schedules: &[Schedule]) -> bool {
+impl<'plan> Before<'plan> {
+    /// `schedules` are all that the plan has.
+    pub fn new(network: &Network, plan: &Plan, schedules: &'plan [Schedule]) -> Self {
+        let mut order = text_order(network, plan);
+        let mut put =
+            |earlier: NodeId, later: NodeId| order[earlier.index()][later.index()] |= earlier != later;
+        let own = |ask: LabelId| plan.causal_links.iter().find(|link| link.ask == ask).map(|link| link.tell);
+        for link in plan.causal_links.iter().filter(|link| is_lasting(network, link.ask)) {
+            put(ready(network, link.tell), occupied(network, link.ask).0);
+        }
+        for added in plan.orderings_added.iter().filter(|added| is_lasting(network, added.first)) {
+            let later = own(added.then).map_or(occupied(network, added.then).0, |own| ready(network, own));
+            put(occupied(network, added.first).1, later);
+        }
+        for ordered in &plan.uses_ordered {
+            let [first, then] = [ordered.first, ordered.then];
+            let (one, other) = (&network.uses[first.index()], &network.uses[then.index()]);
+            match network.resources[one.resource.index()].supply {
+                Supply::Reusable { .. } => put(one.end, other.start),
+                Supply::Reservoir { .. } => put(moment(network, first), moment(network, then)),
+            }
+        }
+        close(&mut order);
+        Self { schedules, order }
+    }
+
+    /// Whether some event would have to be before itself.
+    pub fn has_circle(&self) -> bool {
+        (0..self.order.len()).any(|node| self.order[node][node])
+    }
+
+    fn is_before(&self, one: NodeId, other: NodeId) -> bool {
+        let (one, other) = (one.index(), other.index());
+        let is_no_later = self.schedules.iter().all(|at| at[one] <= at[other]);
+        let is_equal = self.schedules.iter().all(|at| at[one] == at[other]);
+        one == other || (is_no_later && (!is_equal || self.order[one][other]))
+    }
+}
+
+/// Which event the text puts before which, row by row; not closed.
+fn text_order(network: &Network, plan: &Plan) -> Vec<Vec<bool>> {
+    let mut order = vec![vec![false; network.nodes.len()]; network.nodes.len()];
+    for (arc, &is_selected) in network.arcs.iter().zip(&plan.selected_arcs) {
+        let is_forward = is_selected && !arc.lower.is_negative() && arc.from != arc.to;
+        order[arc.from.index()][arc.to.index()] |= is_forward;
+    }
+    order
+}
+
+/// Warshall 1962.
+fn close(order: &mut [Vec<bool>]) {
+    for through in 0..order.len() {
+        for from in 0..order.len() {
+            for to in 0..order.len() {
+                order[from][to] |= order[from][through] && order[through][to];
+            }
+        }
+    }
+}
+
+/// Whether some order of all events, by time and within each instant as the text has it, keeps a rule: `keeps` is told the
+/// place of each event that states and resources are about. `None` after too many of them.
+pub fn some_order_keeps(
+    network: &Network,
+    plan: &Plan,
+    at: &Schedule,
+    most: usize,
+    keeps: impl Fn(&Schedule) -> bool,
+) -> Option<bool> {
+    let labels = [LabelMode::Tell, LabelMode::Ask].into_iter().flat_map(|mode| selected(network, plan, mode));
+    let labels = labels.flat_map(|label| <[NodeId; 2]>::from(occupied(network, label)));
+    let uses = network.uses.iter().filter(|used| plan.selected_arcs[used.arc.index()]);
+    let events: BTreeSet<NodeId> = labels.chain(uses.flat_map(|used| [used.start, used.end])).collect();
+    let mut order = text_order(network, plan);
+    close(&mut order);
+    let must_wait = |event: NodeId, other: NodeId| {
+        let (one, other) = (event.index(), other.index());
+        at[other] < at[one] || (at[other] == at[one] && order[other][one])
+    };
+    let mut left = most;
+    let mut open: Vec<Vec<NodeId>> = vec![Vec::new()];
+    while let Some(placed) = open.pop() {
+        if placed.len() == events.len() {
+            let mut places = at.clone();
+            (0..).zip(&placed).for_each(|(place, node)| places[node.index()] = place);
+            if keeps(&places) {
+                return Some(true);
+            }
+        }
+        left = left.checked_sub(1)?;
+        let rest: Vec<NodeId> = events.iter().copied().filter(|event| !placed.contains(event)).collect();
+        for &event in rest.iter().filter(|&&event| !rest.iter().any(|&other| must_wait(event, other))) {
+            open.push(placed.iter().copied().chain([event]).collect());
+        }
+    }
+    Some(false)
+}
+
+/// Whether SPEC 10.2 accepts a plan in which events happen in this order, and the plan says all of it.
+pub fn accepts_states(network: &Network, plan: &Plan, before: &Before<'_>) -> bool {
     let said: Pairs = plan.conflict_order.iter().map(|it| (it.first, it.then)).collect();
     let ends = |label: LabelId| occupied(network, label);
     // The sides of rule 2, all of them and each once.
@@ -104,7 +205,7 @@ pub fn accepts_states(network: &Network, plan: &Plan, schedules: &[Schedule]) ->
             (false, true) => (other, one),
             _ => return false,
         };
-        let is_kept = is_always(schedules, ends(side.0).1, ends(side.1).0) && !is_initial(network, side.1);
+        let is_kept = before.is_before(ends(side.0).1, ends(side.1).0) && !is_initial(network, side.1);
         if !is_kept {
             return false;
         }
@@ -133,7 +234,7 @@ pub fn accepts_states(network: &Network, plan: &Plan, schedules: &[Schedule]) ->
         let Some(&own) = links.get(&ask) else { return false };
         if plan.causal_links.iter().filter(|link| link.ask == ask).count() != 1
             || !supporters(network, plan, ask).contains(&own)
-            || !is_always(schedules, ready(network, own), ends(ask).0)
+            || !before.is_before(ready(network, own), ends(ask).0)
         {
             return false;
         }
@@ -142,9 +243,9 @@ pub fn accepts_states(network: &Network, plan: &Plan, schedules: &[Schedule]) ->
             // What rule 2 put before the producer is before the requirement, too; the rest is after it.
             let expected = if is_before { (threat, ask) } else { (ask, threat) };
             let is_kept = if is_before {
-                is_always(schedules, ends(threat).1, ready(network, own))
+                before.is_before(ends(threat).1, ready(network, own))
             } else {
-                is_always(schedules, ends(ask).1, ends(threat).0)
+                before.is_before(ends(ask).1, ends(threat).0)
             };
             if !is_kept || !said.contains(&expected) || said.contains(&(expected.1, expected.0)) {
                 return false;
@@ -157,55 +258,24 @@ pub fn accepts_states(network: &Network, plan: &Plan, schedules: &[Schedule]) ->
         && added.into_iter().all(|(one, other)| said.contains(&(one, other)) || said.contains(&(other, one)))
 }
 
-/// Whether some order of the producers and some links keep SPEC 10.2 in a schedule.
+/// Whether SPEC 10.2 accepts the places of all events.
 pub fn accepts_states_at(network: &Network, plan: &Plan, at: &Schedule) -> bool {
-    let variables: BTreeSet<u32> = (0..network.variables.len() as u32).collect();
-    variables.into_iter().all(|variable| {
-        let of = |label: &LabelId| network.labels[label.index()].literal.variable.0 == variable;
-        let producers: Vec<LabelId> =
-            selected(network, plan, LabelMode::Tell).into_iter().filter(of).collect();
-        let asks: Vec<LabelId> = requirements(network, plan).into_iter().filter(of).collect();
-        permutations(&producers).iter().any(|order| keeps_order(network, plan, at, order, &asks))
-    })
-}
-
-fn keeps_order(network: &Network, plan: &Plan, at: &Schedule, order: &[LabelId], asks: &[LabelId]) -> bool {
-    let time = |node: NodeId| at[node.index()];
-    let place = |label: LabelId| order.iter().position(|&it| it == label);
-    let is_first = order.iter().skip(1).all(|&label| !is_initial(network, label));
+    let place = |node: NodeId| at[node.index()];
     let keeps_sides = excluding(network, plan).into_iter().all(|(one, other)| {
-        let (Some(at_one), Some(at_other)) = (place(one), place(other)) else { return true };
-        let (first, then) = if at_one < at_other { (one, other) } else { (other, one) };
-        time(occupied(network, first).1) <= time(occupied(network, then).0)
+        let ((from, to), (start, end)) = (occupied(network, one), occupied(network, other));
+        place(to) <= place(start) || place(end) <= place(from)
     });
-    let holds = |&ask: &LabelId| {
+    let holds = |ask: LabelId| {
         supporters(network, plan, ask).into_iter().any(|own| {
             let (start, end) = occupied(network, ask);
-            time(ready(network, own)) <= time(start)
+            place(ready(network, own)) <= place(start)
                 && threats(network, plan, ask, own).into_iter().all(|threat| {
                     let (from, to) = occupied(network, threat);
-                    (place(threat) < place(own) && time(to) <= time(ready(network, own)))
-                        || time(end) <= time(from)
+                    place(to) <= place(ready(network, own)) || place(end) <= place(from)
                 })
         })
     };
-    is_first && keeps_sides && asks.iter().all(holds)
-}
-
-fn permutations(labels: &[LabelId]) -> Vec<Vec<LabelId>> {
-    let mut found = vec![Vec::new()];
-    for &label in labels {
-        found = (found.iter())
-            .flat_map(|order: &Vec<LabelId>| {
-                (0..=order.len()).map(move |position| {
-                    let mut longer = order.clone();
-                    longer.insert(position, label);
-                    longer
-                })
-            })
-            .collect();
-    }
-    found
+    keeps_sides && requirements(network, plan).into_iter().all(holds)
 }
 
 fn uses_of(network: &Network, plan: &Plan, resource: usize) -> Vec<UseId> {
@@ -224,22 +294,22 @@ fn amount(network: &Network, used: UseId) -> i64 {
     amount.numerator()
 }
 
-/// Whether what is used stays within a resource in all schedules, by the criteria of SPEC 11; and how far it goes.
-pub fn levels(network: &Network, plan: &Plan, schedules: &[Schedule]) -> (bool, Vec<Levels>) {
+/// Whether what is used stays within a resource in a plan, by the criteria of SPEC 11; and how far it goes.
+pub fn levels(network: &Network, plan: &Plan, before: &Before<'_>) -> (bool, Vec<Levels>) {
     let mut is_within = true;
     let mut all = Vec::new();
     for (index, resource) in network.resources.iter().enumerate() {
         let uses = uses_of(network, plan, index);
         match resource.supply {
             Supply::Reusable { capacity } => {
-                let peak = peak(network, &uses, schedules);
+                let peak = peak(network, &uses, before);
                 is_within &= peak <= capacity.numerator();
                 all.push(Levels::Peak(Rational::from_integer(peak)));
             }
             Supply::Reservoir { least, greatest, level } => {
                 let (mut low, mut high) = (level.numerator(), level.numerator());
                 for &used in &uses {
-                    let reached = level.numerator() + reached(network, &uses, used, schedules);
+                    let reached = level.numerator() + reached(network, &uses, used, before);
                     if network.uses[used.index()].change == Change::Produces {
                         high = high.max(reached);
                     } else {
@@ -255,10 +325,10 @@ pub fn levels(network: &Network, plan: &Plan, schedules: &[Schedule]) -> (bool, 
     (is_within, all)
 }
 
-/// The greatest sum of a set of uses of which no two are entailed to be ordered.
-fn peak(network: &Network, uses: &[UseId], schedules: &[Schedule]) -> i64 {
+/// The greatest sum of a set of uses of which none happens before another.
+fn peak(network: &Network, uses: &[UseId], before: &Before<'_>) -> i64 {
     let precedes = |one: UseId, other: UseId| {
-        is_always(schedules, network.uses[one.index()].end, network.uses[other.index()].start)
+        before.is_before(network.uses[one.index()].end, network.uses[other.index()].start)
     };
     let mut peak = 0;
     for set in 0_u32..1 << uses.len() {
@@ -275,15 +345,14 @@ fn peak(network: &Network, uses: &[UseId], schedules: &[Schedule]) -> i64 {
 }
 
 /// How far the level is from the first one at a consumption or a production, at worst.
-fn reached(network: &Network, uses: &[UseId], event: UseId, schedules: &[Schedule]) -> i64 {
+fn reached(network: &Network, uses: &[UseId], event: UseId, before: &Before<'_>) -> i64 {
     let produces = |used: UseId| network.uses[used.index()].change == Change::Produces;
     let x = moment(network, event);
     let mut sum = 0;
     for &used in uses {
         let at = moment(network, used);
-        let (is_no_earlier, is_no_later) = (is_always(schedules, x, at), is_always(schedules, at, x));
-        let is_equal = is_no_earlier && is_no_later;
-        let comes_after = is_no_earlier && !is_equal;
+        let is_no_later = before.is_before(at, x);
+        let comes_after = before.is_before(x, at) && !is_no_later;
         match (produces(event), produces(used)) {
             (false, false) if !comes_after => sum -= amount(network, used),
             (false, true) if is_no_later => sum += amount(network, used),
@@ -295,7 +364,7 @@ fn reached(network: &Network, uses: &[UseId], event: UseId, schedules: &[Schedul
     sum
 }
 
-/// Whether SPEC 11 accepts a schedule: at every instant for what is reusable, after every instant for levels.
+/// Whether SPEC 11 accepts the places of all events: at every one for what is reusable, after every one for levels.
 pub fn accepts_resources_at(network: &Network, plan: &Plan, at: &Schedule) -> bool {
     network.resources.iter().enumerate().all(|(index, resource)| {
         let uses = uses_of(network, plan, index);

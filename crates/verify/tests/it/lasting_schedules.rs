@@ -3,7 +3,10 @@
 use exact::Time;
 use verify::{Rule, Violation, check_schedule, earliest_schedule};
 
-use crate::missions::{Sketch, event, network, plan, time};
+use crate::missions::{
+    CONSUMED_FIRST, LOOK_BEFORE_OPEN, MUTUAL_SUPPORT, PRODUCED_AS_CONSUMED, Sketch, event, network, plan,
+    time,
+};
 
 /// What is said of the schedule of `text` that has these activities from start to end, all else as early as it can be.
 fn violations(text: &str, activities: &[(&str, i64, i64)], end: i64) -> Vec<Violation> {
@@ -82,21 +85,106 @@ fn ties_are_decided_in_any_order_that_works() {
     ] {
         assert_eq!(later(users), [], "{users}");
     }
-    let (a, b, c, d) = ("Ask(X=A)@NeedA#1", "Ask(X=B)@NeedB#1", "Ask(X=C)@NeedC#1", "Ask(not(X=C))@NeedD#1");
-    for (users, names) in [
-        ("{ delay[2,2]; NeedA() }, { delay[4,4]; NeedB() }", &[a, b][..]),
-        ("{ delay[3,3]; NeedC() }, { delay[3,3]; NeedD() }", &[c, d]),
-        ("{ delay[3,3]; NeedC() }, { delay[3,3]; NeedB() }, { delay[5,5]; NeedD() }", &[c, b, d]),
+    for users in [
+        "{ delay[2,2]; NeedA() }, { delay[4,4]; NeedB() }",
+        "{ delay[3,3]; NeedC() }, { delay[3,3]; NeedD() }",
+        "{ delay[3,3]; NeedC() }, { delay[3,3]; NeedB() }, { delay[5,5]; NeedD() }",
     ] {
-        // In textual order of the requirements.
-        only(&later(users), Rule::State, names, "need different last values of X at 2");
+        without_order(&later(users), Rule::State, "which does not hold then");
     }
     // The initial value is before whatever happens at the start.
     let first =
         "state X : {A, B} = A; primitive NeedA() [3,3] requires X=A; scenario S [0,9] = { X=B, NeedA() }";
-    only(&violations(first, &[], 9), Rule::State, &[a, "Tell(X=B)@Tell(X=B)#1"], "stands against it");
+    without_order(&violations(first, &[], 9), Rule::State, "the events at 0");
     let first = first.replace("NeedA() }", "ask X=A }");
     assert_eq!(violations(&first, &[], 9), []);
+}
+
+/// Exactly one violation: no order within an instant keeps a rule.
+#[track_caller]
+fn without_order(found: &[Violation], rule: Rule, words: &str) {
+    let [violation] = found else { panic!("not one violation: {found:#?}") };
+    assert_eq!(violation.rule, rule, "{violation:?}");
+    assert!(violation.message.starts_with("no order of the events at "), "{violation:?}");
+    assert!(violation.message.contains(words), "{violation:?}");
+}
+
+#[test]
+fn events_of_one_instant_follow_the_text() {
+    for (text, end) in [(MUTUAL_SUPPORT, 10), (LOOK_BEFORE_OPEN, 0)] {
+        without_order(&violations(text, &[], end), Rule::State, "which does not hold then");
+    }
+    let text = CONSUMED_FIRST;
+    without_order(&violations(text, &[], 0), Rule::Resource, "Bat would be at -5, below 0, after C#1 (5)");
+    assert_eq!(violations(&text.replace("C(); P()", "P(); C()"), &[], 0), []);
+    // Nothing in the text says which is first: some order will do.
+    assert_eq!(violations(PRODUCED_AS_CONSUMED, &[], 15), []);
+    // One arm does not do two things of which each lasts longer than the instant in which it starts.
+    let text = "resource Arm; primitive Wave() [0,0] uses Arm; primitive Hold() [5,5] uses Arm;
+        scenario S [0,9] = { Wave(), Hold() }";
+    assert_eq!(violations(text, &[], 9), []);
+    let nested = text.replace("Wave(), Hold()", "do { Wave(); Wave() } using Arm");
+    without_order(&violations(&nested, &[], 0), Rule::Resource, "2 of 1");
+}
+
+/// A chain of changes at one instant, written backwards, with `count` links.
+fn chain(count: usize, first: usize, users: &str) -> String {
+    let values: Vec<String> = (0..=count).map(|value| format!("V{value}")).collect();
+    let link = |link: usize| format!("primitive L{link}() [0,0] requires X=V{link} sets X=V{};", link + 1);
+    let links: String = (0..count).map(link).collect();
+    let calls: Vec<String> = (0..count).rev().map(|link| format!("L{link}()")).collect();
+    format!(
+        "state X : {{{}}} = V{first}; {links} primitive Need(v) [3,3] requires X=v;
+        scenario S [0,9] = {{ {}, {users} }}",
+        values.join(", "),
+        calls.join(", ")
+    )
+}
+
+/// Six activities without length are twelve events, and only one of their orders will do.
+#[test]
+fn twelve_events_at_one_instant_are_decided() {
+    for count in 1..=8 {
+        let last = format!("{{ delay[1,1]; Need(V{count}) }}");
+        assert_eq!(violations(&chain(count, 0, &last), &[], 9), [], "{count}");
+        if count > 1 {
+            // The first link lacks its value.
+            let found = violations(&chain(count, 1, &last), &[], 9);
+            assert!(found.iter().any(|it| it.rule == Rule::State), "{count}: {found:#?}");
+            assert!(found.iter().all(|it| it.rule != Rule::Form), "{count}: {found:#?}");
+        }
+    }
+    // Twelve assertions of as many values: any may be the last, and not two of them.
+    let text = |count: usize, users: &str| {
+        let values: Vec<String> = (0..count).map(|value| format!("V{value}")).collect();
+        let told: Vec<String> = values.iter().map(|value| format!("X={value}")).collect();
+        format!(
+            "state X : {{{}}} = V0; primitive Need(v) [1,1] requires X=v; scenario S [0,9] = {{ {}, {users} }}",
+            values.join(", "),
+            told.join(", ")
+        )
+    };
+    let need = |value: usize, at: usize| format!("{{ delay[{at},{at}]; Need(V{value}) }}");
+    assert_eq!(violations(&text(6, &need(3, 1)), &[], 9), []);
+    let both = format!("{}, {}", need(3, 1), need(4, 3));
+    without_order(&violations(&text(6, &both), &[], 9), Rule::State, "which does not hold then");
+    // Of many more it is said that they were not decided.
+    let found = violations(&text(20, &both), &[], 9);
+    only(&found, Rule::Form, &[], "the search gave up");
+}
+
+/// What is about different things goes on beside each other, however much there is of it.
+#[test]
+fn many_independent_events_at_one_instant_are_decided() {
+    let declared: String = (0..40)
+        .map(|it| {
+            format!("state X{it} : {{A, B}} = A; primitive P{it}() [0,0] requires X{it}=A sets X{it}=B;")
+        })
+        .collect();
+    let calls: Vec<String> = (0..40).map(|it| format!("P{it}()")).collect();
+    let text = |more: &str| format!("{declared} scenario S [0,9] = {{ {}, {more} }}", calls.join(", "));
+    assert_eq!(violations(&text("{ delay[2,2]; ask X39=B }"), &[], 9), []);
+    without_order(&violations(&text("P39()"), &[], 9), Rule::State, "P39#2 requires X39=A");
 }
 
 const POWER: &str = "resource Power capacity 5;

@@ -8,6 +8,31 @@ use tpn::{
     Supply, Top, UseId, UseOrdering, Window,
 };
 
+/// Two activities without length that need each other (case i01 of the suite).
+pub const MUTUAL_SUPPORT: &str = "state X : {F, T} = F;
+    state Y : {F, T} = F;
+    primitive A() [0,0] requires X=T sets Y=T;
+    primitive B() [0,0] requires Y=T sets X=T;
+    scenario S [0,10] = { A(), B() }";
+
+/// What comes later in a sequence cannot support what comes before it (i03).
+pub const LOOK_BEFORE_OPEN: &str = "state DOOR : {OPEN, SHUT} = SHUT;
+    primitive Open() [0,0] sets DOOR=OPEN;
+    primitive Look() [0,0] requires DOOR=OPEN;
+    scenario S [0,10] = { Look(); Open() }";
+
+/// At 10 the store is filled and emptied (i04).
+pub const PRODUCED_AS_CONSUMED: &str = "resource Bat 0..10 = 0;
+    primitive A() [10,10] produces Bat 5;
+    primitive B() [5,5] consumes Bat 5;
+    scenario S [0,100] = { { delay [10,10]; B() }, A() }";
+
+/// A sequence that consumes before it produces (i05).
+pub const CONSUMED_FIRST: &str = "resource Bat 0..10 = 0;
+    primitive P() [0,0] produces Bat 5;
+    primitive C() [0,0] consumes Bat 5;
+    scenario S [0,100] = { C(); P() }";
+
 /// The network of the first scenario of `text`, which must have no errors.
 pub fn network(text: &str) -> Network {
     let parsed = rmpl::parse(text);

@@ -8,7 +8,8 @@ use tpn::{Levels, Network, Plan, UseId, UseOrdering};
 use verify::{Rule, Violation, check_plan, check_schedule, earliest_schedule};
 
 use crate::missions::{
-    Sketch, network, peak, plan_of_resources, plan_without_windows, range, time, used, windows,
+    CONSUMED_FIRST, PRODUCED_AS_CONSUMED, Sketch, network, peak, plan_of_resources, plan_without_windows,
+    range, time, used, windows,
 };
 
 macro_rules! case {
@@ -104,6 +105,24 @@ fn charging_comes_before_driving() {
     }
 }
 
+/// At 10 the store is filled and emptied: production counts if it happens before.
+#[test]
+fn what_is_produced_at_one_instant_counts_if_it_is_before_what_is_consumed() {
+    let text = PRODUCED_AS_CONSUMED;
+    let (produced, consumed) = ("Produces(Bat)@A#1", "Consumes(Bat)@B#1");
+    accepted(text, &[(produced, consumed)], &[range(0, 5)], 15);
+    for (order, low) in [(&[][..], -5), (&[(consumed, produced)], -5)] {
+        let (network, plan) = made(text, order, &[range(low, if order.is_empty() { 5 } else { 0 })], 15);
+        let words = "when B#1 consumes 5, Bat may be down to -5, and its least level is 0";
+        only(&violations(&network, &plan), Rule::Resource, &[consumed], words);
+    }
+    // In a sequence the text says which is first.
+    let text = CONSUMED_FIRST;
+    let (network, plan) = made(text, &[], &[range(-5, 0)], 0);
+    only(&violations(&network, &plan), Rule::Resource, &["Consumes(Bat)@C#1"], "may be down to -5");
+    accepted(&text.replace("C(); P()", "P(); C()"), &[], &[range(0, 5)], 0);
+}
+
 #[test]
 fn amounts_per_minute_are_part_of_the_network() {
     let (drive, charge) = ("Consumes(Batt)@Drive#1", "Produces(Batt)@Charge#1");
@@ -120,8 +139,11 @@ fn a_reservoir_does_not_overflow() {
     let (network, plan) = made(text, &[(fill, drain)], &[range(7, 12)], 0);
     let words = "when Fill#1 has produced 4, Tank may be up to 12, and its greatest level is 10";
     only(&violations(&network, &plan), Rule::Resource, &[fill], words);
-    // At the same instant, as one ordering after the other says: the level is looked at after both.
-    accepted(text, &[(drain, fill), (fill, drain)], &[range(7, 8)], 0);
+    // Neither is before the other where each is said to be.
+    let (network, plan) = made(text, &[(drain, fill), (fill, drain)], &[range(7, 8)], 0);
+    let found = violations(&network, &plan);
+    assert!(matches!(found.as_slice(), [it] if it.rule == Rule::Temporal), "{found:#?}");
+    assert!(found[0].message.contains("would have to happen before the next"), "{found:#?}");
 }
 
 /// Consumers that are not ordered count together, one that is entailed to be later does not.
@@ -131,13 +153,13 @@ fn consumption_counts_unless_it_comes_later() {
         primitive Sip() [2,2] consumes Tank 2; primitive Pour() [1,1] produces Tank 3;
         scenario S [0,20] = { { Sip(); Pour(); Sip() }, { delay; Sip() } }";
     // The third may come at any time, so that at its start all may have drunk and nothing may have been poured yet.
-    // First: 6 - 2; second: 6 - 6 + 3; third: 6 - 6. Poured: 6 + 3 - 4.
-    accepted(text, &[], &[range(0, 6)], 0);
-    let (network, plan) = made(text, &[], &[range(2, 6)], 0);
-    only(&violations(&network, &plan), Rule::Resource, &[], "but it stays within 0 and 6");
+    // First: 6 - 2; second: 6 - 6 + 3; third: 6 - 6. Poured, before the second drinks: 6 + 3 - 2.
+    accepted(text, &[], &[range(0, 7)], 0);
+    let (network, plan) = made(text, &[], &[range(2, 7)], 0);
+    only(&violations(&network, &plan), Rule::Resource, &[], "but it stays within 0 and 7");
     // After the second: 6 - 2; 6 - 4 + 3; 6 - 6 + 3. Poured as before.
     let order = [("Consumes(Tank)@Sip#2", "Consumes(Tank)@Sip#3")];
-    accepted(text, &order, &[range(3, 6)], 0);
+    accepted(text, &order, &[range(3, 7)], 0);
 }
 
 #[test]
@@ -148,8 +170,15 @@ fn uses_without_length_count_inside_others() {
             scenario S [0,9] = {{ {{ {at} Snap() }}, {{ delay[2,2]; Film() }} }}"
         )
     };
-    for outside in ["", "delay[2,2];", "delay[6,6];", "delay[0,2];"] {
+    for outside in ["", "delay[0,2];"] {
         accepted(&text(outside), &[], &[peak(1)], 0);
+    }
+    let snap = "Uses(Cam)@Snap#1";
+    // Where one ends the moment the other starts, the plan says so (SPEC 10.4).
+    for (touching, order) in [("delay[2,2];", (snap, FILM)), ("delay[6,6];", (FILM, snap))] {
+        accepted(&text(touching), &[order], &[peak(1)], 0);
+        let (network, plan) = made(&text(touching), &[], &[peak(2)], 0);
+        only(&violations(&network, &plan), Rule::Resource, &[snap, FILM], "2 of 1");
     }
     for inside in ["delay[3,3];", "delay[0,3];", "delay[5,6];"] {
         let (network, plan) = made(&text(inside), &[], &[peak(2)], 0);

@@ -6,7 +6,7 @@ use tpn::plan_json::plan_to_json;
 use tpn::{CausalLink, Departure, Network, Ordering, Plan};
 use verify::{Rule, Violation, check_plan, check_schedule, earliest_schedule};
 
-use crate::missions::{Sketch, label, network, plan, time, windows};
+use crate::missions::{LOOK_BEFORE_OPEN, MUTUAL_SUPPORT, Sketch, label, network, plan, time, windows};
 
 /// One of the conformance cases: its text and what is expected.
 macro_rules! case {
@@ -270,25 +270,103 @@ fn ties_are_decided_by_an_order_without_circles() {
         "Tell(X=C)@Tell(X=C)#1",
         "Ask(X=B)@Use#1",
     );
-    let sketch = |order: &[(&str, &str)]| {
+    let sketch = |order: &[(&str, &str)], added: &[(&str, &str)]| {
         let fixed = [(first, b), (first, c), (first, needs)];
         let order: Vec<(&str, &str)> = fixed.iter().chain(order).copied().collect();
-        said_of(text, Sketch { links: &[(needs, b)], order: &order, ..Sketch::default() })
+        said_of(text, Sketch { links: &[(needs, b)], order: &order, added, ..Sketch::default() })
     };
     // B is last.
     for others in [(a, c), (c, a)] {
-        assert_eq!(sketch(&[others, (a, b), (c, b), (a, needs), (c, needs)]), []);
+        let order = [others, (a, b), (c, b), (a, needs), (c, needs)];
+        assert_eq!(sketch(&order, &[others, (a, b), (c, b)]), []);
+        // Nothing that is only said makes it so.
+        for missing in 0..3 {
+            let mut added = vec![others, (a, b), (c, b)];
+            added.remove(missing);
+            let found = sketch(&order, &added);
+            let is_implied = missing > 0 && others.1 != [a, c][missing - 1];
+            assert_eq!(found.is_empty(), is_implied, "{others:?} without {missing}: {found:#?}");
+            assert!(found.iter().all(|it| it.message.contains("may overlap")), "{found:#?}");
+        }
     }
     // A circle.
-    let found = sketch(&[(a, c), (c, b), (b, a), (needs, a), (c, needs)]);
+    let round = [(a, c), (c, b), (b, a)];
+    let order = [(a, c), (c, b), (b, a), (needs, a), (c, needs)];
+    let found = sketch(&order, &[]);
     let is_circle = |it: &Violation| it.rule == Rule::State && it.message.contains("goes round in a circle");
     assert!(found.iter().any(is_circle), "{found:#?}");
+    let found = sketch(&order, &round);
+    assert!(matches!(found.as_slice(), [it] if it.rule == Rule::Temporal), "{found:#?}");
+    assert!(found[0].message.contains("would have to happen before the next"), "{found:#?}");
+    assert_eq!(found[0].events.len(), 6, "{found:#?}");
     // C is last, and Use requires B.
-    let found = sketch(&[(a, c), (b, c), (a, b), (a, needs), (needs, c)]);
+    let found = sketch(&[(a, c), (b, c), (a, b), (a, needs), (needs, c)], &[(a, b), (b, c)]);
     only(&found, Rule::State, &[needs, c], "Tell(X=C)#1 keeps X=C while Use#1 requires X=B");
     // The sides of Use follow from those of B.
-    let found = sketch(&[(a, c), (c, b), (a, b), (needs, a), (c, needs)]);
+    let found = sketch(&[(a, c), (c, b), (a, b), (needs, a), (c, needs)], &[(a, c), (c, b)]);
     only(&found, Rule::State, &[needs, a], "is not on the side of");
+}
+
+/// Each needs the effect of the other at the same instant: whichever happens first lacks its condition (SPEC 10.4).
+#[test]
+fn activities_without_length_do_not_support_each_other() {
+    let network = network(MUTUAL_SUPPORT);
+    let (x, y) = ("Set(X=T)@B#1", "Set(Y=T)@A#1");
+    let (needs_x, needs_y) = ("Ask(X=T)@A#1", "Ask(Y=T)@B#1");
+    let (no_x, no_y) = ("Init(X=F)", "Init(Y=F)");
+    let order = [(no_x, x), (no_y, y), (no_x, needs_x), (no_y, needs_y)];
+    let circle = Sketch { links: &[(needs_x, x), (needs_y, y)], order: &order, ..Sketch::default() };
+    let found = violations(&network, &plan(&network, circle));
+    assert!(matches!(found.as_slice(), [it] if it.rule == Rule::Temporal), "{found:#?}");
+    assert_eq!(found[0].events.len(), 4, "{found:#?}");
+    for name in ["A#1.start", "A#1.end", "B#1.start", "B#1.end"] {
+        assert!(found[0].events.iter().any(|event| event == name), "{found:#?}");
+    }
+    assert!(found[0].message.contains("begins when Set(X=T)@B#1 is ready"), "{found:#?}");
+}
+
+/// The text has Look before Open, though both come at one time.
+#[test]
+fn what_comes_later_in_a_sequence_does_not_support_what_comes_before() {
+    let (look, open, shut) = ("Ask(DOOR=OPEN)@Look#1", "Set(DOOR=OPEN)@Open#1", "Init(DOOR=SHUT)");
+    let sketch = Sketch { links: &[(look, open)], order: &[(shut, open), (shut, look)], ..Sketch::default() };
+    let text = LOOK_BEFORE_OPEN;
+    let found = said_of(text, sketch);
+    assert!(matches!(found.as_slice(), [it] if it.rule == Rule::Temporal), "{found:#?}");
+    // The other way round it does.
+    assert_eq!(said_of(&text.replace("Look(); Open()", "Open(); Look()"), sketch), []);
+}
+
+/// A change at the very instant at which a requirement starts is before or after it, and the plan says which.
+#[test]
+fn what_changes_at_one_instant_is_ordered_with_what_is_required_there() {
+    let text = "state DOOR : {OPEN, SHUT} = OPEN;
+        primitive Shut() [0,0] sets DOOR=SHUT; primitive Look() [0,0] requires DOOR=OPEN;
+        scenario S [0,9] = { { delay[2,2]; Shut() }, { delay[2,2]; Look() } }";
+    let (look, shut, open) = ("Ask(DOOR=OPEN)@Look#1", "Set(DOOR=SHUT)@Shut#1", "Init(DOOR=OPEN)");
+    let sketch = Sketch { links: &[(look, open)], order: &[(open, shut), (look, shut)], ..Sketch::default() };
+    only(&said_of(text, sketch), Rule::State, &[look, shut], "may overlap");
+    assert_eq!(said_of(text, Sketch { added: &[(look, shut)], ..sketch }), []);
+}
+
+/// Two requirements of one value by one activity: at its start, as it changes the variable, and throughout.
+#[test]
+fn each_requirement_of_an_activity_has_a_name_of_its_own() {
+    let text = "state ARM : {A, B} = A; primitive Dig()[0,4] requires ARM=A sets ARM=A;
+        scenario S[0,60] = { do { Dig() } maintaining ARM=A }";
+    let network = network(text);
+    let (first, effect) = ("Init(ARM=A)", "Set(ARM=A)@Dig#1");
+    let (at_start, throughout) = ("Ask(ARM=A)@Dig#1", "Ask(ARM=A)#2@Dig#1");
+    assert_ne!(label(&network, at_start), label(&network, throughout));
+    let order = [(first, effect), (at_start, effect), (throughout, effect)];
+    let links = [(at_start, first), (throughout, first)];
+    let made = plan(&network, Sketch { links: &links, order: &order, ..Sketch::default() });
+    let written = plan_to_json(&network, &made);
+    let read = tpn::plan_json::plan_from_json(&network, &written).expect("its own names");
+    assert_eq!(read.causal_links, made.causal_links);
+    // Whatever is required throughout is not kept while it changes.
+    let found = violations(&network, &read);
+    only(&found, Rule::State, &[throughout, effect], "Dig#1 changes ARM while Dig#1 requires ARM=A");
 }
 
 #[test]
