@@ -6,6 +6,7 @@ pub mod activity_execution;
 mod adversary;
 mod dispatch;
 pub mod facts;
+mod instants;
 pub mod log;
 pub mod model_based;
 pub mod pinned;

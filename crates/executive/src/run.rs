@@ -266,7 +266,8 @@ impl Run<'_> {
         }
     }
 
-    /// The earliest thing that happens or goes wrong next; of several at one time the one that is first in the plan.
+    /// The earliest thing that happens or goes wrong next; of several at one time the one that is first in the plan
+    /// (SPEC 10.4).
     fn next(&mut self) -> Result<Option<Next>, PlanError> {
         if self.frontier.is_some() {
             let next = self.next_of_frontier()?;
@@ -275,7 +276,7 @@ impl Run<'_> {
                 None => Ok(next),
             };
         }
-        let mut best: Option<Next> = None;
+        let mut at_once: Vec<Next> = Vec::new();
         let driven = self.driven()?;
         for point in self.stage.made.all_points() {
             let node = self.stage.made.node(point);
@@ -297,16 +298,31 @@ impl Run<'_> {
                 continue;
             }
             let Some(next) = self.candidate(point, node)? else { continue };
-            // At one instant what nature does is seen before the executive goes on.
-            let key = |next: &Next| (next.time, !self.is_natures(self.stage.made.node(next.point)));
-            if best.as_ref().is_none_or(|best| key(&next) < key(best)) {
-                best = Some(next);
+            if at_once.first().is_some_and(|first| next.time < first.time) {
+                at_once.clear();
+            }
+            if at_once.first().is_none_or(|first| next.time == first.time) {
+                at_once.push(next);
             }
         }
+        let best = self.first_of(at_once);
         match &self.adversary {
             Some(adversary) => self.opposed(adversary, best),
             None => Ok(best),
         }
+    }
+
+    /// What is first of that which may happen at one time. What nature does is seen before the executive goes on, unless
+    /// that is before it in the plan.
+    fn first_of(&self, mut at_once: Vec<Next>) -> Option<Next> {
+        let node = |next: &Next| self.stage.made.node(next.point);
+        at_once.sort_by_key(|next| self.stage.rank(next.point));
+        let natures = at_once.iter().position(|next| self.is_natures(node(next)));
+        let first = natures.map_or(0, |natures| {
+            let is_before = |next: &Next| self.stage.happens_before(node(next), node(&at_once[natures]));
+            at_once[..natures].iter().position(is_before).unwrap_or(natures)
+        });
+        (first < at_once.len()).then(|| at_once.swap_remove(first))
     }
 
     /// Whether nature ends a duration at a node.

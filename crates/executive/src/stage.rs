@@ -8,6 +8,7 @@ use stn::PointId;
 use tpn::{ArcId, ArcKind, EventRef, Network, NodeId, Occurrence, OccurrenceId, Plan, Precedence};
 
 use crate::dispatch::{Dispatch, NEVER};
+use crate::instants::ranks;
 use crate::plan_network::{PlanError, PlanNetwork};
 use crate::world_state::Effects;
 
@@ -29,6 +30,8 @@ pub struct Stage {
     pub(crate) times: Vec<Option<Time>>,
     /// When this plan was made.
     pub(crate) from: Time,
+    /// By point: which of two events that happen at one time is first.
+    ranks: Vec<u32>,
     /// The nodes that each selected node follows along the plan's arcs and links.
     before: Vec<Vec<NodeId>>,
     /// The nodes that follow each.
@@ -43,6 +46,7 @@ impl Stage {
         let is_natures = plan.has_natures_choice(&network);
         let dispatched = if is_natures { Arc::new(guided(&network)) } else { Arc::clone(&network) };
         let dispatch = Dispatch::new(&dispatched, &plan, &made)?;
+        let ranks = ranks(&network, &plan, &made)?;
         let mut natures: BTreeMap<NodeId, Vec<ArcId>> = BTreeMap::new();
         for (index, arc) in network.arcs.iter().enumerate().filter(|(_, arc)| arc.is_contingent) {
             if plan.selected_arcs[index] {
@@ -61,7 +65,20 @@ impl Stage {
         let effects = Effects::new(&network, &plan);
         let guides = Guide::all(&network, &plan)?;
         let from = Time::ZERO;
-        Ok(Self { network, plan, made, effects, dispatch, natures, guides, times, from, before, after })
+        Ok(Self {
+            network,
+            plan,
+            made,
+            effects,
+            dispatch,
+            natures,
+            guides,
+            times,
+            from,
+            ranks,
+            before,
+            after,
+        })
     }
 
     /// The window of a point in mission units; no latest time if it is not bounded.
@@ -74,6 +91,11 @@ impl Stage {
     /// would let an end come before its start.
     pub(crate) fn is_next(&self, node: NodeId) -> bool {
         self.before[node.index()].iter().all(|before| self.times[before.index()].is_some())
+    }
+
+    /// The rank of a point: of two that happen at one time the one of lower rank is first (SPEC 10.4).
+    pub(crate) fn rank(&self, point: PointId) -> u32 {
+        self.ranks[point.index()]
     }
 
     /// The nodes that follow each node along the plan's arcs and links.
@@ -98,6 +120,20 @@ impl Stage {
             _ => false,
         };
         one == other || by_windows() || leads_to(&self.before, one, other)
+    }
+
+    /// Whether one event happens before another in every schedule that is left (SPEC 10.4), as far as its arcs and orderings
+    /// or their windows say so.
+    pub(crate) fn happens_before(&self, one: NodeId, other: NodeId) -> bool {
+        let window = |node: NodeId| self.made.point(node).map(|point| self.window(point));
+        let (first, then) = (window(one), window(other));
+        // Of two that come at one time whatever happens only their order says which is first.
+        let is_one_time = first == then && first.is_some_and(|(earliest, latest)| latest == Some(earliest));
+        if is_one_time {
+            one == other || leads_to(&self.before, one, other)
+        } else {
+            self.precedes(one, other)
+        }
     }
 
     pub(crate) fn occurrence(&self, event: EventRef) -> &Occurrence {
@@ -202,9 +238,12 @@ fn before(network: &Network, plan: &Plan) -> Vec<Vec<NodeId>> {
             before[arc.to.index()].push(arc.from);
         }
     }
-    for Precedence { earlier, later, .. } in plan.precedences(network) {
-        // Of two that come at one instant the structure says which is first.
-        if earlier != later && !leads_to(&before, later, earlier) {
+    // First the order within an instant: what else is added may come at one instant, and then says nothing of it.
+    let added =
+        plan.precedences(network).into_iter().map(|Precedence { earlier, later, .. }| [earlier, later]);
+    for [earlier, later] in plan.instant_order(network).into_iter().chain(added) {
+        let is_known = earlier == later || before[later.index()].contains(&earlier);
+        if !is_known && !leads_to(&before, later, earlier) {
             before[later.index()].push(earlier);
         }
     }

@@ -2,8 +2,8 @@
 //! vehicle among them (`V.at`), what is in use of each resource, and the level of each reservoir.
 //!
 //! It follows from what has happened alone and knows nothing of the plan's proofs: what an activity needs is compared with
-//! what there is. As SPEC 10.2 and 11 say, the order of what happens at one instant is for nobody to see: values and levels
-//! are looked at between instants.
+//! what there is. Events of one instant happen in the order that the plan has for them (SPEC 10.4), and are written down in
+//! it. What is needed is looked at when an instant is over, because the world may change values and levels at it, too.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -17,8 +17,8 @@ use crate::stage::Stage;
 /// The events that may be next, by when that would be.
 #[derive(Debug, Default)]
 pub(super) struct Frontier {
-    /// The time, whether it is not nature's, and the event; out of date where the event has another time by now.
-    heap: BinaryHeap<Reverse<(Time, bool, u32)>>,
+    /// The time, the event's rank, and the event; out of date where the event has another time by now.
+    heap: BinaryHeap<Reverse<(Time, u32, u32)>>,
     /// How many nodes that each node follows have not happened.
     missing: Vec<u32>,
     followers: Arc<[Vec<NodeId>]>,
@@ -55,10 +55,10 @@ impl Run<'_> {
     pub(super) fn next_of_frontier(&mut self) -> Result<Option<Next>, PlanError> {
         loop {
             let Some(frontier) = &mut self.frontier else { return Ok(None) };
-            let Some(&Reverse((time, is_own, point))) = frontier.heap.peek() else { return Ok(None) };
+            let Some(&Reverse((time, rank, point))) = frontier.heap.peek() else { return Ok(None) };
             let next = self.waiting_point(PointId(point))?;
             let key = next.as_ref().map(|next| self.key(next));
-            if key == Some((time, is_own, point)) {
+            if key == Some((time, rank, point)) {
                 return Ok(next);
             }
             let Some(frontier) = &mut self.frontier else { return Ok(None) };
@@ -69,8 +69,8 @@ impl Run<'_> {
         }
     }
 
-    fn key(&self, next: &Next) -> (Time, bool, u32) {
-        (next.time, !self.is_natures(self.stage.made.node(next.point)), next.point.0)
+    fn key(&self, next: &Next) -> (Time, u32, u32) {
+        (next.time, self.stage.rank(next.point), next.point.0)
     }
 
     /// When an event would happen, if it may.

@@ -406,11 +406,11 @@ impl Run<'_> {
         coming.iter().all(|&(_, at)| {
             let counts = |&&(_, other): &&(Time, UseId)| {
                 if is_gain(other) == is_gain(at) {
-                    // What comes later in every schedule, and not at the same instant in all, does not count.
-                    let is_later = self.stage.precedes(moment(at), moment(other));
-                    !is_later || self.stage.precedes(moment(other), moment(at))
+                    // What happens after it does not count.
+                    let is_later = self.stage.happens_before(moment(at), moment(other));
+                    !is_later || self.stage.happens_before(moment(other), moment(at))
                 } else {
-                    self.stage.precedes(moment(other), moment(at))
+                    self.stage.happens_before(moment(other), moment(at))
                 }
             };
             let level =
