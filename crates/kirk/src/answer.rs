@@ -74,16 +74,16 @@ mod tests {
     use tpn::generate::{Recipe, Tightness, mission};
 
     use super::*;
-    use crate::options::ExpansionLimit;
+    use crate::options::{ExpansionLimit, Search, Unlimited};
 
     fn network(text: &str) -> Network {
         let (network, diagnostics) = compile(&rmpl::parse(text).program(), &Top::Scenario(None));
         network.unwrap_or_else(|| panic!("does not compile: {diagnostics:?}\n{text}"))
     }
 
-    /// The solver alone says that there is a plan exactly where the paper's search does, and its plans are plans.
+    /// The solver says that there is a plan exactly where the paper's search does, and its plans are plans.
     #[test]
-    fn the_solver_alone_agrees_with_the_chronological_search() {
+    fn the_solver_agrees_with_the_chronological_search() {
         let mut texts = Vec::new();
         for seed in 0..150 {
             texts.extend([90, 110, 150].map(|percent| nested(20 + seed as usize % 30, percent, seed)));
@@ -110,10 +110,8 @@ mod tests {
                 if expected.status == Status::Limit {
                     continue;
                 }
-                let model = Model::new(&network, gap).expect("times fit");
                 let options = Options { search: Search::ConflictDirected, ..chronological };
-                let (outcome, _) =
-                    first_by_solver(&model, &options, Stats::default(), &mut Unlimited).expect("fits");
+                let outcome = crate::plan(&network, &options, &mut Unlimited);
                 assert_eq!(outcome.status, expected.status, "gap {gap:?}\n{text}");
                 let mut network = network;
                 network.threat_gap = gap.unwrap_or(network.threat_gap);
@@ -125,40 +123,5 @@ mod tests {
             }
         }
         assert!(plans > 300 && none > 300, "{plans} have a plan and {none} have none");
-    }
-
-    /// Wherever textual order meets a failure and an active schedule is found instead, it makes a plan.
-    #[test]
-    fn what_is_ordered_as_an_active_schedule_is_a_plan() {
-        let mut texts = Vec::new();
-        for seed in 0..60 {
-            texts.extend([100, 110, 130].map(|percent| open_shop(3 + seed as usize % 3, percent, seed)));
-            texts.extend([85, 100].map(|percent| long_requirements(4, 3, seed, percent)));
-            texts.push(nested(60, 110, seed));
-            texts.push(mission(Recipe { nodes: 60, tightness: Tightness::Feasible, seed }));
-        }
-        let (mut scheduled, mut unscheduled) = (0, 0);
-        for text in &texts {
-            for gap in [None, Some(Time::from(1))] {
-                let mut network = network(text);
-                network.threat_gap = gap.unwrap_or(network.threat_gap);
-                let model = Model::new(&network, None).expect("times fit");
-                let options = Options { search: Search::ConflictDirected, ..Options::default() };
-                let mut engine = engine(&model, &options, Gaps::Trusted, Stats::default());
-                let mut at_once = |stats: &Stats| stats.backtracks > 0;
-                if engine.run(&mut at_once).expect("times fit") != Halt::Stopped {
-                    continue;
-                }
-                if !engine.order_as_scheduled().expect("times fit") {
-                    unscheduled += 1;
-                    continue;
-                }
-                scheduled += 1;
-                let plan = solution::plan_at(&mut engine).expect("times fit");
-                let verdict = verify::check_plan(&network, &plan);
-                assert!(verdict.violations.is_empty(), "{verdict:?}\n{text}");
-            }
-        }
-        assert!(scheduled > 150 && unscheduled > 20, "{scheduled} scheduled, {unscheduled} not");
     }
 }

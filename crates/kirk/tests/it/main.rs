@@ -1,7 +1,6 @@
 //! The integration tests of `kirk`, in one program: each module is about one thing.
 
 mod conformance;
-mod enclosed;
 mod explanations;
 mod families;
 mod foreign;
