@@ -1,10 +1,11 @@
-//! An exhaustive reference for state that lasts and for resources, written from SPEC 10.2 and 11 alone: every choice, every
-//! schedule in whole units, every order of what ties. It shares no code with the planner or the checker, and is only for
-//! networks of a few activities with whole bounds and a short horizon.
+//! An exhaustive reference for state that lasts and for resources, written from SPEC 10 and 11 alone: every choice, every
+//! schedule in whole units, every order of the events within each instant. It shares no code with the planner or the checker,
+//! and is only for networks of a few activities with whole bounds and a short horizon.
 //!
-//! All rules compare events. A schedule that keeps them gives a plan, which puts what is in order in the schedule into
-//! that order; and a plan has a schedule in whole units, because its constraints are differences with whole weights. So a
-//! plan exists exactly when a schedule in whole units keeps every rule.
+//! All rules compare events. An order of all events, by the times of a schedule and within an instant as the text has it,
+//! that keeps the rules gives a plan, which puts what is in order there into that order. And a plan has such an order: it
+//! has a schedule in whole units, because its constraints are differences with whole weights, and its events of one instant
+//! have an order that its arcs, links and orderings agree with. So a plan exists exactly when such an order keeps every rule.
 
 use std::collections::BTreeSet;
 
@@ -31,7 +32,7 @@ pub struct Key {
 pub struct Answer {
     /// Every distinct plan.
     pub plans: BTreeSet<Key>,
-    /// Schedules looked at.
+    /// Schedules and orders looked at.
     pub schedules: u64,
 }
 
@@ -53,7 +54,7 @@ pub fn search(network: &Network, limits: Limits) -> Option<Answer> {
     Some(search.answer)
 }
 
-/// Something that happens to a variable between two events, by their positions in a schedule.
+/// Something that happens to a variable between two events, by their positions among those that matter.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     label: LabelId,
@@ -91,10 +92,21 @@ struct Pool {
 struct Leaf {
     choices: Vec<(u32, u32)>,
     matrix: Matrix,
-    /// The events that matter, one for each group that always happens together.
+    /// The events that matter.
     events: Vec<usize>,
+    /// Row by row whether the text puts an event of the network before another at one time.
+    text: Vec<Vec<bool>>,
     variables: Vec<Variable>,
     pools: Vec<Pool>,
+}
+
+/// The orders that were looked at.
+#[derive(Default)]
+struct Seen {
+    /// With what ties.
+    schedules: BTreeSet<Vec<usize>>,
+    /// Without.
+    orders: BTreeSet<Vec<usize>>,
 }
 
 struct Exhaustive<'network> {
@@ -123,7 +135,7 @@ impl Exhaustive<'_> {
         let Some(matrix) = of_arcs(self.network, Scale(1), |arc| arcs[arc.index()]) else { return Some(()) };
         let leaf = self.leaf(taken, &arcs, matrix);
         let mut times = Vec::with_capacity(leaf.events.len());
-        self.schedules(&leaf, &mut times, &mut BTreeSet::new())
+        self.schedules(&leaf, &mut times, &mut Seen::default())
     }
 
     /// What the choices select, as far as they go.
@@ -151,7 +163,9 @@ impl Exhaustive<'_> {
     fn leaf(&self, taken: &[Option<u32>], arcs: &[bool], matrix: Matrix) -> Leaf {
         let decided = taken.iter().enumerate();
         let choices = decided.filter_map(|(decision, &it)| Some((decision as u32, it?))).collect();
-        let mut leaf = Leaf { choices, matrix, events: Vec::new(), variables: Vec::new(), pools: Vec::new() };
+        let text = text_order(self.network, arcs);
+        let mut leaf =
+            Leaf { choices, matrix, events: Vec::new(), text, variables: Vec::new(), pools: Vec::new() };
         leaf.variables.resize_with(self.network.variables.len(), Variable::default);
         for (index, label) in self.network.labels.iter().enumerate() {
             let arc = &self.network.arcs[label.arc.index()];
@@ -195,23 +209,15 @@ impl Exhaustive<'_> {
 
     /// Gives each event every time that its distances to those before it allow; all of them can be completed, because
     /// the distances are the least ones. Schedules with the same order of events are looked at once.
-    fn schedules(
-        &mut self,
-        leaf: &Leaf,
-        times: &mut Vec<i64>,
-        seen: &mut BTreeSet<Vec<usize>>,
-    ) -> Option<()> {
+    fn schedules(&mut self, leaf: &Leaf, times: &mut Vec<i64>, seen: &mut Seen) -> Option<()> {
         let Some(&node) = leaf.events.get(times.len()) else {
-            self.answer.schedules += 1;
-            if self.answer.schedules > self.limits.schedules {
-                return None;
-            }
+            self.count()?;
             let distinct: BTreeSet<i64> = times.iter().copied().collect();
             let distinct: Vec<i64> = distinct.into_iter().collect();
             let ranks: Vec<usize> =
                 times.iter().filter_map(|time| distinct.binary_search(time).ok()).collect();
-            if seen.insert(ranks.clone()) && leaf.pools.iter().all(|pool| is_enough(pool, &ranks)) {
-                self.plans(leaf, &ranks)?;
+            if seen.schedules.insert(ranks.clone()) {
+                self.orders(leaf, &ranks, &mut Vec::with_capacity(ranks.len()), &mut seen.orders)?;
             }
             return Some(());
         };
@@ -232,7 +238,42 @@ impl Exhaustive<'_> {
         Some(())
     }
 
-    /// Every way to link and to order what happens at these times.
+    /// Gives the events every order that follows their times and, within an instant, the text. `placed` come first.
+    fn orders(
+        &mut self,
+        leaf: &Leaf,
+        ranks: &[usize],
+        placed: &mut Vec<usize>,
+        seen: &mut BTreeSet<Vec<usize>>,
+    ) -> Option<()> {
+        if placed.len() == ranks.len() {
+            self.count()?;
+            let mut places = vec![0; ranks.len()];
+            placed.iter().enumerate().for_each(|(place, &event)| places[event] = place);
+            if seen.insert(places.clone()) && leaf.pools.iter().all(|pool| is_enough(pool, &places)) {
+                self.plans(leaf, &places)?;
+            }
+            return Some(());
+        }
+        let left: Vec<usize> = (0..ranks.len()).filter(|event| !placed.contains(event)).collect();
+        let is_before = |one: usize, other: usize| {
+            let is_text = leaf.text[leaf.events[one]][leaf.events[other]];
+            ranks[one] < ranks[other] || (ranks[one] == ranks[other] && is_text)
+        };
+        for &event in left.iter().filter(|&&event| !left.iter().any(|&other| is_before(other, event))) {
+            placed.push(event);
+            self.orders(leaf, ranks, placed, seen)?;
+            placed.pop();
+        }
+        Some(())
+    }
+
+    fn count(&mut self) -> Option<()> {
+        self.answer.schedules += 1;
+        (self.answer.schedules <= self.limits.schedules).then_some(())
+    }
+
+    /// Every way to link and to order what happens in this order.
     fn plans(&mut self, leaf: &Leaf, times: &[usize]) -> Option<()> {
         let mut keys = vec![Key { choices: leaf.choices.clone(), ..Key::default() }];
         for variable in &leaf.variables {
@@ -350,12 +391,28 @@ impl Leaf {
     /// The position of an event among those that matter.
     fn event(&mut self, node: NodeId) -> usize {
         let node = node.index();
-        let is_same = |&known: &usize| self.matrix.get(known, node) == 0 && self.matrix.get(node, known) == 0;
-        self.events.iter().position(is_same).unwrap_or_else(|| {
+        self.events.iter().position(|&known| known == node).unwrap_or_else(|| {
             self.events.push(node);
             self.events.len() - 1
         })
     }
+}
+
+/// What arcs whose lower bound is not negative put before what, one after the other.
+fn text_order(network: &Network, arcs: &[bool]) -> Vec<Vec<bool>> {
+    let count = network.nodes.len();
+    let mut before = vec![vec![false; count]; count];
+    for (arc, _) in network.arcs.iter().zip(arcs).filter(|(_, is_selected)| **is_selected) {
+        before[arc.from.index()][arc.to.index()] |= !arc.lower.is_negative();
+    }
+    for through in 0..count {
+        for from in 0..count {
+            for to in 0..count {
+                before[from][to] |= before[from][through] && before[through][to];
+            }
+        }
+    }
+    before
 }
 
 fn is_without_circles(sides: &[(usize, usize)], count: usize) -> bool {
@@ -368,7 +425,7 @@ fn is_without_circles(sides: &[(usize, usize)], count: usize) -> bool {
     }
 }
 
-/// Whether a resource is enough for its uses at these times (SPEC 11).
+/// Whether a resource is enough for its uses in this order (SPEC 11).
 fn is_enough(pool: &Pool, times: &[usize]) -> bool {
     let sum = |amounts: &mut dyn Iterator<Item = Rational>| {
         amounts.fold(Rational::ZERO, |sum, it| sum.checked_add(it).expect("small amounts"))
@@ -381,7 +438,7 @@ fn is_enough(pool: &Pool, times: &[usize]) -> bool {
                 (times[used.start] < now || (times[used.start] == now && !is_strictly))
                     && now < times[used.end]
             };
-            // What has no length counts where it lies strictly inside another, and not beside its like.
+            // What is one event counts where it lies strictly inside another, and not beside its like.
             let is_instant = !has_length(counted);
             let around: Vec<Rational> = (pool.uses.iter())
                 .filter(|used| has_length(used) && contains(used, is_instant))

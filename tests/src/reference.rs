@@ -129,7 +129,11 @@ impl Exhaustive<'_> {
     fn links(&mut self, leaf: &Leaf, links: &mut Vec<CausalLink>, matrix: &Matrix) -> Option<()> {
         self.step()?;
         let Some(&ask) = leaf.asks.get(links.len()) else {
-            return self.orderings(leaf, links, matrix);
+            let arc = |label: LabelId| self.network.labels[label.index()].arc;
+            if leaf.conflicts.iter().any(|&(one, other)| arc(one) == arc(other)) {
+                return Some(());
+            }
+            return self.orderings(leaf, links, &mut Vec::new(), matrix, matrix);
         };
         let (ask_start, ask_end) = self.ends(ask);
         for &tell in &leaf.tells {
@@ -149,38 +153,41 @@ impl Exhaustive<'_> {
         Some(())
     }
 
-    fn orderings(&mut self, leaf: &Leaf, links: &[CausalLink], matrix: &Matrix) -> Option<()> {
+    /// Puts an order to each conflict. Which are threats, and so need the gap, is said by `unordered`, the distances before
+    /// any ordering (SPEC 5.3).
+    fn orderings(
+        &mut self,
+        leaf: &Leaf,
+        links: &[CausalLink],
+        order: &mut Vec<Ordering>,
+        unordered: &Matrix,
+        matrix: &Matrix,
+    ) -> Option<()> {
         self.step()?;
-        let gap = self.scale.time(self.network.threat_gap);
-        let arc = |label: LabelId| self.network.labels[label.index()].arc;
-        for &(one, other) in &leaf.conflicts {
-            if arc(one) == arc(other) {
-                return Some(());
-            }
-            if self.is_before(matrix, one, other) || self.is_before(matrix, other, one) {
-                continue;
-            }
-            for (first, then) in [(one, other), (other, one)] {
-                let mut ordered = matrix.clone();
-                if ordered.constrain(self.ends(first).1, self.ends(then).0, gap, None) {
-                    self.orderings(leaf, links, &ordered)?;
-                }
-            }
+        let Some(&(one, other)) = leaf.conflicts.get(order.len()) else {
+            self.found(leaf, links, order, matrix);
+            return Some(());
+        };
+        let ways = [Ordering { first: one, then: other }, Ordering { first: other, then: one }];
+        if let Some(&way) = ways.iter().find(|way| self.is_before(unordered, way.first, way.then)) {
+            order.push(way);
+            self.orderings(leaf, links, order, unordered, matrix)?;
+            order.pop();
             return Some(());
         }
-        self.found(leaf, links, matrix);
+        let gap = self.scale.time(self.network.threat_gap);
+        for way in ways {
+            let mut ordered = matrix.clone();
+            if ordered.constrain(self.ends(way.first).1, self.ends(way.then).0, gap, None) {
+                order.push(way);
+                self.orderings(leaf, links, order, unordered, &ordered)?;
+                order.pop();
+            }
+        }
         Some(())
     }
 
-    fn found(&mut self, leaf: &Leaf, links: &[CausalLink], matrix: &Matrix) {
-        let order = |&(one, other): &(LabelId, LabelId)| {
-            if self.is_before(matrix, one, other) {
-                Ordering { first: one, then: other }
-            } else {
-                Ordering { first: other, then: one }
-            }
-        };
-        let conflicts: Vec<Ordering> = leaf.conflicts.iter().map(order).collect();
+    fn found(&mut self, leaf: &Leaf, links: &[CausalLink], order: &[Ordering], matrix: &Matrix) {
         let start = self.network.start.index();
         let window = |(node, &selected): (usize, &bool)| {
             let latest = match matrix.get(start, node) {
@@ -192,7 +199,7 @@ impl Exhaustive<'_> {
         let found = Found {
             choices: leaf.choices.clone(),
             links: links.to_vec(),
-            conflicts,
+            conflicts: order.to_vec(),
             windows: leaf.nodes.iter().enumerate().map(window).collect(),
         };
         let is_known = self.answer.plans.iter().any(|known| {
