@@ -9,16 +9,10 @@ use serde_json::Value;
 pub const NOT_BUILT: [(&str, &str); 0] = [];
 
 /// Cases of the suite that are not copied yet, by the stems of their files: they ask for what is not built.
-pub const NOT_COPIED: [&str; 22] = [
+pub const NOT_COPIED: [&str; 17] = [
     // Sequences that are started again at every step (SPEC 8.3, third revision).
     "h30_always_sequence",
     "h31_whenever_sequence",
-    // The order within an instant (SPEC 5.3 and SPEC2 10 and 11, third revision).
-    "i01_mutual_support",
-    "i02_support_has_a_beginning",
-    "i03_sequence_order_within_an_instant",
-    "i04_production_before_consumption",
-    "i05_consumption_first_in_the_text",
     // Levels and what nature chooses, not tried yet.
     "l01_drain_tightened",
     "l03_overflow",

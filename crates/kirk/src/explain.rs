@@ -271,7 +271,7 @@ pub(crate) struct Part {
     /// Whether durations that nature chooses are chosen like all others.
     pub(crate) ignores_nature: bool,
     /// What holds of the whole mission, whatever is chosen.
-    loosest: Option<Unordered>,
+    loosest: Vec<Unordered>,
 }
 
 impl Part {
@@ -334,8 +334,8 @@ impl Part {
             ignores_nature: self.ignores_nature,
             wants_core,
             lists_all: false,
-            touching: Touching::Loosely,
-            loosest: self.loosest.as_ref(),
+            touching: Touching::Unneeded,
+            loosest: &self.loosest,
         };
         match effort.solve(&self.model, part)? {
             (Answer::Unsolvable, core) => Some(Refuted::By(core)),

@@ -94,7 +94,10 @@ fn choices_of(model: &Model, plan: &Plan) -> Choices {
     let mut choices = Choices {
         alternatives: vec![None; model.decisions.len()].into(),
         carriers: vec![None; model.conditions.labels.len()].into(),
-        times: Vec::new(),
+        times: (plan.windows.iter())
+            .map(|window| window.as_ref().map_or(Ok(0), |window| model.units(window.earliest)))
+            .collect::<Result<_, _>>()
+            .unwrap_or_default(),
     };
     for choice in &plan.choices {
         choices.alternatives[choice.decision] = Some(choice.alternative);

@@ -5,14 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::program::LabelMode;
 use stn::{Inconsistency, Stn};
-use tpn::{Choice, LabelId, Network, ResourceId, UseId, VariableId};
+use tpn::{CausalLink, Choice, LabelId, Network, Ordering, ResourceId, UseId, VariableId};
 
 use crate::explain::{Effort, Part, Refuted, spans};
 use crate::failure::{FailureKind, Member, Reason};
 use crate::model::UNBOUNDED_BELOW;
 use crate::model::{Context, INFINITE, Model, node};
-use crate::trace::{Constraint, CycleMember};
-use crate::wording;
+use crate::trace::{Constraint, CycleMember, TreeChoice};
+use crate::{precedence, wording};
 
 /// A reason that stays larger than this tells nobody anything.
 const MAX_MEMBERS: usize = 400;
@@ -49,7 +49,7 @@ pub(crate) fn reason(
     let is_natures = model.has_uncertainty && search.part.is_refuted(search.effort) == Some(false);
     let members = search.members;
     let kind = if is_natures { FailureKind::Controllability } else { kind(network, &members) };
-    let cycle = if kind == FailureKind::Temporal { cycle(model, &members) } else { Vec::new() };
+    let cycle = cycle(model, kind, &choices, &members);
     let told = wording::Told { network, kind, choices: &choices, conflict: &members, cycle: &cycle };
     Some(Reason {
         message: told.message(),
@@ -171,10 +171,52 @@ fn members(model: &Model) -> Vec<Member> {
     members
 }
 
-/// The bounds that contradict each other whatever is chosen, if these do so without a look at the choices.
-fn cycle(model: &Model, members: &[Member]) -> Vec<CycleMember> {
+/// The bounds that contradict each other whatever is chosen, if these do so without a look at the choices; of one
+/// requirement with the first assertion that might carry it, and of two conditions with their order in the text.
+fn cycle(model: &Model, kind: FailureKind, choices: &[Choice], members: &[Member]) -> Vec<CycleMember> {
+    let conditions: Vec<LabelId> = (members.iter())
+        .filter_map(|member| if let Member::Condition(label) = member { Some(*label) } else { None })
+        .collect();
+    let labels = &model.conditions.labels;
+    match (kind, conditions.as_slice()) {
+        (FailureKind::Temporal, _) => cycle_with(model, members, &[]),
+        (FailureKind::OpenCondition, &[ask]) if !labels[ask].is_lasting => {
+            let is_chosen = |tell: &LabelId| {
+                let mut context = model.arcs[labels[*tell].arc].context;
+                while let Some(choice) = context {
+                    if !choices.contains(&choice) {
+                        return false;
+                    }
+                    context = model.decisions[choice.decision].context;
+                }
+                true
+            };
+            let tells = model.conditions.supporters(ask).filter(is_chosen);
+            let mut cycles = tells.map(|tell| {
+                let link = CausalLink { ask, tell };
+                cycle_with(model, members, &[(TreeChoice::Link(link), Constraint::Link(link))])
+            });
+            cycles.find(|cycle| !cycle.is_empty()).unwrap_or_default()
+        }
+        (FailureKind::Threat, &[first, then]) if !labels[first].is_lasting => {
+            let order = Ordering { first, then };
+            cycle_with(model, members, &[(TreeChoice::Order(order), Constraint::Order(order))])
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// A contradiction among bounds and what some choices say about times.
+fn cycle_with(model: &Model, members: &[Member], made: &[(TreeChoice, Constraint)]) -> Vec<CycleMember> {
     let mut stn = Stn::new(model.num_nodes);
     let mut constraints: Vec<Constraint> = Vec::new();
+    for &(choice, constraint) in made {
+        for (from, to, weight) in precedence::edges(model, choice) {
+            let representative = |at| model.representative(node(at));
+            stn.push(representative(from), representative(to), weight, constraints.len() as u32);
+            constraints.push(constraint);
+        }
+    }
     for member in members {
         let &Member::Bound(constraint) = member else { continue };
         let (from, to, weight) = match constraint {

@@ -111,6 +111,7 @@ pub(crate) fn keep(
     };
     solver.stats = stats;
     problem.prefer_links(&mut solver, choices);
+    problem.preferred_times.clone_from(&choices.times);
     let mut enough =
         |stats: &Stats| termination.should_stop(stats) || stats.conflicts > MAX_CONFLICTS_TO_KEEP;
     if solver.solve(&mut problem, &mut enough) != Answer::Solved {

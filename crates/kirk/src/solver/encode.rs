@@ -60,7 +60,7 @@ pub(crate) struct Part<'a> {
     /// What is assumed of pairs that touch, where the mission has a gap.
     pub(crate) touching: Touching,
     /// What holds of the whole mission, whatever is chosen, if this is a part of one.
-    pub(crate) loosest: Option<&'a Unordered>,
+    pub(crate) loosest: &'a [Unordered],
 }
 
 impl Default for Part<'_> {
@@ -73,7 +73,7 @@ impl Default for Part<'_> {
             wants_core: false,
             lists_all: false,
             touching: Touching::Unneeded,
-            loosest: None,
+            loosest: &[],
         }
     }
 }
@@ -84,7 +84,7 @@ pub(crate) struct Problem<'m> {
     pub(crate) model: &'m Model,
     pub(super) touches: Touches,
     /// What holds whatever is chosen, once that has been looked at.
-    pub(super) loosest: Option<Option<Unordered>>,
+    pub(super) loosest: Option<Vec<Unordered>>,
     /// By label: when it ends at the latest and starts at the earliest, by arcs alone.
     pub(super) windows: TiVec<LabelId, (i64, i64)>,
     pub(crate) intervals: TiVec<LabelId, Interval>,
@@ -101,6 +101,8 @@ pub(crate) struct Problem<'m> {
     pub(super) sides: Sides,
     pub(super) shares: Shares,
     pub(super) instants: Instants,
+    /// Times of another plan, by node, in whose order conflicting pairs are tried first.
+    pub(crate) preferred_times: Vec<i64>,
     /// By decision and alternative.
     pub(super) alternatives: TiVec<DecisionId, Vec<Literal>>,
     /// Requirements with the assertions that may carry them.
@@ -133,7 +135,7 @@ impl<'m> Problem<'m> {
         let mut problem = Self {
             model,
             touches,
-            loosest: (rule == Touching::Loosely).then(|| part.loosest.cloned()),
+            loosest: (!part.loosest.is_empty()).then(|| part.loosest.to_vec()),
             windows: TiVec::new(),
             intervals: TiVec::new(),
             labels_by_variable: vec![Vec::new(); model.conditions.variables.len()].into(),
@@ -145,6 +147,7 @@ impl<'m> Problem<'m> {
             sides: Sides::default(),
             shares: Shares::default(),
             instants: Instants::new(model),
+            preferred_times: Vec::new(),
             alternatives,
             carriers: Vec::new(),
             contexts: node_contexts(model),
@@ -152,11 +155,11 @@ impl<'m> Problem<'m> {
         };
         problem.add_times(&mut solver, reach);
         solver.resize();
+        problem.begin_touching(&mut solver);
         problem.add_choices(&mut solver, part);
         problem.add_arcs(&mut solver);
         problem.add_intervals(&mut solver, part);
         problem.sweep(&mut solver);
-        problem.begin_touching(&mut solver);
         solver.propagate_at_root(growth.stop)?;
         if !solver.is_contradictory {
             problem.keep_windows(&solver);
@@ -287,6 +290,15 @@ impl<'m> Problem<'m> {
             (true, false) => DueGap::Assumed,
             (true, true) => DueGap::Always,
         })
+    }
+
+    /// Which order of a pair to try first, if another plan says so.
+    pub(super) fn preferred_order(&self, left: LabelId, right: LabelId) -> Option<u32> {
+        let room = |first: LabelId, then: LabelId| {
+            let (end, start) = (self.model.interval(first).1, self.model.interval(then).0);
+            Some(self.preferred_times.get(start.index())? - self.preferred_times.get(end.index())?)
+        };
+        Some(u32::from(room(right, left)? > room(left, right)?))
     }
 
     fn keep_windows(&mut self, solver: &Solver) {

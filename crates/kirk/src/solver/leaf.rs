@@ -160,10 +160,11 @@ impl Solver {
         let (one, other) = (problem.intervals[left], problem.intervals[right]);
         let when = [one.presence, other.presence];
         let left_first = self.boolean();
+        let first = self.differences.len();
         let touch = problem.touch(self, (left, right));
-        self.tell_from([left, right].map(Member::Condition));
+        self.check_differences(first);
         // Where both exist in any case, the second order is the first one's opposite.
-        let is_certain = touch.is_none() && self.are_certain(&when);
+        let is_certain = touch.is_empty() && self.are_certain(&when);
         let right_first = if is_certain { !left_first } else { self.boolean() };
         self.resize();
         if !is_certain {
@@ -173,7 +174,7 @@ impl Solver {
                 }
             }
             let orders = [!when[0], !when[1], left_first, right_first];
-            self.at_least_one(orders.into_iter().chain(touch));
+            self.at_least_one(orders.into_iter().chain(touch.iter().copied()));
         }
         for (order, (first, then), gap) in [
             (left_first, (one, other), problem.gap_between(left, right)),
@@ -183,8 +184,9 @@ impl Solver {
         }
         problem.orders.insert((left, right), [left_first, right_first]);
         let kind = ChoicePointKind::Orders { left, right };
+        let last = problem.preferred_order(left, right);
         let options = [left_first, right_first].into_iter().chain(touch).collect();
-        self.add_choice_point(ChoicePoint { when: when.to_vec(), kind, options, last: None }, 0.0);
+        self.add_choice_point(ChoicePoint { when: when.to_vec(), kind, options, last }, 0.0);
     }
 
     /// The option of a choice point to try first.
@@ -202,12 +204,12 @@ impl Solver {
         let mut open = choice_point.options.iter().copied().filter(is_open);
         match choice_point.kind {
             ChoicePointKind::Alternatives | ChoicePointKind::Carriers { .. } => open.next(),
-            // That a pair touches follows where neither order is left.
-            ChoicePointKind::Orders { .. } => choice_point.options[..2]
-                .iter()
-                .copied()
-                .filter(is_open)
-                .max_by_key(|&option| self.slack(option)),
+            ChoicePointKind::Orders { .. } => {
+                // That a pair touches comes last.
+                let (orders, touches) = choice_point.options.split_at(2);
+                let most = orders.iter().copied().filter(is_open).max_by_key(|&option| self.slack(option));
+                most.or_else(|| touches.iter().copied().find(is_open))
+            }
             ChoicePointKind::Sides | ChoicePointKind::Resolvers => {
                 open.max_by_key(|&option| self.slack(option))
             }

@@ -8,16 +8,18 @@
 
 use std::collections::BTreeMap;
 
-use stn::Stn;
+use stn::{PointId, Stn};
 use tpn::LabelId;
 
 use super::Solver;
 use super::encode::Problem;
 use super::literal::Literal;
-use super::refutation::Premise;
 use crate::model::UNBOUNDED_BELOW;
 use crate::model::{Context, INFINITE, Model, ModelArc, point};
 use crate::trace::Event;
+
+/// Decisions with more different durations together are not looked into.
+const MAX_NETWORKS: usize = 64;
 
 /// What a search assumes about pairs that touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,8 +30,6 @@ pub(crate) enum Touching {
     Unneeded,
     /// Each pair may or may not.
     Where,
-    /// Each pair may, whatever is chosen: the loosest reading, for parts of a mission, in which less follows.
-    Loosely,
 }
 
 /// What the solver knows of pairs that touch.
@@ -38,7 +38,7 @@ pub(crate) struct Touches {
     pub(super) rule: Touching,
     /// That every pair is kept apart that is ordered.
     pub(super) none: Literal,
-    /// By pair: that it may touch.
+    /// By pair, the one that comes first in front: that the other comes after it, and may touch it.
     literals: BTreeMap<(LabelId, LabelId), Literal>,
 }
 
@@ -55,38 +55,41 @@ impl Problem<'_> {
         match self.touches.rule {
             Touching::Always => {}
             Touching::Unneeded => solver.assumption = Some(self.touches.none),
-            Touching::Where | Touching::Loosely => {
+            Touching::Where => {
                 solver.tell_structure();
                 solver.assert(!self.touches.none);
             }
         }
     }
 
-    /// The literal that a pair may touch; `None` if it never may, or always does as it is.
-    pub(super) fn touch(&mut self, solver: &mut Solver, pair: (LabelId, LabelId)) -> Option<Literal> {
-        if self.gap_between(pair.0, pair.1) == 0 && self.gap_between(pair.1, pair.0) == 0 {
-            return None;
+    /// The literals that one of a pair is over before the other, touching it, the left one first; none if the pair must
+    /// never touch, or always may.
+    pub(super) fn touch(&mut self, solver: &mut Solver, pair: (LabelId, LabelId)) -> Vec<Literal> {
+        let (left, right) = pair;
+        if (self.gap_between(left, right) == 0 && self.gap_between(right, left) == 0)
+            || self.never_touches(pair)
+        {
+            return Vec::new();
         }
-        if self.touches.rule != Touching::Always && self.never_touches(pair) {
-            return None;
+        let mut literals = Vec::with_capacity(2);
+        for (first, then) in [(left, right), (right, left)] {
+            let touch = solver.boolean();
+            solver.resize();
+            let [one, other] = [first, then].map(|label| self.intervals[label]);
+            solver.imply(touch, one.presence);
+            solver.imply(touch, other.presence);
+            solver.imply(self.touches.none, !touch);
+            let gap = self.model.gap_before(then, self.gap_after(first));
+            solver.difference(other.start, one.end, -gap, [touch; 2]);
+            self.touches.literals.insert((first, then), touch);
+            literals.push(touch);
         }
-        if let Some(&known) = self.touches.literals.get(&pair) {
-            return Some(known);
-        }
-        let touch = solver.boolean();
-        solver.resize();
-        solver.tell_structure();
-        solver.imply(self.touches.none, !touch);
-        self.touches.literals.insert(pair, touch);
-        Some(touch)
+        literals
     }
 
     /// What must not be assumed of the present solution, in which everything is decided: pairs that touch without need.
     /// `false` if there are none.
     pub(super) fn refute_touches(&self, solver: &mut Solver) -> bool {
-        if self.touches.rule == Touching::Loosely {
-            return false;
-        }
         let touching = self.touches.literals.iter().filter(|&(_, &touch)| solver.trail.holds(touch));
         let touching: Vec<((LabelId, LabelId), Literal)> =
             touching.map(|(&pair, &touch)| (pair, touch)).collect();
@@ -95,8 +98,8 @@ impl Problem<'_> {
         }
         let mut unordered = self.unordered(solver);
         let mut clauses: Vec<Vec<Literal>> = Vec::new();
-        for (pair, touch) in touching {
-            if unordered.relates(self.model, pair) {
+        for ((first, then), touch) in touching {
+            if unordered.puts_before(self.model, first, then) {
                 continue;
             }
             // Only with other alternatives or links they may.
@@ -110,7 +113,8 @@ impl Problem<'_> {
         }
         solver.tell(|| Event::NoRoomForGap);
         solver.retract(0);
-        solver.tell_from_premises([Premise::Unknown]);
+        // That nothing makes a pair touch rests on the whole mission, and on no part of it.
+        solver.tell_structure();
         for clause in clauses {
             solver.at_least_one(clause);
         }
@@ -151,7 +155,7 @@ impl Problem<'_> {
         }
         let model = self.model;
         let loosest = self.loosest.get_or_insert_with(|| Unordered::loosest(model));
-        loosest.as_mut().is_some_and(|loosest| !loosest.relates(model, pair))
+        !loosest.is_empty() && !loosest.iter_mut().any(|unordered| unordered.relates(model, pair))
     }
 }
 
@@ -163,13 +167,13 @@ pub(crate) struct Unordered {
 }
 
 impl Unordered {
-    /// What holds of everything outside of alternatives, whatever is chosen: each decision takes what all its alternatives
-    /// can take. `None` where they have nothing in common, or where something reaches into an alternative.
-    pub(crate) fn loosest(model: &Model) -> Option<Self> {
-        let structure = model.structure.as_ref().filter(|_| !model.decisions.is_empty());
-        if structure.is_none() && !model.decisions.is_empty() {
-            return None;
-        }
+    /// What holds of everything outside of alternatives, for all durations that its decisions may have. Empty where that is
+    /// too much, or where something reaches into an alternative.
+    pub(crate) fn loosest(model: &Model) -> Vec<Self> {
+        Self::loosest_networks(model).unwrap_or_default()
+    }
+
+    fn loosest_networks(model: &Model) -> Option<Vec<Self>> {
         let mut stn = Stn::new(model.num_nodes);
         stn.set_origin(point(model.start));
         for (arc, &(lower, upper)) in model.arcs.iter().zip(&model.given_bounds) {
@@ -179,39 +183,51 @@ impl Unordered {
                 (Some(_), None) => {}
             }
         }
-        if let Some(structure) = structure {
-            for (decision, described) in model.decisions.iter_enumerated() {
-                if described.context.is_none() {
-                    let (lower, upper) = structure.common_bounds(decision)?;
-                    let (from, to, ..) = structure.initial_bounds(decision);
+        let mut networks = vec![stn];
+        for (decision, described) in model.decisions.iter_enumerated() {
+            if described.context.is_some() {
+                continue;
+            }
+            let structure = model.structure.as_ref()?;
+            let (from, to, ..) = structure.initial_bounds(decision);
+            let durations = structure.durations(decision)?;
+            let mut longer = Vec::with_capacity(networks.len() * durations.len());
+            for stn in &networks {
+                for &(lower, upper) in &durations {
+                    let mut stn = stn.clone();
                     if upper != INFINITE {
                         stn.push(point(from), point(to), upper, 0);
                     }
                     stn.push(point(to), point(from), -lower, 0);
+                    longer.push(stn);
                 }
             }
-        }
-        let labels = &model.conditions.labels;
-        let context = |label: LabelId| -> Context { model.arcs[labels[label].arc].context };
-        for ask in labels.keys().filter(|&ask| labels[ask].is_ask && !labels[ask].is_lasting) {
-            for tell in model.conditions.supporters(ask) {
-                if labels[ask].arc == labels[tell].arc {
-                    continue;
-                }
-                match (context(ask), context(tell)) {
-                    (None, None) => push_link(model, &mut stn, ask, tell),
-                    (Some(_), _) | (_, Some(_)) => return None,
-                }
+            networks = longer;
+            if networks.len() > MAX_NETWORKS {
+                return None;
             }
         }
-        // What contradicts itself tells nothing.
-        stn.settle(&model.order).is_ok().then_some(Self { stn, is_consistent: true })
+        // What contradicts itself is no plan.
+        networks.retain_mut(|stn| stn.settle(&model.order).is_ok());
+        for (ask_start, ask_end, tell) in possible_links(model)? {
+            let (tell_start, tell_end) = model.interval(tell);
+            for stn in &mut networks {
+                stn.insert(ask_start, tell_start, 0, 0).ok()?;
+                stn.insert(tell_end, ask_end, 0, 0).ok()?;
+            }
+        }
+        Some(networks.into_iter().map(|stn| Self { stn, is_consistent: true }).collect())
     }
 
-    /// Whether one of two intervals is over before the other begins, in every schedule. Of what contradicts itself
-    /// everything follows.
+    /// Whether one of two intervals is over before the other begins. What contradicts itself, as the whole mission may where a
+    /// part of it is looked at, puts nothing before anything.
     pub(super) fn relates(&mut self, model: &Model, (left, right): (LabelId, LabelId)) -> bool {
-        !self.is_consistent || self.is_before(model, left, right) || self.is_before(model, right, left)
+        self.puts_before(model, left, right) || self.puts_before(model, right, left)
+    }
+
+    /// Whether an interval is over before another begins, in every schedule.
+    pub(super) fn puts_before(&mut self, model: &Model, first: LabelId, then: LabelId) -> bool {
+        self.is_consistent && self.is_before(model, first, then)
     }
 
     fn is_before(&mut self, model: &Model, first: LabelId, then: LabelId) -> bool {
@@ -240,4 +256,34 @@ fn push_link(model: &Model, stn: &mut Stn, ask: LabelId, tell: LabelId) {
     let ((ask_start, ask_end), (tell_start, tell_end)) = (model.interval(ask), model.interval(tell));
     stn.push(ask_start, tell_start, 0, 0);
     stn.push(tell_end, ask_end, 0, 0);
+}
+
+/// What each assertion would contain if it carried all that it may carry: what is required inside a decision counts as all of
+/// it, which is more. `None` where an assertion is inside a decision itself.
+fn possible_links(model: &Model) -> Option<Vec<(PointId, PointId, LabelId)>> {
+    let labels = &model.conditions.labels;
+    let context = |label: LabelId| -> Context { model.arcs[labels[label].arc].context };
+    let mut links = Vec::new();
+    for ask in labels.keys().filter(|&ask| labels[ask].is_ask && !labels[ask].is_lasting) {
+        let mut outermost = context(ask);
+        while let Some(choice) = outermost
+            && let Some(outer) = model.decisions[choice.decision].context
+        {
+            outermost = Some(outer);
+        }
+        let (start, end) = match outermost {
+            None => model.interval(ask),
+            Some(choice) => {
+                let (from, to, ..) = model.structure.as_ref()?.initial_bounds(choice.decision);
+                (point(from), point(to))
+            }
+        };
+        for tell in model.conditions.supporters(ask).filter(|&tell| labels[tell].arc != labels[ask].arc) {
+            if context(tell).is_some() {
+                return None;
+            }
+            links.push((start, end, tell));
+        }
+    }
+    Some(links)
 }

@@ -102,6 +102,9 @@ pub(crate) enum Relation {
     Open,
 }
 
+/// A choice that may take more different durations is not looked into.
+const MAX_DURATIONS: usize = 16;
+
 impl Structure {
     /// Computes all durations again from the model's bounds.
     pub(crate) fn refresh(&mut self, model: &Model) -> Result<(), Unplannable> {
@@ -153,31 +156,56 @@ impl Structure {
         (from, to, self.initial[block].lower, self.initial[block].upper())
     }
 
-    /// How long a choice can take whichever alternatives are taken in it; `None` if they have nothing in common.
-    pub(crate) fn common_bounds(&self, decision: DecisionId) -> Option<(i64, i64)> {
-        self.common_duration(self.decision_blocks[decision])
+    /// Least and greatest durations of which a choice has one, whichever alternatives are taken in it: one interval where
+    /// they all have something in common. `None` if there are too many.
+    pub(crate) fn durations(&self, decision: DecisionId) -> Option<Vec<(i64, i64)>> {
+        self.durations_of(self.decision_blocks[decision])
     }
 
-    fn common_duration(&self, id: BlockId) -> Option<(i64, i64)> {
+    fn durations_of(&self, id: BlockId) -> Option<Vec<(i64, i64)>> {
         let block = &self.blocks[id];
-        let mut common = match block.shape {
-            Shape::Leaf | Shape::Guard | Shape::Intersection => block.own,
-            Shape::Sequence => (0, 0),
-            Shape::Choice(_) => (i64::MIN, INFINITE),
+        let is_choice = matches!(block.shape, Shape::Choice(_));
+        let mut all = match block.shape {
+            Shape::Leaf | Shape::Guard | Shape::Intersection => vec![block.own],
+            Shape::Sequence => vec![(0, 0)],
+            Shape::Choice(_) => Vec::new(),
         };
         for &child in self.children(id) {
-            let (lower, upper) = self.common_duration(child)?;
-            let part = self.with_around(Duration::new(lower, upper), child).ok()?;
-            let part = (part.lower, part.upper());
-            common = match block.shape {
-                Shape::Sequence | Shape::Guard => {
-                    let sum = sum_of(Duration::new(common.0, common.1), Duration::new(part.0, part.1))?;
-                    (sum.lower, sum.upper())
+            let mut parts = Vec::new();
+            for (lower, upper) in self.durations_of(child)? {
+                let part = self.with_around(Duration::new(lower, upper), child).ok()?;
+                parts.push((part.lower, part.upper()));
+            }
+            if is_choice {
+                all.extend(parts);
+                continue;
+            }
+            let mut combined = Vec::new();
+            for &whole in &all {
+                for &part in &parts {
+                    combined.push(match block.shape {
+                        Shape::Sequence | Shape::Guard => {
+                            let sum = sum_of(Duration::new(whole.0, whole.1), Duration::new(part.0, part.1))?;
+                            (sum.lower, sum.upper())
+                        }
+                        _ => intersect(whole, part),
+                    });
                 }
-                Shape::Leaf | Shape::Intersection | Shape::Choice(_) => intersect(common, part),
-            };
+            }
+            all = combined;
+            if all.len() > MAX_DURATIONS {
+                return None;
+            }
         }
-        (common.0 <= common.1).then_some(common)
+        // What is empty cannot be taken.
+        all.retain(|&(lower, upper)| lower <= upper);
+        if is_choice
+            && let Some(common) = all.iter().copied().reduce(intersect)
+            && common.0 <= common.1
+        {
+            all = vec![common];
+        }
+        (all.len() <= MAX_DURATIONS).then_some(all)
     }
 
     /// What the nesting alone says about two arcs.

@@ -51,9 +51,9 @@ fn steps_can_be_visited_in_any_order() {
 /// The arcs, choices, links and orders in force after every step, kept as a stack while going through the events.
 #[test]
 fn a_step_has_what_the_states_that_lead_to_it_have_added() {
-    for search in [Search::Chronological, Search::ConflictDirected] {
-        let network = network(&mission(Recipe { nodes: 40, tightness: Tightness::Infeasible, seed: 11 }));
-        let (_, trace) = traced(&network, search, 3_000);
+    for seed in [11, 12] {
+        let network = network(&mission(Recipe { nodes: 40, tightness: Tightness::Infeasible, seed }));
+        let (_, trace) = traced(&network, Search::Chronological, 3_000);
         let replay = Replay::new(&network, None, &trace).expect("small numbers");
         let mut stack: Vec<(u32, usize, usize)> = vec![(0, 0, 0)];
         for (step, entry) in trace.events.iter().enumerate() {
@@ -75,11 +75,7 @@ fn a_step_has_what_the_states_that_lead_to_it_have_added() {
                 let replayed = replay.at(&trace, step);
                 assert_eq!(replayed.arcs.len(), stack.iter().map(|(_, arcs, _)| arcs).sum::<usize>());
                 let added = replayed.choices.len() + replayed.links.len() + replayed.orders.len();
-                assert_eq!(
-                    added,
-                    stack.iter().map(|(.., choices)| choices).sum::<usize>(),
-                    "{search:?} {step}"
-                );
+                assert_eq!(added, stack.iter().map(|(.., choices)| choices).sum::<usize>(), "{seed} {step}");
             }
         }
     }
@@ -117,7 +113,7 @@ fn a_trace_is_bounded() {
 fn a_trace_is_written_as_one_json_object_per_line() {
     let text = "scenario S[0,100] = { choose { MODE=A [80,80], MODE=B [5,5] }, MODE=B [80,80] }";
     let network = network(text);
-    let (_, trace) = traced(&network, Search::ConflictDirected, 1_000);
+    let (_, trace) = traced(&network, Search::Chronological, 1_000);
     let lines: Vec<serde_json::Value> = trace_json_lines(&network, &trace)
         .lines()
         .map(|line| serde_json::from_str(line).expect("JSON"))
