@@ -82,7 +82,9 @@ fn components(count: usize, edges: &[[usize; 2]]) -> Vec<usize> {
             }
         }
         let first = members.iter().copied().min();
-        members.into_iter().for_each(|member| component[member] = first);
+        for member in members {
+            component[member] = first;
+        }
     }
     component.into_iter().map(Option::unwrap_or_default).collect()
 }

@@ -37,7 +37,7 @@ pub(crate) fn answer(
         return Ok(outcome);
     }
     if outcome.status == Status::NoPlan && options.explain && excluded.is_empty() {
-        let mut failure = explain::explain(network, model, &[], termination)?;
+        let mut failure = explain::explain(network, model, &[], termination);
         if options.relax {
             failure.relaxations = relax::relaxations(network, model, &failure, termination)?;
             failure.is_of_gap = relax::has_plan_without_gap(network, model, options, termination)?;

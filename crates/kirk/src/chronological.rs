@@ -490,7 +490,9 @@ impl<'m> ChronologicalSearch<'m> {
             edges.push((from, to, upper));
         }
         if is_bulk {
-            edges.into_iter().for_each(|(from, to, weight)| self.stn.push(from, to, weight, tag));
+            for (from, to, weight) in edges {
+                self.stn.push(from, to, weight, tag);
+            }
             return Ok(true);
         }
         self.log(|_| Event::AddArc { arc });

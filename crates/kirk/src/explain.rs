@@ -100,7 +100,7 @@ pub fn explain_choices(
     termination: &mut dyn Termination,
 ) -> Vec<Reason> {
     let Ok(model) = Model::new(network, None) else { return Vec::new() };
-    explain(network, &model, choices, termination).map_or_else(|_| Vec::new(), |failure| failure.reasons)
+    explain(network, &model, choices, termination).reasons
 }
 
 /// Explains why there is no plan that makes the choices given: one reason for each part of the choices that fails, the
@@ -110,7 +110,7 @@ pub(crate) fn explain(
     model: &Model,
     given: &[Choice],
     termination: &mut dyn Termination,
-) -> Result<Failure, Unplannable> {
+) -> Failure {
     let mut effort = Effort::for_size(model.num_nodes, termination);
     let mut reasons: Vec<Reason> = Vec::new();
     let mut is_complete = false;
@@ -133,7 +133,7 @@ pub(crate) fn explain(
         reasons.insert(0, reason);
         is_complete = true;
     }
-    Ok(Failure { is_complete, reasons, relaxations: Vec::new(), is_of_gap: false })
+    Failure { is_complete, reasons, relaxations: Vec::new(), is_of_gap: false }
 }
 
 /// The first complete choice that is none of those excluded.

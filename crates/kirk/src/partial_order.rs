@@ -279,7 +279,7 @@ impl Making<'_> {
         for &(first, then) in &self.solution.kept.sides {
             before.push((network.interval(first).1, network.interval(then).0));
         }
-        for &(ask, change) in &self.solution.kept.kept_before {
+        for &(ask, change) in &self.solution.kept.over_before {
             before.push((network.interval(ask).1, network.interval(change).0));
         }
         for &(first, then) in &self.solution.uses_ordered {

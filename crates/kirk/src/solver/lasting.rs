@@ -49,7 +49,7 @@ pub(crate) struct Kept {
     /// Each selected pair of changes that exclude each other, the earlier one first.
     pub(crate) sides: Vec<(LabelId, LabelId)>,
     /// Requirements that are over before a change that would break them, the requirement first.
-    pub(crate) kept_before: Vec<(LabelId, LabelId)>,
+    pub(crate) over_before: Vec<(LabelId, LabelId)>,
 }
 
 impl Problem<'_> {
@@ -443,7 +443,7 @@ impl Problem<'_> {
             }
         }
         let over = self.sides.kept_before.iter().filter(|(_, after)| solver.trail.holds(*after));
-        kept.kept_before = over.map(|(order, _)| (order.first, order.then)).collect();
+        kept.over_before = over.map(|(order, _)| (order.first, order.then)).collect();
         for variable in &self.model.demands.variables {
             let changes: Vec<LabelId> =
                 variable.changes.iter().copied().filter(|&change| exists(change)).collect();

@@ -39,7 +39,7 @@ impl Solver {
             if !std::mem::replace(&mut problem.has_exclusion[variable], true) {
                 exclusive.push(variable);
             }
-            let all = self.unordered_pairs(problem, &present);
+            let all = Self::unordered_pairs(problem, &present);
             new.extend(if all.len() <= MAX_PAIRS_AT_ONCE { all } else { broken });
         }
         if new.is_empty() {
@@ -139,7 +139,7 @@ impl Solver {
         broken
     }
 
-    fn unordered_pairs(&self, problem: &Problem<'_>, present: &[LabelId]) -> Vec<(LabelId, LabelId)> {
+    fn unordered_pairs(problem: &Problem<'_>, present: &[LabelId]) -> Vec<(LabelId, LabelId)> {
         let mut pairs = Vec::new();
         for (position, &left) in present.iter().enumerate() {
             for &right in &present[position + 1..] {

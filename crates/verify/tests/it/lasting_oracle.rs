@@ -1,5 +1,6 @@
 //! State and resources against brute force: random plans and random schedules of tiny missions, most of them nearly right.
 
+use crate::brute_force::Schedule;
 use std::collections::BTreeMap;
 
 use tpn::generate::Rng;
