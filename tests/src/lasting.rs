@@ -105,7 +105,6 @@ struct Leaf {
 struct Seen {
     /// With what ties.
     schedules: BTreeSet<Vec<usize>>,
-    /// Without.
     orders: BTreeSet<Vec<usize>>,
 }
 
