@@ -447,7 +447,7 @@ mod tests {
                 goal: Goal::default(),
                 search: SearchKind::default(),
                 seed: 0,
-                trace: false,
+                trace: None,
             }));
         }
         wait_for(

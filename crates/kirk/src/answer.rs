@@ -17,18 +17,17 @@ pub(crate) fn answer(
     excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
 ) -> Result<Outcome, Unplannable> {
-    let is_by_solver = model.has_contexts
-        && (options.search.learns()
-            || demanding::has_demands(model)
-            || options.best > 1
-            || !excluded.is_empty());
-    let mut outcome = if is_by_solver || demanding::has_demands(model) {
-        demanding::search(network, model, options, excluded, termination)?
-    } else {
-        chronological::search(model, options, termination)?
-    };
-    let is_cut_short = !is_by_solver && outcome.status == Status::Limit;
-    if is_cut_short && outcome.trace.as_ref().is_some_and(|trace| trace.is_truncated) {
+    let traced = options.traced.unwrap_or(options.search);
+    if options.trace_events.is_some() && traced != options.search && !demanding::has_demands(model) {
+        let unrecorded = Options { trace_events: None, ..*options };
+        let outcome = answer(network, model, &unrecorded, excluded, termination)?;
+        let recorded = Options { search: traced, ..*options };
+        let trace = search(network, model, &recorded, excluded, termination)?.trace;
+        return Ok(Outcome { trace, ..outcome });
+    }
+    let mut outcome = search(network, model, options, excluded, termination)?;
+    let is_full = outcome.trace.as_ref().is_some_and(|trace| trace.is_truncated);
+    if outcome.status == Status::Limit && is_full && !is_by_solver(model, options, excluded) {
         // What is recorded stops when the record is full: the answer is up to a search that need not be recorded.
         let unrecorded = Options { trace_events: None, ..*options };
         let trace = outcome.trace.take();
@@ -46,6 +45,26 @@ pub(crate) fn answer(
         outcome.failure = Some(failure);
     }
     Ok(outcome)
+}
+
+/// Searches once, in the way that is asked for.
+fn search(
+    network: &Network,
+    model: &Model,
+    options: &Options,
+    excluded: &[Vec<Choice>],
+    termination: &mut dyn Termination,
+) -> Result<Outcome, Unplannable> {
+    if is_by_solver(model, options, excluded) {
+        demanding::search(network, model, options, excluded, termination)
+    } else {
+        chronological::search(model, options, termination)
+    }
+}
+
+fn is_by_solver(model: &Model, options: &Options, excluded: &[Vec<Choice>]) -> bool {
+    demanding::has_demands(model)
+        || model.has_contexts && (options.search.learns() || options.best > 1 || !excluded.is_empty())
 }
 
 /// Gives the first of nature's reasons that the run belongs to the run in which it fails.

@@ -13,7 +13,6 @@ use crate::model::{INFINITE, Model, UNBOUNDED_BELOW};
 use crate::options::{Stats, Termination, Unlimited};
 use crate::solver::{self, Answer, Problem, Touching, Unordered};
 use crate::trace::{Constraint, CycleMember};
-use crate::unplannable::Unplannable;
 use crate::{demanding, whole, wording};
 
 /// Explaining stops adding reasons after this many.

@@ -59,6 +59,9 @@ pub struct Options {
     pub best: usize,
     /// Whether to record the search, and how many events at most.
     pub trace_events: Option<usize>,
+    /// Which search is recorded, if not the one that plans: it runs after that one, until the record is full. A network that
+    /// only the solver plans has one search, and that is recorded.
+    pub traced: Option<Search>,
     /// Whether to explain why there is no plan, if there is none.
     pub explain: bool,
     /// Whether to look for bounds whose relaxation gives a plan, if there is none; needs `explain`.
@@ -74,6 +77,7 @@ impl Default for Options {
             max_plans: 10_000,
             best: 1,
             trace_events: None,
+            traced: None,
             explain: true,
             relax: true,
         }

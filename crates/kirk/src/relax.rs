@@ -62,6 +62,7 @@ pub(crate) fn has_plan_without_gap(
         explain: false,
         relax: false,
         trace_events: None,
+        traced: None,
         threat_gap: Some(Time::ZERO),
         ..*options
     };

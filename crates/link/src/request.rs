@@ -83,12 +83,12 @@ pub struct Update {
     pub revision: u64,
     pub source: Source,
     pub goal: Goal,
-    /// How to search.
+    /// How to search for the plan.
     pub search: kirk::Search,
     /// Seeds path planning.
     pub seed: u64,
-    /// Whether to record the search for stepping through it.
-    pub trace: bool,
+    /// Which search to record for stepping through it, if any.
+    pub trace: Option<kirk::Search>,
 }
 
 impl Update {
@@ -100,7 +100,7 @@ impl Update {
             goal: Goal::Default,
             search: kirk::Search::default(),
             seed: 0,
-            trace: false,
+            trace: None,
         }
     }
 }

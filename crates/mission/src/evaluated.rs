@@ -76,8 +76,9 @@ impl Manner {
 
     /// How an update asks for its plan.
     pub(crate) fn of(update: &Update) -> Self {
-        let trace_events = update.trace.then_some(TRACE_EVENTS);
-        let options = Options { search: update.search, trace_events, ..Options::default() };
+        let trace_events = update.trace.map(|_| TRACE_EVENTS);
+        let options =
+            Options { search: update.search, traced: update.trace, trace_events, ..Options::default() };
         Self { options, seed: update.seed, with_repairs: true, ..Self::default() }
     }
 }

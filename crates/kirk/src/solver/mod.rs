@@ -133,6 +133,8 @@ pub(crate) struct Solver {
     /// By side of a Boolean: choice points that begin to count.
     reached: TiVec<Side, Vec<ChoicePointId>>,
     activity: Activity,
+    /// Whether it has not searched yet.
+    is_new: bool,
     /// How many events have been propagated along clauses and choice points.
     head: usize,
     /// How many have been propagated to the theories.
@@ -151,6 +153,10 @@ pub(crate) struct Solver {
     is_contradictory: bool,
     /// What is decided first, until it is refuted.
     assumption: Option<Literal>,
+    /// The decisions that led to the last solution that broke something, and how many of them the search may still make
+    /// again on its way to where it leaves them.
+    left: Vec<Literal>,
+    num_left: usize,
     conflicts_until_restart: u64,
     restarts: u64,
     max_learned: usize,
@@ -204,6 +210,7 @@ impl Solver {
             choice_points_of: TiVec::new(),
             reached: TiVec::new(),
             activity: Activity::new(),
+            is_new: true,
             head: 0,
             theory_head: 0,
             settled: 0..0,
@@ -214,6 +221,8 @@ impl Solver {
             analysis: Analysis::default(),
             is_contradictory: false,
             assumption: None,
+            left: Vec::new(),
+            num_left: 0,
             conflicts_until_restart: RESTART_UNIT,
             restarts: 0,
             max_learned: 4_000,
@@ -365,11 +374,19 @@ impl Solver {
         problem: &mut Problem<'_>,
         stop: &mut dyn FnMut(&Stats) -> bool,
     ) -> Answer {
+        if std::mem::take(&mut self.is_new) && self.is_contradictory {
+            self.stats.conflicts += 1;
+            self.record_contradiction(problem);
+        }
         loop {
             if self.is_contradictory {
                 self.record_implied();
                 self.record_exhausted();
                 return Answer::Unsolvable;
+            }
+            if stop(&self.stats) {
+                self.retract(0);
+                return Answer::Stopped;
             }
             let propagated = self.propagate(stop);
             if propagated == Ok(Propagated::InPart) {
@@ -391,23 +408,31 @@ impl Solver {
                 }
                 self.decide_many(stop);
                 if self.decide() {
-                    self.stats.expanded += 1;
                     self.single_decisions += 1;
                     if self.burst == 0 && self.single_decisions >= SINGLE_DECISIONS {
                         (self.burst, self.single_decisions) = (1, 0);
                     }
                 } else {
                     self.stats.leaves += 1;
+                    let left = self.trail.decisions();
+                    self.record_leaf();
                     let is_broken = self.is_broken(problem);
                     let sharing = if is_broken { Sharing::Restarted } else { problem.share(self) };
                     if sharing == Sharing::Restarted {
-                        self.record_restart(problem);
-                    } else if sharing == Sharing::Fits {
+                        self.leave(left);
+                        self.record_return(problem);
+                    } else if sharing == Sharing::Decided {
+                        self.num_left = 0;
+                        self.stats.expanded += 1;
+                    } else {
                         debug_assert!(self.is_solution(problem), "the least times fit");
                         let stats = self.stats;
                         match problem.withstand(self, &mut || stop(&stats)) {
                             Some(false) => return Answer::Solved,
-                            Some(true) => self.record_restart(problem),
+                            Some(true) => {
+                                self.leave(left);
+                                self.record_return(problem);
+                            }
                             None => {
                                 self.retract(0);
                                 return Answer::Stopped;
@@ -415,10 +440,6 @@ impl Solver {
                         }
                     }
                 }
-            }
-            if !self.is_contradictory && stop(&self.stats) {
-                self.retract(0);
-                return Answer::Stopped;
             }
         }
     }
@@ -537,24 +558,23 @@ impl Solver {
         if !self.is_in_textual_order || self.burst == 0 || self.record.is_some() {
             return;
         }
-        let (level, expanded) = (self.trail.level(), self.stats.expanded);
+        let (level, before) = (self.trail.level(), (self.stats.expanded, self.num_left));
         for _ in 0..self.burst {
             if !self.decide() {
                 break;
             }
-            self.stats.expanded += 1;
             if self.propagate_choices().is_err() {
-                return self.give_up_burst(level, expanded);
+                return self.give_up_burst(level, before);
             }
         }
         match self.propagate(stop) {
-            Ok(_) => self.burst *= 2,
-            Err(_) => self.give_up_burst(level, expanded),
+            Ok(_) => self.burst = self.burst.saturating_mul(2),
+            Err(_) => self.give_up_burst(level, before),
         }
     }
 
-    fn give_up_burst(&mut self, level: u32, expanded: u64) {
-        self.stats.expanded = expanded;
+    fn give_up_burst(&mut self, level: u32, before: (u64, usize)) {
+        (self.stats.expanded, self.num_left) = before;
         self.retract(level);
         // The next few decisions are made one by one.
         self.burst = 0;
@@ -602,6 +622,7 @@ impl Solver {
         if highest < self.trail.level() {
             self.retract(highest);
         }
+        self.num_left = 0;
         let Some(learned) = self.analyze(conflict) else {
             self.concluded_refutation();
             return false;
@@ -691,8 +712,7 @@ impl Solver {
         if let Some(assumed) = self.assumption.filter(|&assumed| self.trail.is_open(assumed)) {
             self.trail.open_level();
             let _ = self.trail.set(assumed, trail::Cause::Decision);
-            let state = self.recorded_state();
-            self.record_again(state);
+            self.follow(assumed);
             return true;
         }
         while let Some(id) = self.activity.pop() {
@@ -705,10 +725,36 @@ impl Solver {
             self.trail.open_level();
             // An open Boolean can be either.
             let _ = self.trail.set(option, trail::Cause::Decision);
-            self.record_decision(option);
+            self.follow(option);
             return true;
         }
         false
+    }
+
+    /// The decisions are taken back that led to a solution which broke something.
+    fn leave(&mut self, decisions: Vec<Literal>) {
+        self.stats.backtracks += 1;
+        self.num_left = decisions.len();
+        self.left = decisions;
+    }
+
+    /// Takes note of the decision just made. One that is made again, on the way to where the search leaves what it did last,
+    /// is not counted again.
+    fn follow(&mut self, decided: Literal) {
+        let level = self.trail.level() as usize;
+        let is_again = level <= self.num_left && self.left[level - 1] == decided;
+        if !is_again {
+            self.num_left = 0;
+        }
+        if is_again {
+            self.record_again_at(level);
+        } else if self.assumption == Some(decided) {
+            let state = self.recorded_state();
+            self.record_again(state);
+        } else {
+            self.stats.expanded += 1;
+            self.record_decision(decided);
+        }
     }
 
     fn bump(&mut self, literal: Literal) {

@@ -36,6 +36,9 @@ pub(crate) struct Record {
     starts: BTreeMap<Literal, TreeChoice>,
     /// How many events of the trail have been told.
     seen: usize,
+    /// The states on the way to the one that was left last, while it has not been told where the search goes back to.
+    left: Vec<TreeNodeId>,
+    is_returning: bool,
     /// The state of the last plan.
     solution: TreeNodeId,
     /// Whether better and better plans are looked for, in searches of their own.
@@ -61,6 +64,8 @@ impl Record {
             names: BTreeMap::new(),
             starts: BTreeMap::new(),
             seen: 0,
+            left: Vec::new(),
+            is_returning: false,
             solution: 0,
             has_goals,
             told: None,
@@ -173,7 +178,7 @@ impl Solver {
         let Some(record) = self.recording() else { return };
         record.path.truncate(1);
         record.seen = 0;
-
+        record.is_returning = false;
         record.told = round.is_best_first.then(BTreeMap::new);
         record.tell(Event::Begin(round));
         self.name_choices(problem);
@@ -199,14 +204,60 @@ impl Solver {
 
     /// Tells that the search goes back to its root, where there may be new choice points.
     pub(crate) fn record_restart(&mut self, problem: &Problem<'_>) {
+        self.tell_return();
         if self.is_recording() {
             self.name_choices(problem);
             self.tell(|| Event::Restart);
         }
     }
 
+    /// Takes note of the way to a state in which everything is decided.
+    pub(super) fn record_leaf(&mut self) {
+        if let Some(record) = self.recording() {
+            record.left.clone_from(&record.path);
+        }
+    }
+
+    /// The present state was a solution that broke something. It is told where the search goes back to once that is known:
+    /// it makes the same decisions again as far as it can.
+    pub(super) fn record_return(&mut self, problem: &Problem<'_>) {
+        self.name_choices(problem);
+        if let Some(record) = self.recording() {
+            record.is_returning = true;
+        }
+    }
+
+    /// Tells where the search has gone back to: to the present state, or to where it is known that something that was decided
+    /// there is impossible.
+    fn tell_return(&mut self) {
+        if !self.recording().is_some_and(|record| std::mem::take(&mut record.is_returning)) {
+            return;
+        }
+        let impossible = (self.left.iter().enumerate()).find(|&(_, &literal)| self.trail.fails(literal));
+        let impossible = impossible.map(|(level, &literal)| (level, literal));
+        let behind = impossible.map(|(_, literal)| self.literals_behind(&[!literal], None));
+        let levels: Vec<u32> = behind.iter().flatten().map(|&literal| self.level_of(literal)).collect();
+        let Some(record) = self.recording() else { return };
+        let last = record.left.last().copied().unwrap_or(0);
+        record.recorder.set_status(last, TreeStatus::Failed);
+        let to = record.at();
+        let state = |level: usize| record.left.get(level).copied();
+        let own = impossible.and_then(|(level, literal)| Some((state(level + 1)?, record.name(literal)?)));
+        let Some((taken_back, choice)) = own else {
+            record.recorder.record(last, Event::Backtrack { to });
+            return;
+        };
+        let literals = behind.into_iter().flatten();
+        let choices = literals.filter_map(|it| record.name(it)).chain([choice]).collect();
+        let because = levels.into_iter().filter_map(|level| state(level as usize)).chain([taken_back]);
+        let because = because.collect();
+        record.recorder.record(last, Event::Learn { choices });
+        record.recorder.record(last, Event::Backjump { to, because });
+    }
+
     /// Tells the decision just made, which opened a level.
     pub(super) fn record_decision(&mut self, option: Literal) {
+        self.tell_return();
         let Some(record) = self.recording() else { return };
         let choice = record.name(option);
         record.enter(choice);
@@ -236,6 +287,10 @@ impl Solver {
     pub(super) fn record_implied(&mut self) {
         if !self.is_recording() {
             return;
+        }
+        let is_returning = self.record.as_ref().is_some_and(|record| record.is_returning);
+        if is_returning && self.left.iter().any(|&literal| self.trail.fails(literal)) {
+            self.tell_return();
         }
         let level = self.trail.level();
         let from = self.record.as_ref().map_or(0, |record| record.seen);
@@ -267,6 +322,7 @@ impl Solver {
                 self.reason_of(literal, id, &mut reason);
                 self.choices_behind(&reason, None)
             };
+            self.tell_return();
             let Some(record) = self.recording() else { return };
             for (at, choice) in own.into_iter().enumerate() {
                 if !is_decision || at > 0 {
@@ -289,6 +345,7 @@ impl Solver {
             return;
         }
         self.record_implied();
+        self.tell_return();
         let choices = self.choices_behind(conflict, None);
         let cycle = self.cycle_in_force(problem);
         let event = if !cycle.is_empty() {
@@ -304,6 +361,18 @@ impl Solver {
             record.tell(event);
             record.set_status(TreeStatus::Failed);
         }
+    }
+
+    /// Tells that there is no plan whatever is chosen, and why if bounds alone contradict each other.
+    pub(super) fn record_contradiction(&mut self, problem: &Problem<'_>) {
+        if !self.is_recording() {
+            return;
+        }
+        let cycle = self.cycle_in_force(problem);
+        let is_of_bounds = !cycle.is_empty();
+        self.tell(|| {
+            if is_of_bounds { Event::Inconsistent { cycle } } else { Event::Clash { choices: Vec::new() } }
+        });
     }
 
     /// Tells that a solution of the solver is none: what is wrong with it, and the literals that must not all hold.
@@ -359,6 +428,13 @@ impl Solver {
         let state = record.recorder.enter(beside, Some(later))?;
         record.recorder.set_status(state, TreeStatus::Unexplored);
         Some(state)
+    }
+
+    /// Takes note that the decision of a level is made again that the search left last.
+    pub(super) fn record_again_at(&mut self, level: usize) {
+        if let Some(record) = self.recording() {
+            record.path.extend(record.left.get(level).copied());
+        }
     }
 
     /// Takes note that a decision is made again.
@@ -418,6 +494,7 @@ impl Solver {
 
     /// Tells that there is no further solution.
     pub(super) fn record_exhausted(&mut self) {
+        self.tell_return();
         if let Some(record) = self.recording() {
             record.path.truncate(1);
             record.tell(Event::Exhausted);
@@ -426,6 +503,7 @@ impl Solver {
 
     /// Tells that everything is decided and the times fit; `event` says what a plan keeps of that.
     pub(crate) fn record_solution(&mut self, event: impl FnOnce() -> Event) {
+        self.tell_return();
         if let Some(record) = self.recording() {
             if record.has_goals && record.path.len() == 1 {
                 // Other searches begin at the root, too.

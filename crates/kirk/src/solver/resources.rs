@@ -377,7 +377,9 @@ const MAX_OVERLOADS: usize = 32;
 /// the last of it to start counts no more.
 fn overloads(instants: &Instants, present: &[Task], capacity: i64) -> Vec<Vec<Task>> {
     let at = |node: NodeId| instants.position(node);
-    let mut by_start: Vec<&Task> = present.iter().collect();
+    // Where only some bounds count, as in explanations, a use may end before it starts.
+    let lasts = |task: &&Task| at(task.start) <= at(task.end);
+    let mut by_start: Vec<&Task> = present.iter().filter(lasts).collect();
     by_start.sort_by_key(|task| (at(task.start), at(task.end), task.id));
     let mut running: Vec<&Task> = Vec::new();
     let mut found = Vec::new();

@@ -124,6 +124,15 @@ impl Trail {
         Some(Literal::new(event.side, event.most))
     }
 
+    /// What was decided, level by level.
+    pub(crate) fn decisions(&self) -> Vec<Literal> {
+        let first = |&(first, _): &(u32, u32)| {
+            let event = self.events.get(EventId::from(first as usize));
+            event.map_or(Literal::TRUE, |event| Literal::new(event.side, event.most))
+        };
+        self.levels.iter().map(first).collect()
+    }
+
     /// Keeps a reason for [`Cause::Noted`] until the present level is left.
     pub(crate) fn note(&mut self, reason: Vec<Literal>) -> Cause {
         let note = Note { reason: reason.into_boxed_slice(), is_of_goal: false, premise: self.premise };

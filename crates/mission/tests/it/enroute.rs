@@ -126,7 +126,7 @@ fn an_answer_with_a_recorded_search_survives_the_way_to_the_page() {
     let mut answers = Answers::default();
     let source = include_str!("../../../../assets/missions/backjump.rmpl");
     let search = kirk::Search::Chronological;
-    let update = Update { search, seed: 1, trace: true, ..Update::new(1, source) };
+    let update = Update { search, seed: 1, trace: Some(search), ..Update::new(1, source) };
     Core::default().handle(Request::Update(update), &mut answers);
     let last = answers.snapshot();
     assert!(last.planning.as_ref().is_some_and(|planning| planning.outcome.trace.is_some()));

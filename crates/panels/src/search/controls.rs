@@ -151,7 +151,8 @@ fn show_breakpoints(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSe
 }
 
 fn show_kind(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    let mut kind = context.state.settings.plan.search;
+    let recorded = context.state.settings.plan.recorded();
+    let mut kind = recorded;
     ComboBox::from_id_salt("search-kind")
         .selected_text(kind_name(kind))
         .show_ui(ui, |ui| {
@@ -161,7 +162,7 @@ fn show_kind(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         })
         .response
         .accessible_name("Search");
-    if kind != context.state.settings.plan.search {
+    if kind != recorded {
         commands.send(Command::Settings(SettingsCommand::SetSearch(kind)));
     }
 }

@@ -63,7 +63,7 @@ impl AppState {
             Response::Map { key, map } => self.maps.take(key, map),
             Response::Searches(comparison) => {
                 let shown = self.snapshots.shown().cloned();
-                self.search.take_comparison(comparison, shown.as_ref(), self.settings.plan.search);
+                self.search.take_comparison(comparison, shown.as_ref(), self.settings.plan.recorded());
             }
             Response::MapAccepted { name, cells: [width, height], no_data_cells } => {
                 if self.keep_map(&name) {

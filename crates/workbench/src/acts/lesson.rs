@@ -159,10 +159,10 @@ impl AppState {
     /// Lets planning search as a lesson wants it, and record that.
     fn set_lesson_search(&mut self, search: LessonSearch) {
         self.settings.plan.trace = true;
-        self.settings.plan.search = match search {
+        self.settings.plan.search = Some(match search {
             LessonSearch::One(kind) => kind,
             LessonSearch::Both => SearchKind::Chronological,
-        };
+        });
         let shown = self.shown().cloned();
         self.search.apply(SearchCommand::Compare(search == LessonSearch::Both), shown.as_ref());
     }

@@ -89,7 +89,7 @@ impl<'a> Description<'a> {
             return recordings.nth(self.state.search.side());
         }
         let kind = SearchKind::ALL.into_iter().find(|kind| kind.name() == which)?;
-        recordings.find(|recording| recording.kind().unwrap_or(self.state.settings.plan.search) == kind)
+        recordings.find(|recording| recording.kind().unwrap_or(self.state.settings.plan.recorded()) == kind)
     }
 
     pub(super) fn counts(&self, which: &str) -> Option<Counts> {

@@ -113,7 +113,7 @@ impl ReviewState {
     pub fn shown(&self) -> Option<(&Arc<Review>, bool)> {
         let current = self.done.iter().find(|it| {
             self.current.as_ref().is_some_and(|current| {
-                (&it.review.content_hash, it.search) == (&current.hash, current.settings.search)
+                (&it.review.content_hash, it.search) == (&current.hash, current.settings.planner())
             }) && self.plan_hash().is_none_or(|plan_hash| it.review.plan_hash == plan_hash)
         });
         match current {
@@ -266,7 +266,7 @@ impl Reviewing<'_> {
     /// Asks the core for a review of the present text.
     pub(crate) fn run(&mut self) {
         let revision = self.document.revision();
-        self.review.running = Some((revision, self.settings.plan.search));
+        self.review.running = Some((revision, self.settings.plan.planner()));
         self.review.asked = self.review.hash().map(str::to_owned);
         let update = self.settings.plan.update(revision, self.document.shared_text());
         let rules = self.review.record.rules().rules.clone();

@@ -79,7 +79,7 @@ impl Settings {
     pub(crate) fn apply(&mut self, command: SettingsCommand, window: &mut Window) {
         match command {
             SettingsCommand::SetGoal(goal) => self.plan.goal = goal,
-            SettingsCommand::SetSearch(search) => self.plan.search = search,
+            SettingsCommand::SetSearch(search) => self.plan.search = Some(search),
             SettingsCommand::SetSeed(seed) => self.plan.seed = seed,
             SettingsCommand::SetTrace(trace) => self.plan.trace = trace,
             SettingsCommand::SetViews(views) => self.views = *views,
@@ -129,8 +129,8 @@ pub enum ThemeChoice {
 pub struct PlanSettings {
     #[serde(skip)]
     pub goal: Goal,
-    /// Which search plans.
-    pub search: SearchKind,
+    /// Which search plans, and is recorded; if nobody chose one, each is the one that suits.
+    pub search: Option<SearchKind>,
     /// Seeds path planning.
     pub seed: u64,
     /// Whether the search is recorded for stepping through it.
@@ -140,8 +140,24 @@ pub struct PlanSettings {
 impl PlanSettings {
     /// What the core is asked to plan: the text of `revision`, in this way.
     pub fn update(&self, revision: u64, source: impl Into<Source>) -> Update {
-        let Self { goal, search, seed, trace } = self.clone();
-        Update { revision, source: source.into(), goal, search, seed, trace }
+        Update {
+            revision,
+            source: source.into(),
+            goal: self.goal.clone(),
+            search: self.planner(),
+            seed: self.seed,
+            trace: self.trace.then(|| self.recorded()),
+        }
+    }
+
+    /// The search that plans; if nobody chose one, the fastest.
+    pub fn planner(&self) -> SearchKind {
+        self.search.unwrap_or_default()
+    }
+
+    /// The search that is recorded where one is; if nobody chose one, the paper's, whose steps are the easiest to follow.
+    pub fn recorded(&self) -> SearchKind {
+        self.search.unwrap_or(SearchKind::Chronological)
     }
 }
 

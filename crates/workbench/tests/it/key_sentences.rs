@@ -51,15 +51,19 @@ impl Told<'_> {
         arcs.collect()
     }
 
-    /// Whether no plan makes all of these choices of alternatives.
+    /// The plans that make all of these choices.
+    fn plans_with<'c>(&'c self, choices: &'c [TreeChoice]) -> impl Iterator<Item = &'c Plan> {
+        self.plans.iter().filter(|plan| choices.iter().all(|&choice| makes(plan, choice)))
+    }
+
+    /// Whether no plan makes all of these choices.
     fn excludes(&self, choices: &[TreeChoice]) -> bool {
-        let makes = |plan: &Plan, choice: &TreeChoice| match choice {
-            TreeChoice::Decision { decision, alternative } => {
-                plan.choices.iter().any(|it| it.decision == *decision && it.alternative == *alternative)
-            }
-            _ => true,
-        };
-        !self.plans.iter().any(|plan| choices.iter().all(|choice| makes(plan, choice)))
+        self.plans_with(choices).next().is_none()
+    }
+
+    /// Whether the record tells what a solver decides, and not how a network grows arc by arc.
+    fn is_by_solver(&self) -> bool {
+        matches!(self.trace.events.first().map(|entry| &entry.event), Some(Event::Begin(_)))
     }
 
     /// Whose condition it is, in the author's terms.
@@ -77,7 +81,7 @@ impl Told<'_> {
         let entry = &self.trace.events[step];
         let selected = self.selected(step);
         let arc_of = |label: LabelId| self.network.labels[label.index()].arc;
-        let is_selected = |label: LabelId| selected.contains(&arc_of(label));
+        let is_selected = |label: LabelId| self.is_by_solver() || selected.contains(&arc_of(label));
         let literal = |label: LabelId| &self.network.labels[label.index()].literal;
         let line = self.line(entry.tree_node);
         let says =
@@ -186,12 +190,36 @@ impl Told<'_> {
                     holds(!blamed.is_empty(), "it blames nothing")?;
                     holds(self.excludes(&blamed), "there is a plan with the choices that are blamed")
                 }
+                Event::Begin(_) => holds(step == 0, "it has begun already"),
+                Event::Imply { choice, holds: is_so, because } => {
+                    let is_told = |plan: &Plan| *is_so == makes(plan, *choice);
+                    holds(self.plans_with(because).all(is_told), "there is a plan in which it is not so")
+                }
+                Event::Keep { orders, .. } => {
+                    let keeps = |plan: &Plan| orders.iter().all(|it| plan.orderings_added.contains(it));
+                    holds(self.plans.iter().any(keeps), "no plan keeps that order")
+                }
                 Event::Solution { .. } => holds(!self.plans.is_empty(), "there is no plan"),
                 Event::Exhausted => holds(self.plans.is_empty(), "there is a plan"),
                 other => Err(format!("nobody has said when this is so: {other:?}")),
             }
         };
         check().err()
+    }
+}
+
+/// Whether a plan makes a choice. Of an order that follows from other things it says nothing, so it makes that unless it adds
+/// the opposite.
+fn makes(plan: &Plan, choice: TreeChoice) -> bool {
+    match choice {
+        TreeChoice::Decision { decision, alternative } => {
+            plan.choices.iter().any(|it| it.decision == decision && it.alternative == alternative)
+        }
+        TreeChoice::Link(link) => plan.causal_links.contains(&link),
+        TreeChoice::Order(order) => {
+            !plan.orderings_added.iter().any(|it| (it.first, it.then) == (order.then, order.first))
+        }
+        other => unreachable!("lessons 1 to 8 have no {other:?}"),
     }
 }
 

@@ -178,7 +178,7 @@ fn planned(input: &[u8]) -> Outcome {
     let mut random =
         Random::new(input.iter().fold(1, |sum: u64, &byte| sum.wrapping_mul(31) + u64::from(byte)));
     let search = SearchKind::ALL[random.below(SearchKind::ALL.len())];
-    let update = Update { search, trace: random.below(4) == 0, ..update_of(text) };
+    let update = Update { search, trace: (random.below(4) == 0).then_some(search), ..update_of(text) };
     let mut core = Core::default();
     let mut host = Bounded::new(300);
     core.handle(Request::Update(update.clone()), &mut host);
