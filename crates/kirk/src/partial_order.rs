@@ -265,7 +265,8 @@ impl Making<'_> {
         }
         let mut before: Vec<(NodeId, NodeId)> = Vec::new();
         for (id, arc) in model.arcs.iter_enumerated() {
-            if self.is_selected[id] && arc.lower >= 0 {
+            // What leads back to the start says when something was, and not before what.
+            if self.is_selected[id] && arc.lower >= 0 && arc.to != self.model.start {
                 before.push((arc.from, arc.to));
             }
         }

@@ -287,6 +287,7 @@ impl Problem<'_> {
                     let is_known = self.is_resolved(solver, &used, &counted, &late);
                     let held = self.decided(solver);
                     if is_known {
+                        solver.stats.conflicts += 1;
                         solver.record_refusal(&held, |choices| Event::Uncontrollable { choices });
                     } else {
                         let early: Vec<Task> = counted.iter().chain([&used]).copied().collect();

@@ -226,6 +226,7 @@ impl<'m> Problem<'m> {
             names.push((left_first, TreeChoice::Order(Ordering { first: left, then: right })));
             names.push((right_first, TreeChoice::Order(Ordering { first: right, then: left })));
         }
+        names.extend(self.touches.names());
         names.extend(self.shares.names());
         names
     }

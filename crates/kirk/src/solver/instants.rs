@@ -79,6 +79,7 @@ impl Problem<'_> {
                     circle.into_iter().flatten().filter(|&literal| literal != Literal::TRUE).collect();
                 circle.sort_unstable();
                 circle.dedup();
+                solver.stats.conflicts += 1;
                 solver.record_refusal(&circle, |orders| Event::Circle { orders });
                 solver.retract(0);
                 solver.tell_from_premises([Premise::Unknown]);
@@ -93,7 +94,8 @@ impl Problem<'_> {
         let model = self.model;
         let mut before = Vec::with_capacity(model.arcs.len());
         for (arc, &(lower, _)) in model.arcs.iter().zip(&model.given_bounds) {
-            if lower >= 0 && self.is_present(solver, arc) {
+            // What leads back to the start says when something was, and not before what.
+            if lower >= 0 && arc.to != model.start && self.is_present(solver, arc) {
                 let reason = [self.presence(arc.context), self.presence(arc.other_context)];
                 before.push(Before { first: arc.from, then: arc.to, reason });
             }

@@ -157,6 +157,8 @@ pub(crate) struct Solver {
     /// again on its way to where it leaves them.
     left: Vec<Literal>,
     num_left: usize,
+    /// Whether it is not known yet where that is.
+    is_returning: bool,
     conflicts_until_restart: u64,
     restarts: u64,
     max_learned: usize,
@@ -223,6 +225,7 @@ impl Solver {
             assumption: None,
             left: Vec::new(),
             num_left: 0,
+            is_returning: false,
             conflicts_until_restart: RESTART_UNIT,
             restarts: 0,
             max_learned: 4_000,
@@ -381,6 +384,7 @@ impl Solver {
         loop {
             if self.is_contradictory {
                 self.record_implied();
+                self.end_return();
                 self.record_exhausted();
                 return Answer::Unsolvable;
             }
@@ -394,6 +398,8 @@ impl Solver {
                 return Answer::Stopped;
             }
             if let Err(conflict) = propagated {
+                self.record_implied();
+                self.end_return();
                 self.record_failure(problem, &conflict);
                 self.stats.conflicts += 1;
                 self.conflicts_until_restart = self.conflicts_until_restart.saturating_sub(1);
@@ -407,6 +413,10 @@ impl Solver {
                     self.record_restart(problem);
                 }
                 self.decide_many(stop);
+                if self.is_interrupted {
+                    self.retract(0);
+                    return Answer::Stopped;
+                }
                 if self.decide() {
                     self.single_decisions += 1;
                     if self.burst == 0 && self.single_decisions >= SINGLE_DECISIONS {
@@ -414,6 +424,7 @@ impl Solver {
                     }
                 } else {
                     self.stats.leaves += 1;
+                    self.end_return();
                     let left = self.trail.decisions();
                     self.record_leaf();
                     let is_broken = self.is_broken(problem);
@@ -733,9 +744,20 @@ impl Solver {
 
     /// The decisions are taken back that led to a solution which broke something.
     fn leave(&mut self, decisions: Vec<Literal>) {
-        self.stats.backtracks += 1;
         self.num_left = decisions.len();
         self.left = decisions;
+        self.is_returning = true;
+    }
+
+    /// It is known where the search goes back to: where one of the decisions that it left has become impossible, or else to
+    /// the start.
+    fn end_return(&mut self) {
+        if !std::mem::take(&mut self.is_returning) {
+            return;
+        }
+        let impossible = self.left.iter().position(|&literal| self.trail.fails(literal));
+        self.stats.backtracks += u64::from(impossible.is_some());
+        self.record_end_of_return(impossible);
     }
 
     /// Takes note of the decision just made. One that is made again, on the way to where the search leaves what it did last,
@@ -745,6 +767,7 @@ impl Solver {
         let is_again = level <= self.num_left && self.left[level - 1] == decided;
         if !is_again {
             self.num_left = 0;
+            self.end_return();
         }
         if is_again {
             self.record_again_at(level);

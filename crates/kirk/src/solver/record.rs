@@ -36,9 +36,10 @@ pub(crate) struct Record {
     starts: BTreeMap<Literal, TreeChoice>,
     /// How many events of the trail have been told.
     seen: usize,
-    /// The states on the way to the one that was left last, while it has not been told where the search goes back to.
+    /// The states on the way to the one that was left last.
     left: Vec<TreeNodeId>,
-    is_returning: bool,
+    /// What is told once it is known where the search goes back to from there.
+    held: Option<Vec<(TreeNodeId, Event)>>,
     /// The state of the last plan.
     solution: TreeNodeId,
     /// Whether better and better plans are looked for, in searches of their own.
@@ -65,7 +66,7 @@ impl Record {
             starts: BTreeMap::new(),
             seen: 0,
             left: Vec::new(),
-            is_returning: false,
+            held: None,
             solution: 0,
             has_goals,
             told: None,
@@ -86,7 +87,11 @@ impl Record {
     }
 
     pub(crate) fn tell(&mut self, event: Event) {
-        self.recorder.record(self.at(), event);
+        let at = self.at();
+        match &mut self.held {
+            Some(held) => held.push((at, event)),
+            None => self.recorder.record(at, event),
+        }
     }
 
     /// The plan of the last state in which one was found, at a position among the plans.
@@ -178,7 +183,7 @@ impl Solver {
         let Some(record) = self.recording() else { return };
         record.path.truncate(1);
         record.seen = 0;
-        record.is_returning = false;
+        record.held = None;
         record.told = round.is_best_first.then(BTreeMap::new);
         record.tell(Event::Begin(round));
         self.name_choices(problem);
@@ -204,7 +209,6 @@ impl Solver {
 
     /// Tells that the search goes back to its root, where there may be new choice points.
     pub(crate) fn record_restart(&mut self, problem: &Problem<'_>) {
-        self.tell_return();
         if self.is_recording() {
             self.name_choices(problem);
             self.tell(|| Event::Restart);
@@ -223,41 +227,46 @@ impl Solver {
     pub(super) fn record_return(&mut self, problem: &Problem<'_>) {
         self.name_choices(problem);
         if let Some(record) = self.recording() {
-            record.is_returning = true;
+            record.held = Some(Vec::new());
         }
     }
 
-    /// Tells where the search has gone back to: to the present state, or to where it is known that something that was decided
-    /// there is impossible.
-    fn tell_return(&mut self) {
-        if !self.recording().is_some_and(|record| std::mem::take(&mut record.is_returning)) {
+    /// Tells where the search has gone back to from the state that it left: to the present one, where what was decided at a
+    /// position among its decisions has become impossible, or else to the start. What followed meanwhile is told after that.
+    pub(super) fn record_end_of_return(&mut self, impossible: Option<usize>) {
+        if !self.is_recording() {
             return;
         }
-        let impossible = (self.left.iter().enumerate()).find(|&(_, &literal)| self.trail.fails(literal));
-        let impossible = impossible.map(|(level, &literal)| (level, literal));
-        let behind = impossible.map(|(_, literal)| self.literals_behind(&[!literal], None));
-        let levels: Vec<u32> = behind.iter().flatten().map(|&literal| self.level_of(literal)).collect();
+        let literal = impossible.map(|position| self.left[position]);
+        let behind = literal.map(|literal| self.literals_behind(&[!literal], None)).unwrap_or_default();
+        let levels: Vec<u32> = behind.iter().map(|&literal| self.level_of(literal)).collect();
         let Some(record) = self.recording() else { return };
-        let last = record.left.last().copied().unwrap_or(0);
-        record.recorder.set_status(last, TreeStatus::Failed);
-        let to = record.at();
+        let held = record.held.take().unwrap_or_default();
+        let from = record.left.last().copied().unwrap_or(0);
         let state = |level: usize| record.left.get(level).copied();
-        let own = impossible.and_then(|(level, literal)| Some((state(level + 1)?, record.name(literal)?)));
-        let Some((taken_back, choice)) = own else {
-            record.recorder.record(last, Event::Backtrack { to });
-            return;
-        };
-        let literals = behind.into_iter().flatten();
-        let choices = literals.filter_map(|it| record.name(it)).chain([choice]).collect();
-        let because = levels.into_iter().filter_map(|level| state(level as usize)).chain([taken_back]);
-        let because = because.collect();
-        record.recorder.record(last, Event::Learn { choices });
-        record.recorder.record(last, Event::Backjump { to, because });
+        let taken_back = impossible.and_then(|position| state(position + 1));
+        if let (Some(taken_back), Some(literal)) = (taken_back, literal) {
+            let to = record.at();
+            let choices = behind.iter().chain([&literal]).filter_map(|&it| record.name(it)).collect();
+            let states = levels.into_iter().filter_map(|level| state(level as usize));
+            let because = states.chain([taken_back]).collect();
+            record.recorder.set_status(from, TreeStatus::Failed);
+            let mut last = record.recorder.trace.events.iter().rev();
+            let is_told = last.next().is_some_and(|it| matches!(it.event, Event::Uncontrollable { .. }));
+            if !is_told {
+                record.recorder.record(from, Event::Learn { choices });
+            }
+            record.recorder.record(from, Event::Backjump { to, because });
+        } else {
+            record.recorder.record(0, Event::Restart);
+        }
+        for (state, event) in held {
+            record.recorder.record(state, event);
+        }
     }
 
     /// Tells the decision just made, which opened a level.
     pub(super) fn record_decision(&mut self, option: Literal) {
-        self.tell_return();
         let Some(record) = self.recording() else { return };
         let choice = record.name(option);
         record.enter(choice);
@@ -287,10 +296,6 @@ impl Solver {
     pub(super) fn record_implied(&mut self) {
         if !self.is_recording() {
             return;
-        }
-        let is_returning = self.record.as_ref().is_some_and(|record| record.is_returning);
-        if is_returning && self.left.iter().any(|&literal| self.trail.fails(literal)) {
-            self.tell_return();
         }
         let level = self.trail.level();
         let from = self.record.as_ref().map_or(0, |record| record.seen);
@@ -322,8 +327,7 @@ impl Solver {
                 self.reason_of(literal, id, &mut reason);
                 self.choices_behind(&reason, None)
             };
-            self.tell_return();
-            let Some(record) = self.recording() else { return };
+                let Some(record) = self.recording() else { return };
             for (at, choice) in own.into_iter().enumerate() {
                 if !is_decision || at > 0 {
                     record.tell(Event::Imply { choice, holds: true, because: because.clone() });
@@ -345,7 +349,6 @@ impl Solver {
             return;
         }
         self.record_implied();
-        self.tell_return();
         let choices = self.choices_behind(conflict, None);
         let cycle = self.cycle_in_force(problem);
         let event = if !cycle.is_empty() {
@@ -494,7 +497,6 @@ impl Solver {
 
     /// Tells that there is no further solution.
     pub(super) fn record_exhausted(&mut self) {
-        self.tell_return();
         if let Some(record) = self.recording() {
             record.path.truncate(1);
             record.tell(Event::Exhausted);
@@ -503,7 +505,6 @@ impl Solver {
 
     /// Tells that everything is decided and the times fit; `event` says what a plan keeps of that.
     pub(crate) fn record_solution(&mut self, event: impl FnOnce() -> Event) {
-        self.tell_return();
         if let Some(record) = self.recording() {
             if record.has_goals && record.path.len() == 1 {
                 // Other searches begin at the root, too.
@@ -638,7 +639,8 @@ impl Solver {
             }
         }
         for (&side, names) in &record.names {
-            if !self.trail.holds(side.decided()) {
+            // What touches keeps no gap.
+            if !self.trail.holds(side.decided()) || problem.touches.has(side) {
                 continue;
             }
             for &choice in names {

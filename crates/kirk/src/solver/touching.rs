@@ -9,14 +9,14 @@
 use std::collections::BTreeMap;
 
 use stn::{PointId, Stn};
-use tpn::LabelId;
+use tpn::{LabelId, Ordering};
 
 use super::Solver;
 use super::encode::Problem;
-use super::literal::Literal;
+use super::literal::{Literal, Side};
 use crate::model::UNBOUNDED_BELOW;
 use crate::model::{Context, INFINITE, Model, ModelArc, point};
-use crate::trace::Event;
+use crate::trace::{Event, TreeChoice};
 
 /// Decisions with more different durations together are not looked into.
 const MAX_NETWORKS: usize = 64;
@@ -46,6 +46,17 @@ impl Touches {
     pub(super) fn new(solver: &mut Solver, rule: Touching) -> Self {
         let none = if rule == Touching::Always { !Literal::TRUE } else { solver.boolean() };
         Self { rule, none, literals: BTreeMap::new() }
+    }
+
+    /// What the literals say in a record.
+    pub(super) fn names(&self) -> impl Iterator<Item = (Literal, TreeChoice)> + '_ {
+        let name = |(first, then)| TreeChoice::Order(Ordering { first, then });
+        self.literals.iter().map(move |(&pair, &touch)| (touch, name(pair)))
+    }
+
+    /// Whether a side says that a pair touches.
+    pub(super) fn has(&self, side: Side) -> bool {
+        self.literals.values().any(|touch| touch.side == side)
     }
 }
 
@@ -111,6 +122,7 @@ impl Problem<'_> {
         if clauses.is_empty() {
             return false;
         }
+        solver.stats.conflicts += 1;
         solver.tell(|| Event::NoRoomForGap);
         solver.retract(0);
         // That nothing makes a pair touch rests on the whole mission, and on no part of it.

@@ -185,7 +185,12 @@ impl Told<'_> {
                     let blamed: Vec<TreeChoice> =
                         because.iter().filter_map(|&it| self.choice_of(it)).collect();
                     for &choice in &blamed {
-                        says(&wording::choice(self.network, Some(choice)))?;
+                        match choice {
+                            TreeChoice::Decision { decision, alternative } if self.is_by_solver() => {
+                                says(&format!("{}={alternative}", Network::decision_name(decision)))?;
+                            }
+                            _ => says(&wording::choice(self.network, Some(choice)))?,
+                        }
                     }
                     holds(!blamed.is_empty(), "it blames nothing")?;
                     holds(self.excludes(&blamed), "there is a plan with the choices that are blamed")

@@ -164,7 +164,7 @@ fn nature() {
             "Search in the order of the text. Each failure teaches what never to choose together again.",
             "Decide D1 = 0: Drive#1.",
             "Failure: with D1=0 nature can choose durations that leave no times. Learned: never D1=0.",
-            "Back to the start, with all that was learned.",
+            "Back to the start: the failure has to do with D1=0 alone.",
             "Whatever is chosen, D1=0 is ruled out.",
             "Whatever is chosen: D1=1.",
             "The times fit, and what must be kept of their order follows from the choices.",
