@@ -139,6 +139,9 @@ pub(crate) struct Solver {
     head: usize,
     /// How many have been propagated to the theories.
     theory_head: usize,
+    /// The same when the decision of each level was made: of several decisions at once, all events are propagated in the last
+    /// one's level, and again when that is left.
+    theory_heads: Vec<usize>,
     /// The events whose bounds need not be carried on, for all bounds are settled that they move.
     settled: std::ops::Range<usize>,
     /// So many decisions are made before what they mean for times is looked at.
@@ -215,6 +218,7 @@ impl Solver {
             is_new: true,
             head: 0,
             theory_head: 0,
+            theory_heads: Vec::new(),
             settled: 0..0,
             burst: 1,
             single_decisions: 0,
@@ -708,6 +712,10 @@ impl Solver {
         });
         self.head = self.head.min(self.trail.events.len());
         self.theory_head = self.theory_head.min(self.trail.events.len());
+        if let Some(&head) = self.theory_heads.get(level as usize) {
+            self.theory_head = self.theory_head.min(head);
+            self.theory_heads.truncate(level as usize);
+        }
         if let Some(record) = &mut self.record {
             record.retract(self.trail.level(), self.trail.events.len());
         }
@@ -733,6 +741,9 @@ impl Solver {
                 continue;
             }
             let Some(option) = self.preferred(choice_point) else { continue };
+            // Levels that were opened elsewhere begin with everything propagated.
+            self.theory_heads.resize(self.trail.level() as usize, usize::MAX);
+            self.theory_heads.push(self.theory_head);
             self.trail.open_level();
             // An open Boolean can be either.
             let _ = self.trail.set(option, trail::Cause::Decision);
