@@ -149,7 +149,7 @@ fn false_exclusions(network: &Network, trace: &Trace) -> Vec<String> {
 #[test]
 fn a_state_is_excluded_by_a_learned_conflict_that_it_contains_and_that_no_plan_does() {
     let mut wrong = Vec::new();
-    let (mut entered, mut passed, mut learned) = (0, 0, 0);
+    let (mut entered, mut learned) = (0, 0);
     for (name, text) in missions(MISSIONS) {
         let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
         for search in [Search::ConflictDirected, Search::BestFirst] {
@@ -163,11 +163,9 @@ fn a_state_is_excluded_by_a_learned_conflict_that_it_contains_and_that_no_plan_d
             let outcome = kirk::plan(&network, &options, &mut ExpansionLimit(2_000));
             let Some(trace) = outcome.trace else { continue };
             wrong.extend(false_exclusions(&network, &trace).into_iter().map(|it| format!("{name}: {it}")));
-            for exclusion in exclusions(&trace).into_iter().flatten() {
-                let is_entered = matches!(trace.events[exclusion.step].event, Event::Known { .. });
-                (entered, passed) = (entered + usize::from(is_entered), passed + usize::from(!is_entered));
-            }
-            if trace.is_conflict_driven() || trace.learned(usize::MAX).next().is_none() {
+            entered += exclusions(&trace).into_iter().flatten().count();
+            // With an objective, it learns which choices are no better.
+            if !network.objective.is_empty() || trace.learned(usize::MAX).next().is_none() {
                 continue;
             }
             let all = Options { all: true, max_plans: 200, ..Options::default() };
@@ -181,8 +179,5 @@ fn a_state_is_excluded_by_a_learned_conflict_that_it_contains_and_that_no_plan_d
         }
     }
     assert!(wrong.is_empty(), "{}: {}", wrong.len(), wrong.join("\n"));
-    assert!(
-        entered > 20 && passed > 50 && learned > 200,
-        "{entered} entered, {passed} passed, {learned} learned"
-    );
+    assert!(entered > 20 && learned > 200, "{entered} entered, {learned} learned");
 }

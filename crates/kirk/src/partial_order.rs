@@ -66,6 +66,7 @@ pub(crate) fn plan(
         is_narrower: false,
         happens_after: TiVec::new(),
         positions: TiVec::new(),
+        relied_on: Vec::new(),
     };
     if !making.add_arcs()? {
         return Ok(None);
@@ -94,6 +95,7 @@ pub(crate) fn plan(
         // Times that fit say nothing of those that nature will choose: what was decided suffices.
         making.keep_uses_ordered(&mut uses_ordered)?;
     }
+    making.keep_in_order(&mut orderings_added, &mut uses_ordered)?;
     let mut levels = Vec::with_capacity(model.demands.resources.len());
     for resource in &model.demands.resources {
         levels.push(making.levels(resource)?);
@@ -141,6 +143,22 @@ struct Making<'a> {
     happens_after: TiVec<NodeId, Vec<NodeId>>,
     /// An order by time, and within an instant by what happens before what.
     positions: TiVec<NodeId, u32>,
+    /// What was in order as it was, so that nothing was added for it.
+    relied_on: Vec<Reliance>,
+}
+
+/// That one event happens before another, and what that keeps in order.
+#[derive(Clone, Copy)]
+struct Reliance {
+    earlier: NodeId,
+    later: NodeId,
+    kept: InOrder,
+}
+
+#[derive(Clone, Copy)]
+enum InOrder {
+    Conditions(Ordering),
+    Uses(UseOrdering),
 }
 
 const fn point(node: NodeId) -> PointId {
@@ -342,8 +360,9 @@ impl Making<'_> {
     }
 
     /// Makes sure that one event happens before another. Whether that had to be added.
-    fn ensure(&mut self, earlier: NodeId, later: NodeId) -> Result<bool, Unplannable> {
+    fn ensure(&mut self, earlier: NodeId, later: NodeId, kept: InOrder) -> Result<bool, Unplannable> {
         if self.happens_before(earlier, later)? {
+            self.relied_on.push(Reliance { earlier, later, kept });
             return Ok(false);
         }
         let is_added = self.insert(earlier, later, 0)?;
@@ -351,6 +370,37 @@ impl Making<'_> {
             self.note_before(earlier, later);
         }
         Ok(is_added)
+    }
+
+    /// Adds what was in order because two events could be apart, and is not any more: orders that were added later hold both at
+    /// one time in every schedule.
+    fn keep_in_order(
+        &mut self,
+        orderings: &mut Vec<Ordering>,
+        uses: &mut Vec<UseOrdering>,
+    ) -> Result<(), Unplannable> {
+        let mut has_changed = true;
+        while std::mem::take(&mut has_changed) {
+            for Reliance { earlier, later, kept } in std::mem::take(&mut self.relied_on) {
+                if self.ensure(earlier, later, kept)? {
+                    has_changed = true;
+                    match kept {
+                        InOrder::Conditions(order) => orderings.push(order),
+                        InOrder::Uses(order) => uses.push(order),
+                    }
+                }
+            }
+            if self.natures_events.is_empty() {
+                let before = uses.len();
+                for resource in &self.model.demands.resources {
+                    if let ModelSupply::Reservoir { .. } = resource.supply {
+                        self.share(resource, uses)?;
+                    }
+                }
+                has_changed |= uses.len() > before;
+            }
+        }
+        Ok(())
     }
 
     /// Where an event stands among all.
@@ -369,8 +419,9 @@ impl Making<'_> {
         order.extend(sides.iter().map(|&(first, then)| Ordering { first, then }));
         sides.retain(|&(first, then)| !before.is_implied(first, then));
         for (first, then) in sides {
-            if self.ensure(network.interval(first).1, network.interval(then).0)? {
-                added.push(Ordering { first, then });
+            let order = Ordering { first, then };
+            if self.ensure(network.interval(first).1, network.interval(then).0, InOrder::Conditions(order))? {
+                added.push(order);
             }
         }
         let links: BTreeMap<LabelId, LabelId> = self.solution.kept.links.iter().copied().collect();
@@ -403,8 +454,10 @@ impl Making<'_> {
                         continue;
                     }
                     firsts.push(change);
-                    if self.ensure(network.interval(ask).1, network.interval(change).0)? {
-                        added.push(Ordering { first: ask, then: change });
+                    let order = Ordering { first: ask, then: change };
+                    let (over, begun) = (network.interval(ask).1, network.interval(change).0);
+                    if self.ensure(over, begun, InOrder::Conditions(order))? {
+                        added.push(order);
                     }
                 }
             }
@@ -493,7 +546,7 @@ impl Making<'_> {
         for &(first, then) in &self.solution.uses_ordered {
             let ordering = UseOrdering { first, then };
             let Precedence { earlier, later, .. } = ordering.precedence(self.network);
-            if self.ensure(earlier, later)? {
+            if self.ensure(earlier, later, InOrder::Uses(ordering))? {
                 added.push(ordering);
             }
         }
@@ -535,6 +588,9 @@ impl Making<'_> {
                     && self.position(giver.end) <= self.position(used.start)
                     && self.happens_before(giver.end, used.start)?
                 {
+                    let (earlier, later) = (giver.end, used.start);
+                    let kept = InOrder::Uses(UseOrdering { first: giver.id, then: used.id });
+                    self.relied_on.push(Reliance { earlier, later, kept });
                     given.push(position);
                     needed -= amount.min(needed);
                 }
@@ -557,8 +613,9 @@ impl Making<'_> {
                     break;
                 }
                 let (giver, amount) = held[position];
-                self.ensure(giver.end, used.start)?;
-                added.push(UseOrdering { first: giver.id, then: used.id });
+                let ordering = UseOrdering { first: giver.id, then: used.id };
+                self.ensure(giver.end, used.start, InOrder::Uses(ordering))?;
+                added.push(ordering);
                 given.push(position);
                 needed -= amount.min(needed);
             }
@@ -601,8 +658,9 @@ impl Making<'_> {
                 let is_same_change = other.change == used.change;
                 let (first, later) = if is_same_change { (used, other) } else { (other, used) };
                 let fits = if is_same_change { at <= then } else { then <= at };
-                if fits && self.ensure(first.moment(), later.moment())? {
-                    added.push(UseOrdering { first: first.id, then: later.id });
+                let ordering = UseOrdering { first: first.id, then: later.id };
+                if fits && self.ensure(first.moment(), later.moment(), InOrder::Uses(ordering))? {
+                    added.push(ordering);
                 }
             }
         }

@@ -167,8 +167,7 @@ impl MergedSide {
         } else if pointed.clicked {
             commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(SearchCommand::Turn(side)));
-            let click = self.drawn.as_ref().map(|drawn| drawn.own[side].goal_of_click(state));
-            commands.send(Command::Search(click.unwrap_or(SearchCommand::GoToNode(state))));
+            commands.send(Command::Search(SearchCommand::GoToNode(state)));
             let choice = recordings[side].trace().tree.get(state as usize).and_then(|node| node.choice);
             commands.send(Command::Select(selection_of(recordings[side].network(), choice)));
         }

@@ -314,7 +314,7 @@ impl Side {
         } else if pointed.clicked {
             commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(SearchCommand::Turn(number)));
-            commands.send(Command::Search(drawn.index.goal_of_click(state)));
+            commands.send(Command::Search(SearchCommand::GoToNode(state)));
             let choice = drawn.recording.trace().tree.get(state as usize).and_then(|node| node.choice);
             commands.send(Command::Select(selection_of(drawn.recording.network(), choice)));
         }

@@ -2,7 +2,7 @@
 //! together as they fit, after Reingold and Tilford (1981). Distances are in cells; linear in the size of the search.
 
 use kirk::{Event, Trace, TreeNodeId, TreeStatus};
-use workbench::state::search::{Exclusion, SearchCommand, exclusions};
+use workbench::state::search::{Exclusion, exclusions};
 
 /// The tree as it is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -197,13 +197,6 @@ impl TreeIndex {
     pub fn exclusion(&self, id: TreeNodeId, step: Option<usize>) -> Option<Exclusion> {
         let exclusion = self.excluded.get(id as usize).copied().flatten()?;
         step.is_none_or(|step| exclusion.step <= step).then_some(exclusion)
-    }
-
-    /// Where a click on a state leads: to its first step, or of one that was never entered to what taught to leave it.
-    pub fn goal_of_click(&self, id: TreeNodeId) -> SearchCommand {
-        let is_entered = self.first_step.get(id as usize).is_some_and(Option::is_some);
-        let taught = self.exclusion(id, None).filter(|_| !is_entered).and_then(|exclusion| exclusion.taught);
-        taught.map_or(SearchCommand::GoToNode(id), SearchCommand::GoTo)
     }
 
     /// Whether the search went elsewhere from a state without a plan, and without having tried all that is below it.

@@ -200,6 +200,7 @@ impl Told<'_> {
                     let is_told = |plan: &Plan| *is_so == makes(plan, *choice);
                     holds(self.plans_with(because).all(is_told), "there is a plan in which it is not so")
                 }
+                Event::Restart => holds(line.len() == 1, "it does not go back to the start"),
                 Event::Keep { orders, .. } => {
                     let keeps = |plan: &Plan| orders.iter().all(|it| plan.orderings_added.contains(it));
                     holds(self.plans.iter().any(keeps), "no plan keeps that order")

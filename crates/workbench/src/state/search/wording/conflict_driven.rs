@@ -83,7 +83,13 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
             facts(network, choices),
             learned(network, choices)
         ),
-        Event::Circle { orders } => format!("Failure: {} go in a circle.", facts(network, orders)),
+        Event::Circle { orders } if orders.is_empty() => {
+            "Failure: what happens at one time can be put in no order.".to_owned()
+        }
+        Event::Circle { orders } => {
+            let verb = if orders.len() == 1 { "leaves" } else { "leave" };
+            format!("Failure: {} {verb} no order for what happens at one time.", facts(network, orders))
+        }
         Event::NoRoomForGap => {
             "Failure: intervals only touch that are not forced to, and there is no room for a gap.".to_owned()
         }
