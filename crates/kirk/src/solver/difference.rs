@@ -30,21 +30,28 @@ pub(crate) struct Difference {
     pub(crate) when: Literal,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Step {
-    to: Side,
-    id: DifferenceId,
-    weight: i64,
-    when: Literal,
+/// A list of differences, each of which knows the next one.
+#[derive(Clone, Copy, Debug, Default)]
+struct List {
+    first: Option<DifferenceId>,
+    last: Option<DifferenceId>,
+}
+
+/// The differences that come after one in the lists that it is in.
+#[derive(Clone, Copy, Debug, Default)]
+struct Next {
+    from: Option<DifferenceId>,
+    waiting: Option<DifferenceId>,
 }
 
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Differences {
     all: TiVec<DifferenceId, Difference>,
-    /// Indexed by source.
-    steps: TiVec<Side, Vec<Step>>,
+    next: TiVec<DifferenceId, Next>,
+    /// By source.
+    from: TiVec<Side, List>,
     /// By the side that makes their literal hold.
-    waiting: TiVec<Side, Vec<DifferenceId>>,
+    waiting: TiVec<Side, List>,
     /// What the present propagation has done to each side.
     movements: TiVec<Side, Movement>,
     moved: Vec<Side>,
@@ -69,17 +76,25 @@ const MOVES_BEFORE_CYCLE: u32 = 6;
 
 impl Differences {
     pub(crate) fn resize(&mut self, num_variables: usize) {
-        self.steps.resize(num_variables * 2, Vec::new());
-        self.waiting.resize(num_variables * 2, Vec::new());
+        self.from.resize(num_variables * 2, List::default());
+        self.waiting.resize(num_variables * 2, List::default());
         self.movements.resize(num_variables * 2, Movement::default());
     }
 
     pub(crate) fn add(&mut self, difference: Difference) {
         let id = self.all.push_and_get_key(difference);
-        let Difference { from, to, weight, when } = difference;
-        self.steps[from].push(Step { to, id, weight, when });
+        self.next.push(Next::default());
+        let Difference { from, when, .. } = difference;
+        match self.from[from].last.replace(id) {
+            Some(last) => self.next[last].from = Some(id),
+            None => self.from[from].first = Some(id),
+        }
         if when != Literal::TRUE {
-            self.waiting[when.side].push(id);
+            let waiting = &mut self.waiting[when.side];
+            match waiting.last.replace(id) {
+                Some(last) => self.next[last].waiting = Some(id),
+                None => waiting.first = Some(id),
+            }
         }
     }
 
@@ -105,7 +120,17 @@ impl Differences {
     /// Carries on the bound of a side, as when it has just moved.
     pub(crate) fn carry_on(&self, trail: &mut Trail, side: Side) -> Result<(), Conflict> {
         let bound = trail.bound(side);
-        self.steps[side].iter().try_for_each(|&step| carry(trail, bound, step))
+        let mut next = self.from[side].first;
+        while let Some(id) = next {
+            carry(trail, bound, id, &self.all[id])?;
+            next = self.next[id].from;
+        }
+        Ok(())
+    }
+
+    /// The differences that wait for a side.
+    fn waiting(&self, side: Side) -> impl Iterator<Item = DifferenceId> + '_ {
+        std::iter::successors(self.waiting[side].first, |&id| self.next[id].waiting)
     }
 
     /// Whether the least times satisfy all constraints in force between times that exist.
@@ -129,7 +154,7 @@ impl Differences {
 
     /// How much room the constraints that wait for a literal leave: the least of them all.
     pub(crate) fn slack(&self, trail: &Trail, when: Literal) -> i64 {
-        let room = self.waiting[when.side].iter().map(|&id| {
+        let room = self.waiting(when.side).map(|id| {
             let Difference { from, to, weight, .. } = self.all[id];
             trail.bound(from) + weight + trail.bound(to.opposite())
         });
@@ -146,17 +171,17 @@ impl Differences {
 
     /// Looks at one step as if its source had just moved.
     pub(crate) fn check(&self, trail: &mut Trail, id: DifferenceId) -> Result<(), Conflict> {
-        let Difference { from, to, weight, when } = self.all[id];
-        carry(trail, trail.bound(from), Step { to, id, weight, when })
+        let difference = &self.all[id];
+        carry(trail, trail.bound(difference.from), id, difference)
     }
 
     /// Looks at the constraints that an event puts in force, and lets its bound wait to be carried on.
     pub(crate) fn moved(&mut self, trail: &mut Trail, event: EventId) -> Result<(), Conflict> {
         let side = trail.events[event].side;
-        for &id in &self.waiting[side] {
+        for id in self.waiting(side) {
             self.check(trail, id)?;
         }
-        if self.steps[side].is_empty() {
+        if self.from[side].first.is_none() {
             return Ok(());
         }
         let trail::Event { most, before, .. } = trail.events[event];
@@ -192,9 +217,7 @@ impl Differences {
                 trail.set(!presence, cause)?;
                 return Ok(true);
             }
-            for &step in &self.steps[side] {
-                carry(trail, bound, step)?;
-            }
+            self.carry_on(trail, side)?;
             return Ok(true);
         }
         Ok(false)
@@ -229,7 +252,7 @@ impl Differences {
         let start = trail.events[event].side;
         let (mut at, mut most) = (event, trail.events[event].most);
         let (mut reason, mut cycle) = (Vec::new(), Vec::new());
-        for _ in 0..self.steps.len() {
+        for _ in 0..self.from.len() {
             let Cause::Difference(id) = trail.events[at].cause else { return None };
             let Difference { from, weight, when, .. } = self.all[id];
             if when != Literal::TRUE {
@@ -249,8 +272,12 @@ impl Differences {
     }
 }
 
-fn carry(trail: &mut Trail, bound: i64, step: Step) -> Result<(), Conflict> {
-    let Step { to, id, weight, when } = step;
+fn carry(
+    trail: &mut Trail,
+    bound: i64,
+    id: DifferenceId,
+    &Difference { to, weight, when, .. }: &Difference,
+) -> Result<(), Conflict> {
     let most = bound + weight;
     if most >= trail.bound(to) {
         return Ok(());
