@@ -22,10 +22,10 @@ const MISSIONS: u64 = 150;
 const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learned Look No Nothing Of Propagate Search The \
     This Together Try Whatever a after again all allow allows alone and another any arcs as at back be before besides \
     block blocks both bounded but can cannot choice choices choose chooses chosen come comes conflict contain contradiction delays do \
-    duration durations each end ends event events failed failure first fit follows for found from go greatest has have \
+    duration durations each end ends event events failed failure first fit follows for found from go gaps greatest happens has have \
     here if in inf instead is it its keeps kept last lasts learned least leave leaves left let long mission more most \
     move moves much must need needs neither never no node none not nothing of on once one ones only order ordering other \
-    others out plan program rest rests rule ruled rules s search so some start take takes teaches text than that the \
+    others out plan program put rest rests rule ruled rules s search so some start take takes teaches text than that the \
     their them then there these they time times to together too try up wait was what whatever which with would";
 
 /// Whether a mission has what some words are about.
@@ -69,6 +69,9 @@ fn adds_up(sentence: &str) -> bool {
 fn told_needs(sentence: &str) -> Option<usize> {
     let (before, _) = sentence.split_once(" at least ")?;
     let names = before.strip_suffix(" need").or(before.strip_suffix(" needs"))?;
+    // `X in {A, C}` is one name.
+    let names: String =
+        names.split('{').map(|part| part.split_once('}').map_or(part, |(_, rest)| rest)).collect();
     let names = names.rsplit(": ").next()?;
     let is_named =
         !["keeping them apart", "coming one after the other", "their order in the program"].contains(&names);

@@ -180,7 +180,7 @@ fn the_reference_knows_the_conformance_cases() {
 #[test]
 fn the_checker_accepts_what_the_reference_finds() {
     let mut accepted = 0;
-    for seed in 0..600 {
+    for seed in 0..1_000 {
         let text = lasting_mission(seed, Kind::STATES);
         let network = network(&text);
         let Some(answer) = search(&network, LIMITS) else { continue };

@@ -86,7 +86,7 @@ fn check_all(kind: Kind, addition: Addition) {
         learned += check_learned(&network, &trace, addition, &told);
         failures += trace.tree.iter().filter(|node| node.status == TreeStatus::Failed).count();
     }
-    assert!(plans > MISSIONS / 5, "{plans} plans");
+    assert!(plans > MISSIONS / 8, "{plans} plans");
     assert!(learned > 15 && failures > 100, "{learned} learned from {failures} failures");
 }
 
@@ -255,7 +255,11 @@ fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &Sear
             plan.selected_arcs[used.arc.index()]
                 && insert(&mut stn, network.start, used.start, most).is_some()
         }
-        TreeChoice::NoLink { .. } | TreeChoice::Later { .. } | TreeChoice::Departure(_) => false,
+        // Which of its pairs are kept apart a plan does not say.
+        TreeChoice::NoLink { .. }
+        | TreeChoice::Later { .. }
+        | TreeChoice::Departure(_)
+        | TreeChoice::Apart => false,
     })
 }
 

@@ -39,6 +39,7 @@ pub(crate) fn edges(model: &Model, choice: TreeChoice) -> Vec<StnEdge> {
                 .into_iter()
                 .collect()
         }
+        TreeChoice::Apart => Vec::new(),
         TreeChoice::Departure(Departing { movement, before }) => {
             let departures = model.demands.departures.get(&movement);
             let departure = departures.and_then(|departures| {

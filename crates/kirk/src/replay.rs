@@ -188,7 +188,7 @@ impl Replay {
                 TreeChoice::UseOrder(order) => result.uses.push(order),
                 TreeChoice::Start { used, by } => result.starts.push((used, by)),
                 TreeChoice::Departure(departing) => result.departures.push(departing),
-                TreeChoice::NoLink { .. } | TreeChoice::Later { .. } => {}
+                TreeChoice::NoLink { .. } | TreeChoice::Later { .. } | TreeChoice::Apart => {}
             }
         }
         if self.rounds.is_empty() {

@@ -276,6 +276,8 @@ pub enum TreeChoice {
     },
     /// Where a movement sets out. This is never chosen; it follows from the order of movements.
     Departure(Departing),
+    /// The gap is kept between all conflicting intervals that are put in order (SPEC 5.3): assumed until it is refuted.
+    Apart,
 }
 
 impl From<Choice> for TreeChoice {
@@ -339,6 +341,7 @@ impl Trace {
             Some(TreeChoice::Later { used, than }) => {
                 format!("{} after {than}", network.use_name(used))
             }
+            Some(TreeChoice::Apart) => "all gaps kept".to_owned(),
             Some(TreeChoice::Departure(Departing { movement, before })) => {
                 format!("{} from {}", network.label_name(movement), network.label_name(before))
             }

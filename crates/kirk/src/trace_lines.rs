@@ -162,6 +162,7 @@ fn choice_json(network: &Network, choice: TreeChoice) -> Value {
         }
         TreeChoice::Start { used, by } => json!({ "use": network.use_name(used), "by": by }),
         TreeChoice::Later { used, than } => json!({ "use": network.use_name(used), "after": than }),
+        TreeChoice::Apart => json!({ "apart": true }),
         TreeChoice::Departure(Departing { movement, before }) => {
             json!({ "movement": label(movement), "before": label(before) })
         }

@@ -3,7 +3,8 @@
 //!
 //! Reasons are told as choices alone. What the solver knows of single times is traced back to the choices that it follows
 //! from, and so is what is ruled out; what a conflict teaches stays true by that, though it may say less than the clause.
-//! Recording decides nothing: with and without it the same is searched in the same steps.
+//! Recording decides nothing: the same plan is found with and without it. Only what nobody watches makes many decisions before
+//! it looks at their times.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
@@ -250,7 +251,10 @@ impl Solver {
             let choices = behind.iter().chain([&literal]).filter_map(|&it| record.name(it)).collect();
             let states = levels.into_iter().filter_map(|level| state(level as usize));
             let because = states.chain([taken_back]).collect();
-            record.recorder.set_status(from, TreeStatus::Failed);
+            // What becomes of the root is known at the end of all searches.
+            if from != 0 {
+                record.recorder.set_status(from, TreeStatus::Failed);
+            }
             let mut last = record.recorder.trace.events.iter().rev();
             let is_told = last.next().is_some_and(|it| matches!(it.event, Event::Uncontrollable { .. }));
             if !is_told {
@@ -277,9 +281,13 @@ impl Solver {
             Some(TreeChoice::UseOrder(order)) => Event::TryUseOrder { order },
             // All that is decided is one of these.
             Some(TreeChoice::Start { used, by }) => Event::TryStart { used, by },
-            Some(TreeChoice::NoLink { .. } | TreeChoice::Later { .. } | TreeChoice::Departure(_)) | None => {
-                return;
-            }
+            Some(
+                TreeChoice::NoLink { .. }
+                | TreeChoice::Later { .. }
+                | TreeChoice::Departure(_)
+                | TreeChoice::Apart,
+            )
+            | None => return,
         };
         record.tell(event);
     }
@@ -327,7 +335,7 @@ impl Solver {
                 self.reason_of(literal, id, &mut reason);
                 self.choices_behind(&reason, None)
             };
-                let Some(record) = self.recording() else { return };
+            let Some(record) = self.recording() else { return };
             for (at, choice) in own.into_iter().enumerate() {
                 if !is_decision || at > 0 {
                     record.tell(Event::Imply { choice, holds: true, because: because.clone() });
@@ -676,7 +684,8 @@ const fn constraint(choice: TreeChoice) -> Option<Constraint> {
         TreeChoice::Decision { .. }
         | TreeChoice::NoLink { .. }
         | TreeChoice::Start { .. }
-        | TreeChoice::Later { .. } => None,
+        | TreeChoice::Later { .. }
+        | TreeChoice::Apart => None,
         TreeChoice::Link(link) => Some(Constraint::Link(link)),
         TreeChoice::Order(order) => Some(Constraint::Order(order)),
         TreeChoice::UseOrder(order) => Some(Constraint::UseOrder(order)),

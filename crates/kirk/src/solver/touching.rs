@@ -51,7 +51,8 @@ impl Touches {
     /// What the literals say in a record.
     pub(super) fn names(&self) -> impl Iterator<Item = (Literal, TreeChoice)> + '_ {
         let name = |(first, then)| TreeChoice::Order(Ordering { first, then });
-        self.literals.iter().map(move |(&pair, &touch)| (touch, name(pair)))
+        let assumed = (self.rule == Touching::Unneeded).then_some((self.none, TreeChoice::Apart));
+        assumed.into_iter().chain(self.literals.iter().map(move |(&pair, &touch)| (touch, name(pair))))
     }
 
     /// Whether a side says that a pair touches.

@@ -158,6 +158,7 @@ impl Focus {
                 TreeChoice::Start { used, .. } | TreeChoice::Later { used, .. } => {
                     self.add_uses(network, &[used]);
                 }
+                TreeChoice::Apart => {}
                 TreeChoice::Departure(Departing { movement, before }) => {
                     self.add_labels(network, [before, movement]);
                 }
@@ -214,7 +215,7 @@ pub fn is_failure(event: &Event) -> bool {
 /// What the other panels select when a state of the search is clicked: what was chosen there.
 pub fn selection_of(network: &Network, choice: Option<TreeChoice>) -> Selection {
     match choice {
-        None => Selection::None,
+        None | Some(TreeChoice::Apart) => Selection::None,
         Some(TreeChoice::Decision { decision, alternative }) => Selection::Alternative(decision, alternative),
         Some(TreeChoice::Link(link)) => Selection::Link(link),
         Some(TreeChoice::Order(order)) => Selection::Ordering(order),

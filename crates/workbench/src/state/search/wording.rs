@@ -28,7 +28,8 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
             choice @ (TreeChoice::UseOrder(_)
             | TreeChoice::Start { .. }
             | TreeChoice::Later { .. }
-            | TreeChoice::Departure(_)),
+            | TreeChoice::Departure(_)
+            | TreeChoice::Apart),
         ) => conflict_driven::fact(network, choice),
     }
 }

@@ -154,6 +154,7 @@ pub fn learned(network: &Network, choices: &[TreeChoice]) -> String {
 pub fn never(network: &Network, choices: &[TreeChoice]) -> String {
     match choices {
         [] => "whatever is chosen, it cannot succeed".to_owned(),
+        [TreeChoice::Apart] => "some intervals must touch".to_owned(),
         [only] => format!("never {}", fact(network, *only)),
         [first, rest @ ..] => {
             format!("never again {} together with {}", fact(network, *first), facts(network, rest))
@@ -200,6 +201,7 @@ pub fn fact(network: &Network, choice: TreeChoice) -> String {
             }
         }
         TreeChoice::NoLink { ask } => format!("nothing for {}", network.label_name(ask)),
+        TreeChoice::Apart => "all gaps kept".to_owned(),
     }
 }
 
