@@ -23,9 +23,9 @@ const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learne
     This Together Try Whatever a after again all allow allows alone and another any arcs as at back be before besides \
     block blocks both bounded but can cannot choice choices choose chooses chosen come comes conflict contain contradiction delays do \
     duration durations each end ends event events failed failure first fit follows for found from go gaps greatest happens has have \
-    here if in inf instead is it its keeps kept last lasts learned least leave leaves left let long mission more most \
+    here if impossible in inf instead is it its keeping keeps kept last lasts learned least leave leaves left let long mission more most \
     move moves much must need needs neither never no node none not nothing of on once one ones only order ordering other \
-    others out plan program put rest rests rule ruled rules s search so some start take takes teaches text than that the \
+    others out plan program put rest rests room rule ruled rules s search so some start take takes teaches text than that the \
     their them then there these they time times to together too try up wait was what whatever which with would";
 
 /// Whether a mission has what some words are about.

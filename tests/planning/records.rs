@@ -1,6 +1,8 @@
 //! Records of conflict-driven searches on many small random missions: recording changes nothing, what is told is so, and
 //! every step can be shown.
 
+use std::collections::BTreeSet;
+
 use acceptance::lasting_missions::{Kind, lasting_mission};
 use acceptance::mission::compile;
 use exact::{Bound, Time};
@@ -233,7 +235,9 @@ fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &Sear
             return false;
         }
     }
-    choices.iter().all(|choice| match choice {
+    // What is chosen beside what the plan does anyway, which has an order at each time as well.
+    let mut before: Vec<(NodeId, NodeId)> = Vec::new();
+    let is_made = choices.iter().all(|choice| match choice {
         TreeChoice::Decision { decision, alternative } => {
             plan.choices.iter().any(|it| it.decision == *decision && it.alternative == *alternative)
         }
@@ -241,11 +245,13 @@ fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &Sear
         TreeChoice::Order(Ordering { first, then }) => {
             let is_there = |label: LabelId| plan.selected_arcs[network.labels[label.index()].arc.index()];
             let (earlier, later) = (network.interval(*first).1, network.interval(*then).0);
+            before.push((earlier, later));
             is_there(*first) && is_there(*then) && keeps(&mut stn, earlier, later, all)
         }
         TreeChoice::UseOrder(order) => {
             let is_there = |used: tpn::UseId| plan.selected_arcs[network.uses[used.index()].arc.index()];
             let Precedence { earlier, later, .. } = order.precedence(network);
+            before.push((earlier, later));
             is_there(order.first) && is_there(order.then) && keeps(&mut stn, earlier, later, all)
         }
         TreeChoice::Start { used, by } => {
@@ -260,7 +266,26 @@ fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &Sear
         | TreeChoice::Later { .. }
         | TreeChoice::Departure(_)
         | TreeChoice::Apart => false,
-    })
+    });
+    let arcs = network.arcs.iter().zip(&plan.selected_arcs);
+    before.extend(arcs.filter(|(_, is_selected)| **is_selected).map(|(arc, _)| (arc.from, arc.to)));
+    before.extend(plan.precedences(network).into_iter().map(|it| (it.earlier, it.later)));
+    is_made && has_order(stn.schedule(), &before)
+}
+
+/// Whether what happens at one time has an order.
+fn has_order(times: &[i64], before: &[(NodeId, NodeId)]) -> bool {
+    let mut left: Vec<(NodeId, NodeId)> = before.to_vec();
+    left.retain(|(earlier, later)| earlier != later && times[earlier.index()] == times[later.index()]);
+    loop {
+        let later: BTreeSet<NodeId> = left.iter().map(|&(_, later)| later).collect();
+        let num_left = left.len();
+        // What nothing is before comes first.
+        left.retain(|(earlier, _)| later.contains(earlier));
+        if left.len() == num_left {
+            return left.is_empty();
+        }
+    }
 }
 
 /// Whether one event is before another in some schedule, which is then kept, or in all.

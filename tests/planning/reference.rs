@@ -158,8 +158,15 @@ fn compare(text: &str, gap: Time) -> Result<Option<Compared>, String> {
         let outcome = plans(true)?;
         let found: BTreeSet<Comparable> = outcome.plans.iter().map(plan_key).collect();
         if found != expected {
-            let (missing, wrong) = (expected.difference(&found).count(), found.difference(&expected).count());
-            return Err(format!("{kind:?}: {missing} plans are missing, {wrong} are wrong\n{text}"));
+            let missing: Vec<&Comparable> = expected.difference(&found).collect();
+            let wrong: Vec<&Comparable> = found.difference(&expected).collect();
+            return Err(format!(
+                "{kind:?}: {} plans are missing, {} are wrong, such as {:?} and {:?}\n{text}",
+                missing.len(),
+                wrong.len(),
+                missing.first(),
+                wrong.first()
+            ));
         }
         if outcome.plans.len() != expected.len() {
             return Err(format!("{kind:?}: a plan is listed twice\n{text}"));

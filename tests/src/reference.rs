@@ -176,7 +176,10 @@ impl Exhaustive<'_> {
             return Some(());
         }
         let gap = self.scale.time(self.network.threat_gap);
-        for way in ways {
+        // What the orders before put in one order stays in that: without a gap the other one would leave no time to either.
+        let is_known = |way: &&Ordering| matrix.get(self.ends(way.then).0, self.ends(way.first).1) <= -gap;
+        let known = ways.iter().find(is_known).copied();
+        for way in known.map_or(ways.to_vec(), |way| vec![way]) {
             let mut ordered = matrix.clone();
             if ordered.constrain(self.ends(way.first).1, self.ends(way.then).0, gap, None) {
                 order.push(way);
@@ -196,10 +199,15 @@ impl Exhaustive<'_> {
             };
             selected.then(|| (self.scale.unscaled(-matrix.get(node, start)), latest))
         };
+        // What is in both orders at once, as intervals without length at one instant are, is in the textual one.
+        let told = |(&way, &(one, other)): (&Ordering, &(LabelId, LabelId))| {
+            if self.is_before(matrix, one, other) { Ordering { first: one, then: other } } else { way }
+        };
+        let conflicts = order.iter().zip(&leaf.conflicts).map(told).collect();
         let found = Found {
             choices: leaf.choices.clone(),
             links: links.to_vec(),
-            conflicts: order.to_vec(),
+            conflicts,
             windows: leaf.nodes.iter().enumerate().map(window).collect(),
         };
         let is_known = self.answer.plans.iter().any(|known| {

@@ -11,7 +11,7 @@ use typed_index_collections::TiVec;
 use crate::failure::{Failure, Member, Reason};
 use crate::model::{INFINITE, Model, UNBOUNDED_BELOW};
 use crate::options::{Stats, Termination, Unlimited};
-use crate::solver::{self, Answer, Problem, Touching, Unordered};
+use crate::solver::{self, Answer, Problem, Touching};
 use crate::trace::{Constraint, CycleMember};
 use crate::{demanding, whole, wording};
 
@@ -86,7 +86,7 @@ pub fn is_conflict(network: &Network, choices: &[Choice], members: &[Member]) ->
     let mut effort = Effort::for_size(model.num_nodes, &mut unlimited);
     let mut part = Part::new(&model, choices);
     for &member in members {
-        part.set(&model, member, true);
+        part.set(member, true);
     }
     part.is_refuted(&mut effort)
 }
@@ -262,20 +262,19 @@ fn assumed(model: &Model, choices: &[Choice]) -> TiVec<DecisionId, Option<u32>> 
 }
 
 /// The planning problem that has only some of the bounds and conditions of another.
-pub(crate) struct Part {
+pub(crate) struct Part<'m> {
+    mission: &'m Model,
     model: Model,
     active_labels: TiVec<LabelId, bool>,
     active_uses: Vec<bool>,
     assumed: TiVec<DecisionId, Option<u32>>,
     /// Whether durations that nature chooses are chosen like all others.
     pub(crate) ignores_nature: bool,
-    /// What holds of the whole mission, whatever is chosen.
-    loosest: Vec<Unordered>,
 }
 
-impl Part {
-    pub(crate) fn new(whole: &Model, choices: &[Choice]) -> Self {
-        let mut model = whole.clone();
+impl<'m> Part<'m> {
+    pub(crate) fn new(mission: &'m Model, choices: &[Choice]) -> Self {
+        let mut model = mission.clone();
         // Without their bounds, arcs may be over before they begin.
         (model.structure, model.nesting) = (None, None);
         for arc in &mut model.arcs {
@@ -284,22 +283,23 @@ impl Part {
         Self {
             active_labels: vec![false; model.conditions.labels.len()].into(),
             active_uses: vec![false; model.demands.num_uses()],
-            assumed: assumed(whole, choices),
-            loosest: Unordered::loosest(whole),
+            assumed: assumed(mission, choices),
+            mission,
             model,
             ignores_nature: false,
         }
     }
 
-    pub(crate) fn set(&mut self, whole: &Model, member: Member, is_in: bool) {
+    pub(crate) fn set(&mut self, member: Member, is_in: bool) {
         match member {
             Member::Condition(label) => self.active_labels[label] = is_in,
             Member::Use(used) => self.active_uses[used.index()] = is_in,
             Member::Bound(Constraint::Lower(arc)) => {
-                self.model.arcs[arc].lower = if is_in { whole.arcs[arc].lower } else { UNBOUNDED_BELOW };
+                self.model.arcs[arc].lower =
+                    if is_in { self.mission.arcs[arc].lower } else { UNBOUNDED_BELOW };
             }
             Member::Bound(Constraint::Upper(arc)) => {
-                self.model.arcs[arc].upper = if is_in { whole.arcs[arc].upper } else { INFINITE };
+                self.model.arcs[arc].upper = if is_in { self.mission.arcs[arc].upper } else { INFINITE };
             }
             Member::Bound(
                 Constraint::Link(_)
@@ -334,7 +334,7 @@ impl Part {
             wants_core,
             lists_all: false,
             touching: Touching::Unneeded,
-            loosest: &self.loosest,
+            mission: Some(self.mission),
         };
         match effort.solve(&self.model, part)? {
             (Answer::Unsolvable, core) => Some(Refuted::By(core)),

@@ -35,8 +35,6 @@ pub(crate) struct Model {
     pub(crate) start: NodeId,
     pub(crate) num_nodes: usize,
     pub(crate) arcs: TiVec<ArcId, ModelArc>,
-    /// The bounds of all arcs in the mission, where only a part of it is looked at.
-    pub(crate) given_bounds: Vec<(i64, i64)>,
     /// The out-arcs of node `n` are `out_arcs[out_start[n]..out_start[n + 1]]`.
     out_start: Vec<u32>,
     out_arcs: Vec<ArcId>,
@@ -137,7 +135,6 @@ impl Model {
             start: network.start,
             num_nodes: network.nodes.len(),
             decisions: decisions.collect(),
-            given_bounds: arcs.iter().map(|arc| (arc.lower, arc.upper)).collect(),
             arcs,
             out_start,
             out_arcs,
@@ -168,7 +165,6 @@ impl Model {
     pub(crate) fn set_bounds(&mut self, network: &Network, arc: ArcId, lower: i64, upper: i64) {
         let changed = &mut self.arcs[arc];
         (changed.lower, changed.upper) = (lower, upper);
-        self.given_bounds[arc.index()] = (lower, upper);
         changed.is_tie = !changed.is_uncertain && (lower, upper) == (0, 0);
         for &label in &network.arcs[arc.index()].labels {
             self.gap_after[label] = self.least_gap_after(label);

@@ -35,21 +35,13 @@ pub(crate) struct Solution {
     pub(crate) times: TiVec<NodeId, i64>,
 }
 
-/// A plan that holds in every schedule.
-pub(crate) struct Built {
-    pub(crate) plan: Plan,
-    /// Whether it orders a pair in one way that its other orders put in the other way already, so that both intervals last
-    /// no time: another plan leaves that open.
-    pub(crate) is_narrower: bool,
-}
-
 /// The plan of a solution; `None` if intervals that the solution only lets touch are not forced to, so that the gap
 /// between them that SPEC 5.3 asks for is not there.
 pub(crate) fn plan(
     network: &Network,
     model: &Model,
     solution: &Solution,
-) -> Result<Option<Built>, Unplannable> {
+) -> Result<Option<Plan>, Unplannable> {
     let mut choices = choices(&solution.alternatives);
     let (selected_nodes, selected_arcs) = closure(network, &choices);
     // What is decided inside an alternative that is not taken is no part of the plan.
@@ -63,7 +55,6 @@ pub(crate) fn plan(
         stn: Stn::new(model.num_nodes),
         windows: (Vec::new(), Vec::new()),
         num_edges: 0,
-        is_narrower: false,
         happens_after: TiVec::new(),
         positions: TiVec::new(),
         relied_on: Vec::new(),
@@ -102,7 +93,7 @@ pub(crate) fn plan(
     }
     let windows = making.windows(&selected_nodes)?;
     let quality = model.demands.quality(&selected_arcs, &windows);
-    let plan = Plan {
+    Ok(Some(Plan {
         choices,
         selected_nodes,
         selected_arcs,
@@ -113,8 +104,7 @@ pub(crate) fn plan(
         levels,
         quality,
         windows,
-    };
-    Ok(Some(Built { plan, is_narrower: making.is_narrower }))
+    }))
 }
 
 fn choices(alternatives: &Alternatives) -> Vec<Choice> {
@@ -138,7 +128,6 @@ struct Making<'a> {
     /// Distances from and to the start with all links and no order yet: still bounds with orders.
     windows: (Vec<i64>, Vec<i64>),
     num_edges: usize,
-    is_narrower: bool,
     /// What happens right before each event among those at its time (SPEC 10.4); empty where nothing needs that order.
     happens_after: TiVec<NodeId, Vec<NodeId>>,
     /// An order by time, and within an instant by what happens before what.
@@ -505,19 +494,24 @@ impl Making<'_> {
                 ordered.contains(&(left, right))
             };
             let (first, then) = if is_left_first { (left, right) } else { (right, left) };
-            let (end, start) = (self.network.interval(first).1, self.network.interval(then).0);
-            let gap = self.gap_before(then, self.model.gap);
-            order.push(Ordering { first, then });
-            if self.is_entailed(end, start, gap)? {
+            let (wanted, other) = (Ordering { first, then }, Ordering { first: then, then: first });
+            // Without a gap, intervals that last no time may be in both orders: what is so already stays so.
+            let mut known = None;
+            for ordering in [wanted, other] {
+                let (end, start, gap) = self.kept_apart(ordering);
+                if known.is_none() && self.is_entailed(end, start, gap)? {
+                    known = Some(ordering);
+                }
+            }
+            order.push(known.unwrap_or(wanted));
+            if known.is_some() {
                 continue;
             }
-            let (then_end, first_start) = (self.network.interval(then).1, self.network.interval(first).0);
-            self.is_narrower |=
-                self.is_entailed(then_end, first_start, self.gap_before(first, self.model.gap))?;
+            let (end, start, gap) = self.kept_apart(wanted);
             if !self.insert(end, start, gap)? {
                 return Ok(false);
             }
-            added.push(Ordering { first, then });
+            added.push(wanted);
         }
         // What is in both orders at once, as intervals without length at one instant are, is in the textual one.
         for order in order.iter_mut().filter(|order| order.then < order.first) {
@@ -529,6 +523,12 @@ impl Making<'_> {
             }
         }
         Ok(true)
+    }
+
+    /// What must be how far before what, where a threat is put in order.
+    fn kept_apart(&self, Ordering { first, then }: Ordering) -> (NodeId, NodeId, i64) {
+        let (end, start) = (self.network.interval(first).1, self.network.interval(then).0);
+        (end, start, self.gap_before(then, self.model.gap))
     }
 
     /// No gap comes before what begins when nature says (SPEC 13.1).

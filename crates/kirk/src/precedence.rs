@@ -13,7 +13,10 @@ pub(crate) type StnEdge = (PointId, PointId, i64);
 /// What a choice says about times.
 pub(crate) fn edges(model: &Model, choice: TreeChoice) -> Vec<StnEdge> {
     match choice {
-        TreeChoice::Decision { .. } | TreeChoice::NoLink { .. } | TreeChoice::Later { .. } => Vec::new(),
+        TreeChoice::Decision { .. }
+        | TreeChoice::NoLink { .. }
+        | TreeChoice::Later { .. }
+        | TreeChoice::Apart => Vec::new(),
         TreeChoice::Link(link) => {
             let (ask_start, ask_end) = model.interval(link.ask);
             let (tell_start, tell_end) = model.interval(link.tell);
@@ -39,7 +42,6 @@ pub(crate) fn edges(model: &Model, choice: TreeChoice) -> Vec<StnEdge> {
                 .into_iter()
                 .collect()
         }
-        TreeChoice::Apart => Vec::new(),
         TreeChoice::Departure(Departing { movement, before }) => {
             let departures = model.demands.departures.get(&movement);
             let departure = departures.and_then(|departures| {

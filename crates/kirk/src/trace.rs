@@ -341,7 +341,7 @@ impl Trace {
             Some(TreeChoice::Later { used, than }) => {
                 format!("{} after {than}", network.use_name(used))
             }
-            Some(TreeChoice::Apart) => "all gaps kept".to_owned(),
+            Some(TreeChoice::Apart) => "keeping all gaps".to_owned(),
             Some(TreeChoice::Departure(Departing { movement, before })) => {
                 format!("{} from {}", network.label_name(movement), network.label_name(before))
             }

@@ -26,8 +26,7 @@ pub(crate) fn reason(
 ) -> Option<Reason> {
     let all = members(model);
     let part = Part::new(model, choices);
-    let mut search =
-        Shrinking { model, part, members: Vec::new(), proven: all.clone(), wants_core: true, effort };
+    let mut search = Shrinking { part, members: Vec::new(), proven: all.clone(), wants_core: true, effort };
     search.keep(&all);
     let Refuted::By(core) = search.part.refute(search.effort, true)? else { return None };
     let mut is_minimal = core.is_some_and(|core| search.shrink_core(&core));
@@ -64,8 +63,7 @@ pub(crate) fn reason(
 }
 
 struct Shrinking<'a, 't> {
-    model: &'a Model,
-    part: Part,
+    part: Part<'a>,
     members: Vec<Member>,
     /// The last members that were proven to be a contradiction themselves.
     proven: Vec<Member>,
@@ -110,10 +108,10 @@ impl Shrinking<'_, '_> {
     /// Takes only these members.
     fn keep(&mut self, members: &[Member]) {
         for &member in &self.members {
-            self.part.set(self.model, member, false);
+            self.part.set(member, false);
         }
         for &member in members {
-            self.part.set(self.model, member, true);
+            self.part.set(member, true);
         }
         self.members = members.to_vec();
     }
@@ -314,7 +312,7 @@ mod tests {
             let mut effort = Effort::for_size(model.num_nodes, &mut unlimited);
             let mut part = Part::new(&model, &[]);
             for member in members(&model) {
-                part.set(&model, member, true);
+                part.set(member, true);
             }
             let core = match part.refute(&mut effort, true) {
                 Some(Refuted::By(Some(core))) => core,
@@ -330,7 +328,7 @@ mod tests {
             cores += 1;
             let mut rest = Part::new(&model, &[]);
             for &member in &core {
-                rest.set(&model, member, true);
+                rest.set(member, true);
             }
             assert_eq!(rest.is_refuted(&mut effort), Some(true), "{core:?}\n{text}");
         }

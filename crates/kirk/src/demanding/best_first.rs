@@ -23,7 +23,7 @@ impl Searching<'_> {
         let mut found = None;
         if visit == Visit::Solution {
             let solution = problem.whole_solution(&solver);
-            found = partial_order::plan(self.network, model, &solution)?.map(|built| built.plan);
+            found = partial_order::plan(self.network, model, &solution)?;
             debug_assert!(found.is_some(), "every solution is a plan");
         }
         let mut is_promised = visit != Visit::Solution;

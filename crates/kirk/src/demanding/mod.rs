@@ -16,7 +16,7 @@ use crate::choices::Choices;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
 use crate::model::Model;
 use crate::options::{Options, Outcome, Search, Stats, Status, Termination};
-use crate::partial_order::{self, Built};
+use crate::partial_order;
 use crate::solver::{Answer, GoalSums, Growth, Part, Problem, Record, Solver, Touching, Unencoded};
 use crate::structure::Relation;
 use crate::trace::{Event, SearchRound};
@@ -117,10 +117,10 @@ pub(crate) fn keep(
     if solver.solve(&mut problem, &mut enough) != Answer::Solved {
         return Ok(None);
     }
-    let built = partial_order::plan(network, model, &problem.whole_solution(&solver))?;
-    Ok(built.map(|built| Outcome {
+    let plan = partial_order::plan(network, model, &problem.whole_solution(&solver))?;
+    Ok(plan.map(|plan| Outcome {
         status: Status::Plan,
-        plans: vec![built.plan],
+        plans: vec![plan],
         bound: None,
         failure: None,
         stats: solver.stats,
@@ -308,13 +308,7 @@ impl<'a> Searching<'a> {
                 Some(true) => {}
             }
             let solution = problem.whole_solution(solver);
-            let built = partial_order::plan(self.network, model, &solution)?;
-            if built.as_ref().is_some_and(|built| self.is_listing && built.is_narrower) {
-                problem.forbid(solver);
-                solver.record_restart(problem);
-                continue;
-            }
-            if let Some(Built { plan, .. }) = built {
+            if let Some(plan) = partial_order::plan(self.network, model, &solution)? {
                 debug_assert!(self.is_within(&plan, limits)?, "a plan is as good as its solution");
                 solver.record_solution(|| Event::Keep {
                     orders: plan.orderings_added.clone(),

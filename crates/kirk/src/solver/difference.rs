@@ -48,7 +48,7 @@ struct Next {
 pub(crate) struct Differences {
     all: TiVec<DifferenceId, Difference>,
     next: TiVec<DifferenceId, Next>,
-    /// By source.
+    /// What leads from each side.
     from: TiVec<Side, List>,
     /// By the side that makes their literal hold.
     waiting: TiVec<Side, List>,

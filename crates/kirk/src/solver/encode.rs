@@ -6,13 +6,14 @@ use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, Vari
 use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
+use super::enclosure::Enclosures;
 use super::growth::{Growth, LINK, Unencoded};
 use super::instants::Instants;
 use super::lasting::Sides;
 use super::literal::{Literal, Side, Variable};
 use super::refutation::Premise;
 use super::resources::Shares;
-use super::touching::{Touches, Touching, Unordered};
+use super::touching::{Touches, Touching};
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
 use crate::choices::Choices;
 use crate::failure::Member;
@@ -59,8 +60,8 @@ pub(crate) struct Part<'a> {
     pub(crate) lists_all: bool,
     /// What is assumed of pairs that touch, where the mission has a gap.
     pub(crate) touching: Touching,
-    /// What holds of the whole mission, whatever is chosen, if this is a part of one.
-    pub(crate) loosest: &'a [Unordered],
+    /// The whole mission, if this is a part of one.
+    pub(crate) mission: Option<&'a Model>,
 }
 
 impl Default for Part<'_> {
@@ -73,7 +74,7 @@ impl Default for Part<'_> {
             wants_core: false,
             lists_all: false,
             touching: Touching::Unneeded,
-            loosest: &[],
+            mission: None,
         }
     }
 }
@@ -83,8 +84,7 @@ impl Default for Part<'_> {
 pub(crate) struct Problem<'m> {
     pub(crate) model: &'m Model,
     pub(super) touches: Touches,
-    /// What holds whatever is chosen, once that has been looked at.
-    pub(super) loosest: Option<Vec<Unordered>>,
+    pub(super) enclosures: Enclosures<'m>,
     /// By label: when it ends at the latest and starts at the earliest, by arcs alone.
     pub(super) windows: TiVec<LabelId, (i64, i64)>,
     pub(crate) intervals: TiVec<LabelId, Interval>,
@@ -116,7 +116,7 @@ impl<'m> Problem<'m> {
     /// The problem and a solver that knows it, unless it is stopped before. The model's contexts must be known.
     pub(crate) fn new(
         model: &'m Model,
-        part: Part<'_>,
+        part: Part<'m>,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(Self, Solver), Unencoded> {
         let mut growth = Growth::new(stop);
@@ -135,7 +135,7 @@ impl<'m> Problem<'m> {
         let mut problem = Self {
             model,
             touches,
-            loosest: (!part.loosest.is_empty()).then(|| part.loosest.to_vec()),
+            enclosures: Enclosures::new(part.mission.unwrap_or(model)),
             windows: TiVec::new(),
             intervals: TiVec::new(),
             labels_by_variable: vec![Vec::new(); model.conditions.variables.len()].into(),
@@ -286,7 +286,7 @@ impl<'m> Problem<'m> {
         }
         let is_due = self.gap_between(left, right).min(self.gap_between(right, left)) > 0
             && !self.is_ordered_by_windows((left, right));
-        Some(match (is_due, is_due && self.never_touches((left, right))) {
+        Some(match (is_due, is_due && self.enclosures.never_orders((left, right))) {
             (false, _) => DueGap::Never,
             (true, false) => DueGap::Assumed,
             (true, true) => DueGap::Always,
@@ -569,8 +569,9 @@ impl<'m> Problem<'m> {
             solver.tell_from([Member::Condition(ask)]);
             let arc_of = |label: LabelId| conditions.labels[label].arc;
             // It always serves, where plans need not be told apart.
+            let tells_apart = part.lists_all || self.model.tells_plans_apart();
             let own = conditions.supporters(ask).find(|&tell| arc_of(tell) == arc_of(ask));
-            if let Some(own) = own.filter(|_| !self.model.tells_plans_apart()) {
+            if let Some(own) = own.filter(|_| !tells_apart) {
                 self.carriers.push((ask, vec![(own, asked.presence)]));
                 continue;
             }

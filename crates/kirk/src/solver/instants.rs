@@ -93,9 +93,9 @@ impl Problem<'_> {
     fn happens_before(&self, solver: &Solver) -> Vec<Before<[Literal; 2]>> {
         let model = self.model;
         let mut before = Vec::with_capacity(model.arcs.len());
-        for (arc, &(lower, _)) in model.arcs.iter().zip(&model.given_bounds) {
+        for arc in &self.enclosures.mission().arcs {
             // What leads back to the start says when something was, and not before what.
-            if lower >= 0 && arc.to != model.start && self.is_present(solver, arc) {
+            if arc.lower >= 0 && arc.to != model.start && self.is_present(solver, arc) {
                 let reason = [self.presence(arc.context), self.presence(arc.other_context)];
                 before.push(Before { first: arc.from, then: arc.to, reason });
             }

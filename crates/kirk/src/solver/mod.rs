@@ -25,6 +25,7 @@ mod control;
 mod cumulative;
 mod difference;
 mod disjunctive;
+mod enclosure;
 mod encode;
 mod goals;
 mod growth;
@@ -73,7 +74,7 @@ pub(crate) use instants::turns;
 pub(crate) use lasting::Kept;
 pub(crate) use record::Record;
 pub(crate) use refutation::Premise;
-pub(crate) use touching::{Touching, Unordered};
+pub(crate) use touching::Touching;
 
 /// How a search came to an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

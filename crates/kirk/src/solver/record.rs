@@ -117,7 +117,7 @@ impl Record {
 
     fn set_status(&mut self, status: TreeStatus) {
         // What becomes of the root is known at the end of all searches.
-        if self.path.len() > 1 || status == TreeStatus::Solution {
+        if self.at() != 0 || status == TreeStatus::Solution {
             self.recorder.set_status(self.at(), status);
         }
     }
@@ -514,7 +514,7 @@ impl Solver {
     /// Tells that everything is decided and the times fit; `event` says what a plan keeps of that.
     pub(crate) fn record_solution(&mut self, event: impl FnOnce() -> Event) {
         if let Some(record) = self.recording() {
-            if record.has_goals && record.path.len() == 1 {
+            if record.has_goals && record.at() == 0 {
                 // Other searches begin at the root, too.
                 record.enter(None);
             }

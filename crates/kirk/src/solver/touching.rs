@@ -8,18 +8,15 @@
 
 use std::collections::BTreeMap;
 
-use stn::{PointId, Stn};
+use stn::Stn;
 use tpn::{LabelId, Ordering};
 
 use super::Solver;
 use super::encode::Problem;
 use super::literal::{Literal, Side};
 use crate::model::UNBOUNDED_BELOW;
-use crate::model::{Context, INFINITE, Model, ModelArc, point};
+use crate::model::{INFINITE, Model, ModelArc, point};
 use crate::trace::{Event, TreeChoice};
-
-/// Decisions with more different durations together are not looked into.
-const MAX_NETWORKS: usize = 64;
 
 /// What a search assumes about pairs that touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +76,7 @@ impl Problem<'_> {
     pub(super) fn touch(&mut self, solver: &mut Solver, pair: (LabelId, LabelId)) -> Vec<Literal> {
         let (left, right) = pair;
         if (self.gap_between(left, right) == 0 && self.gap_between(right, left) == 0)
-            || self.never_touches(pair)
+            || self.enclosures.never_orders(pair)
         {
             return Vec::new();
         }
@@ -140,9 +137,9 @@ impl Problem<'_> {
         let mut stn = Stn::new(model.num_nodes);
         stn.set_origin(point(model.start));
         stn.propose(self.times.iter().map(|&time| solver.trail.least(time)));
-        for (arc, &(lower, upper)) in model.arcs.iter().zip(&model.given_bounds) {
+        for arc in &self.enclosures.mission().arcs {
             if self.is_present(solver, arc) {
-                push(&mut stn, arc, (lower, upper));
+                push(&mut stn, arc);
             }
         }
         for (ask, options) in &self.carriers {
@@ -158,18 +155,6 @@ impl Problem<'_> {
         let is_consistent = stn.settle(&model.order).is_ok();
         Unordered { stn, is_consistent }
     }
-
-    /// Whether no choice of alternatives and links can make a pair touch: the loosest network of all that is not inside an
-    /// alternative leaves room between them. `false` if that is not known.
-    pub(super) fn never_touches(&mut self, pair: (LabelId, LabelId)) -> bool {
-        let context = |label: LabelId| self.model.arcs[self.model.conditions.labels[label].arc].context;
-        if context(pair.0).is_some() || context(pair.1).is_some() {
-            return false;
-        }
-        let model = self.model;
-        let loosest = self.loosest.get_or_insert_with(|| Unordered::loosest(model));
-        !loosest.is_empty() && !loosest.iter_mut().any(|unordered| unordered.relates(model, pair))
-    }
 }
 
 /// Arcs and links without any order.
@@ -180,58 +165,6 @@ pub(crate) struct Unordered {
 }
 
 impl Unordered {
-    /// What holds of everything outside of alternatives, for all durations that its decisions may have. Empty where that is
-    /// too much, or where something reaches into an alternative.
-    pub(crate) fn loosest(model: &Model) -> Vec<Self> {
-        Self::loosest_networks(model).unwrap_or_default()
-    }
-
-    fn loosest_networks(model: &Model) -> Option<Vec<Self>> {
-        let mut stn = Stn::new(model.num_nodes);
-        stn.set_origin(point(model.start));
-        for (arc, &(lower, upper)) in model.arcs.iter().zip(&model.given_bounds) {
-            match (arc.context, arc.other_context) {
-                (None, None) => push(&mut stn, arc, (lower, upper)),
-                (_, Some(_)) => return None,
-                (Some(_), None) => {}
-            }
-        }
-        let mut networks = vec![stn];
-        for (decision, described) in model.decisions.iter_enumerated() {
-            if described.context.is_some() {
-                continue;
-            }
-            let structure = model.structure.as_ref()?;
-            let (from, to, ..) = structure.initial_bounds(decision);
-            let durations = structure.durations(decision)?;
-            let mut longer = Vec::with_capacity(networks.len() * durations.len());
-            for stn in &networks {
-                for &(lower, upper) in &durations {
-                    let mut stn = stn.clone();
-                    if upper != INFINITE {
-                        stn.push(point(from), point(to), upper, 0);
-                    }
-                    stn.push(point(to), point(from), -lower, 0);
-                    longer.push(stn);
-                }
-            }
-            networks = longer;
-            if networks.len() > MAX_NETWORKS {
-                return None;
-            }
-        }
-        // What contradicts itself is no plan.
-        networks.retain_mut(|stn| stn.settle(&model.order).is_ok());
-        for (ask_start, ask_end, tell) in possible_links(model)? {
-            let (tell_start, tell_end) = model.interval(tell);
-            for stn in &mut networks {
-                stn.insert(ask_start, tell_start, 0, 0).ok()?;
-                stn.insert(tell_end, ask_end, 0, 0).ok()?;
-            }
-        }
-        Some(networks.into_iter().map(|stn| Self { stn, is_consistent: true }).collect())
-    }
-
     /// Whether one of two intervals is over before the other begins. What contradicts itself, as the whole mission may where a
     /// part of it is looked at, puts nothing before anything.
     pub(super) fn relates(&mut self, model: &Model, (left, right): (LabelId, LabelId)) -> bool {
@@ -255,8 +188,8 @@ impl Unordered {
     }
 }
 
-fn push(stn: &mut Stn, arc: &ModelArc, (lower, upper): (i64, i64)) {
-    let (from, to) = (point(arc.from), point(arc.to));
+fn push(stn: &mut Stn, arc: &ModelArc) {
+    let (from, to, lower, upper) = (point(arc.from), point(arc.to), arc.lower, arc.upper);
     if upper != INFINITE {
         stn.push(from, to, upper, 0);
     }
@@ -269,34 +202,4 @@ fn push_link(model: &Model, stn: &mut Stn, ask: LabelId, tell: LabelId) {
     let ((ask_start, ask_end), (tell_start, tell_end)) = (model.interval(ask), model.interval(tell));
     stn.push(ask_start, tell_start, 0, 0);
     stn.push(tell_end, ask_end, 0, 0);
-}
-
-/// What each assertion would contain if it carried all that it may carry: what is required inside a decision counts as all of
-/// it, which is more. `None` where an assertion is inside a decision itself.
-fn possible_links(model: &Model) -> Option<Vec<(PointId, PointId, LabelId)>> {
-    let labels = &model.conditions.labels;
-    let context = |label: LabelId| -> Context { model.arcs[labels[label].arc].context };
-    let mut links = Vec::new();
-    for ask in labels.keys().filter(|&ask| labels[ask].is_ask && !labels[ask].is_lasting) {
-        let mut outermost = context(ask);
-        while let Some(choice) = outermost
-            && let Some(outer) = model.decisions[choice.decision].context
-        {
-            outermost = Some(outer);
-        }
-        let (start, end) = match outermost {
-            None => model.interval(ask),
-            Some(choice) => {
-                let (from, to, ..) = model.structure.as_ref()?.initial_bounds(choice.decision);
-                (point(from), point(to))
-            }
-        };
-        for tell in model.conditions.supporters(ask).filter(|&tell| labels[tell].arc != labels[ask].arc) {
-            if context(tell).is_some() {
-                return None;
-            }
-            links.push((start, end, tell));
-        }
-    }
-    Some(links)
 }

@@ -6,12 +6,15 @@
 
 mod blocks;
 mod duration;
+mod enclosing;
 
 use tpn::{ArcId, BlockId, DecisionId, NodeId};
 use typed_index_collections::TiVec;
 
 use crate::model::{INFINITE, Model};
 use crate::unplannable::Unplannable;
+
+pub(crate) use enclosing::{Enclosing, Within};
 
 /// The tree, with the duration of each block before any choice.
 #[derive(Clone, Debug)]

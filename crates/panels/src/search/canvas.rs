@@ -655,7 +655,7 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
         Some(TreeChoice::UseOrder(order)) => format!("{} ≺ {}", user(order.first), user(order.then)),
         Some(TreeChoice::Start { used, by }) => format!("{} by {by}", user(used)),
         Some(TreeChoice::Later { used, than }) => format!("{} after {than}", user(used)),
-        Some(TreeChoice::Apart) => "all gaps kept".to_owned(),
+        Some(TreeChoice::Apart) => "keeping all gaps".to_owned(),
         Some(TreeChoice::Departure(it)) => format!("{} → {}", owner(it.before), owner(it.movement)),
     }
 }

@@ -91,7 +91,7 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
             format!("Failure: {} {verb} no order for what happens at one time.", facts(network, orders))
         }
         Event::NoRoomForGap => {
-            "Failure: intervals only touch that are not forced to, and there is no room for a gap.".to_owned()
+            "Failure: there is no room for a gap between intervals that need not touch.".to_owned()
         }
         Event::Learn { choices } => learned(network, choices),
         Event::Known { choices } => format!("Failure, as was learned before: {}.", never(network, choices)),
@@ -201,7 +201,7 @@ pub fn fact(network: &Network, choice: TreeChoice) -> String {
             }
         }
         TreeChoice::NoLink { ask } => format!("nothing for {}", network.label_name(ask)),
-        TreeChoice::Apart => "all gaps kept".to_owned(),
+        TreeChoice::Apart => "keeping all gaps".to_owned(),
     }
 }
 
