@@ -15,6 +15,7 @@ use std::collections::BinaryHeap;
 
 use typed_index_collections::TiVec;
 
+use super::lists::Lists;
 use super::literal::{Literal, Side, Variable};
 use super::refutation::Premise;
 use super::trail::{self, Cause, Conflict, Trail};
@@ -30,28 +31,13 @@ pub(crate) struct Difference {
     pub(crate) when: Literal,
 }
 
-/// A list of differences, each of which knows the next one.
-#[derive(Clone, Copy, Debug, Default)]
-struct List {
-    first: Option<DifferenceId>,
-    last: Option<DifferenceId>,
-}
-
-/// The differences that come after one in the lists that it is in.
-#[derive(Clone, Copy, Debug, Default)]
-struct Next {
-    from: Option<DifferenceId>,
-    waiting: Option<DifferenceId>,
-}
-
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Differences {
     all: TiVec<DifferenceId, Difference>,
-    next: TiVec<DifferenceId, Next>,
     /// What leads from each side.
-    from: TiVec<Side, List>,
+    from: Lists<Side, DifferenceId>,
     /// By the side that makes their literal hold.
-    waiting: TiVec<Side, List>,
+    waiting: Lists<Side, DifferenceId>,
     /// What the present propagation has done to each side.
     movements: TiVec<Side, Movement>,
     moved: Vec<Side>,
@@ -76,25 +62,16 @@ const MOVES_BEFORE_CYCLE: u32 = 6;
 
 impl Differences {
     pub(crate) fn resize(&mut self, num_variables: usize) {
-        self.from.resize(num_variables * 2, List::default());
-        self.waiting.resize(num_variables * 2, List::default());
+        self.from.resize(num_variables * 2);
+        self.waiting.resize(num_variables * 2);
         self.movements.resize(num_variables * 2, Movement::default());
     }
 
     pub(crate) fn add(&mut self, difference: Difference) {
         let id = self.all.push_and_get_key(difference);
-        self.next.push(Next::default());
-        let Difference { from, when, .. } = difference;
-        match self.from[from].last.replace(id) {
-            Some(last) => self.next[last].from = Some(id),
-            None => self.from[from].first = Some(id),
-        }
-        if when != Literal::TRUE {
-            let waiting = &mut self.waiting[when.side];
-            match waiting.last.replace(id) {
-                Some(last) => self.next[last].waiting = Some(id),
-                None => waiting.first = Some(id),
-            }
+        self.from.push(difference.from, id);
+        if difference.when != Literal::TRUE {
+            self.waiting.push(difference.when.side, id);
         }
     }
 
@@ -120,17 +97,10 @@ impl Differences {
     /// Carries on the bound of a side, as when it has just moved.
     pub(crate) fn carry_on(&self, trail: &mut Trail, side: Side) -> Result<(), Conflict> {
         let bound = trail.bound(side);
-        let mut next = self.from[side].first;
-        while let Some(id) = next {
+        for id in self.from.iter(side) {
             carry(trail, bound, id, &self.all[id])?;
-            next = self.next[id].from;
         }
         Ok(())
-    }
-
-    /// The differences that wait for a side.
-    fn waiting(&self, side: Side) -> impl Iterator<Item = DifferenceId> + '_ {
-        std::iter::successors(self.waiting[side].first, |&id| self.next[id].waiting)
     }
 
     /// Whether the least times satisfy all constraints in force between times that exist.
@@ -154,7 +124,7 @@ impl Differences {
 
     /// How much room the constraints that wait for a literal leave: the least of them all.
     pub(crate) fn slack(&self, trail: &Trail, when: Literal) -> i64 {
-        let room = self.waiting(when.side).map(|id| {
+        let room = self.waiting.iter(when.side).map(|id| {
             let Difference { from, to, weight, .. } = self.all[id];
             trail.bound(from) + weight + trail.bound(to.opposite())
         });
@@ -178,10 +148,10 @@ impl Differences {
     /// Looks at the constraints that an event puts in force, and lets its bound wait to be carried on.
     pub(crate) fn moved(&mut self, trail: &mut Trail, event: EventId) -> Result<(), Conflict> {
         let side = trail.events[event].side;
-        for id in self.waiting(side) {
+        for id in self.waiting.iter(side) {
             self.check(trail, id)?;
         }
-        if self.from[side].first.is_none() {
+        if self.from.is_empty(side) {
             return Ok(());
         }
         let trail::Event { most, before, .. } = trail.events[event];
@@ -252,7 +222,7 @@ impl Differences {
         let start = trail.events[event].side;
         let (mut at, mut most) = (event, trail.events[event].most);
         let (mut reason, mut cycle) = (Vec::new(), Vec::new());
-        for _ in 0..self.from.len() {
+        for _ in 0..self.movements.len() {
             let Cause::Difference(id) = trail.events[at].cause else { return None };
             let Difference { from, weight, when, .. } = self.all[id];
             if when != Literal::TRUE {

@@ -96,7 +96,7 @@ impl Problem<'_> {
             let preferred = choices.carriers[*ask];
             let position = options.iter().position(|&(tell, _)| Some(tell) == preferred);
             if let (Some(position), Some(&(_, link))) = (position, options.first()) {
-                for &id in &solver.choice_points_of[link.side.variable()] {
+                for id in solver.choice_points_of.iter(link.side.variable()) {
                     let choice_point = &mut solver.choice_points[id];
                     if (choice_point.kind == ChoicePointKind::Carriers { ask: *ask }) {
                         choice_point.last = Some(position as u32);
@@ -120,7 +120,7 @@ impl Problem<'_> {
 
     fn prefer_option(&self, solver: &mut Solver, decision: DecisionId, option: usize) {
         let Some(literal) = self.alternatives[decision].get(option) else { return };
-        for &id in &solver.choice_points_of[literal.side.variable()] {
+        for id in solver.choice_points_of.iter(literal.side.variable()) {
             let choice_point = &mut solver.choice_points[id];
             if choice_point.kind == ChoicePointKind::Alternatives {
                 choice_point.last = Some(option as u32);

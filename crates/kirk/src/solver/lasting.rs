@@ -195,7 +195,7 @@ impl Problem<'_> {
     /// Tries first that one change comes before another.
     fn prefer_before(&self, solver: &mut Solver, first: LabelId, then: LabelId) {
         let Some(order) = self.before(first, then) else { return };
-        for &id in &solver.choice_points_of[order.side.variable()] {
+        for id in solver.choice_points_of.iter(order.side.variable()) {
             let ChoicePoint { kind, options, last, .. } = &mut solver.choice_points[id];
             if *kind == ChoicePointKind::Sides
                 && let Some(option) = options.iter().position(|&option| option == order)

@@ -34,6 +34,7 @@ mod interchangeable;
 mod lasting;
 mod leaf;
 mod linear;
+mod lists;
 mod literal;
 mod queue;
 mod record;
@@ -59,6 +60,7 @@ use cumulative::Cumulatives;
 use difference::{Difference, Differences};
 use disjunctive::Disjunctives;
 use linear::Linears;
+use lists::Lists;
 use literal::{Literal, Side, Variable};
 use record::Origin;
 use refutation::Derivations;
@@ -122,17 +124,17 @@ pub(crate) struct Solver {
     linears: Linears,
     tours: Tours,
     /// By side of a Boolean: sides that follow.
-    implied: TiVec<Side, Vec<Side>>,
+    implied: Lists<Side, Side>,
     /// The choice point whose options exclude each other, of variables that have one.
     exclusive: TiVec<Variable, Option<ChoicePointId>>,
     /// Further sets of Booleans of which at most one holds, and those that a variable is in.
     at_most_one: Vec<Vec<Literal>>,
-    at_most_one_of: TiVec<Variable, Vec<u32>>,
+    at_most_one_of: Lists<Variable, u32>,
     choice_points: TiVec<ChoicePointId, ChoicePoint>,
     /// The choice points that a variable belongs to.
-    choice_points_of: TiVec<Variable, Vec<ChoicePointId>>,
+    choice_points_of: Lists<Variable, ChoicePointId>,
     /// By side of a Boolean: choice points that begin to count.
-    reached: TiVec<Side, Vec<ChoicePointId>>,
+    reached: Lists<Side, ChoicePointId>,
     activity: Activity,
     /// Whether it has not searched yet.
     is_new: bool,
@@ -208,13 +210,13 @@ impl Solver {
             cumulatives: Cumulatives::default(),
             linears: Linears::default(),
             tours: Tours::default(),
-            implied: TiVec::new(),
+            implied: Lists::default(),
             exclusive: TiVec::new(),
             at_most_one: Vec::new(),
-            at_most_one_of: TiVec::new(),
+            at_most_one_of: Lists::default(),
             choice_points: TiVec::new(),
-            choice_points_of: TiVec::new(),
-            reached: TiVec::new(),
+            choice_points_of: Lists::default(),
+            reached: Lists::default(),
             activity: Activity::new(),
             is_new: true,
             head: 0,
@@ -260,11 +262,11 @@ impl Solver {
         self.alternatives.queue.resize(count);
         self.disjunctives.queue.resize(count);
         self.cumulatives.queue.resize(count);
-        self.implied.resize(count * 2, Vec::new());
-        self.reached.resize(count * 2, Vec::new());
+        self.implied.resize(count * 2);
+        self.reached.resize(count * 2);
         self.exclusive.resize(count, None);
-        self.at_most_one_of.resize(count, Vec::new());
-        self.choice_points_of.resize(count, Vec::new());
+        self.at_most_one_of.resize(count);
+        self.choice_points_of.resize(count);
         self.linears.queue.resize(count);
         self.tours.queue.resize(count);
     }
@@ -274,8 +276,8 @@ impl Solver {
         if right == Literal::TRUE || left == right {
             return;
         }
-        self.implied[left.side].push(right.side);
-        self.implied[(!right).side].push((!left).side);
+        self.implied.push(left.side, right.side);
+        self.implied.push((!right).side, (!left).side);
         if self.trail.holds(left) {
             self.assert_since(right, &[left]);
         } else if self.trail.fails(right) {
@@ -333,13 +335,13 @@ impl Solver {
     fn add_choice_point(&mut self, choice_point: ChoicePoint, initial_activity: f64) {
         let id = self.choice_points.next_key();
         for option in &choice_point.options {
-            let choice_points = &mut self.choice_points_of[option.side.variable()];
-            if choice_points.last() != Some(&id) {
-                choice_points.push(id);
+            let variable = option.side.variable();
+            if self.choice_points_of.last(variable) != Some(id) {
+                self.choice_points_of.push(variable, id);
             }
         }
         for when in &choice_point.when {
-            self.reached[when.side].push(id);
+            self.reached.push(when.side, id);
         }
         let counts = choice_point.when.iter().all(|&when| self.trail.holds(when));
         self.choice_points.push(choice_point);
@@ -556,13 +558,12 @@ impl Solver {
             self.head += 1;
             let side = self.trail.events[event].side;
             self.clauses.propagate(&mut self.trail, event)?;
-            for position in 0..self.implied[side].len() {
-                let implied = self.implied[side][position];
+            for implied in self.implied.iter(side) {
                 self.trail.set(implied.decided(), trail::Cause::Implied(side))?;
             }
             self.exclude_others(side)?;
-            for position in 0..self.reached[side].len() {
-                self.activity.insert(self.reached[side][position]);
+            for choice_point in self.reached.iter(side) {
+                self.activity.insert(choice_point);
             }
         }
         Ok(())
@@ -600,7 +601,7 @@ impl Solver {
     fn add_at_most_one(&mut self, literals: Vec<Literal>) {
         let id = self.at_most_one.len() as u32;
         for literal in &literals {
-            self.at_most_one_of[literal.side.variable()].push(id);
+            self.at_most_one_of.push(literal.side.variable(), id);
         }
         self.at_most_one.push(literals);
     }
@@ -610,18 +611,15 @@ impl Solver {
         if side != side.variable().lower() {
             return Ok(());
         }
-        for position in 0..self.at_most_one_of[side.variable()].len() {
-            let id = self.at_most_one_of[side.variable()][position] as usize;
-            for at in 0..self.at_most_one[id].len() {
-                let other = self.at_most_one[id][at];
+        for id in self.at_most_one_of.iter(side.variable()) {
+            for &other in &self.at_most_one[id as usize] {
                 if other.side != side {
                     self.trail.set(!other, trail::Cause::Implied(side))?;
                 }
             }
         }
         let Some(choice_point) = self.exclusive[side.variable()] else { return Ok(()) };
-        for position in 0..self.choice_points[choice_point].options.len() {
-            let other = self.choice_points[choice_point].options[position];
+        for &other in &self.choice_points[choice_point].options {
             if other.side != side {
                 self.trail.set(!other, trail::Cause::Implied(side))?;
             }
@@ -703,7 +701,7 @@ impl Solver {
         let Self { trail, choice_points, choice_points_of, activity, .. } = self;
         trail.retract(level, |event| {
             let variable = event.side.variable();
-            for &choice_point in &choice_points_of[variable] {
+            for choice_point in choice_points_of.iter(variable) {
                 activity.insert(choice_point);
                 let ChoicePoint { options, last, .. } = &mut choice_points[choice_point];
                 if let Some(option) = options.iter().position(|option| option.side == event.side) {
@@ -796,7 +794,7 @@ impl Solver {
         if self.is_in_textual_order {
             return;
         }
-        for &choice_point in &self.choice_points_of[literal.side.variable()] {
+        for choice_point in self.choice_points_of.iter(literal.side.variable()) {
             self.activity.bump(choice_point);
         }
     }

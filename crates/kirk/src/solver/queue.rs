@@ -2,20 +2,21 @@
 
 use typed_index_collections::TiVec;
 
+use super::lists::Lists;
 use super::literal::Side;
 
 /// Which constraints, by their ids, the bound of each side concerns, and which of them wait, each once. The last to
 /// come is looked at first.
 #[derive(Clone, Debug)]
 pub(crate) struct PropagationQueue<Id: From<usize>> {
-    concerned: TiVec<Side, Vec<Id>>,
+    concerned: Lists<Side, Id>,
     is_waiting: TiVec<Id, bool>,
     waiting: Vec<Id>,
 }
 
 impl<Id: From<usize>> Default for PropagationQueue<Id> {
     fn default() -> Self {
-        Self { concerned: TiVec::new(), is_waiting: TiVec::new(), waiting: Vec::new() }
+        Self { concerned: Lists::default(), is_waiting: TiVec::new(), waiting: Vec::new() }
     }
 }
 
@@ -25,21 +26,21 @@ where
     usize: From<Id>,
 {
     pub(crate) fn resize(&mut self, num_variables: usize) {
-        self.concerned.resize(num_variables * 2, Vec::new());
+        self.concerned.resize(num_variables * 2);
     }
 
     /// Adds the next constraint, which the bounds of these sides concern, and lets it wait.
     pub(crate) fn add(&mut self, sides: impl IntoIterator<Item = Side>) {
         let id = self.is_waiting.push_and_get_key(true);
         for side in sides {
-            self.concerned[side].push(id);
+            self.concerned.push(side, id);
         }
         self.waiting.push(id);
     }
 
     /// The bound of a side has moved.
     pub(crate) fn moved(&mut self, side: Side) {
-        for &id in &self.concerned[side] {
+        for id in self.concerned.iter(side) {
             if !self.is_waiting[id] {
                 self.is_waiting[id] = true;
                 self.waiting.push(id);
