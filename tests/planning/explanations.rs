@@ -37,7 +37,7 @@ const TELLING: [(&str, Has); 9] = [
     ("Set Tell hold holds set", |it| !it.labels.is_empty()),
     ("apart way", |it| has_conflict(it, |_| true)),
     ("between conflicting gap gaps intervals touch", |it| has_conflict(it, |label| !it.is_lasting(label))),
-    ("above below drawn enough filled give helps level use", |it| !it.uses.is_empty()),
+    ("above below drawn enough filled fits give helps level share use", |it| !it.uses.is_empty()),
     ("gives", |it| !it.labels.is_empty() || !it.uses.is_empty()),
     ("controllable nature took", |it| (0..it.arcs.len()).any(|arc| it.is_uncertain(ArcId::from_index(arc)))),
     ("best better far less", |it| !it.objective.is_empty()),

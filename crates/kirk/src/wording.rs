@@ -119,9 +119,25 @@ impl Told<'_> {
             .collect();
         let Some(first) = uses.first() else { return "a resource is used too much".to_owned() };
         let resource = &self.network.resources[first.resource.index()];
-        let names: Vec<String> = uses.iter().map(|used| use_owner(self.network, used)).collect();
+        let mut names: Vec<String> = Vec::new();
+        for owner in uses.iter().map(|used| use_owner(self.network, used)) {
+            if !names.contains(&owner) {
+                names.push(owner);
+            }
+        }
         let names_joined = joined(&names);
         let name = &resource.name;
+        if uses.iter().any(|used| used.resource != first.resource) {
+            let mut shared: Vec<&str> = Vec::new();
+            for used in &uses {
+                let name = self.network.resources[used.resource.index()].name.as_str();
+                if !shared.contains(&name) {
+                    shared.push(name);
+                }
+            }
+            let shared: Vec<String> = shared.into_iter().map(str::to_owned).collect();
+            return format!("{names_joined} share {}, and no order of them fits", joined(&shared));
+        }
         let sum = |change: Change| {
             let amounts = uses.iter().filter(|used| used.change == change).map(|used| used.amount);
             amounts.fold(Rational::default(), |sum, amount| sum.checked_add(amount).unwrap_or(sum))
@@ -139,7 +155,10 @@ impl Told<'_> {
                 let (taken, given) = (sum(Change::Consumes), sum(Change::Produces));
                 let after = level.checked_sub(taken).and_then(|level| level.checked_add(given));
                 let after = after.unwrap_or(level);
-                let (verb, amount, beyond, end) = if taken >= given {
+                if (least..=greatest).contains(&after) {
+                    return format!("no order of {names_joined} keeps {name} between {least} and {greatest}");
+                }
+                let (verb, amount, beyond, end) = if after < least {
                     (
                         verb,
                         taken,

@@ -25,7 +25,7 @@ use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::worth;
 use tpn::worth::rounded_up;
-use tpn::{ArcId, ArcKind, Choice, Network, OccurrenceId, Plan, Supply};
+use tpn::{ArcId, ArcKind, Choice, Departure, Network, OccurrenceId, Plan, Supply};
 
 use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
@@ -190,12 +190,14 @@ fn plan_paths(
 ) -> Planned {
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     let ordered;
+    let mut departures = None;
     let is_by_departure = kirk::has_open_order(problem.network) || problem.network.counts_metres();
     let mut unproven = None;
     let problem = if problem.ground.is_some() && is_by_departure {
         match order_movements(problem, grounds, paths, stop) {
             Ok(order) => {
                 ordered = Arc::new(order.network);
+                departures = Some(order.departures);
                 unproven = order.unproven;
                 &Problem { network: &ordered, ..*problem }
             }
@@ -240,6 +242,10 @@ fn plan_paths(
             None => (outcome.status, outcome.failure) = (Status::Limit, None),
         }
     }
+    if let Some(departures) = departures.filter(|_| has_plan(&outcome)) {
+        // What is asked of the plan from here on, such as what else could be, is not bound to its places.
+        Arc::make_mut(&mut network).departures = departures;
+    }
     conclude(problem, grounds, network, outcome, inserted)
 }
 
@@ -274,6 +280,8 @@ pub(crate) fn without_upper_limits(
 /// The network in which movements start where they do in the best plan.
 struct Order {
     network: Network,
+    /// How long they take from every place that they may start from.
+    departures: Vec<Departure>,
     /// There, if the search for the best plan was stopped.
     unproven: Option<Unproven>,
 }
@@ -349,11 +357,11 @@ fn order_movements(
         // A search that was stopped goes no further than the order of the best plan so far.
         let is_stopped = problem.has_enough() && is_drivable;
         if !is_new || is_stopped {
-            network.departures = departures.only(&routes);
+            let all = std::mem::replace(&mut network.departures, departures.only(&routes));
             network.distances = distances(problem, &departures);
             let is_proven = !is_new && is_optimal != Some(false);
             let unproven = Unproven { bound: promised.or(outcome.bound).filter(|_| is_optimal.is_some()) };
-            return Ok(Order { network, unproven: (!is_proven).then_some(unproven) });
+            return Ok(Order { network, departures: all, unproven: (!is_proven).then_some(unproven) });
         }
         for route in departures.unknown(problem.network, problem.program, extra) {
             if stop() {

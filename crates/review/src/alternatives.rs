@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use snapshot::Undrivable;
 use snapshot::blocked::name_blocked_in;
 use tpn::worth;
-use tpn::{Choice, Network, Plan};
+use tpn::{Arc, ArcKind, Choice, Network, Plan};
 
 /// An alternative of a choice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -138,12 +138,22 @@ impl<'input> Examiner<'input> {
         let options = Options { relax: false, explain: false, ..Options::default() };
         let mut enough = |stats: &Stats| stats.expanded >= MAX_EXPANDED || stop();
         let outcome = kirk::plan(&network, &options, &mut enough);
+        let is_optimal = self.plan.quality.is_optimal == Some(true);
         match outcome.status {
-            Status::Plan if self.plan.quality.is_optimal == Some(true) => {
+            Status::Plan if is_optimal => {
                 Fate::NoBetter { at_best: outcome.plans.first().and_then(|plan| at_best(&network, plan)) }
             }
             Status::Plan => Fate::AlsoPossible,
-            Status::NoPlan => self.impossible(other, &mut enough),
+            Status::NoPlan => match without_paths(&network) {
+                // With it, movements may start elsewhere and take other paths than those of the plan.
+                Some(open) => match kirk::plan(&open, &options, &mut enough).status {
+                    Status::Plan if is_optimal => Fate::NoBetter { at_best: None },
+                    Status::Plan => Fate::AlsoPossible,
+                    Status::NoPlan => self.impossible(other, &mut enough),
+                    Status::Limit | Status::Error => Fate::NotExamined,
+                },
+                None => self.impossible(other, &mut enough),
+            },
             Status::Limit | Status::Error => Fate::NotExamined,
         }
     }
@@ -152,8 +162,10 @@ impl<'input> Examiner<'input> {
     /// way to make these has its reason.
     fn impossible(&self, other: Choice, enough: &mut dyn FnMut(&Stats) -> bool) -> Fate {
         let choices: Vec<Choice> = self.earlier(other).chain([other]).collect();
-        let mut reasons = if self.network.nodes.len() <= MAX_EXPLAINED_NODES {
-            kirk::explain_choices(self.network, &choices, &mut &mut *enough)
+        let open = without_paths(self.network);
+        let network = open.as_ref().unwrap_or(self.network);
+        let mut reasons = if network.nodes.len() <= MAX_EXPLAINED_NODES {
+            kirk::explain_choices(network, &choices, &mut &mut *enough)
         } else {
             Vec::new()
         };
@@ -203,4 +215,17 @@ impl<'input> Examiner<'input> {
 fn at_best(network: &Network, plan: &Plan) -> Option<String> {
     let needs_paths = worth::measures(network).contains(&Measure::Length);
     worth::words(network, plan).filter(|_| plan.quality.is_optimal == Some(true) && !needs_paths)
+}
+
+/// The network as it is before the paths of movements are planned. `None` if none are.
+fn without_paths(network: &Network) -> Option<Network> {
+    let is_path = |arc: &Arc| arc.kind == ArcKind::Path;
+    if !network.arcs.iter().any(is_path) {
+        return None;
+    }
+    let mut network = network.clone();
+    for arc in network.arcs.iter_mut().filter(|arc| is_path(arc)) {
+        (arc.lower, arc.upper) = (Time::ZERO, Bound::Infinite);
+    }
+    Some(network)
 }

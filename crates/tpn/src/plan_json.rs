@@ -74,7 +74,7 @@ fn add_resources(network: &Network, plan: &Plan, members: &mut Map<String, Value
     if let Some(is_optimal) = quality.is_optimal {
         members.insert("optimal".into(), is_optimal.into());
     }
-    if !network.worths.is_empty() || quality.is_optimal.is_some() {
+    if !network.worths.is_empty() || !network.objective.is_empty() {
         members.insert("cost".into(), json!(quality.cost));
         members.insert("reward".into(), json!(quality.reward));
         members.insert("end".into(), json!(quality.end));

@@ -1,6 +1,7 @@
 //! The integration tests of `cli`, in one program: each module is about one thing.
 
 mod attacks;
+mod claims;
 mod control;
 mod documents;
 mod driving;

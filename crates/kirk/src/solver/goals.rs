@@ -90,6 +90,17 @@ impl Problem<'_> {
         }
     }
 
+    /// Tries first the alternatives that can be over first, such as leaving out what is optional: they are the likeliest to
+    /// fit where there is little time.
+    pub(crate) fn prefer_short(&self, solver: &mut Solver) {
+        let Some(structure) = &self.model.structure else { return };
+        for decision in self.model.decisions.keys() {
+            if let Some(alternative) = structure.shortest(decision) {
+                self.prefer_option(solver, decision, alternative as usize);
+            }
+        }
+    }
+
     /// Tries these links first.
     pub(crate) fn prefer_links(&self, solver: &mut Solver, choices: &Choices) {
         for (ask, options) in &self.carriers {

@@ -159,6 +159,17 @@ impl Structure {
         (from, to, self.initial[block].lower, self.initial[block].upper())
     }
 
+    /// The alternative of a choice that can be over first; the first of several.
+    pub(crate) fn shortest(&self, decision: DecisionId) -> Option<u32> {
+        let alternatives = (0..).zip(self.children(self.decision_blocks[decision]));
+        let lasts = alternatives.filter_map(|(alternative, &child)| {
+            let inside = self.initial[child];
+            let duration = self.with_around(inside, child).ok().filter(|_| !inside.is_empty())?;
+            Some((duration.lower, alternative))
+        });
+        lasts.min().map(|(_, alternative)| alternative)
+    }
+
     /// Least and greatest durations of which a choice has one, whichever alternatives are taken in it: one interval where
     /// they all have something in common. `None` if there are too many.
     pub(crate) fn durations(&self, decision: DecisionId) -> Option<Vec<(i64, i64)>> {
