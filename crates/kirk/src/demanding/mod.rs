@@ -23,7 +23,7 @@ use crate::trace::{Event, SearchRound};
 use crate::unplannable::Unplannable;
 
 /// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
-const MAX_CONFLICTS_IN_ORDER: u64 = 500;
+const MAX_CONFLICTS_IN_ORDER: u64 = 200;
 
 /// How many conflicts it may take to find out that choices that were a plan still are.
 const MAX_CONFLICTS_TO_KEEP: u64 = 500;
