@@ -1,27 +1,7 @@
 //! What plans and reports claim, held against each other: what one command lists no other one calls impossible, and every sum
 //! is what its words say.
 
-use std::path::PathBuf;
-use std::process::{Command, Output};
-
-use serde_json::Value;
-
-fn enroute(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_enroute"));
-    command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).args(arguments);
-    command.output().expect("the command runs")
-}
-
-fn answer(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {output:?}"))
-}
-
-/// A file with this text, for the command to read.
-fn file(name: &str, text: &str) -> String {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&path, text).expect("the folder can be written to");
-    path.to_str().expect("a path in UTF-8").to_owned()
-}
+use crate::command::{answer, enroute, file};
 
 #[test]
 fn an_alternative_that_is_listed_is_not_called_impossible() {
@@ -55,16 +35,20 @@ fn an_alternative_that_is_listed_is_not_called_impossible() {
 
 #[test]
 fn a_sum_is_of_one_resource() {
+    // Each of the two needs what the other one gives.
     let mission = file(
         "sums.rmpl",
-        "resource Battery 20..100 = 40; resource Memory 0..400 = 60; resource Mast;
-         primitive Image()[6,8] uses Mast consumes Battery 11 produces Memory 190;
-         scenario S[0,20] = { { delay; Image() }, { delay; Image() } }",
+        "resource Battery 0..10 = 4; resource Memory 0..10 = 4;
+         primitive Charge()[6,8] consumes Memory 5 produces Battery 3;
+         primitive Clear()[6,8] consumes Battery 5 produces Memory 3;
+         scenario S[0,60] = { { delay; Charge(); delay }, { delay; Clear(); delay } }",
     );
-    let output = enroute(&["report", &mission, "--format", "json"]);
-    let report = answer(&output).to_string();
-    assert!(report.contains("there is no plan"), "{report}");
-    assert!(!report.contains("402") && !report.contains("212"), "{report}");
+    let report = answer(&enroute(&["report", &mission, "--format", "json"])).to_string();
+    assert!(
+        report.contains("Charge#1 and Clear#1 share Memory and Battery, and no order of them fits"),
+        "{report}"
+    );
+    assert!(!report.contains("take 10"), "{report}");
 }
 
 #[test]

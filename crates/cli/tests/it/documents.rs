@@ -1,15 +1,11 @@
 //! The commands that write a mission's review and schedule, as they are called.
 
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use serde_json::{Value, json};
 
-fn enroute(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_enroute"));
-    command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).args(arguments);
-    command.output().expect("the command runs")
-}
+use crate::command::enroute;
 
 fn written(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("UTF-8")

@@ -2,6 +2,7 @@
 
 mod attacks;
 mod claims;
+mod command;
 mod control;
 mod documents;
 mod driving;

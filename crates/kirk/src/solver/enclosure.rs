@@ -175,7 +175,7 @@ impl<'a> Inside<'a> {
         let mut settled = Vec::with_capacity(2 * networks.len());
         for mut network in networks {
             let order: Vec<PointId> = network.points.values().copied().collect();
-            // What contradicts itself is no plan.
+            // A network that contradicts itself belongs to no plan.
             if network.stn.settle(&order).is_err() {
                 continue;
             }

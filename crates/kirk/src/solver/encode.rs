@@ -293,7 +293,7 @@ impl<'m> Problem<'m> {
         })
     }
 
-    /// Which order of a pair to try first, if another plan says so.
+    /// The order of a pair to try first, where another plan has one.
     pub(super) fn preferred_order(&self, left: LabelId, right: LabelId) -> Option<u32> {
         let room = |first: LabelId, then: LabelId| {
             let (end, start) = (self.model.interval(first).1, self.model.interval(then).0);
