@@ -40,6 +40,8 @@ fn as_plan(of: &stnu::Network) -> (Network, Plan) {
         selected_arcs: vec![true; made.arcs.len()],
         causal_links: Vec::new(),
         conflict_order: Vec::new(),
+        conflict_order_omitted: 0,
+        state_order: Vec::new(),
         orderings_added: Vec::new(),
         uses_ordered: Vec::new(),
         levels: Vec::new(),

@@ -14,7 +14,10 @@ use exact::Bound;
 use kirk::Search;
 use rmpl::program::LabelMode;
 use tpn::selection::closure;
-use tpn::{CausalLink, Choice, DecisionId, Extent, LabelId, Network, NodeId, Plan, Quality, Top, Window};
+use tpn::{
+    CausalLink, Choice, DecisionId, Extent, LabelId, Network, NodeId, Plan, Quality, StateOrder, Top,
+    VariableId, Window,
+};
 
 /// Missions of each kind that the reference finishes.
 const MISSIONS: u64 = 3_000;
@@ -124,19 +127,27 @@ fn compare(text: &str) -> Result<Option<u64>, String> {
 
 /// What makes a plan distinct.
 fn key(network: &Network, plan: &Plan) -> Key {
-    let is_producer = |label: LabelId| network.labels[label.index()].mode == LabelMode::Tell;
     let mut key = Key {
         choices: plan.choices.iter().map(|it| (it.decision.0, it.alternative)).collect(),
         links: plan.causal_links.iter().map(|it| (it.ask.0, it.tell.0)).collect(),
-        sides: (plan.conflict_order.iter())
-            .filter(|it| is_producer(it.first) && is_producer(it.then))
-            .map(|it| (it.first.0, it.then.0))
-            .collect(),
+        sides: sides(network, plan),
     };
     key.choices.sort_unstable();
     key.links.sort_unstable();
     key.sides.sort_unstable();
     key
+}
+
+/// The pairs of producers that exclude each other, as the plan orders them.
+pub(crate) fn sides(network: &Network, plan: &Plan) -> Vec<(u32, u32)> {
+    let mut sides = Vec::new();
+    for StateOrder { producers, .. } in &plan.state_order {
+        for (position, &first) in producers.iter().enumerate() {
+            let later = producers[position + 1..].iter().filter(|&&then| network.conflict(first, then));
+            sides.extend(later.map(|then| (first.0, then.0)));
+        }
+    }
+    sides
 }
 
 /// How many plans a text has.
@@ -204,7 +215,7 @@ fn plan_of(network: &Network, key: &Key) -> Plan {
         .collect();
     let (selected_nodes, selected_arcs) = closure(network, &choices);
     let ordering = |first: u32, then: u32| tpn::Ordering { first: LabelId(first), then: LabelId(then) };
-    let mut conflict_order: Vec<tpn::Ordering> =
+    let mut orderings_added: Vec<tpn::Ordering> =
         key.sides.iter().map(|&(first, then)| ordering(first, then)).collect();
     // A requirement is on the side of its producer.
     for &(ask, own) in &key.links {
@@ -213,9 +224,10 @@ fn plan_of(network: &Network, key: &Key) -> Plan {
             if (first != own && then != own) || !threatens(network, other, ask) {
                 continue;
             }
-            conflict_order.push(if first == own { ordering(ask, other) } else { ordering(other, ask) });
+            orderings_added.push(if first == own { ordering(ask, other) } else { ordering(other, ask) });
         }
     }
+    let state_order = state_order(network, &selected_arcs, &key.sides);
     let mut plan = Plan {
         choices,
         selected_nodes,
@@ -223,8 +235,10 @@ fn plan_of(network: &Network, key: &Key) -> Plan {
         causal_links: (key.links.iter())
             .map(|&(ask, tell)| CausalLink { ask: LabelId(ask), tell: LabelId(tell) })
             .collect(),
-        orderings_added: conflict_order.clone(),
-        conflict_order,
+        orderings_added,
+        conflict_order: Vec::new(),
+        conflict_order_omitted: 0,
+        state_order,
         uses_ordered: Vec::new(),
         levels: Vec::new(),
         quality: Quality::default(),
@@ -232,6 +246,34 @@ fn plan_of(network: &Network, key: &Key) -> Plan {
     };
     plan.windows = windows(network, &plan);
     plan
+}
+
+/// The selected producers of each variable in an order that agrees with the sides.
+fn state_order(network: &Network, selected_arcs: &[bool], sides: &[(u32, u32)]) -> Vec<StateOrder> {
+    let mut found = Vec::new();
+    for variable in (0..network.variables.len()).map(VariableId::from_index) {
+        let labels = (0..network.labels.len()).map(LabelId::from_index);
+        let mut left: Vec<LabelId> = labels
+            .filter(|&id| {
+                let label = &network.labels[id.index()];
+                label.mode == LabelMode::Tell
+                    && label.literal.variable == variable
+                    && network.is_lasting(id)
+                    && selected_arcs[label.arc.index()]
+            })
+            .collect();
+        let mut producers = Vec::new();
+        let waits =
+            |then: LabelId, left: &[LabelId]| left.iter().any(|first| sides.contains(&(first.0, then.0)));
+        while let Some(next) = left.iter().position(|&it| !waits(it, &left)) {
+            producers.push(left.remove(next));
+        }
+        assert!(left.is_empty(), "the sides have a circle");
+        if !producers.is_empty() {
+            found.push(StateOrder { variable, producers });
+        }
+    }
+    found
 }
 
 fn threatens(network: &Network, producer: u32, ask: u32) -> bool {

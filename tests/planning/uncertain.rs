@@ -11,10 +11,12 @@ use acceptance::random::{crowded_mission, small_mission};
 use acceptance::{lasting, reference};
 use exact::{Bound, Time};
 use kirk::{Options, Search, Unlimited};
-use rmpl::program::{Controllability, LabelMode};
+use rmpl::program::Controllability;
 use stnu::{Link, PointId, StrongVerdict, Verdict};
 use tpn::selection::closure;
 use tpn::{ArcKind, Choice, DecisionId, LabelId, Network, NodeId, Plan, Top};
+
+use crate::lasting::sides;
 
 /// Missions of each kind that the reference finishes.
 const MISSIONS: u64 = 2_000;
@@ -161,13 +163,6 @@ fn key(network: &Network, plan: &Plan, order: fn(&Network, &Plan) -> Vec<(u32, u
 
 fn conflicts(_: &Network, plan: &Plan) -> Vec<(u32, u32)> {
     plan.conflict_order.iter().map(|it| (it.first.0, it.then.0)).collect()
-}
-
-fn sides(network: &Network, plan: &Plan) -> Vec<(u32, u32)> {
-    let is_producer = |label: LabelId| network.labels[label.index()].mode == LabelMode::Tell;
-    let mut sides = conflicts(network, plan);
-    sides.retain(|&(first, then)| is_producer(LabelId(first)) && is_producer(LabelId(then)));
-    sides
 }
 
 fn all_conflicts(network: &Network) -> Option<Vec<Key>> {

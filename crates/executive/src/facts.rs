@@ -157,6 +157,9 @@ impl Facts {
         for orders in [&mut plan.conflict_order, &mut plan.orderings_added] {
             orders.retain(|order| is_label(order.first) && is_label(order.then));
         }
+        for order in &mut plan.state_order {
+            order.producers.retain(|&label| is_label(label));
+        }
         plan.uses_ordered.retain(|order| is_use(order.first) && is_use(order.then));
     }
 }

@@ -11,8 +11,8 @@ use exact::Rational;
 use rmpl::program::{Change, LabelMode};
 use smol_str::SmolStr;
 use tpn::{
-    Extent, LabelId, Network, NodeId, OccurrenceId, Plan, Resource, ResourceId, Supply, UseId, ValueId,
-    ValueSet, VariableId,
+    Extent, LabelId, Network, NodeId, OccurrenceId, Plan, PlanOrder, Resource, ResourceId, Supply, UseId,
+    ValueId, ValueSet, VariableId,
 };
 
 use crate::log::Happening;
@@ -27,7 +27,7 @@ pub(crate) struct Effects {
     beginnings: BTreeMap<NodeId, Vec<LabelId>>,
     endings: BTreeMap<NodeId, Vec<LabelId>>,
     /// Of two changes of a variable, which the plan puts first.
-    orders: BTreeSet<(LabelId, LabelId)>,
+    order: PlanOrder,
     /// The producer of each requirement, as the plan has it.
     pub(crate) carriers: BTreeMap<LabelId, LabelId>,
     /// What the plan takes of reservoirs and gives to them.
@@ -52,7 +52,7 @@ impl Effects {
     pub(crate) fn new(network: &Network, plan: &Plan) -> Self {
         let mut effects = Self {
             carriers: plan.causal_links.iter().map(|link| (link.ask, link.tell)).collect(),
-            orders: plan.conflict_order.iter().map(|order| (order.first, order.then)).collect(),
+            order: PlanOrder::new(plan),
             ..Self::default()
         };
         let mut add = |node: NodeId, effect: Effect| effects.by_node.entry(node).or_default().push(effect);
@@ -292,7 +292,7 @@ impl WorldState {
         let held = &mut self.held[variable.index()];
         held.changing.retain(|&changing| changing != label);
         held.seen.extend(value);
-        let is_before = |later: LabelId| effects.orders.contains(&(label, later));
+        let is_before = |later: LabelId| effects.order.is_before(label, later);
         if !held.by.is_some_and(is_before) {
             (held.value, held.by) = (value, Some(label));
         }

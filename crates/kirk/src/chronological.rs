@@ -38,7 +38,7 @@ pub(crate) fn search(
             break if plans.is_empty() { Status::NoPlan } else { Status::Plan };
         }
         let plan = search.plan()?;
-        if known.insert((plan.choices.clone(), plan.causal_links.clone(), plan.conflict_order.clone())) {
+        if known.insert(demanding::told_apart(&plan)) {
             search.log(|_| Event::Solution { plan: plans.len() as u32 });
             plans.push(plan);
         }
@@ -571,7 +571,6 @@ impl<'m> ChronologicalSearch<'m> {
             let (first, then) = if is_left_first { (left, right) } else { (right, left) };
             conflict_order.push(Ordering { first, then });
         }
-        conflict_order.extend(demanding::nested_changes(model, self.is_selected_arc.as_ref()));
         conflict_order.sort_by_key(|order| (order.first.min(order.then), order.first.max(order.then)));
         let (mut latest, mut earliest) = (Vec::new(), Vec::new());
         self.stn.sweep_distances(point(model.start), &model.order, &mut latest, &mut earliest)?;
@@ -600,6 +599,8 @@ impl<'m> ChronologicalSearch<'m> {
             selected_nodes: self.is_selected_node.raw.clone(),
             causal_links,
             conflict_order,
+            conflict_order_omitted: 0,
+            state_order: demanding::nested_changes(model, self.is_selected_arc.as_ref()),
             orderings_added,
             uses_ordered: Vec::new(),
             levels: Vec::new(),

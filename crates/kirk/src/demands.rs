@@ -7,11 +7,13 @@ use exact::{Rational, Scale};
 use num_integer::Integer as _;
 use rmpl::program::{Change, LabelMode, Measure};
 use tpn::{
-    ArcId, ArcKind, Extent, LabelId, Network, NodeId, Plan, Quality, ResourceId, Supply, UseId, ValueId,
-    Window, Worth,
+    ArcId, ArcKind, Extent, LabelId, Network, NodeId, Plan, Quality, ResourceId, StateOrder, Supply, UseId,
+    ValueId, Window, Worth,
 };
 
+use crate::conditions::Conditions;
 use crate::model::Model;
+use crate::state_order::in_order;
 use crate::unplannable::Unplannable;
 
 /// A variable that keeps its value, by its labels.
@@ -127,6 +129,20 @@ pub(crate) struct Demands {
     worths: Vec<Worth>,
 }
 
+impl LastingVariable {
+    /// The order of the selected changes, by which of two that exclude each other comes first; `None` if there are none.
+    pub(crate) fn in_order(
+        &self,
+        conditions: &Conditions,
+        changes: &[LabelId],
+        is_before: impl Fn(LabelId, LabelId) -> bool,
+    ) -> Option<StateOrder> {
+        let variable = conditions.labels[*changes.first()?].variable;
+        let producers = self.initial.into_iter().chain(in_order(conditions, changes, is_before)).collect();
+        Some(StateOrder { variable, producers })
+    }
+}
+
 impl Demands {
     /// What the selected activities are worth, and the earliest end.
     pub(crate) fn quality(&self, selected_arcs: &[bool], windows: &[Option<Window>]) -> Quality {
@@ -144,26 +160,9 @@ impl Demands {
     /// The selected movements of a plan, each with the place where it starts.
     fn departures_of(&self, model: &Model, plan: &Plan) -> Vec<(LabelId, ValueId)> {
         let labels = &model.conditions.labels;
-        let mut found = Vec::new();
-        for variable in &self.variables {
-            let is_change = |label: LabelId| variable.changes.contains(&label);
-            let order: Vec<(LabelId, LabelId)> = (plan.conflict_order.iter())
-                .map(|order| (order.first, order.then))
-                .filter(|&(first, then)| is_change(first) && is_change(then))
-                .collect();
-            let rank = |label: LabelId| order.iter().filter(|&&(_, then)| then == label).count();
-            for &movement in &variable.changes {
-                if !self.departures.contains_key(&movement)
-                    || !plan.selected_arcs[labels[movement].arc.index()]
-                {
-                    continue;
-                }
-                let earlier = order.iter().filter(|&&(_, then)| then == movement).map(|&(first, _)| first);
-                let before = earlier.max_by_key(|&first| rank(first)).or(variable.initial);
-                found.extend(before.and_then(|before| labels[before].value).map(|from| (movement, from)));
-            }
-        }
-        found
+        let neighbors = plan.state_order.iter().flat_map(|order| order.producers.array_windows());
+        let departures = neighbors.filter(|[_, movement]| self.departures.contains_key(movement));
+        departures.filter_map(|&[before, movement]| Some((movement, labels[before].value?))).collect()
     }
 
     /// How many uses the network has.

@@ -6,7 +6,6 @@
 
 mod answer;
 mod antichain;
-mod before;
 mod choices;
 mod chronological;
 mod conditions;
@@ -26,6 +25,7 @@ mod precedence;
 mod relax;
 mod replay;
 mod solver;
+mod state_order;
 mod structure;
 mod trace;
 mod trace_lines;

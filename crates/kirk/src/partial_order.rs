@@ -2,6 +2,7 @@
 //! the plan, as far as that does not follow from the rest (a partial-order schedule, Policella et al. 2004).
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::iter;
 
 use exact::Bound;
 use rmpl::program::Change;
@@ -9,16 +10,16 @@ use stn::{Inconsistency, PointId, Stn};
 use tpn::selection::closure;
 use tpn::{
     ArcId, CausalLink, Choice, DecisionId, LabelId, Levels, Network, NodeId, Ordering, Plan, Precedence,
-    UseId, UseOrdering, Window,
+    StateOrder, UseId, UseOrdering, Window,
 };
 use typed_index_collections::TiVec;
 
 use crate::antichain::heaviest_antichain;
-use crate::before::Before as Earlier;
 use crate::demands::{ModelSupply, ModelUse, ResourceDemand};
 use crate::instants::{self, Before};
 use crate::model::{Alternatives, INFINITE, Model};
 use crate::solver::{Kept, turns};
+use crate::state_order::neighbors;
 use crate::unplannable::Unplannable;
 
 /// What a solution chooses, and times that fit.
@@ -72,7 +73,7 @@ pub(crate) fn plan(
     making.find_windows()?;
     making.order_instants(&causal_links);
     let mut orderings_added = Vec::new();
-    conflict_order.extend(making.order_kept(&mut orderings_added)?);
+    making.order_kept(&mut orderings_added)?;
     if !making.resolve(threats, &mut conflict_order, &mut orderings_added)? {
         return Ok(None);
     }
@@ -99,6 +100,8 @@ pub(crate) fn plan(
         selected_arcs,
         causal_links,
         conflict_order,
+        conflict_order_omitted: 0,
+        state_order: solution.kept.order.clone(),
         orderings_added,
         uses_ordered,
         levels,
@@ -213,22 +216,17 @@ impl Making<'_> {
 
     /// Movements take at least as long as from where the one before them ends (SPEC 10.3).
     fn add_departures(&mut self) -> Result<(), Unplannable> {
-        let model = self.model;
-        for (&movement, departures) in &model.demands.departures {
-            let sides = &self.solution.kept.sides;
-            let rank = |label: LabelId| sides.iter().filter(|&&(_, then)| then == label).count();
-            let earlier = sides.iter().filter(|&&(_, then)| then == movement).map(|&(first, _)| first);
-            let last = earlier.max_by_key(|&first| rank(first));
-            let variable =
-                model.demands.variables.iter().find(|variable| variable.changes.contains(&movement));
-            let Some(before) = last.or_else(|| variable.and_then(|variable| variable.initial)) else {
-                continue;
-            };
-            let departure =
-                departures.iter().find(|departure| model.conditions.gives_value(before, departure.from));
-            if self.is_selected[model.conditions.labels[movement].arc]
-                && let Some(least) = departure.and_then(|departure| departure.least)
-            {
+        let (model, solution) = (self.model, self.solution);
+        if model.demands.departures.is_empty() {
+            return Ok(());
+        }
+        let orders = solution.kept.order.iter();
+        for &[before, movement] in orders.flat_map(|order| order.producers.array_windows()) {
+            let departures = model.demands.departures.get(&movement);
+            let departure = departures.and_then(|departures| {
+                departures.iter().find(|departure| model.conditions.gives_value(before, departure.from))
+            });
+            if let Some(least) = departure.and_then(|departure| departure.least) {
                 let (start, end) = self.network.interval(movement);
                 self.insert(start, end, least)?;
             }
@@ -284,7 +282,7 @@ impl Making<'_> {
         for &(first, then) in &before {
             self.note_before(first, then);
         }
-        for &(first, then) in &self.solution.kept.sides {
+        for Ordering { first, then } in self.sides() {
             before.push((network.interval(first).1, network.interval(then).0));
         }
         for &(ask, change) in &self.solution.kept.over_before {
@@ -397,61 +395,48 @@ impl Making<'_> {
         self.positions[node]
     }
 
+    /// The pairs of changes that exclude each other from which all the others follow.
+    fn sides(&self) -> Vec<Ordering> {
+        let conditions = &self.model.conditions;
+        self.solution.kept.order.iter().flat_map(|order| neighbors(conditions, &order.producers)).collect()
+    }
+
     /// Orders what excludes or breaks each other among variables that keep their values (SPEC 10.2).
-    fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<Vec<Ordering>, Unplannable> {
-        let network = self.network;
-        let mut order = Vec::new();
-        let before = Earlier::new(&self.solution.kept.sides);
+    fn order_kept(&mut self, added: &mut Vec<Ordering>) -> Result<(), Unplannable> {
+        let (network, solution) = (self.network, self.solution);
         // What follows closely first: the rest follows from that.
-        let mut sides = self.solution.kept.sides.clone();
-        sides.sort_by_key(|&(first, then)| (self.room(first, then), first, then));
-        order.extend(sides.iter().map(|&(first, then)| Ordering { first, then }));
-        sides.retain(|&(first, then)| !before.is_implied(first, then));
-        for (first, then) in sides {
-            let order = Ordering { first, then };
-            if self.ensure(network.interval(first).1, network.interval(then).0, InOrder::Conditions(order))? {
-                added.push(order);
-            }
+        let mut sides = self.sides();
+        sides.sort_by_key(|order| (self.room(order.first, order.then), *order));
+        for order in sides {
+            self.put_in_order(order, added)?;
         }
-        let links: BTreeMap<LabelId, LabelId> = self.solution.kept.links.iter().copied().collect();
-        for variable in &self.model.demands.variables {
-            let is_selected = |label: &LabelId| self.is_selected[self.model.conditions.labels[*label].arc];
-            let changes: Vec<LabelId> = variable.changes.iter().copied().filter(is_selected).collect();
-            let asks: Vec<LabelId> = variable.asks.iter().copied().filter(is_selected).collect();
-            let conflicting = |one: LabelId, other: LabelId| network.conflict(one, other);
-            if let Some(initial) = variable.initial {
-                let after = changes.iter().chain(&asks).copied();
-                order.extend(
-                    after
-                        .filter(|&label| conflicting(initial, label))
-                        .map(|then| Ordering { first: initial, then }),
-                );
-            }
-            for &ask in &asks {
-                let Some(&carrier) = links.get(&ask) else { continue };
-                let breaking =
-                    changes.iter().copied().filter(|&change| change != carrier && conflicting(ask, change));
-                let (earlier, mut later): (Vec<LabelId>, Vec<LabelId>) =
-                    breaking.partition(|&change| before.holds(change, carrier));
-                order.extend(earlier.into_iter().map(|change| Ordering { first: change, then: ask }));
-                order.extend(later.iter().map(|&change| Ordering { first: ask, then: change }));
-                // Before the first of those that follow each other it is before all.
-                later.sort_by_key(|&change| (before.rank(change), change));
-                let mut firsts: Vec<LabelId> = Vec::new();
-                for change in later {
-                    if firsts.iter().any(|&first| before.holds(first, change)) {
-                        continue;
-                    }
-                    firsts.push(change);
-                    let order = Ordering { first: ask, then: change };
-                    let (over, begun) = (network.interval(ask).1, network.interval(change).0);
-                    if self.ensure(over, begun, InOrder::Conditions(order))? {
-                        added.push(order);
+        let mut asks: BTreeMap<LabelId, Vec<LabelId>> = BTreeMap::new();
+        for &(ask, carrier) in &solution.kept.links {
+            asks.entry(carrier).or_default().push(ask);
+        }
+        for StateOrder { producers, .. } in &solution.kept.order {
+            for (position, carrier) in producers.iter().enumerate() {
+                for &ask in asks.get(carrier).into_iter().flatten() {
+                    // Before the first of those that follow each other it is before all.
+                    let mut later = producers[position + 1..].iter().copied();
+                    let Some(first) = later.find(|&change| network.conflict(ask, change)) else { continue };
+                    let alike = later.take_while(|&change| !network.conflict(first, change));
+                    for then in iter::once(first).chain(alike) {
+                        self.put_in_order(Ordering { first: ask, then }, added)?;
                     }
                 }
             }
         }
-        Ok(order)
+        Ok(())
+    }
+
+    /// Makes sure that one interval is over before another begins, of a variable that keeps its value.
+    fn put_in_order(&mut self, order: Ordering, added: &mut Vec<Ordering>) -> Result<(), Unplannable> {
+        let (over, begun) = (self.network.interval(order.first).1, self.network.interval(order.then).0);
+        if self.ensure(over, begun, InOrder::Conditions(order))? {
+            added.push(order);
+        }
+        Ok(())
     }
 
     /// The conflicting pairs of variables that are known only where they are asserted which arcs and links do not put in

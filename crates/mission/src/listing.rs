@@ -123,6 +123,7 @@ fn is_same(one: &Plan, other: &Plan) -> bool {
     one.choices == other.choices
         && one.causal_links == other.causal_links
         && one.conflict_order == other.conflict_order
+        && one.state_order == other.state_order
 }
 
 /// What tells ways to drive from each other: the choices, and the places that each traverse passes.

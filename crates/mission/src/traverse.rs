@@ -77,10 +77,11 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
         .collect();
     // Movements that take no time may have one earliest departure: the plan says which comes first.
     let mut ranks: BTreeMap<OccurrenceId, usize> = BTreeMap::new();
-    for order in &plan.conflict_order {
-        let label = &network.labels[order.then.index()];
-        if let Some(owner) = label.owner.filter(|_| label.is_changing()) {
-            *ranks.entry(owner).or_default() += 1;
+    for order in &plan.state_order {
+        for (rank, label) in order.producers.iter().enumerate() {
+            if let Some(owner) = network.labels[label.index()].owner {
+                *ranks.entry(owner).or_default() += rank;
+            }
         }
     }
     moving.sort_by_key(|(id, _)| {

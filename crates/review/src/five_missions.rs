@@ -140,6 +140,23 @@ fn cases(snapshot: &Snapshot, rules: &FlightRules) -> Vec<(String, Review)> {
             }),
         );
     }
+    for (at, order) in plan.state_order.iter().enumerate() {
+        let names: Vec<String> = order.producers.iter().map(|&label| network.label_name(label)).collect();
+        for (&producer, name) in order.producers.iter().zip(&names) {
+            let name = format!("plan: {name} is twice in the order of changes");
+            add(name, with_plan(snapshot, |_, plan| plan.state_order[at].producers.push(producer)));
+        }
+        let name = format!("plan: {} is not in the order of changes", names[names.len() - 1]);
+        add(name, with_plan(snapshot, |_, plan| _ = plan.state_order[at].producers.pop()));
+        for (position, pair) in names.windows(2).enumerate().skip(1) {
+            let (first, then) = (&pair[0], &pair[1]);
+            let name = format!("plan: {then} comes before {first}");
+            add(
+                name,
+                with_plan(snapshot, |_, plan| plan.state_order[at].producers.swap(position, position + 1)),
+            );
+        }
+    }
     for order in &plan.uses_ordered {
         let owner = |used: tpn::UseId| {
             let owner = network.uses[used.index()].owner;

@@ -140,7 +140,7 @@ impl<'input> PlanLines<'input> {
 
     fn ordered_labels(&mut self) -> Vec<ConflictReview> {
         let (plan, network) = (self.plan, self.network);
-        let orders: Vec<&tpn::Ordering> = plan.telling_order(network).collect();
+        let orders = plan.telling_order(network);
         let added: BTreeSet<&tpn::Ordering> = plan.orderings_added.iter().collect();
         let pairs: Vec<(NodeId, NodeId)> = orders
             .iter()
@@ -148,7 +148,7 @@ impl<'input> PlanLines<'input> {
             .collect();
         let gaps = self.distances.between(&pairs);
         let review =
-            |((order, gap), (end, start)): ((&&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
+            |((order, gap), (end, start)): ((&tpn::Ordering, &Option<TimeRange>), &(NodeId, NodeId))| {
                 let gap = (*gap)?;
                 let (first, then) = (network.label_name(order.first), network.label_name(order.then));
                 let is_added = added.contains(order);
@@ -225,9 +225,14 @@ impl<'input> PlanLines<'input> {
             self.plan.windows.get(node.index()).copied().flatten().map(|window| window.earliest)
         };
         let is_told = |other: LabelId| self.network.labels[other.index()].mode == LabelMode::Tell;
-        let after =
+        let pairs =
             self.plan.conflict_order.iter().filter(|order| order.first == label && is_told(order.then));
-        let after = after.map(|order| (self.network.interval(order.then).0, order.then));
+        let orders = self.plan.state_order.iter();
+        let changes =
+            orders.flat_map(|order| order.producers.iter().skip_while(|it| **it != label).skip(1).copied());
+        let changes = changes.filter(|&change| self.network.conflict(label, change)).take(1);
+        let after = pairs.map(|order| order.then).chain(changes);
+        let after = after.map(|then| (self.network.interval(then).0, then));
         after.min_by_key(|&(start, then)| (earliest(start), earliest(self.network.ready(then))))
     }
 

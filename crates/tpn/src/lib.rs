@@ -25,4 +25,7 @@ pub use network::{
     OccurrenceKind, Resource, ResourceId, Role, Supply, Use, UseId, ValueId, ValueSet, Variable, VariableId,
     Worth,
 };
-pub use plan::{CausalLink, Choice, Levels, Ordering, Plan, Precedence, Quality, UseOrdering, Window};
+pub use plan::{
+    CausalLink, Choice, Levels, Ordering, Plan, PlanOrder, Precedence, Quality, StateOrder, UseOrdering,
+    Window,
+};

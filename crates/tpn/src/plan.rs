@@ -2,10 +2,15 @@
 //!
 //! The planner makes it and the checker reads it; neither's code is here.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::iter;
+
 use exact::{Bound, Rational, Time};
 use serde::{Deserialize, Serialize};
 
-use crate::network::{ArcId, DecisionId, EventRef, Extent, LabelId, Network, NodeId, Supply, UseId};
+use crate::network::{
+    ArcId, DecisionId, EventRef, Extent, LabelId, Network, NodeId, Supply, UseId, VariableId,
+};
 
 /// A plan of a [`crate::Network`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,8 +23,13 @@ pub struct Plan {
     pub selected_arcs: Vec<bool>,
     /// Which assertion carries each requirement, in textual order of the requirements.
     pub causal_links: Vec<CausalLink>,
-    /// Every pair of conflicting selected intervals, the earlier first.
+    /// Every pair of conflicting selected intervals of variables that are known only where they are asserted, the earlier
+    /// first.
     pub conflict_order: Vec<Ordering>,
+    /// How many such pairs the document that the plan was read from leaves out.
+    pub conflict_order_omitted: usize,
+    /// What gives each variable that keeps its value one, in order; by variable.
+    pub state_order: Vec<StateOrder>,
     /// The orderings that planning had to add, in the order they were added.
     pub orderings_added: Vec<Ordering>,
     /// The orderings of resource uses that planning had to add.
@@ -94,13 +104,40 @@ impl Plan {
         arcs.zip(&self.selected_arcs).any(|(arc, &is_selected)| is_selected && network.is_uncertain(arc))
     }
 
-    /// The order of conflicting intervals, but for what goes without saying: what holds at first comes before everything,
-    /// and what an activity needs at its start before what it sets.
-    pub fn telling_order<'a>(&'a self, network: &'a Network) -> impl Iterator<Item = &'a Ordering> {
-        self.conflict_order.iter().filter(|order| {
+    /// The order of intervals that exclude each other, as far as it does not follow from the rest: of variables that keep
+    /// their values each change with the next one, and each requirement with the change that ends what it rests on. Left out
+    /// is what goes without saying: what holds at first comes before everything, and what an activity needs at its start
+    /// before what it sets.
+    pub fn telling_order(&self, network: &Network) -> Vec<Ordering> {
+        let carriers: BTreeMap<LabelId, Vec<LabelId>> =
+            self.causal_links.iter().fold(BTreeMap::new(), |mut carriers, link| {
+                let asks: &mut Vec<LabelId> = carriers.entry(link.tell).or_default();
+                asks.push(link.ask);
+                carriers
+            });
+        let mut told = self.conflict_order.clone();
+        for StateOrder { producers, .. } in &self.state_order {
+            for (position, &producer) in producers.iter().enumerate() {
+                let next = |label: LabelId| {
+                    let mut later = producers[position + 1..].iter().copied();
+                    later.find(|&other| network.conflict(label, other))
+                };
+                let asks = carriers.get(&producer).into_iter().flatten().copied();
+                told.extend(
+                    iter::once(producer)
+                        .chain(asks)
+                        .filter_map(|first| Some(Ordering { first, then: next(first)? })),
+                );
+            }
+        }
+        let known: BTreeSet<Ordering> = told.iter().copied().collect();
+        told.extend(self.orderings_added.iter().copied().filter(|added| !known.contains(added)));
+        told.retain(|order| {
             let (first, then) = (&network.labels[order.first.index()], &network.labels[order.then.index()]);
             first.extent != Extent::Initial && (first.owner.is_none() || first.owner != then.owner)
-        })
+        });
+        told.sort_unstable_by_key(|order| (order.first.min(order.then), order.first.max(order.then)));
+        told
     }
 
     /// One interval ends before the other starts: with the gap that SPEC 5.3 asks for, of a variable that keeps its value
@@ -158,6 +195,49 @@ pub struct CausalLink {
     pub ask: LabelId,
     /// The assertion.
     pub tell: LabelId,
+}
+
+/// The producers of one variable that keeps its value, those that a plan selects (SPEC 10.2): of two that exclude each other
+/// the first is over before the other begins. The initial value comes first.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct StateOrder {
+    /// The variable.
+    pub variable: VariableId,
+    /// What gives it its values. Neighbors that give it one and the same value may overlap; they are in textual order.
+    pub producers: Vec<LabelId>,
+}
+
+/// Which of two intervals of one variable a plan puts first, where they exclude each other.
+#[derive(Clone, Debug, Default)]
+pub struct PlanOrder {
+    pairs: BTreeSet<(LabelId, LabelId)>,
+    /// Of variables that keep their values: the variable, and where the interval is among the others.
+    places: BTreeMap<LabelId, (VariableId, usize)>,
+}
+
+impl PlanOrder {
+    /// The order of a plan.
+    pub fn new(plan: &Plan) -> Self {
+        let pairs = plan.conflict_order.iter().map(|order| (order.first, order.then)).collect();
+        let mut places = BTreeMap::new();
+        for StateOrder { variable, producers } in &plan.state_order {
+            let at = producers.iter().zip(0..).map(|(&producer, place)| (producer, (*variable, 2 * place)));
+            places.extend(at);
+        }
+        // A requirement is right after what it rests on.
+        let after: Vec<(LabelId, (VariableId, usize))> = (plan.causal_links.iter())
+            .filter_map(|link| places.get(&link.tell).map(|&(of, place)| (link.ask, (of, place + 1))))
+            .collect();
+        places.extend(after);
+        Self { pairs, places }
+    }
+
+    /// Whether the first interval is over before the other one begins, of two that exclude each other.
+    pub fn is_before(&self, first: LabelId, then: LabelId) -> bool {
+        let places = (self.places.get(&first), self.places.get(&then));
+        let is_earlier = matches!(places, (Some(one), Some(other)) if one.0 == other.0 && one.1 < other.1);
+        is_earlier || self.pairs.contains(&(first, then))
+    }
 }
 
 /// Two conflicting intervals, one before the other.

@@ -6,8 +6,10 @@ use exact::{Bound, Time};
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 
-use crate::network::{DecisionId, EventRef, LabelId, Network, NodeId, OccurrenceKind, Supply, UseId};
-use crate::plan::{CausalLink, Choice, Levels, Ordering, Plan, Quality, UseOrdering, Window};
+use crate::network::{
+    DecisionId, EventRef, LabelId, Network, NodeId, OccurrenceKind, Supply, UseId, VariableId,
+};
+use crate::plan::{CausalLink, Choice, Levels, Ordering, Plan, Quality, StateOrder, UseOrdering, Window};
 use crate::selection::closure;
 
 /// Why a JSON document is no plan of a network.
@@ -25,6 +27,9 @@ pub enum PlanError {
     },
 }
 
+/// How many pairs a document lists in `conflict_order` at most: there may be as many as the square of the mission.
+const MAX_CONFLICTS_LISTED: usize = 10_000;
+
 /// One plan of `network`. Windows of nodes without a name are left out; activities and conflicts are sorted by name.
 pub fn plan_to_json(network: &Network, plan: &Plan) -> Value {
     let choices: Map<String, Value> = (plan.choices.iter())
@@ -36,6 +41,8 @@ pub fn plan_to_json(network: &Network, plan: &Plan) -> Value {
     let pair = |ordering: &Ordering| [network.label_name(ordering.first), network.label_name(ordering.then)];
     let mut conflict_order: Vec<[String; 2]> = plan.conflict_order.iter().map(pair).collect();
     conflict_order.sort();
+    let omitted = plan.conflict_order_omitted + conflict_order.len().saturating_sub(MAX_CONFLICTS_LISTED);
+    conflict_order.truncate(MAX_CONFLICTS_LISTED);
     let orderings: Vec<[String; 2]> = plan.orderings_added.iter().map(pair).collect();
     let windows: Map<String, Value> = (network.nodes.iter().zip(&plan.windows))
         .filter_map(|(node, window)| Some((node, (*window)?)))
@@ -52,9 +59,47 @@ pub fn plan_to_json(network: &Network, plan: &Plan) -> Value {
         "windows": windows,
     });
     if let Value::Object(members) = &mut document {
+        if omitted > 0 {
+            members.insert("conflict_order_omitted".into(), omitted.into());
+        }
+        if !plan.state_order.is_empty() {
+            members.insert("state_order".into(), state_order_to_json(network, plan));
+        }
         add_resources(network, plan, members);
     }
     document
+}
+
+fn state_order_to_json(network: &Network, plan: &Plan) -> Value {
+    let of_variable = plan.state_order.iter().map(|StateOrder { variable, producers }| {
+        let names: Vec<String> = producers.iter().map(|&label| network.label_name(label)).collect();
+        (network.variables[variable.index()].name.to_string(), json!(names))
+    });
+    Value::Object(of_variable.collect())
+}
+
+/// The lists of `state_order`, by variable.
+fn state_order_from_json(
+    network: &Network,
+    names: &Names,
+    plan: &Value,
+) -> Result<Vec<StateOrder>, PlanError> {
+    let Some(stated) = plan.get("state_order") else { return Ok(Vec::new()) };
+    let Value::Object(stated) = stated else { return Err(shape("`state_order` is not an object")) };
+    let variables: BTreeMap<&str, VariableId> = (network.variables.iter().enumerate())
+        .map(|(index, variable)| (variable.name.as_str(), VariableId::from_index(index)))
+        .collect();
+    let mut found = Vec::with_capacity(stated.len());
+    for (name, producers) in stated {
+        let variable = *variables.get(name.as_str()).ok_or_else(|| unknown("state variable", name))?;
+        let wrong = || shape(&format!("`state_order` has no list of names for `{name}`"));
+        let label = |producer: &Value| names.label(producer.as_str().ok_or_else(wrong)?);
+        let producers = producers.as_array().ok_or_else(wrong)?.iter().map(label);
+        let producers = producers.collect::<Result<Vec<LabelId>, PlanError>>()?;
+        found.push(StateOrder { variable, producers });
+    }
+    found.sort_by_key(|order| order.variable);
+    Ok(found)
 }
 
 /// What a plan says of resources and of its worth, where the mission has them (SPEC 11, 12).
@@ -204,12 +249,21 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
         selected_arcs,
         causal_links,
         conflict_order: orderings("conflict_order")?,
+        conflict_order_omitted: omitted(plan)?,
+        state_order: state_order_from_json(network, &names, plan)?,
         orderings_added: orderings("orderings_added")?,
         uses_ordered,
         levels: levels_from_json(network, plan)?,
         quality: quality_from_json(plan),
         windows,
     })
+}
+
+/// How many pairs `conflict_order` leaves out.
+fn omitted(plan: &Value) -> Result<usize, PlanError> {
+    let Some(stated) = plan.get("conflict_order_omitted") else { return Ok(0) };
+    let count = stated.as_u64().and_then(|count| usize::try_from(count).ok());
+    count.ok_or_else(|| shape("`conflict_order_omitted` is a number of pairs"))
 }
 
 /// The `activities` that a plan's JSON states, sorted, if it does.

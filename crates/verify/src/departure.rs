@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use exact::Time;
-use rmpl::program::LabelMode;
 use tpn::{Departure, LabelId, Network, Plan, ValueSet};
 
 use crate::labels;
@@ -17,26 +16,16 @@ pub(crate) struct Movement {
     pub(crate) least: Option<Time>,
 }
 
-/// The movements whose start the plan's order of conflicts decides and the network knows.
+/// The movements whose start the plan's order of changes decides and the network knows.
 pub(crate) fn of_plan(network: &Network, plan: &Plan) -> Vec<Movement> {
     let arrivals = arrivals(network, plan);
     if arrivals.is_empty() {
         return Vec::new();
     }
-    let order: BTreeSet<(LabelId, LabelId)> =
-        plan.conflict_order.iter().map(|order| (order.first, order.then)).collect();
-    let is_producer = |label: LabelId| network.labels[label.index()].mode == LabelMode::Tell;
     let mut found = Vec::new();
-    for arrival in arrivals {
-        let earlier: Vec<LabelId> = (plan.conflict_order.iter())
-            .filter(|order| order.then == arrival && is_producer(order.first))
-            .map(|order| order.first)
-            .collect();
-        let is_last = |&&one: &&LabelId| !earlier.iter().any(|&other| order.contains(&(one, other)));
-        // Those that nothing orders have one value.
-        if let Some(&before) = earlier.iter().find(is_last)
-            && let Some(departure) = known(network, arrival, before)
-        {
+    let neighbors = plan.state_order.iter().flat_map(|order| order.producers.array_windows());
+    for &[before, arrival] in neighbors.filter(|[_, arrival]| arrivals.contains(arrival)) {
+        if let Some(departure) = known(network, arrival, before) {
             found.push(Movement { arrival, before, least: departure.least });
         }
     }

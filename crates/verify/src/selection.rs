@@ -18,6 +18,7 @@ pub(crate) fn check_form(network: &Network, plan: &Plan) -> Result<(), Verdict> 
     let orderings = plan.conflict_order.iter().chain(&plan.orderings_added);
     let labels = orderings.flat_map(|ordering| [ordering.first, ordering.then]);
     let labels = labels.chain(plan.causal_links.iter().flat_map(|link| [link.ask, link.tell]));
+    let labels = labels.chain(plan.state_order.iter().flat_map(|order| order.producers.iter().copied()));
     expect(
         labels.into_iter().all(|label| label.index() < network.labels.len()),
         "the plan names an unknown interval",
@@ -25,6 +26,10 @@ pub(crate) fn check_form(network: &Network, plan: &Plan) -> Result<(), Verdict> 
     expect(
         plan.choices.iter().all(|choice| choice.decision.index() < network.decisions.len()),
         "the plan names an unknown decision",
+    );
+    expect(
+        plan.state_order.iter().all(|order| order.variable.index() < network.variables.len()),
+        "the plan names an unknown variable",
     );
     let is_known_use = |used: UseId| used.index() < network.uses.len();
     expect(

@@ -366,13 +366,13 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
         ));
     }
     let added: BTreeSet<&tpn::Ordering> = plan.orderings_added.iter().collect();
-    let mut orders = plan.telling_order(network);
-    for order in orders.by_ref().take(MAX_ORDERS_TOLD) {
+    let orders = plan.telling_order(network);
+    for order in orders.iter().take(MAX_ORDERS_TOLD) {
         let added = if added.contains(order) { " (added)" } else { "" };
         let (first, then) = (network.label_name(order.first), network.label_name(order.then));
         text.push_str(&format!("order     {first} before {then}{added}\n"));
     }
-    let more = orders.count();
+    let more = orders.len().saturating_sub(MAX_ORDERS_TOLD);
     if more > 0 {
         text.push_str(&format!("order     and {more} more, all in `--json`\n"));
     }

@@ -52,7 +52,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Some(plans) => plans.iter().collect(),
         None => vec![&stated],
     };
-    anyhow::ensure!(!plans.is_empty(), "{} has no plan to check", args.plan.display());
     let mut violations = Vec::new();
     for (index, plan) in plans.iter().enumerate() {
         for mut violation in check(args, &mut mission, (&compiled, network), plan)? {
@@ -65,12 +64,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let is_valid = violations.is_empty();
     match args.format {
         Format::Json => {
-            let body = json!({ "valid": is_valid, "violations": violations });
+            let body = json!({ "valid": is_valid, "plans": plans.len(), "violations": violations });
             print_json(&document("verify", &problems, body))?;
         }
         Format::Text => {
             print_problems(&mission.name, &mission.source, &problems)?;
-            let mut text = if is_valid { "valid\n".to_owned() } else { "not valid\n".to_owned() };
+            let mut text = match (is_valid, plans.is_empty()) {
+                (true, true) => {
+                    "valid: the document lists no plan, so there is nothing to check\n".to_owned()
+                }
+                (true, false) => "valid\n".to_owned(),
+                (false, _) => "not valid\n".to_owned(),
+            };
             for violation in &violations {
                 text.push_str(&format!("  {}\n", violation["message"].as_str().unwrap_or("")));
             }

@@ -10,7 +10,7 @@ mod best_first;
 use std::collections::BTreeSet;
 
 use exact::Rational;
-use tpn::{Choice, LabelId, Network, Ordering, Plan};
+use tpn::{CausalLink, Choice, LabelId, Network, Ordering, Plan, StateOrder};
 
 use crate::choices::Choices;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
@@ -64,28 +64,21 @@ fn are_nested(model: &Model, changes: &[LabelId]) -> bool {
     })
 }
 
-/// The order of the selected changes that the program's structure orders, of a network without other demands.
-pub(crate) fn nested_changes(model: &Model, selected_arcs: &[bool]) -> Vec<Ordering> {
+/// The order of the selected changes, of a network whose structure orders them.
+pub(crate) fn nested_changes(model: &Model, selected_arcs: &[bool]) -> Vec<StateOrder> {
     let is_selected = |label: &LabelId| selected_arcs[model.conditions.labels[*label].arc.index()];
-    let mut order = Vec::new();
-    for variable in &model.demands.variables {
+    let is_before = |first: LabelId, then: LabelId| model.nested_order(first, then) == Relation::Before;
+    let of_variable = model.demands.variables.iter().filter_map(|variable| {
         let changes: Vec<LabelId> = variable.changes.iter().copied().filter(is_selected).collect();
-        if let Some(initial) = variable.initial {
-            let after = changes.iter().copied().filter(|&change| model.conditions.exclude(initial, change));
-            order.extend(after.map(|then| Ordering { first: initial, then }));
-        }
-        for (position, &left) in changes.iter().enumerate() {
-            for &right in &changes[position + 1..] {
-                match model.nested_order(left, right) {
-                    _ if !model.conditions.exclude(left, right) => {}
-                    Relation::Before => order.push(Ordering { first: left, then: right }),
-                    Relation::After => order.push(Ordering { first: right, then: left }),
-                    Relation::Open => {}
-                }
-            }
-        }
-    }
-    order
+        variable.in_order(&model.conditions, &changes, is_before)
+    });
+    of_variable.collect()
+}
+
+/// What tells plans of one network apart: plans that differ only in how uses of resources are ordered are one.
+pub(crate) fn told_apart(plan: &Plan) -> (Vec<Choice>, Vec<CausalLink>, Vec<Ordering>, Vec<StateOrder>) {
+    let Plan { choices, causal_links, conflict_order, state_order, .. } = plan;
+    (choices.clone(), causal_links.clone(), conflict_order.clone(), state_order.clone())
 }
 
 /// The plan that makes the same choices as another one, if there is one.
@@ -399,9 +392,7 @@ impl<'a> Searching<'a> {
                 Next::Nothing => break true,
                 Next::Plan(plan) => plan,
             };
-            // Those that differ only in how uses are ordered are one.
-            let told = (plan.choices.clone(), plan.causal_links.clone(), plan.conflict_order.clone());
-            if known.insert(told) {
+            if known.insert(told_apart(&plan)) {
                 if let Some(record) = &mut solver.record {
                     record.tell_plan(plans.len() as u32);
                 }

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use tpn::{CausalLink, LabelId, Ordering};
+use tpn::{CausalLink, LabelId, Ordering, StateOrder};
 
 use super::encode::{Interval, Part, Problem};
 use super::growth::{CLAUSE, Growth, LINK, ORDER, Unencoded};
@@ -46,8 +46,8 @@ pub(crate) struct Sides {
 pub(crate) struct Kept {
     /// What each selected requirement rests on, in textual order of the requirements.
     pub(crate) links: Vec<(LabelId, LabelId)>,
-    /// Each selected pair of changes that exclude each other, the earlier one first.
-    pub(crate) sides: Vec<(LabelId, LabelId)>,
+    /// What gives each variable its values, in order; only of variables that something changes.
+    pub(crate) order: Vec<StateOrder>,
     /// Requirements that are over before a change that would break them, the requirement first.
     pub(crate) over_before: Vec<(LabelId, LabelId)>,
 }
@@ -445,18 +445,17 @@ impl Problem<'_> {
         let over = self.sides.kept_before.iter().filter(|(_, after)| solver.trail.holds(*after));
         kept.over_before = over.map(|(order, _)| (order.first, order.then)).collect();
         for variable in &self.model.demands.variables {
-            let changes: Vec<LabelId> =
+            let mut changes: Vec<LabelId> =
                 variable.changes.iter().copied().filter(|&change| exists(change)).collect();
-            for (position, &left) in changes.iter().enumerate() {
-                for &right in &changes[position + 1..] {
-                    if self.model.conditions.exclude(left, right)
-                        && let Some(left_first) = self.before(left, right)
-                    {
-                        let is_left_first = solver.trail.holds(left_first);
-                        kept.sides.push(if is_left_first { (left, right) } else { (right, left) });
-                    }
-                }
-            }
+            // Only those that begin and end at one instant may be in another order.
+            changes.sort_by_key(|&change| {
+                let Interval { start, end, .. } = self.intervals[change];
+                (solver.trail.least(start), solver.trail.least(end), change)
+            });
+            let is_before = |first: LabelId, then: LabelId| {
+                self.before(first, then).is_some_and(|literal| solver.trail.holds(literal))
+            };
+            kept.order.extend(variable.in_order(&self.model.conditions, &changes, is_before));
         }
         kept
     }

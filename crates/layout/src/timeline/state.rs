@@ -8,16 +8,17 @@ use std::cmp::Ordering::{Greater, Less};
 
 use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
-use tpn::{Extent, Label, LabelId, Network, Plan, ValueSet};
+use tpn::{Extent, Label, LabelId, Network, Plan, PlanOrder, ValueSet};
 
 use super::row::{Bar, BarKind, Item, RowKind, times};
 
 /// A row for each variable of a plan that keeps its value, below a heading; nothing without any.
 pub(super) fn items(network: &Network, plan: &Plan) -> Vec<Item> {
+    let order = PlanOrder::new(plan);
     let tracks = network.variables.iter().enumerate().filter(|(_, variable)| variable.is_lasting);
     let rows: Vec<Item> = tracks
         .filter_map(|(index, variable)| {
-            let bars = track(network, plan, index);
+            let bars = track(network, plan, &order, index);
             let item = Item { kind: RowKind::State, name: variable.name.clone(), key: None, depth: 1, bars };
             (!item.bars.is_empty()).then_some(item)
         })
@@ -36,7 +37,7 @@ pub(super) fn items(network: &Network, plan: &Plan) -> Vec<Item> {
 }
 
 /// The bars of one variable: its changes and values in their order, then who needs them.
-fn track(network: &Network, plan: &Plan, variable: usize) -> Vec<Bar> {
+fn track(network: &Network, plan: &Plan, order: &PlanOrder, variable: usize) -> Vec<Bar> {
     let is_selected = |label: &Label| {
         label.literal.variable.index() == variable && plan.selected_arcs.get(label.arc.index()) == Some(&true)
     };
@@ -45,7 +46,7 @@ fn track(network: &Network, plan: &Plan, variable: usize) -> Vec<Bar> {
         all.filter(|(_, label)| is_selected(label)).map(|(index, _)| LabelId::from_index(index))
     };
     let is_told = |label: &LabelId| network.labels[label.index()].mode == LabelMode::Tell;
-    let producers = in_order(network, plan, labels().filter(is_told).collect());
+    let producers = in_order(network, plan, order, labels().filter(is_told).collect());
     let mut bars = Vec::new();
     for (at, &label) in producers.iter().enumerate() {
         let (start, _) = network.interval(label);
@@ -88,7 +89,7 @@ fn bar(
 
 /// Changes from first to last: by when they begin and are done in the earliest schedule, and, of those at one instant, as
 /// the plan orders them.
-fn in_order(network: &Network, plan: &Plan, mut producers: Vec<LabelId>) -> Vec<LabelId> {
+fn in_order(network: &Network, plan: &Plan, order: &PlanOrder, mut producers: Vec<LabelId>) -> Vec<LabelId> {
     let key = |label: LabelId| {
         let events = [network.interval(label).0, network.ready(label)];
         let is_first = network.labels[label.index()].extent == Extent::Initial;
@@ -101,14 +102,11 @@ fn in_order(network: &Network, plan: &Plan, mut producers: Vec<LabelId>) -> Vec<
     };
     producers.sort_by(compare);
     // Few share an instant; among them the plan's own order is followed as far as it says one.
-    let is_before = |first: LabelId, then: LabelId| {
-        plan.conflict_order.iter().any(|order| order.first == first && order.then == then)
-    };
     for at in 1..producers.len() {
         for back in (1..=at).rev() {
             let (left, right) = (producers[back - 1], producers[back]);
             let is_tied = !matches!(compare(&left, &right), Less | Greater);
-            if !is_tied || !is_before(right, left) {
+            if !is_tied || !order.is_before(right, left) {
                 break;
             }
             producers.swap(back - 1, back);

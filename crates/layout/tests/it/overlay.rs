@@ -28,6 +28,8 @@ fn plan(network: &Network) -> Plan {
             tell: label(network, "Tell(PATH1=OK)@Tell(PATH1=OK)#1"),
         }],
         conflict_order: Vec::new(),
+        conflict_order_omitted: 0,
+        state_order: Vec::new(),
         orderings_added: vec![Ordering {
             first: label(network, "Tell(not(PROCEED=OK))@Group-Wait#1"),
             then: label(network, "Tell(PROCEED=OK)@Tell(PROCEED=OK)#1"),

@@ -275,7 +275,7 @@ fn show_orderings(
     plan: &Plan,
     commands: &mut CommandSender,
 ) {
-    let orders: Vec<tpn::Ordering> = plan.telling_order(network).copied().collect();
+    let orders = plan.telling_order(network);
     if orders.is_empty() {
         return;
     }

@@ -132,13 +132,30 @@ fn orderings(before: &Side, after: &Side) -> Vec<Difference> {
         side.orderings.iter().map(entry).collect()
     };
     let (old, new) = (by_pair(before), by_pair(after));
-    names(&old, &new)
-        .into_iter()
-        .filter_map(|pair| {
-            let (old, new) = (old.get(pair).cloned(), new.get(pair).cloned());
-            (old != new).then(|| difference(Subject::Ordering, pair, old, new, Change::Rechosen))
-        })
-        .collect()
+    let differ = names(&old, &new).into_iter().filter_map(|pair| {
+        let (old, new) = (old.get(pair).cloned(), new.get(pair).cloned());
+        (old != new).then(|| difference(Subject::Ordering, pair, old, new, Change::Rechosen))
+    });
+    differ.chain(reversed(before, after)).collect()
+}
+
+/// Changes of one variable that are in both plans, one after the other in the first plan, and the other way round in the
+/// second.
+fn reversed(before: &Side, after: &Side) -> Vec<Difference> {
+    let mut found = Vec::new();
+    for (variable, old) in &before.states {
+        let Some(new) = after.states.get(variable) else { continue };
+        let places: BTreeMap<&String, usize> = new.iter().zip(0..).collect();
+        let kept: Vec<(&String, usize)> =
+            old.iter().filter_map(|name| Some((name, *places.get(name)?))).collect();
+        let reversed = kept.array_windows().filter(|[one, other]| one.1 > other.1);
+        found.extend(reversed.map(|[(first, _), (then, _)]| {
+            let sides = [first, then].map(|name| Some(format!("{name} first")));
+            let [old, new] = sides;
+            difference(Subject::Ordering, &format!("{first} and {then}"), old, new, Change::Rechosen)
+        }));
+    }
+    found
 }
 
 /// How far resources are used, and what the plans are worth.

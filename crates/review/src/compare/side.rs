@@ -8,7 +8,7 @@ use serde::Deserialize as _;
 use serde_json::Value;
 use snapshot::Snapshot;
 use tpn::plan_json::plan_to_json;
-use tpn::{Network, OccurrenceKind, Ordering, UseOrdering, Window};
+use tpn::{Network, OccurrenceKind, Ordering, StateOrder, UseOrdering, Window};
 
 use super::Subject;
 use crate::schedule::scheduled;
@@ -28,6 +28,8 @@ pub struct Side {
     pub links: BTreeMap<String, String>,
     /// Conflicting intervals, the first before the second.
     pub orderings: BTreeSet<[String; 2]>,
+    /// What gives variables that keep their values one, in order, by variable.
+    pub states: BTreeMap<String, Vec<String>>,
     /// How far resources are used and what the plan is worth, by name, as figures.
     pub figures: BTreeMap<String, String>,
     /// The ways of traverses; `None` where they are not known, as in a plan's JSON.
@@ -110,6 +112,12 @@ impl Side {
         side.orderings = plan.conflict_order.iter().map(pair).collect();
         let used = |it: &UseOrdering| [network.use_name(it.first), network.use_name(it.then)];
         side.orderings.extend(plan.uses_ordered.iter().map(used));
+        side.states = (plan.state_order.iter())
+            .map(|StateOrder { variable, producers }| {
+                let names = producers.iter().map(|&label| network.label_name(label));
+                (network.variables[variable.index()].name.to_string(), names.collect())
+            })
+            .collect();
         side.figures = figures(&plan_to_json(network, plan));
         side.ways = Some(
             snapshot
@@ -161,6 +169,10 @@ impl Side {
                 }
                 _ => return Err(shape("`conflict_order` is a list of pairs of names")),
             }
+        }
+        if let Some(stated) = plan.get("state_order") {
+            side.states = BTreeMap::deserialize(stated)
+                .map_err(|_| shape("`state_order` has a list of names for each variable"))?;
         }
         Ok(side)
     }

@@ -4,13 +4,12 @@ mod breach;
 mod known;
 mod words;
 
-use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use exact::{Bound, Rational, Time};
 use rmpl::program::Change as Changes;
 use rmpl::rule::{Activity, Moment, Rule};
-use tpn::{LabelId, Network, NodeId, OccurrenceKind, Plan, Supply};
+use tpn::{Network, NodeId, OccurrenceKind, Plan, PlanOrder, Supply};
 
 use self::breach::{Breach, at_levels, earliest};
 use self::known::{Asked, Reading};
@@ -34,7 +33,7 @@ pub(super) struct Meaning<'a> {
     times: Times,
     resources: Vec<Resource>,
     /// Which of two intervals that must not overlap comes first.
-    orders: BTreeSet<(LabelId, LabelId)>,
+    order: PlanOrder,
 }
 
 /// Where instants are looked for.
@@ -47,8 +46,7 @@ struct Place {
 impl<'a> Meaning<'a> {
     pub(super) fn new(network: &'a Network, plan: &'a Plan, times: Times) -> Self {
         let resources = (0..network.resources.len()).map(|index| resource(network, plan, index)).collect();
-        let orders = plan.conflict_order.iter().map(|it| (it.first, it.then)).collect();
-        Self { network, plan, times, resources, orders }
+        Self { network, plan, times, resources, order: PlanOrder::new(plan) }
     }
 
     /// Holds the plan against a rule; `None` if there are too many cases.

@@ -83,7 +83,7 @@ pub fn check_plan(network: &Network, plan: &Plan) -> Verdict {
     let mut stated = Stated::new(plan);
     checker.check_containment(&mut violations);
     checker.check_conflicts(&mut stated, &mut violations);
-    checker.check_states(&mut stated, &mut violations);
+    checker.check_states(&mut violations);
     checker.check_departures(&mut violations);
     stated.check_rest(network, plan, &mut violations);
     checker.check_resources(&mut violations);

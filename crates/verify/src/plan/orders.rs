@@ -1,5 +1,4 @@
-//! What a plan says of which conflicting interval is first, and the check of those of variables that do not last
-//! (SPEC 5.3).
+//! The check of conflicting intervals of variables that do not last: which one the plan says is first (SPEC 5.3).
 
 use std::collections::BTreeSet;
 
@@ -16,6 +15,8 @@ pub(super) struct Stated {
     /// Whether each of them has been asked for.
     is_accounted: Vec<bool>,
     added: BTreeSet<(LabelId, LabelId)>,
+    /// Whether the document that the plan was read from leaves out some pairs.
+    is_cut: bool,
 }
 
 /// What is said of a pair.
@@ -25,6 +26,8 @@ pub(super) enum Side {
     InOrder,
     /// The other one is.
     Reversed,
+    /// The document leaves the pair out.
+    Omitted,
 }
 
 impl Stated {
@@ -34,7 +37,8 @@ impl Stated {
         said.sort_unstable();
         said.dedup();
         let is_accounted = vec![false; said.len()];
-        Self { said, is_accounted, added: plan.orderings_added.iter().map(pair).collect() }
+        let added = plan.orderings_added.iter().map(pair).collect();
+        Self { said, is_accounted, added, is_cut: plan.conflict_order_omitted > 0 }
     }
 
     fn is_said(&self, first: LabelId, then: LabelId) -> bool {
@@ -57,6 +61,7 @@ impl Stated {
             (true, false) => Ok(Side::InOrder),
             (false, true) => Ok(Side::Reversed),
             (true, true) => Err(format!("{} and {} are ordered both ways", names().0, names().1)),
+            (false, false) if self.is_cut => Ok(Side::Omitted),
             (false, false) => {
                 Err(format!("the plan does not say which of {} and {} is first", names().0, names().1))
             }
@@ -66,10 +71,8 @@ impl Stated {
     /// What is said of pairs that no rule asks for, and what was added without being said.
     pub(super) fn check_rest(&self, network: &Network, plan: &Plan, violations: &mut Vec<Violation>) {
         let mut complain = |message: String, (one, other): (LabelId, LabelId)| {
-            let is_lasting = labels::is_lasting(network, one) && labels::is_lasting(network, other);
-            let rule = if is_lasting { Rule::State } else { Rule::Conflict };
             let names = vec![network.label_name(one), network.label_name(other)];
-            violations.push(Violation::new(rule, message).with_intervals(names));
+            violations.push(Violation::new(Rule::Conflict, message).with_intervals(names));
         };
         let unaccounted =
             self.said.iter().zip(&self.is_accounted).filter(|(_, is_accounted)| !**is_accounted);
@@ -80,7 +83,8 @@ impl Stated {
                 (first, then),
             );
         }
-        for ordering in &plan.orderings_added {
+        let of_conditions = plan.orderings_added.iter().filter(|it| !labels::is_lasting(network, it.first));
+        for ordering in of_conditions.filter(|_| !self.is_cut) {
             // Intervals without length, of a variable that does not last, may be at one instant: then each is before the
             // other, and the stated order, which has been looked at, may be the other one.
             if !self.is_said(ordering.first, ordering.then) && !self.is_said(ordering.then, ordering.first) {
@@ -120,8 +124,9 @@ impl Checker<'_> {
                 continue;
             }
             let (first, then) = match side {
-                Ok(Side::InOrder) => (one, other),
                 Ok(Side::Reversed) => (other, one),
+                Ok(Side::Omitted) if self.is_before(other, one, stated) => (other, one),
+                Ok(Side::InOrder | Side::Omitted) => (one, other),
                 Err(problem) => {
                     complain(problem, (one, other));
                     continue;

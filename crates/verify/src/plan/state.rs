@@ -1,14 +1,17 @@
 //! The check of state that lasts (SPEC 10.2): what is required holds throughout, and changes exclude each other.
+//!
+//! A plan lists what gives each variable its values in order. What excludes its neighbor in that list must be over before it
+//! in every schedule; for what lies further apart this follows, since no interval ends before it starts.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use tpn::LabelId;
+use tpn::{LabelId, Ordering, StateOrder, VariableId};
 
 use super::Checker;
-use super::orders::{Side, Stated};
 use crate::departure;
-use crate::entailment::{Precedence, Span};
-use crate::state::{self, Producer, State, owner_name};
+use crate::entailment::Span;
+use crate::labels;
+use crate::state::{self, Producer, Requirement, State, owner_name};
 use crate::{Rule, Violation};
 
 impl Checker<'_> {
@@ -24,22 +27,118 @@ impl Checker<'_> {
         }
     }
 
-    /// Rules 1 and 2 in every schedule, the sides of rule 2 without circles, and everything as the plan states it.
-    pub(super) fn check_states(&self, stated: &mut Stated, violations: &mut Vec<Violation>) {
+    /// Rules 1 and 2 in every schedule.
+    pub(super) fn check_states(&self, violations: &mut Vec<Violation>) {
+        let network = self.network;
         let supporters: BTreeMap<LabelId, LabelId> =
             self.plan.causal_links.iter().map(|link| (link.ask, link.tell)).collect();
-        for state in state::selected(self.network, self.plan) {
+        let mut lists: BTreeMap<VariableId, &[LabelId]> = BTreeMap::new();
+        for StateOrder { variable, producers } in &self.plan.state_order {
+            if lists.insert(*variable, producers).is_some() {
+                let name = &network.variables[variable.index()].name;
+                violations.push(Violation::new(Rule::State, format!("{name} has two orders")));
+            }
+        }
+        let mut places: BTreeMap<LabelId, usize> = BTreeMap::new();
+        for state in state::selected(network, self.plan) {
             let producers = state.producers.iter().map(|it| Span { start: it.start, end: it.end });
             let requirements = state.requirements.iter().map(|it| Span { start: it.start, end: it.end });
-            let spans: Vec<Span> = producers.chain(requirements).collect();
-            if let Some(span) = spans.iter().find(|span| !self.is_forward(**span)) {
-                violations.push(self.backward(*span));
+            let listed = lists.remove(&state.variable).unwrap_or_default();
+            if let Some(span) = producers.chain(requirements).find(|span| !self.is_forward(*span)) {
+                violations.push(self.backward(span));
                 continue;
             }
-            let checked =
-                StateCheck { checker: self, order: Precedence::new(&self.entailment, &spans), state: &state };
-            let sides = checked.check_producers(stated, violations);
-            checked.check_requirements(&supporters, &sides, stated, violations);
+            let Some(order) = self.listed(&state, listed, violations) else { continue };
+            let checked = StateCheck { checker: self, state: &state, order };
+            checked.check_producers(violations);
+            checked.check_requirements(&supporters, violations);
+            // Between two producers there is room for what rests on the first one.
+            places.extend(checked.order.iter().zip(0..).map(|(producer, place)| (producer.label, 2 * place)));
+        }
+        for variable in lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(variable, _)| variable) {
+            let name = &network.variables[variable.index()].name;
+            let message = format!("the plan orders changes of {name}, and selects none");
+            violations.push(Violation::new(Rule::State, message));
+        }
+        let rests = supporters.iter().filter_map(|(ask, tell)| Some((*ask, places.get(tell)? + 1)));
+        let rests: Vec<(LabelId, usize)> = rests.collect();
+        places.extend(rests);
+        self.check_added(&places, &supporters, violations);
+    }
+
+    /// The selected producers in the plan's order: all of them, each once, the initial value first. Where only that one
+    /// gives a variable its value, the plan need not list it.
+    fn listed(
+        &self,
+        state: &State,
+        listed: &[LabelId],
+        violations: &mut Vec<Violation>,
+    ) -> Option<Vec<Producer>> {
+        let network = self.network;
+        let variable = &network.variables[state.variable.index()].name;
+        let by_label: BTreeMap<LabelId, &Producer> =
+            state.producers.iter().map(|producer| (producer.label, producer)).collect();
+        let mut order: Vec<Producer> = state.producers.iter().filter(|it| it.is_initial).copied().collect();
+        let is_shown = |label: &LabelId| by_label.get(label).is_some_and(|it| it.is_initial);
+        let mut seen: BTreeSet<LabelId> = BTreeSet::new();
+        let before = violations.len();
+        let mut complain = |message: String, label: LabelId| {
+            let names = vec![network.label_name(label)];
+            violations.push(Violation::new(Rule::State, message).with_intervals(names));
+        };
+        for (position, &label) in listed.iter().enumerate() {
+            let name = network.label_name(label);
+            if !seen.insert(label) {
+                complain(format!("{name} is twice in the order of {variable}"), label);
+            } else if is_shown(&label) {
+                if position > 0 {
+                    let earlier = network.label_name(listed[0]);
+                    let message =
+                        format!("{earlier} is put before the start, where {variable} has its first value");
+                    complain(message, label);
+                }
+            } else if let Some(&producer) = by_label.get(&label) {
+                order.push(*producer);
+            } else {
+                let message =
+                    format!("{name} is in the order of {variable}, but is not selected or changes nothing");
+                complain(message, label);
+            }
+        }
+        for producer in state.producers.iter().filter(|it| !it.is_initial && !seen.contains(&it.label)) {
+            let name = network.label_name(producer.label);
+            complain(
+                format!("the plan does not say where {name} is in the order of {variable}"),
+                producer.label,
+            );
+        }
+        (violations.len() == before).then_some(order)
+    }
+
+    /// What planning added agrees with the orders of the variables.
+    fn check_added(
+        &self,
+        places: &BTreeMap<LabelId, usize>,
+        supporters: &BTreeMap<LabelId, LabelId>,
+        violations: &mut Vec<Violation>,
+    ) {
+        let network = self.network;
+        for &Ordering { first, then } in &self.plan.orderings_added {
+            if !labels::is_lasting(network, first) {
+                continue;
+            }
+            let of = |label: LabelId| network.labels[label.index()].literal.variable;
+            let is_in_order =
+                matches!((places.get(&first), places.get(&then)), (Some(one), Some(other)) if one < other);
+            let is_asked = network.conflict(first, then) && supporters.get(&then) != Some(&first);
+            if !is_in_order || of(first) != of(then) || !is_asked {
+                let names = vec![network.label_name(first), network.label_name(then)];
+                let message = format!(
+                    "{} was put before {}, which the order of changes does not say",
+                    names[0], names[1]
+                );
+                violations.push(Violation::new(Rule::State, message).with_intervals(names));
+            }
         }
     }
 }
@@ -47,20 +146,8 @@ impl Checker<'_> {
 struct StateCheck<'check> {
     checker: &'check Checker<'check>,
     state: &'check State,
-    /// Of the producers, then the requirements.
-    order: Precedence,
-}
-
-/// Which producers rule 2 puts before which, by position: row by row whether each other one is later.
-struct Sides {
-    count: usize,
-    is_before: Vec<bool>,
-}
-
-impl Sides {
-    fn contains(&self, first: usize, then: usize) -> bool {
-        self.is_before[first * self.count + then]
-    }
+    /// The producers in the plan's order.
+    order: Vec<Producer>,
 }
 
 impl StateCheck<'_> {
@@ -84,36 +171,15 @@ impl StateCheck<'_> {
         }
     }
 
-    /// Rule 2.
-    fn check_producers(&self, stated: &mut Stated, violations: &mut Vec<Violation>) -> Sides {
+    /// Rule 2: neighbors that may overlap give one value; each of them excludes all of the next ones.
+    fn check_producers(&self, violations: &mut Vec<Violation>) {
         let network = self.checker.network;
-        let producers = &self.state.producers;
-        let count = producers.len();
-        let mut sides = Sides { count, is_before: vec![false; count * count] };
-        for (one, producer) in producers.iter().enumerate() {
-            for (other, another) in producers.iter().enumerate().skip(one + 1) {
-                if !producer.excludes(another, network) {
-                    continue;
-                }
-                let (first, then) = match stated.side(network, producer.label, another.label) {
-                    Ok(Side::InOrder) => (one, other),
-                    Ok(Side::Reversed) => (other, one),
-                    Err(problem) => {
-                        violations.push(self.violation(problem, &[producer.label, another.label]));
-                        continue;
-                    }
-                };
-                sides.is_before[first * count + then] = true;
-                let (earlier, later) = (&producers[first], &producers[then]);
-                let labels = [earlier.label, later.label];
-                if later.is_initial {
-                    let message = format!(
-                        "{} is put before the start, where {} has its first value",
-                        network.label_name(earlier.label),
-                        self.variable()
-                    );
-                    violations.push(self.violation(message, &labels));
-                } else if !self.order.is_before(first, then) {
+        let runs: Vec<&[Producer]> =
+            self.order.chunk_by(|one, other| !one.excludes(other, network)).collect();
+        for next in runs.windows(2) {
+            let pairs = next[0].iter().flat_map(|earlier| next[1].iter().map(move |later| (earlier, later)));
+            for (earlier, later) in pairs {
+                if !self.checker.entailment.happens_before(earlier.end, later.start) {
                     let message = format!(
                         "{} may overlap {}, which it is said to precede: {} while {}",
                         network.label_name(earlier.label),
@@ -121,105 +187,66 @@ impl StateCheck<'_> {
                         self.deed(earlier),
                         self.deed(later)
                     );
-                    violations.push(self.violation(message, &labels));
+                    violations.push(self.violation(message, &[earlier.label, later.label]));
                 }
             }
         }
-        self.check_circles(&sides, violations);
-        sides
     }
 
-    /// The sides of rule 2 are an order: those that nothing unplaced precedes can always be placed next.
-    fn check_circles(&self, sides: &Sides, violations: &mut Vec<Violation>) {
-        let count = self.state.producers.len();
-        let mut waits_for = vec![0_u32; count];
-        for first in 0..count {
-            for then in (0..count).filter(|&then| sides.contains(first, then)) {
-                waits_for[then] += 1;
-            }
-        }
-        let mut ready: Vec<usize> = (0..count).filter(|&index| waits_for[index] == 0).collect();
-        let mut is_placed = vec![false; count];
-        while let Some(index) = ready.pop() {
-            is_placed[index] = true;
-            for follower in (0..count).filter(|&then| sides.contains(index, then)) {
-                waits_for[follower] -= 1;
-                if waits_for[follower] == 0 {
-                    ready.push(follower);
-                }
-            }
-        }
-        let left: Vec<LabelId> = (self.state.producers.iter().zip(is_placed))
-            .filter_map(|(producer, is_placed)| (!is_placed).then_some(producer.label))
-            .collect();
-        if !left.is_empty() {
-            let names: Vec<String> =
-                left.iter().map(|&label| self.checker.network.label_name(label)).collect();
-            let message = format!(
-                "the order of the changes of {} goes round in a circle: {}",
-                self.variable(),
-                names.join(", ")
-            );
-            violations.push(self.violation(message, &left));
-        }
-    }
-
-    /// Rule 1. That the supporter is ready in time is a constraint of the plan, which holds in every schedule.
-    fn check_requirements(
-        &self,
-        supporters: &BTreeMap<LabelId, LabelId>,
-        sides: &Sides,
-        stated: &mut Stated,
-        violations: &mut Vec<Violation>,
-    ) {
+    /// Rule 1. That the supporter is ready in time is a constraint of the plan, which holds in every schedule. The last
+    /// producer before it that would break the requirement must be over when it is ready, and the first one after it must
+    /// wait for the requirement's end; each with those that may overlap it.
+    fn check_requirements(&self, supporters: &BTreeMap<LabelId, LabelId>, violations: &mut Vec<Violation>) {
         let network = self.checker.network;
-        let producers = &self.state.producers;
-        for (index, requirement) in self.state.requirements.iter().enumerate() {
-            let own = supporters.get(&requirement.label);
-            let Some(own) = producers.iter().position(|producer| own == Some(&producer.label)) else {
-                continue;
-            };
-            for (other, producer) in producers.iter().enumerate() {
-                if other == own || !producer.threatens(requirement, network) {
-                    continue;
+        let places: BTreeMap<LabelId, usize> =
+            self.order.iter().zip(0..).map(|(producer, place)| (producer.label, place)).collect();
+        for requirement in &self.state.requirements {
+            let own = supporters.get(&requirement.label).and_then(|tell| places.get(tell));
+            let Some(&own) = own else { continue };
+            let entailment = &self.checker.entailment;
+            let ready = self.order[own].ready;
+            for producer in self.nearest_threats(requirement, self.order[..own].iter().rev()) {
+                if !entailment.happens_before(producer.end, ready) {
+                    let message = format!(
+                        "{} may overlap {}, which it is said to precede, when {} needs it",
+                        network.label_name(producer.label),
+                        network.label_name(self.order[own].label),
+                        owner_name(network, requirement.label)
+                    );
+                    violations.push(self.violation(message, &[producer.label, requirement.label]));
                 }
-                let labels = [requirement.label, producer.label];
-                let side = match stated.side(network, requirement.label, producer.label) {
-                    Ok(side) => side,
-                    Err(problem) => {
-                        violations.push(self.violation(problem, &labels));
-                        continue;
-                    }
-                };
-                // A producer with another value, or a changing one, and the supporter are a pair of rule 2: what
-                // precedes the supporter ends before it is ready, what follows it must wait for the requirement's end.
-                let expected = if sides.contains(other, own) {
-                    Side::Reversed
-                } else if sides.contains(own, other) {
-                    Side::InOrder
-                } else {
-                    continue;
-                };
-                if side != expected {
-                    let message = format!(
-                        "{} is not on the side of {} on which {} is, which makes it hold",
-                        network.label_name(requirement.label),
-                        network.label_name(producer.label),
-                        network.label_name(producers[own].label)
-                    );
-                    violations.push(self.violation(message, &labels));
-                } else if side == Side::InOrder && !self.order.is_before(producers.len() + index, other) {
-                    let message = format!(
-                        "{} may overlap {}, which it is said to precede: {} while {} requires {}",
-                        network.label_name(requirement.label),
-                        network.label_name(producer.label),
-                        self.deed(producer),
-                        owner_name(network, requirement.label),
-                        network.labels[requirement.label.index()].text
-                    );
-                    violations.push(self.violation(message, &labels));
+            }
+            for producer in self.nearest_threats(requirement, self.order[own + 1..].iter()) {
+                if !entailment.happens_before(requirement.end, producer.start) {
+                    violations.push(self.overlap(requirement, producer));
                 }
             }
         }
+    }
+
+    /// The first of some producers that would break a requirement, with those beside it that may overlap it.
+    fn nearest_threats<'order>(
+        &self,
+        requirement: &Requirement,
+        producers: impl Iterator<Item = &'order Producer>,
+    ) -> Vec<&'order Producer> {
+        let network = self.checker.network;
+        let mut threats = producers.skip_while(|producer| !producer.threatens(requirement, network));
+        let Some(first) = threats.next() else { return Vec::new() };
+        let alike = threats.take_while(|producer| !first.excludes(producer, network));
+        [first].into_iter().chain(alike).collect()
+    }
+
+    fn overlap(&self, requirement: &Requirement, producer: &Producer) -> Violation {
+        let network = self.checker.network;
+        let message = format!(
+            "{} may overlap {}, which it is said to precede: {} while {} requires {}",
+            network.label_name(requirement.label),
+            network.label_name(producer.label),
+            self.deed(producer),
+            owner_name(network, requirement.label),
+            network.labels[requirement.label.index()].text
+        );
+        self.violation(message, &[requirement.label, producer.label])
     }
 }

@@ -249,6 +249,8 @@ fn whole(network: &Network) -> Plan {
         selected_arcs: vec![true; network.arcs.len()],
         causal_links: Vec::new(),
         conflict_order: Vec::new(),
+        conflict_order_omitted: 0,
+        state_order: Vec::new(),
         orderings_added: Vec::new(),
         uses_ordered: Vec::new(),
         levels: Vec::new(),

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use exact::Rational;
 use rmpl::program::{Change, LabelMode};
-use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Supply, UseId};
+use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Supply, UseId, VariableId};
 
 use crate::brute_force::Schedule;
 use crate::missions::{is_lasting, moment, occupied, ready};
@@ -40,6 +40,11 @@ fn values(network: &Network, label: LabelId) -> BTreeSet<u32> {
         tpn::ValueSet::In(values) => values.iter().map(|value| value.0).collect(),
         tpn::ValueSet::NotIn(_) => panic!("the domain of a state variable is closed"),
     }
+}
+
+/// The selected producers of state variables.
+pub fn producers(network: &Network, plan: &Plan) -> Vec<LabelId> {
+    selected(network, plan, LabelMode::Tell)
 }
 
 /// The pairs of rule 2.
@@ -194,38 +199,43 @@ pub fn some_order_keeps(
 
 /// Whether SPEC 10.2 accepts a plan in which events happen in this order, and the plan says all of it.
 pub fn accepts_states(network: &Network, plan: &Plan, before: &Before<'_>) -> bool {
-    let said: Pairs = plan.conflict_order.iter().map(|it| (it.first, it.then)).collect();
     let ends = |label: LabelId| occupied(network, label);
-    // The sides of rule 2, all of them and each once.
+    // Each variable lists what gives it its values, all of it and each once.
+    let mut listed: BTreeMap<VariableId, Vec<LabelId>> = BTreeMap::new();
+    for order in &plan.state_order {
+        if listed.insert(order.variable, order.producers.clone()).is_some() {
+            return false;
+        }
+    }
+    for producer in producers(network, plan) {
+        let list = listed.entry(network.labels[producer.index()].literal.variable).or_default();
+        if is_initial(network, producer) && !list.contains(&producer) {
+            list.insert(0, producer);
+        }
+    }
+    let mut places: BTreeMap<LabelId, usize> = BTreeMap::new();
+    for (&variable, list) in &listed {
+        let of_variable = |it: &LabelId| network.labels[it.index()].literal.variable == variable;
+        let mut expected: Vec<LabelId> = producers(network, plan).into_iter().filter(of_variable).collect();
+        let mut found = list.clone();
+        expected.sort_unstable();
+        found.sort_unstable();
+        if expected != found || list.iter().skip(1).any(|&it| is_initial(network, it)) {
+            return false;
+        }
+        places.extend(list.iter().copied().zip(0..));
+    }
+    // The sides of rule 2.
     let mut sides = Pairs::new();
     let mut asked: Pairs = Pairs::new();
     for (one, other) in excluding(network, plan) {
-        let side = match (said.contains(&(one, other)), said.contains(&(other, one))) {
-            (true, false) => (one, other),
-            (false, true) => (other, one),
-            _ => return false,
-        };
+        let side = if places[&one] < places[&other] { (one, other) } else { (other, one) };
         let is_kept = before.is_before(ends(side.0).1, ends(side.1).0) && !is_initial(network, side.1);
         if !is_kept {
             return false;
         }
         sides.insert(side);
-        asked.extend([(one, other), (other, one)]);
-    }
-    // Without circles: the closure has no pair both ways.
-    let mut closure = sides.clone();
-    loop {
-        let steps: Vec<(LabelId, LabelId)> = (closure.iter())
-            .flat_map(|&(a, b)| closure.iter().filter(move |it| it.0 == b).map(move |it| (a, it.1)))
-            .collect();
-        let before = closure.len();
-        closure.extend(steps);
-        if closure.len() == before {
-            break;
-        }
-    }
-    if closure.iter().any(|&(one, other)| one == other) {
-        return false;
+        asked.insert(side);
     }
     let asks = requirements(network, plan);
     let links: BTreeMap<LabelId, LabelId> =
@@ -247,15 +257,13 @@ pub fn accepts_states(network: &Network, plan: &Plan, before: &Before<'_>) -> bo
             } else {
                 before.is_before(ends(ask).1, ends(threat).0)
             };
-            if !is_kept || !said.contains(&expected) || said.contains(&(expected.1, expected.0)) {
+            if !is_kept {
                 return false;
             }
             asked.insert(expected);
         }
     }
-    let added = plan.orderings_added.iter().map(|it| (it.first, it.then));
-    said.iter().all(|pair| asked.contains(pair))
-        && added.into_iter().all(|(one, other)| said.contains(&(one, other)) || said.contains(&(other, one)))
+    plan.orderings_added.iter().all(|it| asked.contains(&(it.first, it.then)))
 }
 
 /// Whether SPEC 10.2 accepts the places of all events.

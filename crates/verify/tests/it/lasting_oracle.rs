@@ -4,14 +4,17 @@ use crate::brute_force::Schedule;
 use std::collections::BTreeMap;
 
 use tpn::generate::Rng;
-use tpn::{CausalLink, Choice, DecisionId, LabelId, Network, Ordering, Plan, UseId, UseOrdering};
+use tpn::{
+    CausalLink, Choice, DecisionId, LabelId, Network, Ordering, Plan, StateOrder, UseId, UseOrdering,
+    VariableId,
+};
 use verify::{check_plan, check_schedule};
 
 use crate::brute_force::{schedules, windows};
 use crate::chance::{pick, thread, times};
 use crate::lasting_brute_force::{
-    Before, accepts_resources_at, accepts_states, accepts_states_at, excluding, levels, requirements,
-    some_order_keeps, supporters, threats,
+    Before, accepts_resources_at, accepts_states, accepts_states_at, excluding, levels, producers,
+    requirements, some_order_keeps, supporters, threats,
 };
 use crate::missions::{Sketch, closure, network, plan_without_windows};
 
@@ -73,16 +76,26 @@ fn random_plan(network: &Network, rng: &mut Rng) -> Plan {
     let is_before = |one: LabelId, other: LabelId| (places[&one], one) < (places[&other], other);
     let say = |plan: &mut Plan, rng: &mut Rng, first: LabelId, then: LabelId| {
         let (first, then) = if rng.chance(1) { (then, first) } else { (first, then) };
-        if rng.chance(99) {
-            plan.conflict_order.push(Ordering { first, then });
-        }
         if rng.chance(60) {
             plan.orderings_added.push(Ordering { first, then });
         }
-        if rng.chance(1) {
-            plan.conflict_order.push(Ordering { first: then, then: first });
-        }
     };
+    let mut lists: BTreeMap<VariableId, Vec<LabelId>> = BTreeMap::new();
+    for producer in producers(network, &plan) {
+        lists.entry(network.labels[producer.index()].literal.variable).or_default().push(producer);
+    }
+    for (variable, mut producers) in lists {
+        producers.sort_by_key(|&producer| (places[&producer], producer));
+        if rng.chance(1) {
+            producers.pop();
+        }
+        if rng.chance(1) && !producers.is_empty() {
+            producers.push(producers[0]);
+        }
+        if rng.chance(98) {
+            plan.state_order.push(StateOrder { variable, producers });
+        }
+    }
     for (one, other) in excluding(network, &plan) {
         let (first, then) = if is_before(one, other) { (one, other) } else { (other, one) };
         say(&mut plan, rng, first, then);
@@ -182,7 +195,7 @@ fn verdicts_on_schedules_with_state_and_resources_are_those_of_brute_force() {
         let mut rng = Rng::new(seed ^ 0xD1CE);
         let mut plan = random_plan(&network, &mut rng);
         plan.causal_links.clear();
-        plan.conflict_order.clear();
+        plan.state_order.clear();
         plan.orderings_added.clear();
         plan.uses_ordered.clear();
         let Some(all) = schedules(&network, &plan, HORIZON, 40 * MANY) else { continue };

@@ -5,7 +5,7 @@ use rmpl::program::Change;
 use tpn::plan_json::Names;
 use tpn::{
     CausalLink, Choice, DecisionId, Extent, LabelId, Levels, Network, NodeId, Ordering, Plan, Quality,
-    Supply, Top, UseId, UseOrdering, Window,
+    StateOrder, Supply, Top, UseId, UseOrdering, Window,
 };
 
 /// Two activities without length that need each other (case i01 of the suite).
@@ -48,6 +48,8 @@ pub struct Sketch<'names> {
     pub links: &'names [(&'names str, &'names str)],
     /// First and then.
     pub order: &'names [(&'names str, &'names str)],
+    /// What gives variables that keep their values one, in order.
+    pub states: &'names [&'names [&'names str]],
     /// Those of them that planning added.
     pub added: &'names [(&'names str, &'names str)],
 }
@@ -76,12 +78,19 @@ pub fn plan_without_windows(network: &Network, sketch: Sketch<'_>) -> Plan {
             .map(|(ask, tell)| CausalLink { ask: label(network, ask), tell: label(network, tell) })
             .collect(),
         conflict_order: sketch.order.iter().map(ordering).collect(),
+        conflict_order_omitted: 0,
+        state_order: sketch.states.iter().map(|names| state_order(network, names)).collect(),
         orderings_added: sketch.added.iter().map(ordering).collect(),
         uses_ordered: Vec::new(),
         levels: Vec::new(),
         quality: Quality::default(),
         windows: vec![None; network.nodes.len()],
     }
+}
+
+fn state_order(network: &Network, names: &[&str]) -> StateOrder {
+    let producers: Vec<LabelId> = names.iter().map(|name| label(network, name)).collect();
+    StateOrder { variable: network.labels[producers[0].index()].literal.variable, producers }
 }
 
 /// The labelled interval of a name.

@@ -65,6 +65,8 @@ fn random_plan(network: &Network, rng: &mut Rng) -> Plan {
         selected_arcs,
         causal_links: Vec::new(),
         conflict_order: Vec::new(),
+        conflict_order_omitted: 0,
+        state_order: Vec::new(),
         orderings_added: Vec::new(),
         uses_ordered: Vec::new(),
         levels: Vec::new(),

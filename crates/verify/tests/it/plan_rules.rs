@@ -19,7 +19,7 @@ const X: &str = "Tell(V=X)@Tell(V=X)#1";
 const Y: &str = "Tell(V=Y)@Tell(V=Y)#1";
 
 const GOOD: Sketch<'static> =
-    Sketch { choices: &[(1, 0)], links: &[(ASK, TELL)], order: &[(X, Y)], added: &[(X, Y)] };
+    Sketch { choices: &[(1, 0)], links: &[(ASK, TELL)], order: &[(X, Y)], states: &[], added: &[(X, Y)] };
 
 fn good() -> (Network, Plan) {
     let network = network(TEXT);
@@ -75,6 +75,7 @@ fn plans_that_keep_all_rules_are_accepted() {
         choices: &[(1, 1)],
         links: &[(ASK, "Tell(c)@Tell(c)#2")],
         order: &[(Y, X)],
+        states: &[],
         added: &[(Y, X)],
     };
     assert_eq!(said_of(others), []);
@@ -91,6 +92,7 @@ fn the_plan_of_the_enroute_mission_has_the_published_windows() {
             choices: &[(1, 0)],
             links: &[("Ask(PATH1=OK)@Group-Traverse-Path#1", "Tell(PATH1=OK)@Tell(PATH1=OK)#1")],
             order: &[(wait, proceed)],
+            states: &[],
             added: &[(wait, proceed)],
         },
     );

@@ -220,7 +220,7 @@ impl Meaning<'_> {
     }
 
     fn is_ordered(&self, first: LabelId, then: LabelId) -> bool {
-        self.orders.contains(&(first, then))
+        self.order.is_before(first, then)
     }
 }
 

@@ -166,6 +166,8 @@ fn as_plan(network: &Network, step: &ReplayStep) -> Plan {
         selected_arcs: vec![false; network.arcs.len()],
         causal_links: step.links.clone(),
         conflict_order: step.orders.clone(),
+        conflict_order_omitted: 0,
+        state_order: Vec::new(),
         orderings_added: step.orders.clone(),
         uses_ordered: step.uses.clone(),
         levels: Vec::new(),
