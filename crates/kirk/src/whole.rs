@@ -85,11 +85,13 @@ impl Shrinking<'_, '_> {
         self.is_refuted() == Some(true) && is_minimal
     }
 
-    /// Leaves out what is not needed, at first so many parts of the members at a time. Whether what stays is minimal.
+    /// Leaves out what is not needed, at first so many parts of the members at a time: smaller parts as long as that helps, and
+    /// then one by one. Whether what stays is minimal.
     fn shrink(&mut self, parts: usize) -> bool {
         let mut size = self.members.len().div_ceil(parts);
         let mut is_minimal = true;
         while size > 0 && !self.effort.is_exhausted() {
+            let before = self.members.len();
             // The last members first: what comes late in the text is told only if it matters.
             let mut end = self.members.len();
             while end > 0 && !self.effort.is_exhausted() {
@@ -100,7 +102,11 @@ impl Shrinking<'_, '_> {
                 // More than the chunk may be gone.
                 end = start.min(self.members.len());
             }
-            size = if size == 1 { 0 } else { size.div_ceil(2) };
+            size = match size {
+                1 => 0,
+                _ if self.members.len() == before => 1,
+                _ => size.div_ceil(2),
+            };
         }
         is_minimal && size == 0
     }

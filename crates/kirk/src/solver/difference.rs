@@ -103,6 +103,19 @@ impl Differences {
         Ok(())
     }
 
+    /// Looks at the constraints that wait for a side, which has just moved.
+    pub(super) fn put_in_force(&self, trail: &mut Trail, side: Side) -> Result<(), Conflict> {
+        for id in self.waiting.iter(side) {
+            self.check(trail, id)?;
+        }
+        Ok(())
+    }
+
+    /// Whether any constraint leads from a side.
+    pub(super) fn leads_on(&self, side: Side) -> bool {
+        !self.from.is_empty(side)
+    }
+
     /// Whether the least times satisfy all constraints in force between times that exist.
     pub(crate) fn are_satisfied(&self, trail: &Trail) -> bool {
         let value = |side: Side| {
@@ -148,10 +161,8 @@ impl Differences {
     /// Looks at the constraints that an event puts in force, and lets its bound wait to be carried on.
     pub(crate) fn moved(&mut self, trail: &mut Trail, event: EventId) -> Result<(), Conflict> {
         let side = trail.events[event].side;
-        for id in self.waiting.iter(side) {
-            self.check(trail, id)?;
-        }
-        if self.from.is_empty(side) {
+        self.put_in_force(trail, side)?;
+        if !self.leads_on(side) {
             return Ok(());
         }
         let trail::Event { most, before, .. } = trail.events[event];

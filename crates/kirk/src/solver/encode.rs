@@ -529,41 +529,17 @@ impl<'m> Problem<'m> {
         }
     }
 
-    /// Carries bounds on along the arcs, to and fro, until none moves any more.
+    /// Carries bounds on along the arcs until none moves any more.
     fn sweep(&self, solver: &mut Solver) {
         solver.tell_structure();
-        let first = solver.trail.events.len();
         let mut is_there: TiVec<Variable, bool> = vec![false; solver.trail.num_variables()].into();
         let mut points: Vec<Variable> =
             self.model.order.iter().map(|point| self.times[node(*point)]).collect();
         // Events that are always at one time have one variable.
         points.retain(|&point| !std::mem::replace(&mut is_there[point], true));
-        let mut waits: TiVec<Side, bool> = vec![true; 2 * solver.trail.num_variables()].into();
-        for sweep in 0..MAX_SWEEPS {
-            let mut is_settled = true;
-            for position in 0..points.len() {
-                let point =
-                    if sweep % 2 == 0 { points[position] } else { points[points.len() - 1 - position] };
-                for side in [point.lower(), point.upper()] {
-                    if !std::mem::replace(&mut waits[side], false) {
-                        continue;
-                    }
-                    let Solver { differences, trail, .. } = solver;
-                    let before = trail.events.len();
-                    let carried = differences.carry_on(trail, side);
-                    for event in trail.events.iter().skip(before) {
-                        waits[event.side] = true;
-                        is_settled = false;
-                    }
-                    if let Err(conflict) = carried {
-                        return solver.refute(&conflict);
-                    }
-                }
-            }
-            if is_settled {
-                solver.settled = first..solver.trail.events.len();
-                return;
-            }
+        solver.sweeps.set_points(points, solver.trail.num_variables());
+        if let Err(conflict) = solver.sweep_all() {
+            solver.refute(&conflict);
         }
     }
 
@@ -704,9 +680,6 @@ impl<'m> Problem<'m> {
 
 /// Of more requirements that one assertion may carry it is not looked at which exclude each other.
 const MAX_SHARING: usize = 1_000;
-
-/// Bounds that move more often along all arcs are left to propagation.
-const MAX_SWEEPS: usize = 32;
 
 /// Between which times everything fits: more than all bounds together.
 fn reach(model: &Model) -> Result<(i64, i64), Unencoded> {

@@ -42,6 +42,7 @@ mod refutation;
 mod relaxation;
 mod resources;
 mod simplex;
+mod sweeps;
 mod touching;
 mod tours;
 mod trail;
@@ -65,6 +66,7 @@ use literal::{Literal, Side, Variable};
 use record::Origin;
 use refutation::Derivations;
 use resources::Sharing;
+use sweeps::Sweeps;
 use tours::Tours;
 use trail::{Conflict, Trail};
 
@@ -145,9 +147,8 @@ pub(crate) struct Solver {
     /// The same when the decision of each level was made: of several decisions at once, all events are propagated in the last
     /// one's level, and again when that is left.
     theory_heads: Vec<usize>,
-    /// The events whose bounds need not be carried on, for all bounds are settled that they move.
-    settled: std::ops::Range<usize>,
-    /// So many decisions are made before what they mean for times is looked at.
+    sweeps: Sweeps,
+    /// So many decisions are made before what they mean for times is looked at: all of them, until that fails.
     burst: usize,
     /// How many decisions were made one by one since many at once failed.
     single_decisions: u32,
@@ -178,6 +179,13 @@ pub(crate) struct Solver {
     derivations: Option<Box<Derivations>>,
     /// What the last conflict came from.
     origin: Origin,
+}
+
+/// Whether what a decision means is looked at before the next one is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Deciding {
+    OneByOne,
+    AtOnce,
 }
 
 /// Whether propagation came to its end.
@@ -222,8 +230,8 @@ impl Solver {
             head: 0,
             theory_head: 0,
             theory_heads: Vec::new(),
-            settled: 0..0,
-            burst: 1,
+            sweeps: Sweeps::default(),
+            burst: usize::MAX,
             single_decisions: 0,
             steps: 0,
             is_interrupted: false,
@@ -424,7 +432,7 @@ impl Solver {
                     self.retract(0);
                     return Answer::Stopped;
                 }
-                if self.decide() {
+                if self.decide(Deciding::OneByOne) {
                     self.single_decisions += 1;
                     if self.burst == 0 && self.single_decisions >= SINGLE_DECISIONS {
                         (self.burst, self.single_decisions) = (1, 0);
@@ -513,7 +521,7 @@ impl Solver {
                     return Ok(Propagated::InPart);
                 }
                 let side = self.trail.events[event].side;
-                if !self.settled.contains(&usize::from(event)) {
+                if !self.sweeps.is_settled(usize::from(event)) {
                     self.differences.moved(&mut self.trail, event)?;
                 }
                 self.alternatives.queue.moved(side);
@@ -577,14 +585,14 @@ impl Solver {
         }
         let (level, before) = (self.trail.level(), (self.stats.expanded, self.num_left));
         for _ in 0..self.burst {
-            if !self.decide() {
+            if !self.decide(Deciding::AtOnce) {
                 break;
             }
             if self.propagate_choices().is_err() {
                 return self.give_up_burst(level, before);
             }
         }
-        match self.propagate(stop) {
+        match self.sweep_new().and_then(|()| self.propagate(stop)) {
             Ok(_) => self.burst = self.burst.saturating_mul(2),
             Err(_) => self.give_up_burst(level, before),
         }
@@ -718,6 +726,7 @@ impl Solver {
         if let Some(record) = &mut self.record {
             record.retract(self.trail.level(), self.trail.events.len());
         }
+        self.sweeps.forget();
         self.alternatives.queue.forget();
         self.disjunctives.queue.forget();
         self.cumulatives.queue.forget();
@@ -725,8 +734,9 @@ impl Solver {
         self.tours.queue.forget();
     }
 
-    /// Makes the next decision. `false` if everything that counts is decided.
-    fn decide(&mut self) -> bool {
+    /// Makes the next decision. `false` if everything that counts is decided, or if the next decision goes by times that
+    /// others made at once have not moved yet.
+    fn decide(&mut self, deciding: Deciding) -> bool {
         if let Some(assumed) = self.assumption.filter(|&assumed| self.trail.is_open(assumed)) {
             self.trail.open_level();
             let _ = self.trail.set(assumed, trail::Cause::Decision);
@@ -738,6 +748,10 @@ impl Solver {
             let counts = choice_point.when.iter().all(|&when| self.trail.holds(when));
             if !counts || choice_point.options.iter().any(|&option| self.trail.holds(option)) {
                 continue;
+            }
+            if deciding == Deciding::AtOnce && choice_point.kind == ChoicePointKind::Resolvers {
+                self.activity.insert(id);
+                return false;
             }
             let Some(option) = self.preferred(choice_point) else { continue };
             // Levels that were opened elsewhere begin with everything propagated.
