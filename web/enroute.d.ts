@@ -608,15 +608,17 @@ export type ProgramChance = {
 
 /** What is believed and true of a plant; modes and values by component and variable. */
 export type PlantState = {
-  /** Most likely first. */
+  /** Most likely first, at most 64 of them. */
   belief: Array<Believed>;
   trueState: { [key in string]: string };
   observations: { [key in string]: string } | null;
   commands: { [key in string]: string } | null;
   nextCommands: { [key in string]: string } | null;
   unachievable: Array<Unachievable>;
-  /** Whether no state that was believed possible explains the observations. */
+  /** Whether no state explains the observations, so that the run ends here. */
   isUnexplained: boolean;
+  /** Whether more states are possible than the estimator keeps, so that probabilities are known less well. */
+  isUncertain: boolean;
   /** Which assumptions the observations contradict. */
   conflicts: Array<string> | null;
 };
@@ -624,9 +626,11 @@ export type PlantState = {
 /** A state that is believed possible. */
 export type Believed = {
   state: { [key in string]: string };
-  /** An exact fraction. */
-  probability: string;
+  probability: StateProbability;
 };
+
+/** How likely a state is. */
+export type StateProbability = string | [string, string];
 
 /** A goal that cannot be reached. */
 export type Unachievable = {

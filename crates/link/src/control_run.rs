@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use executive::model_based::{StepInput, StepRecord};
 use hca::{Automaton, Marking, TraceStep};
-use plant::{Belief, Commands, Model, State};
+use plant::{Commands, FactoredBelief, Model, State};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use snapshot::ContentKey;
@@ -96,7 +96,7 @@ pub struct Moment {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlantMoment {
     /// What is believed.
-    pub belief: Belief,
+    pub belief: FactoredBelief,
     pub true_state: State,
     /// The step that led here; nothing at the start.
     pub record: Option<StepRecord>,

@@ -61,6 +61,16 @@ pub fn read_control(text: &str, plant: Option<&str>) -> (Control, Vec<Diagnostic
     }
 }
 
+/// Everything that is wrong with a text in prefix notation, and where its program may wait forever.
+pub(crate) fn check_control(text: &str) -> Vec<Diagnostic> {
+    let (control, mut found) = read_control(text, None);
+    if let Control::Bound(system) = control {
+        found.extend(executive::model_based::waits_forever(&system));
+        found.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+    }
+    found
+}
+
 /// Whether a program has anything to do with its plant: one whose variables are all its own fits every plant.
 fn speaks_of_plant(system: &System) -> bool {
     system.automaton.variables.iter().any(|variable| !variable.is_program_variable)

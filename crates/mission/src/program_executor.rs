@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use exact::{Bound, Overflow, Time};
 use executive::model_based::{
-    ClosedLoop, Estimation, Estimator, Knowledge, LoopStep, ProgramExecution, StepInput, System,
+    ClosedLoop, Estimator, Knowledge, LoopStep, ProgramExecution, StepInput, StepOutcome, System,
 };
 use executive::{
     ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening, PlantReading, Revision,
@@ -213,11 +213,9 @@ impl<'run> ProgramExecutor<'run> {
             return Ok(false);
         }
         let time = moment.time.checked_add(self.programs.step()).ok_or(Overflow)?;
-        if let Some(active) = moment.running.first() {
-            let estimator = self.estimator.get_or_insert_with(|| {
-                let system = &active.program.system;
-                Estimator::new(Arc::clone(&system.planner), Estimation::for_model(&system.model))
-            });
+        let system = moment.running.first().map(|active| Arc::clone(&active.program.system));
+        if let Some(system) = system {
+            let estimator = self.estimator.get_or_insert_with(|| Estimator::new(&system, None));
             let input = faults(self.disturbances, &moment.running);
             let mut programs: Vec<&mut ProgramExecution> =
                 moment.running.iter_mut().map(|active| &mut active.program).collect();
@@ -239,12 +237,27 @@ impl<'run> ProgramExecutor<'run> {
                 let happening = Happening::Progress { name: active.name.clone(), text };
                 self.told.entry(active.occurrence).or_default().entries.push(Entry { time, happening });
             }
+            if let Some(reason) = unexplained(&system.model, &step.outcome) {
+                moment.time = time;
+                self.end_unexplained(&mut moment, &reason);
+                self.moments.push(moment);
+                return Ok(false);
+            }
         }
         moment.time = time;
         self.end_what_is_done(&mut moment)?;
         self.give_up(&moment);
         self.moments.push(moment);
         Ok(true)
+    }
+
+    /// Nothing is known of the plant any more: no program reaches its end.
+    fn end_unexplained(&mut self, moment: &mut Moment, reason: &str) {
+        for active in moment.active() {
+            self.told.entry(active.occurrence).or_default().ends = Ends::Never(reason.to_owned());
+        }
+        moment.running.clear();
+        moment.waiting.clear();
     }
 
     fn end_what_is_done(&mut self, moment: &mut Moment) -> Result<(), Overflow> {
@@ -350,6 +363,22 @@ impl ActivityExecutor for ProgramExecutor<'_> {
         }
         // A part too small to be kept is found out when the plan is made ready.
         self.programs.step().common_part(others).unwrap_or(others)
+    }
+}
+
+/// Why no program goes on after a step, if nothing explains what was observed in it.
+fn unexplained(model: &Model, outcome: &StepOutcome) -> Option<String> {
+    match outcome {
+        StepOutcome::Explained => None,
+        StepOutcome::Refuted { conflict } => {
+            let observed = model.observation_names(conflict);
+            let observed: Vec<String> =
+                observed.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            Some(format!("the belief is refuted: no state of the plant explains {}", observed.join(", ")))
+        }
+        StepOutcome::LimitReached => {
+            Some("no state of the plant that the estimator kept explains what is observed".to_owned())
+        }
     }
 }
 

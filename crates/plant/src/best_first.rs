@@ -9,12 +9,13 @@ use std::collections::BinaryHeap;
 
 use num_bigint::BigUint;
 use num_integer::Integer as _;
-use num_traits::{ToPrimitive as _, Zero as _};
+use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
 use crate::belief::{Belief, State};
-use crate::exact::weigh;
+use crate::exact::weighed;
 use crate::likelihood::Likelihoods;
 use crate::model::{Commands, Model, Observation};
+use crate::normalization::Normalization;
 use crate::odds::{Bests, Odds, best_of, multiply};
 use crate::successor::{Choices, EstimateError, distributions};
 
@@ -32,12 +33,14 @@ pub struct SearchStatistics {
     pub conflicts: u32,
     /// Whether the search stopped at its limit: then more likely states may have been missed.
     pub limit_reached: bool,
+    /// Whether all states that the observation leaves were found.
+    pub is_complete: bool,
 }
 
 /// The `most` most likely states after `commands` and `observation`; all of them for `usize::MAX`.
 ///
-/// Ranks exactly with respect to the given belief, which itself may have been truncated. At most `limit` nodes are
-/// expanded; each costs time in proportion to components times states of the belief.
+/// Ranks exactly with respect to the given belief; what is not kept is bounded. At most `limit` nodes are expanded; each
+/// costs time in proportion to components times states of the belief.
 pub fn update_best(
     model: &Model,
     belief: &Belief,
@@ -48,21 +51,48 @@ pub fn update_best(
 ) -> Result<(Belief, SearchStatistics), EstimateError> {
     let prior: Vec<&State> = belief.entries().iter().map(|(state, _)| state).collect();
     let choices = distributions(model, &prior, commands)?;
+    let normalization = Normalization::new(model, &choices, prior.len(), false);
+    let normalized = normalization.applied(belief)?;
+    let rescaled = normalized.as_ref().unwrap_or(belief);
     let mut likelihoods = Likelihoods::new(model, observation);
-    let mut search = Search::new(model, belief, &choices, &mut likelihoods);
+    let mut search = Search::new(model, rescaled, &choices, &mut likelihoods);
     let found = search.run(most.max(1), limit, &mut likelihoods);
-    let statistics = search.statistics;
-    let weights = exact_weights(belief, &choices, &found);
-    let states = found.into_iter().zip(weights).collect();
-    Ok((weigh(model, states, &mut likelihoods, most)?, statistics))
+    let mut statistics = search.statistics;
+    statistics.is_complete &= found.len() <= most;
+    let (weights, unit) = exact_weights(rescaled, &choices, &found);
+    let mut dropped = belief.dropped() * &normalization.unit * &unit.all;
+    if !statistics.is_complete {
+        // What was not found measures no more than it did before the observation.
+        let all = belief.total() * &normalization.unit * &unit.all;
+        let found: BigUint = weights.iter().sum::<BigUint>() * &unit.taken_out;
+        dropped += if all > found { all - found } else { BigUint::zero() };
+    }
+    let (weights, common) = weighed(model, found.into_iter().zip(weights).collect(), &mut likelihoods);
+    if !dropped.is_zero() {
+        dropped = match likelihoods.fewest_of_all() {
+            Some(fewest) => (dropped * common).div_ceil(&(unit.taken_out * fewest)),
+            None => BigUint::zero(),
+        };
+    }
+    let updated = Belief::measured(weights, dropped, most).ok_or(EstimateError::Unexplained)?;
+    Ok((updated, statistics))
+}
+
+/// What weights of states are in proportion to.
+struct Unit {
+    /// The weight of all that all components may do.
+    all: BigUint,
+    /// By what the weights of states are smaller.
+    taken_out: BigUint,
 }
 
 /// How likely each state is before it is observed, as long numbers in proportion.
 ///
 /// What all weights of a component have in common is left out: most components do the same in all likely states, so
 /// that the numbers stay short.
-fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> Vec<BigUint> {
+fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> (Vec<BigUint>, Unit) {
     let rows = belief.len();
+    let mut unit = Unit { all: BigUint::one(), taken_out: BigUint::one() };
     let mut common = vec![1_u64; choices.components()];
     let mut relevant: Vec<usize> = Vec::new();
     for (component, common) in common.iter_mut().enumerate() {
@@ -81,6 +111,11 @@ fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> Vec<Bi
             is_same &= missing == 0;
         }
         *common = divisor.max(1);
+        let all: u64 = choices.of(0, component).iter().map(|(_, weight)| weight).sum();
+        if all != *common {
+            unit.all *= all;
+            unit.taken_out *= *common;
+        }
         if !is_same {
             relevant.push(component);
         }
@@ -108,7 +143,7 @@ fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> Vec<Bi
         }
         sum
     };
-    states.iter().map(weight).collect()
+    (states.iter().map(weight).collect(), unit)
 }
 
 /// The most promising part of an expanded node that was not looked at yet.
@@ -212,17 +247,20 @@ impl Search {
         self.queue.push(Waiting { bound: f64::INFINITY, part: None });
         // Once as many as wanted: most likely first, equally likely ones in the order of their modes.
         let mut found: Vec<(f64, State)> = Vec::new();
+        self.statistics.is_complete = true;
         while let Some(waiting) = self.queue.pop() {
             // Machine numbers order the search; a margin keeps rounding from dropping a state that the exact
             // weights, which decide, put among the first.
             if found.len() >= most {
                 let last = found.get(most - 1).map_or(0.0, |(value, _)| *value);
                 if waiting.bound < last * (1.0 - 1e-9) || found.len() > most.saturating_add(MAX_TIES) {
+                    self.statistics.is_complete = false;
                     break;
                 }
             }
             if self.statistics.expanded == limit {
                 self.statistics.limit_reached = true;
+                self.statistics.is_complete = false;
                 break;
             }
             self.statistics.expanded += 1;
@@ -268,6 +306,7 @@ impl Search {
         if product == 0.0 && part.is_some() {
             // Too unlikely for machine numbers.
             self.nodes.sets.truncate(new);
+            self.statistics.is_complete = false;
             return None;
         }
         let count = self.odds.free.len();

@@ -121,9 +121,9 @@ impl Checker<'_, '_> {
                 );
             }
             let Some((numerator, denominator)) =
-                probability::parse(&given.text).filter(|(part, whole)| part <= whole)
+                probability::parse(&given.text).filter(|(part, whole)| *part > 0 && part <= whole)
             else {
-                let hint = Some("write a number from 0 to 1, such as `0.01` or `1/100`".into());
+                let hint = Some("write a number above 0 and at most 1, such as `0.01` or `1/100`".into());
                 self.error("E-VALUE", given.span, format!("`{}` is no probability", given.text), hint);
                 continue;
             };

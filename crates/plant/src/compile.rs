@@ -9,7 +9,7 @@ use smol_str::{SmolStr, ToSmolStr as _, format_smolstr};
 
 use crate::check::check;
 use crate::formula::Formula;
-use crate::island;
+use crate::guard_check::check_guards;
 use crate::model::{
     CommandVariable, CommandVariableId, Component, ComponentId, Fault, Mode, Model, PlantVariable,
     Transition, VariableId,
@@ -32,9 +32,8 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
     compiler.declare();
     compiler.fill();
     let mut model = compiler.model;
-    model.islands = island::islands(&model);
-    model.watchers = island::watchers(&model);
-    model.led_by_commands = crate::successor::led_by_commands(&model);
+    model.prepare();
+    check_guards(&model, &mut diagnostics);
     if let Some(cycle) = crate::order::cycle(&model) {
         let names: Vec<&str> =
             cycle.iter().filter_map(|id| Some(model.component(*id)?.name.as_str())).collect();

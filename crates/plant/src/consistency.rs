@@ -93,6 +93,24 @@ impl<'model> Assumed<'model> {
         Ok(())
     }
 
+    /// Prepares domains that nothing is assumed of yet for [`Self::add`].
+    pub(crate) fn begin(&self, domains: &mut Domains) {
+        domains.standing.clear();
+        domains.standing.resize(self.modes.len(), Standing::Done);
+    }
+
+    /// Assumes a mode more, and draws the consequences for `domains` of which all were drawn before.
+    ///
+    /// The caller takes both back: the mode, and the domains by a point from before.
+    pub(crate) fn add(&mut self, place: usize, mode: u8, domains: &mut Domains) -> Result<(), Places> {
+        let mark = domains.mark();
+        self.modes[place] = Some(mode);
+        domains.standing[place] = Standing::Waiting;
+        self.assume(place_bit(place), domains)?;
+        self.wake(mark, domains);
+        self.drain(domains).map(|_| ())
+    }
+
     /// Where constraints ask for modes, says which ones are assumed at `places`.
     fn assume(&self, places: Places, domains: &mut Domains) -> Result<(), Places> {
         let modes = if self.island.speaks_of_modes { self.modes.as_slice() } else { &[] };

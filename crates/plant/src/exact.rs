@@ -9,6 +9,7 @@ use num_traits::{One as _, Zero as _};
 use crate::belief::{Belief, State};
 use crate::likelihood::Likelihoods;
 use crate::model::{Commands, Model, Observation};
+use crate::normalization::Normalization;
 use crate::successor::{EstimateError, distributions};
 
 /// States that an exact update keeps at most, about a hundred megabytes.
@@ -41,6 +42,8 @@ pub fn update_exact(
 ) -> Result<Belief, EstimateError> {
     let prior: Vec<&State> = belief.entries().iter().map(|(state, _)| state).collect();
     let distributions = distributions(model, &prior, commands)?;
+    let normalized = Normalization::new(model, &distributions, prior.len(), false).applied(belief)?;
+    let belief = normalized.as_ref().unwrap_or(belief);
     let of_row = |row: usize| {
         let choices = (0..distributions.components()).map(|component| distributions.of(row, component).len());
         choices.fold(1_usize, usize::saturating_mul)
@@ -70,16 +73,18 @@ pub fn update_exact(
             *predicted.entry(State(modes)).or_insert_with(BigUint::zero) += weight;
         }
     }
-    weigh(model, predicted.into_iter().collect(), &mut Likelihoods::new(model, observation), usize::MAX)
+    let mut likelihoods = Likelihoods::new(model, observation);
+    let (weights, _) = weighed(model, predicted.into_iter().collect(), &mut likelihoods);
+    Belief::from_weights(weights).ok_or(EstimateError::Unexplained)
 }
 
-/// Divides each predicted weight by the number of observations that its state admits, and keeps the `most` heaviest.
-pub(crate) fn weigh(
+/// The predicted weights that the observation leaves, times a common number, over the numbers of observations that the
+/// states admit; and that number.
+pub(crate) fn weighed(
     model: &Model,
     predicted: Vec<(State, BigUint)>,
     likelihoods: &mut Likelihoods<'_>,
-    most: usize,
-) -> Result<Belief, EstimateError> {
+) -> (Vec<(State, BigUint)>, BigUint) {
     let mut found: Vec<(State, BigUint, BigUint)> = Vec::with_capacity(predicted.len());
     let mut common = BigUint::one();
     for (state, weight) in predicted {
@@ -105,5 +110,5 @@ pub(crate) fn weigh(
     };
     let weights =
         found.into_iter().map(|(state, weight, divisor)| (state, scaled(weight, divisor))).collect();
-    Belief::heaviest(weights, most).ok_or(EstimateError::Unexplained)
+    (weights, common)
 }

@@ -18,6 +18,8 @@ pub(crate) struct Island {
     pub(crate) sayings: Vec<Vec<Saying>>,
     /// Whether some constraint asks for the mode of a component.
     pub(crate) speaks_of_modes: bool,
+    /// The places of components whose modes may contradict each other.
+    pub(crate) core: Vec<u32>,
 }
 
 /// What a mode says, prepared for propagation.
@@ -70,6 +72,7 @@ pub(crate) fn islands(model: &Model) -> Vec<Island> {
         own_symbols: Vec::new(),
         sayings: Vec::new(),
         speaks_of_modes: false,
+        core: Vec::new(),
     };
     for component in model.component_ids() {
         let root = root(&mut parents, component.0 as usize);
@@ -88,6 +91,7 @@ pub(crate) fn islands(model: &Model) -> Vec<Island> {
         let variables = island.variables.iter().map(|variable| model.variable_symbol(*variable));
         let components = island.components.iter().map(|component| Model::mode_symbol(*component));
         island.own_symbols = variables.chain(components.filter(|_| island.speaks_of_modes)).collect();
+        island.core = crate::normalization::core(model, island);
     }
     islands
 }
@@ -116,7 +120,8 @@ fn said(mode: &Mode) -> Saying {
     Saying { symbols, table: Table::new(&mode.constraint) }
 }
 
-fn root(parents: &mut [usize], mut at: usize) -> usize {
+/// The first symbol of the set that a symbol belongs to.
+pub(crate) fn root(parents: &mut [usize], mut at: usize) -> usize {
     while parents[at] != at {
         parents[at] = parents[parents[at]];
         at = parents[at];

@@ -5,16 +5,23 @@
 
 pub mod belief;
 pub mod best_first;
+pub mod bounded;
 mod check;
 pub mod compile;
 pub mod consistency;
 pub mod diagnosis;
 mod domains;
 pub mod exact;
+pub mod factored;
 pub mod formula;
+pub mod group;
+mod guard_check;
+pub mod interval;
 mod island;
 pub mod likelihood;
+mod merged;
 pub mod model;
+mod normalization;
 pub mod observe;
 mod odds;
 pub mod order;
@@ -28,9 +35,13 @@ mod table;
 
 pub use belief::{Belief, State};
 pub use best_first::{SearchStatistics, update_best};
+pub use bounded::{BoundedUpdate, Effort, update_bounded};
 pub use compile::compile;
 pub use diagnosis::{Conflict, conflicts};
 pub use exact::update_exact;
+pub use factored::FactoredBelief;
+pub use group::{Group, groups};
+pub use interval::Interval;
 pub use model::{
     CommandVariable, CommandVariableId, Commands, Component, ComponentId, Fault, Mode, Model, Observation,
     PlantVariable, Transition, VariableId,

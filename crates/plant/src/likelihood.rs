@@ -12,6 +12,11 @@ use crate::island::{Island, Places};
 use crate::model::{ComponentId, Model, Observation};
 use crate::observe::values;
 
+/// Of islands with at most so many combinations of modes all are looked at for the one that admits the fewest observations.
+const MAX_COMBINATIONS: usize = 4096;
+/// In larger islands a combination that admits what is observed is looked for among so many.
+const MAX_NODES: usize = 20_000;
+
 /// In how many ways variables that nothing ties together can be observed.
 fn product_of_values(observed: &[u32], domains: &Domains) -> BigUint {
     // Gathered in a machine word before it meets the long number.
@@ -91,6 +96,30 @@ fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32]) -> BigU
     sum
 }
 
+/// Whether some modes of the components from a place on admit what is observed; if there are too many, it is taken for granted.
+fn explains(assumed: &mut Assumed<'_>, place: usize, domains: &mut Domains, nodes: &mut usize) -> bool {
+    *nodes += 1;
+    if *nodes > MAX_NODES {
+        return true;
+    }
+    let point = domains.point();
+    let Some(component) = assumed.island.components.get(place).and_then(|id| assumed.model.component(*id))
+    else {
+        let is_possible = assumed.search(domains).is_ok();
+        domains.return_to(&point);
+        return is_possible;
+    };
+    for mode in 0..component.modes.len() as u8 {
+        let found = assumed.add(place, mode, domains).is_ok() && explains(assumed, place + 1, domains, nodes);
+        assumed.modes[place] = None;
+        domains.return_to(&point);
+        if found {
+            return true;
+        }
+    }
+    false
+}
+
 /// Likelihoods computed once per island and modes.
 pub(crate) struct Likelihoods<'model> {
     model: &'model Model,
@@ -161,6 +190,59 @@ impl<'model> Likelihoods<'model> {
             self.known[at].insert(self.modes.clone(), divisor);
         }
         &self.known[at][&self.modes]
+    }
+
+    /// The fewest observations that any modes of an island admit, if some admit this one.
+    ///
+    /// Where an island has more combinations of modes than are looked at, one if some combination may admit it.
+    pub(crate) fn fewest(&mut self, at: usize) -> Option<BigUint> {
+        let island = &self.model.islands[at];
+        if self.symbols[at].is_empty() && island.core.is_empty() {
+            return Some(BigUint::one());
+        }
+        let components = &self.model.components;
+        let modes_of = |id: &ComponentId| components.get(id.0 as usize).map_or(0, |data| data.modes.len());
+        let all = island.components.iter().map(modes_of).fold(1_usize, usize::saturating_mul);
+        if all > MAX_COMBINATIONS {
+            let mut assumed =
+                Assumed { model: self.model, island, modes: vec![None; island.components.len()] };
+            let start = self.observed.mark();
+            assumed.begin(&mut self.observed);
+            let explains = explains(&mut assumed, 0, &mut self.observed, &mut 0);
+            self.observed.undo(start);
+            return explains.then(BigUint::one);
+        }
+        let mut state = vec![0; self.model.components.len()];
+        let mut fewest: Option<BigUint> = None;
+        for number in 0..all {
+            let mut rest = number;
+            for id in &island.components {
+                let count = modes_of(id).max(1);
+                state[id.0 as usize] = (rest % count) as u8;
+                rest /= count;
+            }
+            let divisor = self.divisor(at, &state);
+            if !divisor.is_zero() && fewest.as_ref().is_none_or(|fewest| divisor < fewest) {
+                fewest = Some(divisor.clone());
+            }
+        }
+        fewest
+    }
+
+    /// The fewest observations that any state admits, or a lower bound of that; `None` if none admits this one.
+    pub(crate) fn fewest_of_all(&mut self) -> Option<BigUint> {
+        let each = (0..self.model.islands.len()).map(|at| self.fewest(at));
+        each.fold(Some(BigUint::one()), |all, one| Some(all? * one?))
+    }
+
+    /// Whether an observation made in an island, or modes that contradict each other there, can rule states out.
+    pub(crate) fn can_exclude(&self, at: usize) -> bool {
+        !self.symbols[at].is_empty() || !self.model.islands[at].core.is_empty()
+    }
+
+    /// What symbols may be, given what is observed and nothing else.
+    pub(crate) fn observed_domains(&self) -> Domains {
+        self.observed.clone()
     }
 
     /// Notes the modes of an island that are asked for.

@@ -36,14 +36,25 @@ pub struct Planner {
     policy: Vec<Vec<Vec<Option<u32>>>>,
     /// Whether `steps` holds every way there is; then what it cannot reach is unreachable.
     pub(crate) is_complete: bool,
+    /// Per component, others that its guards may hang on although no mode of one component alone makes them true.
+    joint_causes: Vec<Vec<ComponentId>>,
 }
 
 impl Planner {
     /// Compiles the policies; takes time in proportion to components times squared modes.
     pub fn new(model: &Arc<Model>) -> Self {
         let mut is_complete = true;
-        let steps: Vec<Vec<Vec<PlannedStep>>> =
-            model.component_ids().map(|component| steps_of(model, component, &mut is_complete)).collect();
+        let mut joint_causes = vec![Vec::new(); model.components.len()];
+        let steps: Vec<Vec<Vec<PlannedStep>>> = model
+            .component_ids()
+            .zip(&mut joint_causes)
+            .map(|(component, joint)| {
+                let steps = steps_of(model, component, &mut is_complete, joint);
+                joint.sort_unstable();
+                joint.dedup();
+                steps
+            })
+            .collect();
         let all = |_: &PlannedStep| true;
         let policy = steps
             .iter()
@@ -56,7 +67,25 @@ impl Planner {
                     .collect()
             })
             .collect();
-        Self { order: CausalOrder::new(model), model: Arc::clone(model), steps, policy, is_complete }
+        let (order, model) = (CausalOrder::new(model), Arc::clone(model));
+        Self { order, model, steps, policy, is_complete, joint_causes }
+    }
+
+    /// A component and all others that may have to move before it can, in their order.
+    pub(crate) fn upstream(&self, component: ComponentId) -> Vec<ComponentId> {
+        let mut found = vec![component];
+        let mut at = 0;
+        while let Some(next) = found.get(at).map(|component| component.0 as usize) {
+            at += 1;
+            let causes = self.order.causes.get(next).into_iter().chain(self.joint_causes.get(next)).flatten();
+            for cause in causes {
+                if !found.contains(cause) {
+                    found.push(*cause);
+                }
+            }
+        }
+        found.sort_unstable();
+        found
     }
 
     /// The causal order that the policies follow.
@@ -86,6 +115,7 @@ impl Planner {
                 open.extend(step.commands.iter().filter_map(command));
                 open.extend(step.conditions.iter().map(|&(other, _)| other));
             }
+            open.extend(self.joint_causes.get(component.0 as usize).into_iter().flatten());
         }
         commanded
     }
@@ -232,7 +262,14 @@ fn first_step(
     None
 }
 
-fn steps_of(model: &Model, component: ComponentId, is_complete: &mut bool) -> Vec<Vec<PlannedStep>> {
+/// The ways to leave each mode of a component. Where an alternative of a guard needs modes of several components together,
+/// these are added to `joint`: whole states have to be searched for it.
+fn steps_of(
+    model: &Model,
+    component: ComponentId,
+    is_complete: &mut bool,
+    joint: &mut Vec<ComponentId>,
+) -> Vec<Vec<PlannedStep>> {
     let modes = model.component(component).map_or(&[][..], |data| data.modes.as_slice());
     let leave = |(from, mode): (usize, &crate::Mode)| {
         let mut steps = Vec::new();
@@ -242,8 +279,11 @@ fn steps_of(model: &Model, component: ComponentId, is_complete: &mut bool) -> Ve
                 continue;
             };
             for alternative in alternatives {
-                let step = planned(model, component, from as u8, transition.to, &alternative, is_complete);
-                steps.extend(step.filter(|step| !steps.contains(step)));
+                match planned(model, component, from as u8, transition.to, &alternative, is_complete) {
+                    Some(step) if steps.contains(&step) => {}
+                    Some(step) => steps.push(step),
+                    None => joint.extend(components_behind(model, &alternative)),
+                }
             }
         }
         steps
@@ -284,6 +324,18 @@ fn planned(
         }
     }
     step.conditions.iter().all(|(_, modes)| *modes != 0).then_some(step)
+}
+
+/// The components whose modes together may decide the variables of a guard's alternative.
+fn components_behind<'model>(
+    model: &'model Model,
+    alternative: &'model [(u32, u64)],
+) -> impl Iterator<Item = ComponentId> + 'model {
+    let variables = alternative.iter().filter_map(|(symbol, _)| model.symbol_variable(*symbol));
+    let islands = variables.filter_map(|variable| {
+        model.islands.iter().find(|island| island.variables.binary_search(&variable).is_ok())
+    });
+    islands.flat_map(|island| island.components.iter().copied())
 }
 
 /// The modes of a component that by themselves keep a symbol within a set.

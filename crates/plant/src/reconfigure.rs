@@ -178,7 +178,7 @@ impl Planner {
     fn groups(&self, goals: &[Goal]) -> Vec<Vec<Goal>> {
         let mut groups: Vec<(Vec<ComponentId>, Vec<Goal>)> = Vec::new();
         for goal in goals {
-            let mut upstream = self.order.ancestors(goal.component);
+            let mut upstream = self.upstream(goal.component);
             let (touching, apart): (Vec<_>, Vec<_>) = groups
                 .into_iter()
                 .partition(|(known, _)| known.iter().any(|component| upstream.contains(component)));
@@ -270,7 +270,7 @@ impl Planner {
     fn plan_by_search(&self, state: &State, goals: &[Goal]) -> Result<Plan, Failure> {
         let mut choices = vec![self.model.idle()];
         let involved: BTreeSet<ComponentId> =
-            goals.iter().flat_map(|goal| self.order.ancestors(goal.component)).collect();
+            goals.iter().flat_map(|goal| self.upstream(goal.component)).collect();
         for (at, variable) in self.model.command_variables.iter().enumerate() {
             if involved.contains(&variable.component) {
                 for value in 1..variable.values.len() as u8 {

@@ -10,6 +10,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use snapshot::Problem;
 
+use super::run::probability_json;
 use crate::diagnostics::print_problems;
 use crate::input::{read_json, read_text};
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
@@ -143,7 +144,7 @@ fn prior(model: &Model, given: &[Believed]) -> anyhow::Result<Belief> {
 fn belief_json(model: &Model, belief: &Belief) -> Value {
     let states = belief.states();
     states
-        .map(|(state, probability)| json!({ "state": model.state_names(state), "probability": probability.to_string() }))
+        .map(|(state, probability)| json!({ "state": model.state_names(state), "probability": probability_json(&probability) }))
         .collect()
 }
 

@@ -7,14 +7,16 @@ use std::sync::Arc;
 
 use anyhow::{anyhow, bail};
 use executive::model_based::{
-    Estimation, Options, ProgramTally, Run, StepInput, StepRecord, System, Trials, run_seed, sample,
+    Options, ProgramTally, Run, RunStatus, StepInput, StepOutcome, StepRecord, System, Trials, run_seed,
+    sample,
 };
+use plant::Interval;
 use serde_json::{Map, Value, json};
 use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
-use crate::output::{Format, LIMIT, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// Runs a control program against a plant model: commands, estimates and what happens.
 #[derive(clap::Args)]
@@ -33,7 +35,7 @@ pub struct Args {
     /// Lets components fail by chance with their probabilities.
     #[arg(long, value_name = "SEED")]
     seed: Option<u64>,
-    /// Keeps only so many of the most likely states.
+    /// Keeps at most K states of each group of components.
     #[arg(long, value_name = "K")]
     k: Option<usize>,
     /// Runs so many times by chance instead, and says how often the program reaches its end.
@@ -64,7 +66,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(WRONG));
     };
-    let options = Options { estimation: args.k.map(Estimation::Best), seed: args.seed, ..Options::default() };
+    let options = Options { most_states: args.k, seed: args.seed, ..Options::default() };
     let inputs = injections(system, &args.inject)?;
     if let Some(runs) = args.monte_carlo {
         let seed = args.seed.unwrap_or(0);
@@ -72,7 +74,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return chance(args, system, &trials, runs, &problems);
     }
     let mut run = Run::new(system, options);
-    while !run.is_done() && run.records().len() < args.steps as usize {
+    while run.status() == RunStatus::Running && run.records().len() < args.steps as usize {
         let step = run.records().len() as u32 + 1;
         run.step(inputs.get(&step).unwrap_or(&StepInput::default()))?;
     }
@@ -80,7 +82,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Format::Json => print_json(&document("run", &problems, run_json(system, &run)))?,
         Format::Text => print_text(&run_text(system, &run))?,
     }
-    Ok(exit(if run.is_done() { YES } else { LIMIT }))
+    Ok(exit(match run.status() {
+        RunStatus::Ended => YES,
+        RunStatus::Refuted => NO,
+        RunStatus::Running | RunStatus::LimitReached => LIMIT,
+    }))
 }
 
 fn injections(system: &System, given: &[String]) -> anyhow::Result<BTreeMap<u32, StepInput>> {
@@ -126,6 +132,7 @@ fn chance(
                 "ends": tally.ends,
                 "faults": faults.collect::<Map<_, _>>(),
                 "stuck": tally.stuck,
+                "refuted": tally.refuted,
                 "stuck_seed": tally.first_stuck.map(|number| run_seed(trials.seed, number)),
             });
             print_json(&document("run", problems, body))?;
@@ -152,6 +159,9 @@ fn tally_text(tally: &ProgramTally, seed: u64) -> String {
     }
     for (label, runs) in &tally.stuck {
         out.push_str(&format!("  still marked in {runs} runs: {label}\n"));
+    }
+    if tally.refuted > 0 {
+        out.push_str(&format!("  nothing explains what was observed in {} runs\n", tally.refuted));
     }
     if let Some(number) = tally.first_stuck {
         let seed = run_seed(seed, number);
@@ -183,7 +193,7 @@ fn failed_text(system: &System, id: plant::ComponentId, mode: u8) -> String {
 
 fn step_json(system: &System, record: &StepRecord) -> Value {
     let model = &system.model;
-    json!({
+    let mut step = json!({
         "step": record.trace.step,
         "marked": record.trace.labels,
         "goals": goals_json(&record.trace.goals),
@@ -191,20 +201,53 @@ fn step_json(system: &System, record: &StepRecord) -> Value {
         "unachievable": record.unachievable.iter().map(|(goal, _)| goal).collect::<Vec<_>>(),
         "reasons": record.unachievable.iter().map(|(goal, reason)| json!({ "goal": goal, "reason": reason })).collect::<Vec<_>>(),
         "observations": model.observation_names(&record.observation),
-        "estimate": model.state_names(record.belief.most_likely()),
-        "probability": record.belief.highest_probability().to_string(),
         "failed": record.failed.iter().map(|&(id, mode)| failed_text(system, id, mode)).collect::<Vec<_>>(),
         "true_state": model.state_names(&record.true_state),
-        "unexplained": record.is_unexplained,
+        "uncertain": record.is_uncertain,
         "conflicts": record.conflicts.iter().map(|conflict| conflict.describe(model)).collect::<Vec<_>>(),
-    })
+    });
+    let members = match &record.outcome {
+        StepOutcome::Explained => [
+            ("estimate", json!(model.state_names(record.belief.most_likely()))),
+            ("probability", probability_json(&record.belief.highest_probability())),
+        ],
+        StepOutcome::Refuted { conflict } => {
+            [("refuted", json!(true)), ("unexplained", json!(model.observation_names(conflict)))]
+        }
+        // Whether it is refuted is not known.
+        StepOutcome::LimitReached => {
+            [("refuted", Value::Null), ("unexplained", json!(model.observation_names(&record.observation)))]
+        }
+    };
+    if let Value::Object(step) = &mut step {
+        step.extend(members.map(|(name, value)| (name.to_owned(), value)));
+    }
+    step
+}
+
+/// An exact fraction, or the limits between which the probability is known to be.
+pub(super) fn probability_json(probability: &Interval) -> Value {
+    if probability.exact().is_some() {
+        return json!(probability.to_string());
+    }
+    let (low, high) = probability.decimals();
+    json!([low, high])
+}
+
+const fn status_name(status: RunStatus) -> &'static str {
+    match status {
+        RunStatus::Running => "running",
+        RunStatus::Ended => "ended",
+        RunStatus::Refuted => "refuted",
+        RunStatus::LimitReached => "limit",
+    }
 }
 
 fn run_json(system: &System, run: &Run) -> Value {
     let mut steps: Vec<Value> = run.records().iter().map(|record| step_json(system, record)).collect();
     let last = run.upcoming();
     steps.push(json!({ "step": last.step, "marked": last.labels }));
-    json!({ "steps": steps, "terminated": run.is_done() })
+    json!({ "steps": steps, "terminated": run.is_done(), "status": status_name(run.status()) })
 }
 
 fn run_text(system: &System, run: &Run) -> String {
@@ -226,13 +269,22 @@ fn run_text(system: &System, run: &Run) -> String {
             out.push_str(&format!("  lost      {goal}: {reason}\n"));
         }
         out.push_str(&format!("  observed  {}\n", listed(model.observation_names(&record.observation), "=")));
-        out.push_str(&format!(
-            "  estimate  {} ({})\n",
-            listed(model.state_names(record.belief.most_likely()), "="),
-            record.belief.highest_probability()
-        ));
-        if record.is_unexplained {
-            out.push_str("  warning   nothing believed possible explains what is observed\n");
+        match &record.outcome {
+            StepOutcome::Explained => out.push_str(&format!(
+                "  estimate  {} ({})\n",
+                listed(model.state_names(record.belief.most_likely()), "="),
+                record.belief.highest_probability()
+            )),
+            StepOutcome::Refuted { conflict } => {
+                let conflict = listed(model.observation_names(conflict), "=");
+                out.push_str(&format!("  refuted   no state of the plant explains {conflict}\n"));
+            }
+            StepOutcome::LimitReached => {
+                out.push_str("  limit     no state that was kept explains what is observed\n");
+            }
+        }
+        if record.is_uncertain {
+            out.push_str("  uncertain more states are possible than the estimator keeps\n");
         }
         record
             .conflicts
@@ -242,7 +294,11 @@ fn run_text(system: &System, run: &Run) -> String {
     if run.is_done() {
         out.push_str(&format!("The program ended after {} steps.\n", run.records().len()));
     } else {
-        out.push_str("The program goes on; still marked:\n");
+        out.push_str(match run.status() {
+            RunStatus::Refuted => "The belief is refuted: the run ends here; still marked:\n",
+            RunStatus::LimitReached => "The limit of states ends the run here; still marked:\n",
+            RunStatus::Running | RunStatus::Ended => "The program goes on; still marked:\n",
+        });
         run.upcoming().labels.iter().for_each(|label| out.push_str(&format!("  {label}\n")));
     }
     out

@@ -308,7 +308,11 @@ fn estimate_lists_the_likeliest_first_and_keeps_as_many_as_asked() {
         ])
     );
     let document = estimate("likeliest-one", &prior, &commands, &observations, &["--k", "1"]).json();
-    assert_eq!(document["posterior"], json!([{ "state": { "EngineA": "Firing" }, "probability": "1" }]));
+    // The engine may have failed, which is not kept: it is firing with at least the probability that it does not fail.
+    assert_eq!(
+        document["posterior"],
+        json!([{ "state": { "EngineA": "Firing" }, "probability": ["0.99", "1"] }])
+    );
 }
 
 #[test]
@@ -463,4 +467,95 @@ fn a_program_is_read_from_standard_input() {
         .expect("enroute runs");
     assert_eq!(output.status.code(), Some(0));
     assert!(String::from_utf8_lossy(&output.stdout).ends_with("The program has ended.\n"));
+}
+
+/// `F` is never reached, so that nothing explains its value.
+const UNREACHED: &str = "(SEQUENCE (I = N) (I = N) (I = N))
+(DEFCLASS C () (VAR v {x y} OBSERVABLE) (VAR w {a b} OBSERVABLE) (MODE N (v = x)) (MODE F (v = y)))
+(DEFINSTANCE I C INIT N)\n";
+
+#[test]
+fn a_refuted_belief_ends_the_run_with_its_conflict() {
+    let program = written("refuted.rmpl", UNREACHED);
+    let answer = enroute(&["run", &program, "--inject", "2:I=F", "--format", "json"]);
+    assert_eq!((answer.status, answer.errors.as_str()), (1, ""), "{answer}");
+    let document = answer.json();
+    assert_eq!((&document["status"], &document["terminated"]), (&json!("refuted"), &json!(false)));
+    let steps = list(&document["steps"]);
+    assert_eq!(steps.len(), 3, "{document}");
+    assert_eq!(steps[0]["probability"], "1");
+    assert_eq!((&steps[1]["refuted"], &steps[1]["probability"]), (&json!(true), &Value::Null));
+    // What `w` shows explains itself.
+    assert_eq!(steps[1]["unexplained"], json!({ "I.v": "y" }));
+    assert_eq!(steps[2]["marked"], json!(["assert I=N"]), "no goal was achieved");
+    let answer = enroute(&["run", &program, "--inject", "2:I=F"]);
+    assert!(answer.output.contains("refuted   no state of the plant explains I.v=y"), "{answer}");
+    assert!(answer.output.contains("The belief is refuted"), "{answer}");
+    let many = ["run", &program, "--inject", "2:I=F", "--monte-carlo", "4", "--format", "json"];
+    let document = enroute(&many).json();
+    assert_eq!((&document["reached"], &document["refuted"]), (&json!(0), &json!(4)), "{document}");
+}
+
+#[test]
+fn with_too_few_states_a_run_ends_at_their_limit() {
+    let pump = "(SEQUENCE true true true)
+(DEFCLASS Pump () (VAR hum {no yes} OBSERVABLE) (VAR flow {no yes} OBSERVABLE) (COMMAND cmd {none test})
+  (MODE Idle (hum = no)) (MODE Dry (hum = no)) (MODE Broken (hum = yes))
+  (FAULT Idle Dry 0.1) (FAULT Dry Broken 0.5))
+(DEFINSTANCE P Pump INIT Idle)\n";
+    let program = written("few-states.rmpl", pump);
+    // Only a pump that was dry a step before, which is not kept, is broken now.
+    let faults = ["run", &program, "--inject", "1:P=Dry", "--inject", "2:P=Broken", "--format", "json"];
+    let answer = enroute(&[&faults[..], &["--k", "1"]].concat());
+    assert_eq!(answer.status, 3, "{answer}");
+    let document = answer.json();
+    assert_eq!(document["status"], "limit");
+    let bounds = list(&document["steps"][0]["probability"]);
+    assert_eq!((text(&bounds[0]), text(&bounds[1])), ("0.9", "1"), "{document}");
+    let answer = enroute(&faults);
+    assert_eq!((answer.status, &answer.json()["status"]), (0, &json!("ended")), "{answer}");
+    assert_eq!(answer.json()["steps"][1]["estimate"], json!({ "P": "Broken" }));
+}
+
+#[test]
+fn check_finds_in_programs_and_plants_what_run_refuses() {
+    let plant = "(DEFCLASS Lamp () (COMMAND cmd {none on}) (MODE Off true) (MODE On true) (TRANSITION Off On (cmd = on)))
+(DEFINSTANCE L Lamp INIT Off)\n";
+    let cases: [(&str, String, &[&str]); 6] = [
+        ("a mode", format!("(L = Onn)\n{plant}"), &["Onn", "did you mean `On`?"]),
+        ("a component", format!("(M = On)\n{plant}"), &["`M`"]),
+        ("a value", plant.replace("(cmd = on)", "(cmd = onn)"), &["onn", "did you mean `on`?"]),
+        ("a target", plant.replace("Off On", "Off Onn"), &["Onn", "did you mean `On`?"]),
+        ("a class", plant.replace("L Lamp", "L Lapm"), &["Lapm", "did you mean `Lamp`?"]),
+        (
+            "probabilities",
+            plant.replace("(TRANSITION", "(FAULT Off On 0) (FAULT On Off 0.7) (FAULT On On 0.6) (TRANSITION"),
+            &["`0` is no probability", "more than 1 together"],
+        ),
+    ];
+    for (name, text, parts) in cases {
+        let file = written("check.rmpl", &text);
+        let answer = enroute(&["check", &file]);
+        assert_eq!(answer.status, 2, "{name}: {answer}");
+        for part in parts {
+            assert!(format!("{answer}").contains(part), "{name}, {part}: {answer}");
+        }
+    }
+}
+
+#[test]
+fn check_warns_of_orbit_insertion_without_an_engine_left() {
+    let program = std::fs::read_to_string(case_path("h01_orbit_nominal.rmpl")).expect("the case is there");
+    let plant = std::fs::read_to_string(case_path("orbit_plant.rmpl")).expect("the plant is there");
+    let file = written("orbit-with-plant.rmpl", &format!("{program}\n{plant}"));
+    let answer = enroute(&["check", &file, "--format", "json"]);
+    assert_eq!(answer.status, 0, "{answer}");
+    let document = answer.json();
+    let found: Vec<&str> =
+        list(&document["diagnostics"]).iter().map(|found| text(&found["message"])).collect();
+    assert_eq!(found.len(), 1, "{document}");
+    assert!(
+        found[0].starts_with("with EngineA=Failed and EngineB=Failed the program waits forever"),
+        "{found:?}"
+    );
 }

@@ -8,11 +8,12 @@ use std::sync::Arc;
 use hca::{Stepper, TraceStep};
 use plant::successor::nominal;
 use plant::{
-    Belief, Commands, ComponentId, Conflict, EstimateError, Goal, Observation, Random, SimulatedPlant, State,
+    Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Goal, Observation, Random,
+    SimulatedPlant, State,
 };
 use smol_str::SmolStr;
 
-use super::estimator::Estimator;
+use super::estimator::{Believed, Estimator, StepOutcome};
 use super::run::{Knowledge, StepInput};
 use super::system::System;
 
@@ -43,7 +44,9 @@ impl ProgramExecution {
 #[derive(Clone, Debug)]
 pub struct ClosedLoop {
     plant: SimulatedPlant,
-    belief: Belief,
+    believed: Believed,
+    /// How the last step came out: after one that is not explained there is no further one.
+    outcome: StepOutcome,
     random: Option<Random>,
     knowledge: Knowledge,
 }
@@ -61,8 +64,10 @@ pub struct LoopStep {
     pub failed: Vec<(ComponentId, u8)>,
     /// What was observed.
     pub observation: Observation,
-    /// Whether nothing that was believed possible explains the observation, which was then left out of account.
-    pub is_unexplained: bool,
+    /// Whether the observation can be explained. If not, the programs stay where they were, and so does the belief.
+    pub outcome: StepOutcome,
+    /// Whether the limit of states kept the estimate's dropped measure from becoming small.
+    pub is_uncertain: bool,
     /// Which mode assumptions the observation contradicts.
     pub conflicts: Vec<Conflict>,
 }
@@ -72,7 +77,8 @@ impl ClosedLoop {
     pub fn new(system: &System, knowledge: Knowledge, random: Option<Random>) -> Self {
         Self {
             plant: SimulatedPlant::new(&system.model, None),
-            belief: Belief::certain(system.model.initial_state()),
+            believed: Believed::certain(&system.groups, &system.model.initial_state()),
+            outcome: StepOutcome::Explained,
             random,
             knowledge,
         }
@@ -83,9 +89,14 @@ impl ClosedLoop {
         self.plant.state()
     }
 
-    /// What is believed.
-    pub const fn belief(&self) -> &Belief {
-        &self.belief
+    /// What is believed; after a step that nothing explains, what was believed before.
+    pub const fn belief(&self) -> &FactoredBelief {
+        &self.believed.belief
+    }
+
+    /// Whether the last step can be explained; if not, no further one is taken.
+    pub const fn outcome(&self) -> &StepOutcome {
+        &self.outcome
     }
 
     /// One step of all `programs`, of which there is at least one, with what comes from outside. After an error the plant
@@ -97,7 +108,8 @@ impl ClosedLoop {
         input: &StepInput,
     ) -> Result<LoopStep, EstimateError> {
         let before = (self.plant.state().clone(), self.random.clone());
-        let Some(system) = programs.first().map(|program| Arc::clone(&program.system)) else {
+        let system = programs.first().map(|program| Arc::clone(&program.system));
+        let Some(system) = system.filter(|_| self.outcome == StepOutcome::Explained) else {
             return Err(EstimateError::Unexplained);
         };
         let stepped = self.advance(&system, programs, estimator, input);
@@ -133,18 +145,24 @@ impl ClosedLoop {
         }
         let mut observation = self.plant.observation();
         observation.0.extend(&input.observed);
-        let update = estimator.estimate(&self.belief, &commands, &observation)?;
-        self.belief = update.belief;
+        let update = estimator.estimate(&self.believed, &commands, &observation)?;
+        let is_explained = update.believed.is_some();
+        self.outcome = update.outcome;
+        if let Some(believed) = update.believed {
+            self.believed = believed;
+        }
         let most = match self.knowledge {
             Knowledge::MostLikely => 1,
             Knowledge::CommonTo(most) => most.max(1),
         };
-        let shown = if update.is_unexplained { Observation::default() } else { observation.clone() };
         for (program, trace) in programs.iter_mut().zip(&mut traces) {
-            let likely = self.belief.states().take(most);
-            let estimates: Vec<hca::Estimate> =
-                likely.map(|(state, _)| program.system.estimate(state, &shown)).collect();
-            program.stepper.step_observed(&estimates, trace);
+            // Under a refuted belief no guard holds, and no goal is achieved.
+            if is_explained {
+                let likely = self.likely_states(most);
+                let estimates: Vec<hca::Estimate> =
+                    likely.iter().map(|state| program.system.estimate(state, &observation)).collect();
+                program.stepper.step_observed(&estimates, trace);
+            }
             program.steps += 1;
         }
         Ok(LoopStep {
@@ -153,9 +171,18 @@ impl ClosedLoop {
             unachievable,
             failed,
             observation,
-            is_unexplained: update.is_unexplained,
+            outcome: self.outcome.clone(),
+            is_uncertain: update.is_uncertain,
             conflicts: update.conflicts,
         })
+    }
+
+    /// The `most` most likely states.
+    fn likely_states(&self, most: usize) -> Vec<State> {
+        if most == 1 {
+            return vec![self.belief().most_likely().clone()];
+        }
+        self.belief().states().take(most).map(|(state, _)| state).collect()
     }
 
     /// The commands towards the goals of the marked locations, from the most likely state.
@@ -164,7 +191,7 @@ impl ClosedLoop {
         programs: &[&mut ProgramExecution],
         estimator: &mut Estimator,
     ) -> (Commands, Vec<(SmolStr, String)>) {
-        let state = self.belief.most_likely();
+        let state = self.belief().most_likely();
         let mut goals: Vec<Goal> = Vec::new();
         let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
         for program in programs {

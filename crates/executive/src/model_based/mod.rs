@@ -6,12 +6,14 @@
 mod closed_loop;
 mod estimator;
 mod goal;
+mod liveness;
 mod monte_carlo;
 mod run;
 mod system;
 
 pub use closed_loop::{ClosedLoop, LoopStep, ProgramExecution};
-pub use estimator::{Estimation, Estimator};
+pub use estimator::{Estimator, StepOutcome};
+pub use liveness::waits_forever;
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
-pub use run::{Knowledge, Options, Run, StepInput, StepRecord};
+pub use run::{Knowledge, Options, Run, RunStatus, StepInput, StepRecord};
 pub use system::{ControlledPlant, System, SystemCompilation};

@@ -11,8 +11,8 @@ use plant::{EstimateError, Random};
 use serde::{Deserialize, Serialize};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::estimator::{Estimation, Estimator};
-use super::run::{Options, Run, StepInput};
+use super::estimator::Estimator;
+use super::run::{Options, Run, RunStatus, StepInput};
 use super::system::System;
 
 /// What many runs have in common.
@@ -40,6 +40,8 @@ pub struct ProgramTally {
     pub faults: BTreeMap<SmolStr, FaultTally>,
     /// What was still marked in the runs that did not end, by the label of the location.
     pub stuck: BTreeMap<SmolStr, u64>,
+    /// In how many of the runs that did not end the belief was refuted.
+    pub refuted: u64,
     /// The first run that did not end.
     pub first_stuck: Option<u64>,
 }
@@ -66,6 +68,7 @@ impl ProgramTally {
             sum.runs += tally.runs;
             sum.reached += tally.reached;
         }
+        self.refuted += other.refuted;
         for (label, runs) in &other.stuck {
             *self.stuck.entry(label.clone()).or_default() += runs;
         }
@@ -97,6 +100,7 @@ impl ProgramTally {
             self.reached += 1;
             *self.ends.entry(run.records().len() as u32).or_default() += 1;
         } else {
+            self.refuted += u64::from(run.status() == RunStatus::Refuted);
             let labels: BTreeSet<SmolStr> = run.upcoming().labels.into_iter().collect();
             for label in labels {
                 *self.stuck.entry(label).or_default() += 1;
@@ -126,15 +130,14 @@ pub fn sample(
     numbers: Range<u64>,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ProgramTally, EstimateError> {
-    let estimation = trials.options.estimation.unwrap_or_else(|| Estimation::for_model(&system.model));
-    let mut estimator = Estimator::new(Arc::clone(&system.planner), estimation);
+    let mut estimator = Estimator::new(system, trials.options.most_states);
     let nothing = StepInput::default();
     let mut tally = ProgramTally::default();
     for number in numbers {
         let options = Options { seed: Some(run_seed(trials.seed, number)), ..trials.options };
         let mut run = Run::with_estimator(system, options, estimator);
         for step in 1..=trials.most_steps {
-            if run.is_done() {
+            if run.status() != RunStatus::Running {
                 break;
             }
             run.step(trials.inputs.get(&step).unwrap_or(&nothing))?;

@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use hca::{Marking, TraceStep};
-use plant::{Belief, Commands, ComponentId, Conflict, EstimateError, Observation, Random, State, VariableId};
+use plant::{
+    Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Observation, Random, State, VariableId,
+};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use super::closed_loop::{ClosedLoop, ProgramExecution};
-use super::estimator::{Estimation, Estimator};
+use super::estimator::{Estimator, StepOutcome};
 use super::system::System;
 
 /// What the automaton takes for known.
@@ -27,8 +29,8 @@ pub enum Knowledge {
 pub struct Options {
     /// What the automaton takes for known.
     pub knowledge: Knowledge,
-    /// How the belief is kept; chosen by the model's size if not said.
-    pub estimation: Option<Estimation>,
+    /// How many states the belief of a group of components keeps at most; as many as the estimator allows if not said.
+    pub most_states: Option<usize>,
     /// With a seed, components fail by chance with their probabilities; without, only what is injected fails.
     pub seed: Option<u64>,
 }
@@ -59,12 +61,27 @@ pub struct StepRecord {
     pub true_state: State,
     /// What was observed.
     pub observation: Observation,
-    /// The belief at the step's end.
-    pub belief: Belief,
-    /// Whether nothing that was believed possible explains the observation, which was then left out of account.
-    pub is_unexplained: bool,
+    /// The belief at the step's end; where nothing explains the observation, the one before.
+    pub belief: FactoredBelief,
+    /// Whether the observation can be explained.
+    pub outcome: StepOutcome,
+    /// Whether the limit of states kept the estimate's dropped measure from becoming small.
+    pub is_uncertain: bool,
     /// Which mode assumptions the observation contradicts, when not all went as expected.
     pub conflicts: Vec<Conflict>,
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunStatus {
+    /// It can take another step.
+    Running,
+    /// The program has ended.
+    Ended,
+    /// No trajectory of the plant explains what was observed.
+    Refuted,
+    /// The limit of states leaves open whether some trajectory explains what was observed.
+    LimitReached,
 }
 
 /// Where a run stands before a step, to come back to.
@@ -87,8 +104,7 @@ pub struct Run {
 impl Run {
     /// Starts with the plant in its initial state, which is known.
     pub fn new(system: &Arc<System>, options: Options) -> Self {
-        let estimation = options.estimation.unwrap_or_else(|| Estimation::for_model(&system.model));
-        let estimator = Estimator::new(Arc::clone(&system.planner), estimation);
+        let estimator = Estimator::new(system, options.most_states);
         Self::with_estimator(system, options, estimator)
     }
 
@@ -128,7 +144,7 @@ impl Run {
     }
 
     /// The current belief.
-    pub const fn belief(&self) -> &Belief {
+    pub const fn belief(&self) -> &FactoredBelief {
         self.closed.belief()
     }
 
@@ -140,6 +156,16 @@ impl Run {
     /// Whether the program has ended.
     pub fn is_done(&self) -> bool {
         self.program.stepper.is_done()
+    }
+
+    /// How far the run is.
+    pub fn status(&self) -> RunStatus {
+        match self.closed.outcome() {
+            StepOutcome::Refuted { .. } => RunStatus::Refuted,
+            StepOutcome::LimitReached => RunStatus::LimitReached,
+            StepOutcome::Explained if self.is_done() => RunStatus::Ended,
+            StepOutcome::Explained => RunStatus::Running,
+        }
     }
 
     /// The marked locations, goals and labels of the next step.
@@ -160,7 +186,7 @@ impl Run {
     /// Goes to the state before step `step` (from 1): back, or forward with nothing from outside.
     pub fn jump(&mut self, step: u32) -> Result<(), EstimateError> {
         while self.records.len() + 1 > step as usize && self.step_back() {}
-        while self.records.len() + 1 < step as usize && !self.is_done() {
+        while self.records.len() + 1 < step as usize && self.status() == RunStatus::Running {
             self.step(&StepInput::default())?;
         }
         Ok(())
@@ -183,7 +209,8 @@ impl Run {
             true_state: self.closed.true_state().clone(),
             observation: step.observation,
             belief: self.closed.belief().clone(),
-            is_unexplained: step.is_unexplained,
+            outcome: step.outcome,
+            is_uncertain: step.is_uncertain,
             conflicts: step.conflicts,
         });
         Ok(&self.records[self.records.len() - 1])

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use hca::{Automaton, Estimate, VariableId as ProgramVariableId, Vocabulary};
-use plant::{ComponentId, Model, Observation, Planner, State, VariableId};
+use plant::{ComponentId, Group, Model, Observation, Planner, State, VariableId};
 use rmpl::control::{
     Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Name,
     expand_main, nearest,
@@ -30,6 +30,8 @@ pub struct System {
     pub model: Arc<Model>,
     /// The plant's reactive planner.
     pub planner: Arc<Planner>,
+    /// The components of the plant, by what ties them together.
+    pub groups: Arc<Vec<Group>>,
     bindings: Vec<Binding>,
     /// Per location, the configurations of the plant that satisfy what it asserts.
     goal_configurations: Vec<Option<GoalConfigurations>>,
@@ -40,13 +42,14 @@ pub struct System {
 pub struct ControlledPlant {
     model: Arc<Model>,
     planner: Arc<Planner>,
+    groups: Arc<Vec<Group>>,
 }
 
 impl ControlledPlant {
-    /// Compiles the planner's policies.
+    /// Compiles the planner's policies, and groups the components.
     pub fn new(model: Model) -> Self {
         let model = Arc::new(model);
-        Self { planner: Arc::new(Planner::new(&model)), model }
+        Self { planner: Arc::new(Planner::new(&model)), groups: Arc::new(plant::groups(&model)), model }
     }
 
     /// The model of the plant.
@@ -186,7 +189,7 @@ fn call(main: &Name, arguments: &[Name]) -> Definition {
 }
 
 fn bind(file: &ControlFile, plant: &ControlledPlant) -> (Option<Arc<System>>, Vec<Diagnostic>) {
-    let ControlledPlant { model, planner } = plant;
+    let ControlledPlant { model, planner, groups } = plant;
     let (expanded, diagnostics) = expand_main(file);
     let Some(program) = expanded else { return (None, diagnostics) };
     let mut uses = Uses::default();
@@ -228,8 +231,9 @@ fn bind(file: &ControlFile, plant: &ControlledPlant) -> (Option<Arc<System>>, Ve
             Some(goal_configurations(planner, &automaton.guard(assertion.test)?.constraint))
         })
         .collect();
-    let (model, planner) = (Arc::clone(model), Arc::clone(planner));
-    (Some(Arc::new(System { automaton, model, planner, bindings, goal_configurations })), diagnostics)
+    let (model, planner, groups) = (Arc::clone(model), Arc::clone(planner), Arc::clone(groups));
+    let system = System { automaton, model, planner, groups, bindings, goal_configurations };
+    (Some(Arc::new(system)), diagnostics)
 }
 
 fn undefined(name: &Name, known: &BTreeSet<SmolStr>, is_asserted: bool) -> Diagnostic {

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use executive::model_based::{
-    Knowledge, Options, ProgramTally, Run, StepInput, StepRecord, System, Trials, run_seed, sample,
-    wilson_interval,
+    Knowledge, Options, ProgramTally, Run, RunStatus, StepInput, StepOutcome, StepRecord, System, Trials,
+    run_seed, sample, wilson_interval,
 };
+use plant::Observation;
 use serde_json::Value;
 
 fn folder() -> PathBuf {
@@ -147,7 +148,7 @@ fn a_goal_lost_to_a_failure_is_reported_with_its_reason() {
 }
 
 #[test]
-fn an_observation_that_nothing_explains_is_reported_and_left_out() {
+fn an_observation_that_nothing_explains_refutes_the_belief_and_ends_the_run() {
     let system = orbit();
     let power = system.model.variable_named("EngineA.power_in").expect("variable");
     let mut run = Run::new(&system, Options::default());
@@ -155,11 +156,20 @@ fn an_observation_that_nothing_explains_is_reported_and_left_out() {
     // From Off no fault leads anywhere: without power the engine cannot be in Standby, and it can be nowhere else.
     let odd = StepInput { observed: BTreeMap::from([(power, 0)]), ..StepInput::default() };
     let record = run.step(&odd).expect("step");
-    assert!(record.is_unexplained);
+    let conflict = Observation(BTreeMap::from([(power, 0)]));
+    assert_eq!(
+        record.outcome,
+        StepOutcome::Refuted { conflict },
+        "nothing else is needed to contradict the plant"
+    );
+    assert!(record.trace.fired.is_empty() && record.trace.continued.is_empty(), "no transition fires");
     let conflicts: Vec<String> =
         record.conflicts.iter().map(|conflict| conflict.describe(&system.model)).collect();
     assert_eq!(conflicts, ["EngineA=Standby contradicts EngineA.power_in=zero"]);
     assert_eq!(system.model.state_names(record.belief.most_likely())["EngineA"], "Standby");
+    assert_eq!(run.status(), RunStatus::Refuted);
+    assert!(run.step(&StepInput::default()).is_err(), "no step follows");
+    assert!(run.step_back() && run.status() == RunStatus::Running);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use executive::model_based::{Estimation, Estimator, Options, Run, System};
+use executive::model_based::{Estimator, Options, Run, RunStatus, System};
 use hca::Automaton;
 use link::control_run::{Input, Moment};
 use link::{ControlProgram, ControlRun, ControlStanding};
@@ -143,7 +143,7 @@ impl RunOfSystem {
         let mut answered_millis = host.now_millis();
         let mut trouble = None;
         for input in wanted.iter().chain([&beyond]).skip(common) {
-            if self.run.is_done() {
+            if self.run.status() != RunStatus::Running {
                 break;
             }
             if let Err(error) = self.step(input) {
@@ -187,9 +187,7 @@ impl RunOfSystem {
 fn estimator_for(system: &Arc<System>, estimator: Option<Estimator>) -> Estimator {
     let is_equal =
         |estimator: &Estimator| estimator.planner().model().without_places() == system.model.without_places();
-    estimator
-        .filter(is_equal)
-        .unwrap_or_else(|| Estimator::new(Arc::clone(&system.planner), Estimation::for_model(&system.model)))
+    estimator.filter(is_equal).unwrap_or_else(|| Estimator::new(system, None))
 }
 
 /// What was answered of a request so far.

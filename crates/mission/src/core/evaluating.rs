@@ -13,6 +13,7 @@ use snapshot::{Goal, RobustnessSettings, Tally, Timings};
 use tpn::{Network, Plan};
 
 use super::Core;
+use crate::control::check_control;
 use crate::evaluated::{Compiled, Evaluated, Ground, Manner, Scenarios};
 use crate::execution::{self, Ran};
 use crate::host::CoreHost;
@@ -49,7 +50,7 @@ impl Core {
     /// Reads a text in either notation, and compiles all of its scenarios.
     pub fn compile_all(&mut self, update: &Update, host: &dyn CoreHost) -> Scenarios {
         if rmpl::control::is_control_text(&update.source) {
-            let diagnostics = rmpl::control::parse(&update.source).diagnostics;
+            let diagnostics = check_control(&update.source);
             return Scenarios { diagnostics, ..Scenarios::default() };
         }
         self.read(update);

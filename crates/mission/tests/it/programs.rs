@@ -427,3 +427,19 @@ fn the_component_of_a_mode_may_be_a_parameter_and_is_looked_up_at_the_call() {
     let wrong = text.replace("requires e.mode=Firing", "requires e.mode=Blazing");
     assert_eq!(diagnostics(&wrong), ["E-VALUE `Blazing` is not a value of `EngineA.mode`"]);
 }
+
+#[test]
+fn a_refuted_belief_violates_the_activity_and_the_run_says_why() {
+    // An engine that is off does not fail, so that nothing explains its power.
+    let fault = Disturbance::Fault {
+        activity: "Insert#1".into(),
+        step: 1,
+        component: "EngineA".into(),
+        mode: "Failed".into(),
+    };
+    let (_, ran) = execute(ORBIT, &[fault]);
+    assert_eq!(ran.outcome.ending, Ending::Stopped);
+    let reasons = violations(&ran);
+    let expected = "the belief is refuted: no state of the plant explains EngineA.power_in=nominal";
+    assert!(reasons.iter().any(|reason| reason.contains(expected)), "{reasons:?}");
+}

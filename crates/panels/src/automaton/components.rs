@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{DragValue, Frame, Margin, Rect, RichText, Stroke, Ui, UiBuilder, vec2};
-use plant::{ComponentId, Model};
+use plant::{ComponentId, Interval, Model};
 use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, FaultSeed, PlantMoment};
@@ -190,6 +190,15 @@ fn fault_menu(
         }
     });
     menu.response.on_hover_text(format!("{}, a {}: inject a fault", component.name, component.class));
+}
+
+/// A probability for reading, as an interval where it is not known exactly, with at most this many decimals then.
+pub(super) fn percent_between(probability: &Interval, most_decimals: u32) -> String {
+    if probability.exact().is_some() {
+        return percent(probability.to_f64().0);
+    }
+    let (low, high) = probability.percents(most_decimals);
+    format!("{low}–{high} %")
 }
 
 /// A probability for reading: never rounded to certainty.

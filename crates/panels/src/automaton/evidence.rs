@@ -1,13 +1,13 @@
 //! What was observed, what is believed because of it, and why.
 
 use egui::{Align2, ComboBox, FontId, Grid, Rect, RichText, Sense, Ui, pos2, vec2};
-use num_traits::ToPrimitive as _;
-use plant::{Model, State, VariableId};
+use executive::model_based::{StepOutcome, StepRecord};
+use plant::{Interval, Model, State, VariableId};
 use theme::{size, space};
 use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
-use super::components::percent;
+use super::components::{percent, percent_between};
 use super::title;
 use crate::Context;
 
@@ -18,7 +18,9 @@ const MAX_LISTED: usize = 6;
 
 /// Whether the last step showed something that was not expected.
 pub(super) fn is_surprising(plant: &PlantMoment) -> bool {
-    plant.record.as_ref().is_some_and(|record| record.is_unexplained || !record.conflicts.is_empty())
+    let is_surprising =
+        |record: &StepRecord| record.outcome != StepOutcome::Explained || !record.conflicts.is_empty();
+    plant.record.as_ref().is_some_and(is_surprising)
 }
 
 /// Shows belief, observations and diagnosis; `reveals` brings the diagnosis into view.
@@ -42,28 +44,33 @@ pub(super) fn show(
 
 fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
     let count = plant.belief.len();
-    let note =
-        if count == 1 { "one state is possible".to_owned() } else { format!("{count} states are possible") };
+    let note = match count {
+        1 if plant.belief.is_exact() => "one state is possible".to_owned(),
+        1 => "one state is kept".to_owned(),
+        usize::MAX => "very many states are possible".to_owned(),
+        _ if plant.belief.is_exact() => format!("{count} states are possible"),
+        _ => format!("{count} states are kept"),
+    };
     title(ui, context, "Belief", &note);
-    let listed: Vec<(&State, f64)> = plant
-        .belief
-        .states()
-        .take(MAX_LISTED)
-        .map(|(state, probability)| (state, probability.to_f64().unwrap_or(0.0)))
-        .collect();
+    let listed: Vec<(State, Interval)> = plant.belief.states().take(MAX_LISTED).collect();
     for (rank, (state, probability)) in listed.iter().enumerate() {
         let text = if rank == 0 && count > 1 {
             "most likely".to_owned()
         } else if rank == 0 {
             "as estimated above".to_owned()
         } else {
-            difference(model, listed[0].0, state)
+            difference(model, &listed[0].0, state)
         };
-        bar(ui, context, *probability, &text, *state == &plant.true_state, &model.describe(state));
+        bar(ui, context, probability, &text, *state == plant.true_state, &model.describe(state));
     }
     if count > listed.len() {
-        let rest = 1.0 - listed.iter().map(|(_, probability)| probability).sum::<f64>();
-        let text = format!("and {} more, {}", count - listed.len(), percent(rest.max(0.0)));
+        let sum = listed.iter().map(|(_, probability)| probability.to_f64().0).sum::<f64>();
+        let rest = percent((1.0 - sum).max(0.0));
+        let text = match count {
+            usize::MAX => format!("and very many more, {rest}"),
+            _ if plant.belief.is_exact() => format!("and {} more, {rest}", count - listed.len()),
+            _ => format!("and {} more and those not kept, at most {rest}", count - listed.len()),
+        };
         ui.label(RichText::new(text).small().color(context.tokens.text_muted));
     }
 }
@@ -80,26 +87,22 @@ fn difference(model: &Model, most_likely: &State, state: &State) -> String {
     parts.join(", ")
 }
 
-fn bar(ui: &mut Ui, context: &Context<'_>, probability: f64, text: &str, is_true: bool, state: &str) {
+fn bar(ui: &mut Ui, context: &Context<'_>, probability: &Interval, text: &str, is_true: bool, state: &str) {
     let tokens = context.tokens;
     let (rect, response) =
         ui.allocate_exact_size(vec2(ui.available_width(), space::ROW - 2.0), Sense::hover());
-    let name = format!("{} {text}", percent(probability));
+    let share = percent_between(probability, 2);
+    let name = format!("{share} {text}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, tokens.sunken);
-    let part = Rect::from_min_size(rect.min, vec2(rect.width() * probability as f32, rect.height()));
+    let part =
+        Rect::from_min_size(rect.min, vec2(rect.width() * probability.to_f64().0 as f32, rect.height()));
     painter.rect_filled(part, 3.0, tokens.selection);
     let font = FontId::proportional(size::SMALL);
     let at = rect.left_center() + vec2(6.0, 0.0);
     let sign = if is_true { "● " } else { "" };
-    painter.text(
-        at,
-        Align2::LEFT_CENTER,
-        format!("{}  {sign}{text}", percent(probability)),
-        font,
-        tokens.text,
-    );
+    painter.text(at, Align2::LEFT_CENTER, format!("{share}  {sign}{text}"), font, tokens.text);
     response.on_hover_text(state);
 }
 
@@ -118,8 +121,7 @@ fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let left = rect.left() + at as f32 * width;
         let mut bottom = rect.bottom() - 12.0;
         for (rank, (_, probability)) in plant.belief.states().take(MAX_LISTED).enumerate() {
-            let height =
-                (probability.to_f64().unwrap_or(0.0) as f32 * 30.0).max(if rank == 0 { 1.0 } else { 1.5 });
+            let height = (probability.to_f64().0 as f32 * 30.0).max(if rank == 0 { 1.0 } else { 1.5 });
             let part =
                 Rect::from_min_max(pos2(left + 1.0, bottom - height), pos2(left + width - 1.0, bottom));
             painter.rect_filled(part, 0.0, tokens.series[rank % tokens.series.len()]);
@@ -200,11 +202,23 @@ fn diagnosis(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMom
     let Some(record) = &plant.record else { return };
     let tokens = context.tokens;
     title(ui, context, "Diagnosis", "");
-    if record.is_unexplained {
-        let text = "Nothing that was believed possible explains the observation; it is left out of account.";
+    let ended = match &record.outcome {
+        StepOutcome::Explained => None,
+        StepOutcome::Refuted { conflict } => {
+            let names = model.observation_names(conflict);
+            let names: Vec<String> = names.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            Some(format!("The belief is refuted: no state of the plant explains {}.", names.join(", ")))
+        }
+        StepOutcome::LimitReached => Some("No state that was kept explains what was observed.".to_owned()),
+    };
+    if let Some(text) = &ended {
         ui.label(RichText::new(text).color(tokens.error));
     }
-    if record.conflicts.is_empty() && !record.is_unexplained {
+    if record.is_uncertain {
+        let text = "Uncertain: more states are possible than the estimator keeps.";
+        ui.label(RichText::new(text).color(tokens.warning));
+    }
+    if record.conflicts.is_empty() && ended.is_none() {
         ui.label(RichText::new("All is as expected.").color(tokens.good));
     }
     for conflict in &record.conflicts {

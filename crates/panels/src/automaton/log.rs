@@ -1,6 +1,7 @@
 //! All steps in a table: what was marked, wanted, commanded, observed and found.
 
 use egui::{Grid, RichText, ScrollArea, Ui};
+use executive::model_based::StepOutcome;
 use hca::Automaton;
 use plant::{Commands, Model};
 use workbench::command::{Command, CommandSender};
@@ -89,8 +90,12 @@ fn outcome(shown: Shown<'_>, next: Option<&Moment>) -> String {
             let name = model.component(component).map_or("?", |component| component.name.as_str());
             parts.push(format!("by chance: {name}={}", model.mode_name(component, mode)));
         }
-        if record.is_unexplained {
-            parts.push("nothing explains what was observed".to_owned());
+        match record.outcome {
+            StepOutcome::Explained => {}
+            StepOutcome::Refuted { .. } => {
+                parts.push("nothing explains what was observed: the belief is refuted".to_owned());
+            }
+            StepOutcome::LimitReached => parts.push("no kept state explains what was observed".to_owned()),
         }
         parts.extend(record.conflicts.iter().map(|conflict| conflict.describe(model)));
     }

@@ -5,13 +5,12 @@ use display::geometry::distance_point_curve;
 use egui::{FontId, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 use layout::list::machine::{ModeState, NAME_SIZE, machine_list};
 use layout::{MachineArc, MachineDrawing};
-use num_traits::ToPrimitive as _;
-use plant::{Component, ComponentId, Model};
+use plant::{Component, ComponentId, Interval, Model};
 use theme::{Tokens, strong_family};
 use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
-use super::components::percent;
+use super::components::percent_between;
 use crate::Context;
 use crate::painter::{DisplayPainter, Placement};
 
@@ -26,8 +25,8 @@ pub(super) struct Machine {
 /// How things stand with a component.
 pub(super) struct Standing {
     id: ComponentId,
-    /// By mode, from 0 to 1.
-    likelihoods: Vec<f64>,
+    /// By mode.
+    likelihoods: Vec<Interval>,
     estimate: u8,
     truth: u8,
     /// The most likely mode a step before.
@@ -109,7 +108,7 @@ impl Machine {
             .map(|(mode, data)| ModeState {
                 name: data.name.as_str().into(),
                 likelihood: standing.likelihood(mode),
-                percent: percent(standing.likelihood(mode)).into(),
+                percent: standing.percent(mode, 0).into(),
                 is_estimate: standing.estimate == mode,
                 is_true: standing.truth == mode,
                 is_injected: standing.injected == Some(mode),
@@ -136,10 +135,9 @@ impl Standing {
     pub(super) fn new(context: &Context<'_>, model: &Model, plant: &PlantMoment, id: ComponentId) -> Self {
         let state = &context.state.automaton;
         let before = state.at().checked_sub(1).and_then(|at| state.moments().get(at));
-        let likelihoods = plant.belief.marginal(model, id);
         Self {
             id,
-            likelihoods: likelihoods.iter().map(|likelihood| likelihood.to_f64().unwrap_or(0.0)).collect(),
+            likelihoods: plant.belief.marginal(model, id),
             estimate: plant.belief.most_likely().mode(id),
             truth: plant.true_state.mode(id),
             before: before
@@ -154,14 +152,20 @@ impl Standing {
         self.estimate == self.truth
     }
 
+    /// The least that a mode's probability is.
     fn likelihood(&self, mode: u8) -> f64 {
-        self.likelihoods.get(usize::from(mode)).copied().unwrap_or(0.0)
+        self.likelihoods.get(usize::from(mode)).map_or(0.0, |likelihood| likelihood.to_f64().0)
+    }
+
+    fn percent(&self, mode: u8, most_decimals: u32) -> String {
+        let likelihood = self.likelihoods.get(usize::from(mode));
+        likelihood.map_or_else(String::new, |likelihood| percent_between(likelihood, most_decimals))
     }
 
     /// What is to be said of a mode, for those who hear it.
     fn describe(&self, component: &Component, mode: u8) -> String {
         let name = component.modes.get(usize::from(mode)).map_or("?", |mode| mode.name.as_str());
-        let mut text = format!("{}: {name}, {}", component.name, percent(self.likelihood(mode)));
+        let mut text = format!("{}: {name}, {}", component.name, self.percent(mode, 2));
         if mode == self.estimate {
             text.push_str(", most likely");
         }

@@ -1,5 +1,6 @@
 //! The integration tests of `plant`, in one program: each module is about one thing.
 
+mod bounded;
 mod checks;
 mod estimation;
 mod planning;

@@ -207,3 +207,38 @@ fn plans_on_random_plants_reach_their_goals_exactly_where_search_says_they_can()
     }
     assert!(reached > 100 && failed > 30, "both happen: {reached} and {failed}");
 }
+
+/// A bus whose output passes through a relay, and a lamp that is switched on only under voltage.
+const FED: &str = "
+(DEFCLASS Bus () (VAR out {dead live}) (COMMAND cmd {none on}) (MODE Off (out = dead)) (MODE On (out = live))
+  (TRANSITION Off On (cmd = on)))
+(DEFCLASS Relay () (PORT feed Bus) (VAR out {dead live}) (COMMAND cmd {none close})
+  (MODE Open (out = dead))
+  (MODE Closed (((feed.out = live) AND (out = live)) OR ((feed.out = dead) AND (out = dead))))
+  (TRANSITION Open Closed (cmd = close)))
+(DEFCLASS Lamp () (PORT feed Relay) (COMMAND cmd {none on}) (MODE Off true) (MODE On true)
+  (TRANSITION Off On ((cmd = on) AND (feed.out = live))))
+(DEFINSTANCE B Bus) (DEFINSTANCE R Relay (feed B)) (DEFINSTANCE L Lamp (feed R))";
+
+#[test]
+fn a_guard_that_several_components_make_true_together_is_planned_for() {
+    let model = model(FED);
+    let mut found = commands(&model, &[], &[("L", "On")]).expect("it can be reached");
+    assert_eq!(found.pop().as_deref(), Some("L on"), "{found:?}");
+    found.sort();
+    assert_eq!(found, ["B on", "R close"]);
+}
+
+#[test]
+fn a_guard_that_nothing_makes_true_is_a_warning() {
+    // No mode says that the relay's output is odd.
+    let text = FED.replace(
+        "(VAR out {dead live}) (COMMAND cmd {none close})",
+        "(VAR out {dead live odd}) (COMMAND cmd {none close})",
+    );
+    let text = text.replace("(feed.out = live))))", "(feed.out = odd))))");
+    let (model, diagnostics) = compile(&rmpl::control::parse(&text).file);
+    assert!(model.is_some());
+    let found: Vec<&str> = diagnostics.iter().map(|found| found.message.as_str()).collect();
+    assert_eq!(found, ["`L` never leaves Off by this transition: nothing makes its guard true"], "{text}");
+}

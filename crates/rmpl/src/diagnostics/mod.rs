@@ -12,6 +12,7 @@ pub mod exogenous;
 pub mod form;
 pub mod lex;
 pub mod limit;
+pub mod liveness;
 pub mod mixed;
 pub mod network;
 pub mod no_scenario;
@@ -67,6 +68,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &traverse::EXPLANATION,
     &encounter::EXPLANATION,
     &plant::EXPLANATION,
+    &liveness::EXPLANATION,
     &network::EXPLANATION,
 ];
 

@@ -12,13 +12,14 @@ fn codes(text: &str) -> Vec<&'static str> {
 }
 
 /// Kinds that only compiling or planning can report.
-const LATER: [&str; 8] = [
+const LATER: [&str; 9] = [
     "E-NOSCENARIO",
     "E-LIMIT",
     "E-RESOURCE",
     "W-ENCOUNTER",
     "W-EXOGENOUS",
     "W-PLANT",
+    "W-LIVENESS",
     "W-NETWORK",
     "E-NETWORK",
 ];

@@ -127,6 +127,7 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "W-ENCOUNTER",
         "W-EXOGENOUS",
         "W-PLANT",
+        "W-LIVENESS",
         "W-NETWORK",
         "E-NETWORK",
     ];

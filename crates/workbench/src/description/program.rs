@@ -2,14 +2,18 @@
 
 use std::collections::BTreeMap;
 
+use executive::model_based::StepOutcome;
 use hca::Automaton;
-use plant::Model;
+use plant::{Interval, Model};
 use serde::Serialize;
 #[cfg(test)]
 use ts_rs::TS;
 
 use crate::state::automaton::{AutomatonState, PlantMoment};
 use crate::state::program_chance::ProgramChanceState;
+
+/// So many of the most likely states are told.
+const MAX_BELIEVED: usize = 64;
 
 /// How a control program stands at the step that is looked at.
 #[derive(Debug, Serialize)]
@@ -63,15 +67,17 @@ pub struct ProgramChance {
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
 pub struct PlantState {
-    /// Most likely first.
+    /// Most likely first, at most 64 of them.
     pub belief: Vec<Believed>,
     pub true_state: BTreeMap<String, String>,
     pub observations: Option<BTreeMap<String, String>>,
     pub commands: Option<BTreeMap<String, String>>,
     pub next_commands: Option<BTreeMap<String, String>>,
     pub unachievable: Vec<Unachievable>,
-    /// Whether no state that was believed possible explains the observations.
+    /// Whether no state explains the observations, so that the run ends here.
     pub is_unexplained: bool,
+    /// Whether more states are possible than the estimator keeps, so that probabilities are known less well.
+    pub is_uncertain: bool,
     /// Which assumptions the observations contradict.
     pub conflicts: Option<Vec<String>>,
 }
@@ -81,8 +87,18 @@ pub struct PlantState {
 #[cfg_attr(test, derive(TS))]
 pub struct Believed {
     pub state: BTreeMap<String, String>,
+    pub probability: StateProbability,
+}
+
+/// How likely a state is.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(untagged)]
+pub enum StateProbability {
     /// An exact fraction.
-    pub probability: String,
+    Exact(String),
+    /// At least and at most so likely, as decimals.
+    Between([String; 2]),
 }
 
 /// A goal that cannot be reached.
@@ -136,15 +152,24 @@ fn fired(automaton: &Automaton, id: hca::TransitionId) -> Option<Fired> {
     Some(Fired { from: automaton.location_name(transition.source).clone() })
 }
 
+fn state_probability(probability: &Interval) -> StateProbability {
+    if probability.exact().is_some() {
+        return StateProbability::Exact(probability.to_string());
+    }
+    let (low, high) = probability.decimals();
+    StateProbability::Between([low, high])
+}
+
 fn plant_state(model: &Model, moment: &PlantMoment) -> PlantState {
     let record = moment.record.as_ref();
     PlantState {
         belief: moment
             .belief
             .states()
+            .take(MAX_BELIEVED)
             .map(|(state, probability)| Believed {
-                state: model.state_names(state),
-                probability: probability.to_string(),
+                state: model.state_names(&state),
+                probability: state_probability(&probability),
             })
             .collect(),
         true_state: model.state_names(&moment.true_state),
@@ -156,7 +181,8 @@ fn plant_state(model: &Model, moment: &PlantMoment) -> PlantState {
             .iter()
             .map(|(goal, reason)| Unachievable { goal: goal.to_string(), reason: reason.clone() })
             .collect(),
-        is_unexplained: record.is_some_and(|record| record.is_unexplained),
+        is_unexplained: record.is_some_and(|record| record.outcome != StepOutcome::Explained),
+        is_uncertain: record.is_some_and(|record| record.is_uncertain),
         conflicts: record
             .map(|record| record.conflicts.iter().map(|conflict| conflict.describe(model)).collect()),
     }

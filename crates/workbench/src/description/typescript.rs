@@ -224,6 +224,7 @@ fn interface() -> String {
     declare::<program::ProgramChance>(&mut out);
     declare::<program::PlantState>(&mut out);
     declare::<program::Believed>(&mut out);
+    declare::<program::StateProbability>(&mut out);
     declare::<program::Unachievable>(&mut out);
     out.push_str(CALLS);
     out

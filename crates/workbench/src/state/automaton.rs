@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use executive::model_based::run_seed;
+use executive::model_based::{StepOutcome, run_seed};
 use hca::VariableId;
 use link::{ControlRun, ControlStanding};
 use plant::ComponentId;
@@ -398,7 +398,12 @@ impl AutomatonState {
     /// Whether the program has not ended at the moment that is looked at, as far as that is known.
     pub fn can_step(&self) -> bool {
         let goes_on = match self.moments.get(self.target) {
-            Some(moment) if self.target < self.fresh => !moment.marking.is_empty(),
+            Some(moment) if self.target < self.fresh => {
+                let plant = moment.plant.as_ref();
+                let record = plant.and_then(|plant| plant.record.as_ref());
+                let is_explained = record.is_none_or(|record| record.outcome == StepOutcome::Explained);
+                !moment.marking.is_empty() && is_explained
+            }
             // The core takes no more steps than there are.
             _ => self.is_waiting || self.wants_answer,
         };

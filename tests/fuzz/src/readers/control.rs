@@ -1,6 +1,6 @@
 //! Control programs and models.
 
-use executive::model_based::{Knowledge, Options, Run, StepInput};
+use executive::model_based::{Knowledge, Options, Run, RunStatus, StepInput, StepOutcome};
 use plant::{ComponentId, Model, VariableId};
 
 use super::{Outcome, Reader, magnitude, nothing, read, refused, text_of};
@@ -114,16 +114,16 @@ fn run(input: &[u8]) -> Outcome {
     let mut random =
         Random::new(input.iter().fold(1, |sum: u64, &byte| sum.wrapping_mul(31) + u64::from(byte)));
     let knowledge = if random.below(2) == 0 { Knowledge::MostLikely } else { Knowledge::CommonTo(2) };
-    let options = Options { seed: Some(1), knowledge, estimation: None };
+    let options = Options { seed: Some(1), knowledge, most_states: None };
     let mut run = Run::new(&system, options);
     let mut led = String::new();
-    while !run.is_done() && run.records().len() < MAX_STEPS {
+    while run.status() == RunStatus::Running && run.records().len() < MAX_STEPS {
         match run.step(&outside(&mut random, &system.model)) {
             Ok(record) => {
                 let marked = magnitude(record.trace.marked.len());
                 let commanded = record.commands.0.iter().filter(|&&command| command > 0).count();
-                let said =
-                    [record.is_unexplained, !record.failed.is_empty(), !record.unachievable.is_empty()];
+                let is_unexplained = record.outcome != StepOutcome::Explained;
+                let said = [is_unexplained, !record.failed.is_empty(), !record.unachievable.is_empty()];
                 let said: String = said.map(|it| if it { 'y' } else { 'n' }).iter().collect();
                 led += &format!("{marked}{}{said} ", magnitude(commanded));
             }

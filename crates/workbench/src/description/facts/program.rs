@@ -21,7 +21,13 @@ pub(super) const VALUES: &[Row] = &[
     ("believed", |it, _| count(it.plant()?.belief.len())),
     ("likelihood", |it, _| {
         let probability = it.plant_of_moment()?.1.belief.highest_probability();
-        words(format!("{:.3} %", percent(&probability.to_string())?))
+        match probability.exact() {
+            Some(exact) => words(format!("{:.3} %", percent(&exact.to_string())?)),
+            None => {
+                let (low, high) = probability.percents(3);
+                words(format!("{low} to {high} %"))
+            }
+        }
     }),
     ("commands", |it, _| {
         let named = it.plant()?.next_commands.as_ref()?.iter();

@@ -1,0 +1,184 @@
+//! What is believed of a whole plant: a belief for each group of components, whose product it is (SPEC3 17.2).
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+use num_bigint::BigUint;
+use num_traits::One as _;
+use serde::{Deserialize, Serialize};
+
+use crate::belief::{Belief, State};
+use crate::group::Group;
+use crate::interval::{Interval, product};
+use crate::model::{ComponentId, Model};
+
+/// The product of the beliefs of groups that nothing ties together.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FactoredBelief {
+    parts: Vec<BelievedGroup>,
+    /// In which each group is in its most likely state.
+    most_likely: State,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct BelievedGroup {
+    components: Vec<ComponentId>,
+    belief: Arc<Belief>,
+}
+
+impl FactoredBelief {
+    /// Certainty of one state.
+    pub fn certain(groups: &[Group], state: &State) -> Self {
+        Self::new(groups, groups.iter().map(|group| Arc::new(Belief::certain(group.state(state)))).collect())
+    }
+
+    /// The product of these beliefs, one for each group.
+    pub fn new(groups: &[Group], beliefs: Vec<Arc<Belief>>) -> Self {
+        let count = groups.iter().map(|group| group.components.len()).sum();
+        let mut most_likely = State(vec![0; count]);
+        for (group, belief) in groups.iter().zip(&beliefs) {
+            place(&group.components, belief.most_likely(), &mut most_likely);
+        }
+        let parts = groups.iter().zip(beliefs);
+        let parts =
+            parts.map(|(group, belief)| BelievedGroup { components: group.components.clone(), belief });
+        Self { parts: parts.collect(), most_likely }
+    }
+
+    /// The beliefs of the groups.
+    pub fn beliefs(&self) -> impl ExactSizeIterator<Item = &Arc<Belief>> {
+        self.parts.iter().map(|part| &part.belief)
+    }
+
+    /// The most likely state.
+    pub const fn most_likely(&self) -> &State {
+        &self.most_likely
+    }
+
+    /// How many states are believed possible; the largest number where there are more.
+    pub fn len(&self) -> usize {
+        self.parts.iter().fold(1, |all, part| all.saturating_mul(part.belief.len()))
+    }
+
+    /// Never: a belief holds at least one state.
+    pub fn is_empty(&self) -> bool {
+        self.parts.iter().any(|part| part.belief.is_empty())
+    }
+
+    /// Whether nothing was dropped, so that all probabilities are exact.
+    pub fn is_exact(&self) -> bool {
+        self.parts.iter().all(|part| part.belief.is_exact())
+    }
+
+    /// The probability of the most likely state.
+    pub fn highest_probability(&self) -> Interval {
+        self.probability(&vec![0; self.parts.len()])
+    }
+
+    /// The states with their probabilities, most likely first; equally likely ones in the order of their modes.
+    pub fn states(&self) -> impl Iterator<Item = (State, Interval)> + '_ {
+        let mut ranking = Ranking::new(self);
+        std::iter::from_fn(move || {
+            let next = ranking.next()?;
+            Some((next.state, self.probability(&next.ranks)))
+        })
+    }
+
+    /// The probabilities of a component's modes, by mode.
+    pub fn marginal(&self, model: &Model, component: ComponentId) -> Vec<Interval> {
+        let modes = model.component(component).map_or(0, |component| component.modes.len());
+        let part = self.parts.iter().find_map(|part| {
+            let place = part.components.binary_search(&component).ok()?;
+            Some((part, ComponentId(place as u32)))
+        });
+        part.map_or_else(Vec::new, |(part, component)| part.belief.marginal_of(modes, component))
+    }
+
+    /// The probability of the state in which each group is in its state of this rank.
+    fn probability(&self, ranks: &[usize]) -> Interval {
+        let each: Vec<_> = self
+            .parts
+            .iter()
+            .zip(ranks)
+            .map(|(part, rank)| (part.belief.fraction(part.belief.weight(*rank)), part.belief.kept()))
+            .collect();
+        product(each.iter().map(|(low, kept)| (low, kept)))
+    }
+}
+
+/// Puts the modes of a group's state into that of the whole plant.
+fn place(components: &[ComponentId], own: &State, whole: &mut State) {
+    for (component, mode) in components.iter().zip(&own.0) {
+        whole.set_mode(*component, *mode);
+    }
+}
+
+/// A state of the whole plant that is waiting for its turn.
+#[derive(PartialEq, Eq)]
+struct Ranked {
+    /// The product of its groups' weights.
+    weight: BigUint,
+    state: State,
+    /// Of each group, which of its states it is.
+    ranks: Vec<usize>,
+    /// The last group that is not in its most likely state; only from there on others follow it.
+    last: usize,
+}
+
+impl Ord for Ranked {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.weight.cmp(&other.weight).then_with(|| other.state.cmp(&self.state))
+    }
+}
+
+impl PartialOrd for Ranked {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The states of a product in order, each found when it is asked for.
+///
+/// A state is followed by those in which one group, its last that is not in its most likely state or a later one, is in the
+/// next of its states. They come later in the order of modes where they are as likely.
+struct Ranking<'belief> {
+    belief: &'belief FactoredBelief,
+    waiting: BinaryHeap<Ranked>,
+}
+
+impl<'belief> Ranking<'belief> {
+    fn new(belief: &'belief FactoredBelief) -> Self {
+        let ranks = vec![0; belief.parts.len()];
+        let mut ranking = Self { belief, waiting: BinaryHeap::new() };
+        let first = ranking.ranked(ranks, 0);
+        ranking.waiting.push(first);
+        ranking
+    }
+
+    fn next(&mut self) -> Option<Ranked> {
+        let next = self.waiting.pop()?;
+        for at in next.last..self.belief.parts.len() {
+            if next.ranks[at] + 1 < self.belief.parts[at].belief.len() {
+                let mut ranks = next.ranks.clone();
+                ranks[at] += 1;
+                let following = self.ranked(ranks, at);
+                self.waiting.push(following);
+            }
+        }
+        Some(next)
+    }
+
+    fn ranked(&self, ranks: Vec<usize>, last: usize) -> Ranked {
+        let mut state = self.belief.most_likely.clone();
+        let mut weight = BigUint::one();
+        for (part, rank) in self.belief.parts.iter().zip(&ranks) {
+            place(&part.components, part.belief.state(*rank), &mut state);
+            // What is certain weighs one.
+            if !part.belief.weight(*rank).is_one() {
+                weight *= part.belief.weight(*rank);
+            }
+        }
+        Ranked { weight, state, ranks, last }
+    }
+}
