@@ -58,7 +58,7 @@ fn search(
     if is_by_solver(model, options, excluded) {
         demanding::search(network, model, options, excluded, termination)
     } else {
-        chronological::search(model, options, termination)
+        chronological::search(model, options, excluded, termination)
     }
 }
 

@@ -18,10 +18,11 @@ use crate::options::{Options, Outcome, Stats, Status, Termination};
 use crate::trace::{Constraint, CycleMember, Event, Recorder, TreeChoice, TreeNodeId, TreeStatus};
 use crate::unplannable::Unplannable;
 
-/// The plans of a network as the paper's search finds them.
+/// The plans of a network as the paper's search finds them, but for those that make all of some excluded choices.
 pub(crate) fn search(
     model: &Model,
     options: &Options,
+    excluded: &[Vec<Choice>],
     termination: &mut dyn Termination,
 ) -> Result<Outcome, Unplannable> {
     let mut search = ChronologicalSearch::new(model, options);
@@ -38,6 +39,11 @@ pub(crate) fn search(
             break if plans.is_empty() { Status::NoPlan } else { Status::Plan };
         }
         let plan = search.plan()?;
+        let makes = |choices: &Vec<Choice>| choices.iter().all(|choice| plan.choices.contains(choice));
+        if excluded.iter().any(makes) {
+            is_found = search.backtrack()?;
+            continue;
+        }
         if known.insert(demanding::told_apart(&plan)) {
             search.log(|_| Event::Solution { plan: plans.len() as u32 });
             plans.push(plan);

@@ -5,7 +5,7 @@ use exact::{Bound, Time};
 use interchange::Source;
 use kirk::{Search, Status, Unlimited, Unplannable};
 use tpn::generate::{Recipe, Tightness, mission};
-use tpn::{Network, Window};
+use tpn::{Choice, DecisionId, Network, Window};
 
 /// The network as another tool would give it.
 fn without_blocks(mut network: Network) -> Network {
@@ -100,4 +100,21 @@ fn choices_that_do_not_nest_are_refused_for_what_they_are() {
     assert_eq!((outcome.status, outcome.unplannable), (Status::Error, Some(Unplannable::Entangled)));
     let message = outcome.unplannable_message(&network).expect("there is one");
     assert!(message.contains("not nested"), "{message}");
+}
+
+#[test]
+fn plans_that_are_not_wanted_are_left_out_where_choices_do_not_nest() {
+    let network = read(&choice("s2").replace(r#", "constraints": ["apart"]"#, ""));
+    let mut excluded: Vec<Vec<Choice>> = Vec::new();
+    for alternative in 0..2 {
+        let options = options(Search::ConflictDirected, false);
+        let outcome = kirk::plan_except(&network, &options, &excluded, &mut Unlimited);
+        let plan =
+            outcome.plans.first().unwrap_or_else(|| panic!("{:?}", outcome.unplannable_message(&network)));
+        assert_eq!(plan.choices, [Choice { decision: DecisionId(0), alternative }]);
+        excluded.push(plan.choices.clone());
+    }
+    let none =
+        kirk::plan_except(&network, &options(Search::ConflictDirected, false), &excluded, &mut Unlimited);
+    assert_eq!((none.status, none.plans.len()), (Status::NoPlan, 0));
 }
