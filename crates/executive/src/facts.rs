@@ -5,7 +5,7 @@ use exact::{Bound, Rational, Time};
 use rmpl::program::{Change, LabelMode};
 use smol_str::format_smolstr;
 use tpn::{
-    Arc, ArcId, ArcKind, Choice, EventRef, Extent, Label, LabelId, Literal, Network, Node, NodeId,
+    Arc, ArcId, ArcKind, Choice, DecisionId, EventRef, Extent, Label, LabelId, Literal, Network, Node, NodeId,
     Occurrence, OccurrenceId, OccurrenceKind, Plan, ResourceId, Role, Use, UseId, ValueId, ValueSet,
     VariableId,
 };
@@ -67,9 +67,6 @@ impl Facts {
         for &(occurrence, duration) in &self.durations {
             set_duration(&mut changed, occurrence, duration);
         }
-        for &(occurrence, _) in &self.begins {
-            free_start(&mut changed, occurrence);
-        }
         for &(label, value) in &self.outcomes {
             set_outcome(&mut changed, label, value);
         }
@@ -85,6 +82,9 @@ impl Facts {
                     times[index] = Some(time);
                 }
             }
+        }
+        for &(occurrence, _) in &self.begins {
+            free_start(&mut changed, occurrence, &times);
         }
         free_paths(&mut changed, &times);
         for (index, (time, described)) in times.iter().zip(&network.nodes).enumerate() {
@@ -322,24 +322,39 @@ fn take_back(network: &mut Network, TakenBack { choice, since }: TakenBack) {
     }
 }
 
-/// Lets the delay before a condition be as long as the world makes it.
-fn free_start(network: &mut Network, occurrence: OccurrenceId) {
+/// Lets a condition of the world begin as late as it does: what ties it to what comes before it in its branch, up to the
+/// delay, the fork or the decision there, lasts as long as it takes. What is not tied to it waits for nothing.
+fn free_start(network: &mut Network, occurrence: OccurrenceId, times: &[Option<Time>]) {
     let mut pending = vec![network.occurrences[occurrence.index()].start];
-    let mut seen = pending.clone();
     while let Some(node) = pending.pop() {
-        for arc in network.nodes[node.index()].in_arcs.clone() {
-            let arc = &mut network.arcs[arc.index()];
-            match arc.kind {
-                ArcKind::Delay => {
-                    arc.lower = Time::ZERO;
-                    arc.upper = Bound::Infinite;
-                }
-                ArcKind::Glue if !seen.contains(&arc.from) => {
-                    seen.push(arc.from);
-                    pending.push(arc.from);
-                }
-                _ => {}
+        for id in network.nodes[node.index()].in_arcs.clone() {
+            let Arc { from, kind, choice, .. } = network.arcs[id.index()];
+            let is_freed = match kind {
+                ArcKind::Delay | ArcKind::Glue | ArcKind::Fork => true,
+                ArcKind::Choice => choice.is_some_and(|choice| !is_decided_otherwise(network, choice, times)),
+                _ => false,
+            };
+            if is_freed {
+                let arc = &mut network.arcs[id.index()];
+                (arc.lower, arc.upper) = (Time::ZERO, Bound::Infinite);
+            }
+            if kind == ArcKind::Glue {
+                pending.push(from);
             }
         }
     }
+}
+
+/// Whether another alternative of a decision has begun: only what begins with its decision is still excluded then.
+fn is_decided_otherwise(
+    network: &Network,
+    (decision, alternative): (DecisionId, u32),
+    times: &[Option<Time>],
+) -> bool {
+    let num_alternatives = network.decisions[decision.index()].alternatives.len() as u32;
+    let mut others = (0..num_alternatives).filter(|&other| other != alternative);
+    others.any(|other| {
+        let own = network.own_nodes(decision, other);
+        own.iter().zip(times).any(|(is_own, time)| *is_own && time.is_some())
+    })
 }

@@ -176,6 +176,61 @@ fn an_activity_in_a_choice_that_ends_late_but_within_its_window_breaks_nothing()
     assert_eq!(time("scenario#1.end"), Some(Time::from(35)));
 }
 
+/// Runs a mission in which `condition` begins at 5 instead of at once, and returns when some events came.
+#[track_caller]
+fn times_when_late(source: &str, condition: &str, names: &[&str]) -> Vec<Option<Time>> {
+    let network = compiled(source);
+    let late = Disturbance::Late { condition: condition.into(), at: Time::from(5) };
+    let (outcome, facts) = execute(&network, &[late]);
+    assert_eq!(outcome.ending, Ending::Finished, "{source}: {:?}", outcome.log);
+    assert_eq!(facts.len(), 1, "{source}: {:?}", outcome.log);
+    let last = outcome.last();
+    let verdict = verify::check_schedule(&last.network, &last.plan, &last.times);
+    assert!(verdict.valid, "{source}: {:?}", verdict.violations);
+    let time = |name: &&str| {
+        let is_it = |entry: &&executive::Entry| matches!(&entry.happening, Happening::Executed { name: it } if it == name);
+        outcome.log.iter().find(is_it).map(|entry| entry.time)
+    };
+    names.iter().map(time).collect()
+}
+
+/// SPEC 6.2: a condition that comes late is late alone.
+#[test]
+fn what_a_late_condition_starts_together_with_does_not_wait_for_it() {
+    let (zero, five) = (Some(Time::ZERO), Some(Time::from(5)));
+    let declared = "var PASS : {CLOSED, OPEN}; primitive Transmit()[5,10] requires PASS=OPEN;
+        primitive Store()[5,10]; primitive Wake()[2,2];";
+    let tell = "Tell(PASS=OPEN)#1";
+    for (scenario, names, times) in [
+        ("{ { delay; Transmit() }, { PASS=OPEN [60,60] } }", vec!["Transmit#1.start"], vec![five]),
+        ("{ PASS=OPEN [60,60], { delay; Transmit() }, Store() }", vec!["Transmit#1.start", "Store#1.start"], vec![five, zero]),
+        ("{ { delay; choose { Transmit(), Store() } }, PASS=OPEN [60,60] }", vec!["Transmit#1.start"], vec![five]),
+        ("{ { choose { Transmit(), Store() } }, PASS=OPEN [60,60] }", vec!["Transmit#1.start", "Store#1.start"], vec![None, zero]),
+        ("{ { delay; Transmit() }, { Wake(); PASS=OPEN [60,60] } }", vec!["Wake#1.end", "Transmit#1.start"], vec![Some(Time::from(2)), five]),
+        ("{ { delay; Transmit() }, { delay[2,2]; { PASS=OPEN [60,60], Store() } } }", vec!["Store#1.start", "Transmit#1.start"], vec![Some(Time::from(2)), five]),
+        ("{ { delay; Transmit() }, Pass() }", vec!["Transmit#1.start"], vec![five]),
+    ] {
+        let source = format!("{declared} Pass() = {{ PASS=OPEN [60,60] }} scenario Day[0,120] = {scenario}");
+        assert_eq!(times_when_late(&source, tell, &names), times, "{scenario}");
+    }
+}
+
+/// An alternative that was not taken stays excluded once another one has begun, however late its condition may come.
+#[test]
+fn a_late_condition_does_not_open_a_choice_again() {
+    let network = compiled(
+        "var A : {OFF, ON}; var B : {OFF, ON}; primitive Long()[20,20]; primitive Need()[5,5] requires B=ON;
+         scenario Day[0,100] = { choose { { A=ON [1,1]; Long() }, { B=ON [5,30]; Long() } }, { delay[30,30]; A=OFF [1,1] } }",
+    );
+    let late = [
+        Disturbance::Late { condition: "Tell(A=OFF)#1".into(), at: Time::from(50) },
+        Disturbance::Late { condition: "Tell(B=ON)#1".into(), at: Time::from(40) },
+    ];
+    let (outcome, _) = execute(&network, &late);
+    assert_eq!(outcome.ending, Ending::Finished, "{:?}", outcome.log);
+    assert!(outcome.plans.iter().all(|it| it.plan.choices[0].alternative == 0));
+}
+
 /// SPEC 6.2: the rovers may arrive later than at the earliest moment, and everything behind waits for their report.
 #[test]
 fn what_follows_an_activity_at_once_waits_for_the_report_of_its_end() {

@@ -66,6 +66,22 @@ fn a_uniform_duration_gives_the_share_of_it_that_fits() {
     assert_eq!(tally.breaks["Work#1.end"].stops + tally.succeeded, tally.runs);
 }
 
+/// The pass may open late in every second run, and whoever transmits can wait for it.
+#[test]
+fn a_condition_that_may_be_late_at_a_fork_costs_nothing_where_everything_can_wait() {
+    let late = Incident { probability: 0.5, at: Distribution::Uniform(Time::from(1), Time::from(30)) };
+    let uncertainty = Uncertainty { late: [("Tell(PASS=OPEN)".into(), late)].into(), ..Uncertainty::default() };
+    for branch in ["Transmit()", "choose { Transmit(), Store() }"] {
+        let mission = Mission::read(&format!(
+            "var PASS : {{CLOSED, OPEN}}; primitive Transmit()[5,10] requires PASS=OPEN; primitive Store()[5,10];
+             scenario Day[0,120] = {{ {{ delay; {branch} }}, {{ PASS=OPEN [60,60] }} }}"
+        ));
+        let tally = mission.sample(&settings(100, uncertainty.clone()), 0..100);
+        assert_eq!(tally.succeeded, tally.runs, "{branch}: {:?}", tally.breaks);
+        assert!(tally.succeeded_by_replanning > 20, "{branch}: {tally:?}");
+    }
+}
+
 #[test]
 fn shards_add_up_to_what_one_machine_finds() {
     let source = include_str!("../../../../tests/conformance/t03_enroute_both_paths.rmpl");
