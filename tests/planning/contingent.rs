@@ -224,9 +224,9 @@ fn a_branch_that_calls_nothing_and_leaves_a_choice_is_the_worlds() {
     );
     // Inside whatever it is built of, and with the word already in some places.
     mends(
-        "repeat 2 { choose { delay [1,2], delay contingent [2,3] } }",
+        "repeat 2 { { delay [1,2], delay contingent [2,3] } }",
         "[1,2]",
-        "repeat 2 { choose { delay contingent [1,2], delay contingent [2,3] } }",
+        "repeat 2 { { delay contingent [1,2], delay contingent [2,3] } }",
     );
     mends("L=A and K=C[1,2]", "[1,2]", "L=A and K=C contingent [1,2]");
 }
@@ -255,6 +255,33 @@ fn a_branch_that_leaves_no_choice_or_acts_for_the_mission_is_none_of_the_worlds(
     none("{ delay [5,20]; L=A [10,10]; Dig() }");
     none("{ delay [5,20]; Dig }");
     none("{ delay [5,20]; choose { L=A, { L=A; Dig() } } }");
+}
+
+/// The planner would take the weather that suits it. No word makes that nature's yet, so that there is no fix.
+#[test]
+fn a_branch_that_chooses_what_the_world_does_is_the_worlds() {
+    let warned_of = |branch: &str, places: &[&str]| {
+        let text = world(branch);
+        let (found, after) = exogenous(&text);
+        assert_eq!(found, places, "{branch}");
+        assert_eq!(after, text, "{branch}: no fix changes what is chosen");
+    };
+    warned_of("choose { L=A [60,60], L=B [60,60] }", &["choose"]);
+    warned_of("{ delay [5,5]; choose { { L=A [5,5]; L=B [5,5] }, L=B } }", &["choose"]);
+    warned_of("repeat 2 { choose { L=A [5,5], L=B [5,5], { } } }", &["choose"]);
+    // What the text or a condition decides, what is optional, and what acts for the mission is not.
+    warned_of("choose { L=A [60,60] }", &[]);
+    warned_of("{ K=C [9,9]; if K=C thennext L=A else L=B }", &[]);
+    warned_of("optional L=A [60,60]", &[]);
+    warned_of("ask L=A or L=B [5,5]", &[]);
+    warned_of("choose { L=A [60,60], { L=B; Dig() } }", &[]);
+    // Times and alternatives are told of apart: a fix of the one leaves the other.
+    let text = world("choose { delay [1,2], L=A [4,4] }");
+    let (places, after) = exogenous(&text);
+    assert_eq!(places, ["[1,2]", "choose"]);
+    assert_eq!(after, world("choose { delay contingent [1,2], L=A [4,4] }"));
+    let (_, diagnostics) = compile(&text, &Top::Scenario(None));
+    assert!(diagnostics.iter().any(|it| it.message.ends_with("what: one of the 2 alternatives of `choose`")));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! `W-EXOGENOUS`: a branch of the world's whose times the plan would choose (SPEC 13.3). Compilation reports it.
+//! `W-EXOGENOUS`: a branch of the world's whose times or alternatives the plan would choose (SPEC 13.3). Compilation reports
+//! it.
 
 use crate::diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
 use crate::explanation::Explanation;
@@ -14,12 +15,13 @@ pub const EXPLANATION: Explanation = Explanation {
     meaning: "A branch of the scenario that calls nothing, and only waits and asserts, is what the world does. Where it leaves a choice,
 as `delay[5,20]` does, the planner takes the time that suits the plan: it moves the storm past the survey. Behind `contingent`
 the choice is nature's, and the plan has to withstand every one. A `delay` without bounds may take any time, and leaves a choice
-as well.",
+as well. So does `choose`: the planner takes the alternative that suits the plan, such as clear weather.",
     example: "var GO : {OK, NO};
 primitive Dig()[4,4];
 scenario Day[0,60] = { { delay; do { Dig() } maintaining GO=OK }, { delay[5,20]; GO=OK [10,10] } }",
     fix: "Write `contingent` before the bounds that nature chooses from, which are finite. Where it is known when the world acts, give
-both bounds the same time.",
+both bounds the same time. Of the alternatives of `choose`, keep the one that the plan is made for, and plan for each other one
+apart.",
     mended: "var GO : {OK, NO};
 primitive Dig()[4,4];
 scenario Day[0,60] = { { delay; do { Dig() } maintaining GO=OK }, { delay contingent [5,20]; GO=OK [10,10] } }",
@@ -40,6 +42,23 @@ pub struct Choice {
     pub needs_blank: bool,
 }
 
+/// How every message begins; what the plan would choose follows: `when: …` or `what: …`.
+pub const BEGINNING: &str =
+    "this branch calls nothing, so it is what the world does, and the plan would choose ";
+
+/// A branch of the world's that leaves alternatives to the plan: how many the first `choose` has and where that word
+/// stands, and how many more such statements there are.
+pub fn alternatives(count: usize, word: Span, more: usize) -> Diagnostic {
+    let more = match more {
+        0 => String::new(),
+        1 => ", and of 1 more choice".to_owned(),
+        more => format!(", and of {more} more choices"),
+    };
+    let message = format!("{BEGINNING}what: one of the {count} alternatives of `choose`{more}");
+    Diagnostic::warning(CODE, word, message)
+        .with_hint("keep the alternative that the plan is made for, and plan for each other one apart")
+}
+
 /// A branch of the world's that leaves `choices` to the plan; none if it leaves none.
 pub fn branch(choices: &[Choice]) -> Option<Diagnostic> {
     let first = choices.first()?;
@@ -49,10 +68,7 @@ pub fn branch(choices: &[Choice]) -> Option<Diagnostic> {
         1 => ", and 1 more".to_owned(),
         more => format!(", and {more} more"),
     };
-    let message = format!(
-        "this branch calls nothing, so it is what the world does, and the plan would choose when: from {} of `{}`{more}",
-        first.bounds.0, first.name
-    );
+    let message = format!("{BEGINNING}when: from {} of `{}`{more}", first.bounds.0, first.name);
     let hint = match choices.iter().find(|choice| !choice.is_finite) {
         Some(endless) => format!(
             "say how long it takes at most: nature chooses from finite bounds, as in `{} contingent [0,30]`",

@@ -1,8 +1,8 @@
-//! What a plan assumes: branches of the scenario that are the world's, and leave to the plan when the world acts (SPEC
-//! 13.3).
+//! What a plan assumes: branches of the scenario that are the world's, and leave to the plan when the world acts or what it
+//! does (SPEC 13.3).
 
 use exact::Bound;
-use rmpl::diagnostics::exogenous::{Choice, branch};
+use rmpl::diagnostics::exogenous::{Choice, alternatives, branch};
 use rmpl::program::{Bounds, Condition, Program, ScenarioDecl, Statement, StatementKind};
 use rmpl::{Diagnostic, Span};
 
@@ -10,9 +10,11 @@ use super::bounds::{self, Interval};
 use super::constants::Constants;
 use super::names::Fact;
 
-/// A warning for each branch of `scenario` that calls nothing and leaves a choice.
+/// Warnings for each branch of `scenario` that calls nothing: one if it leaves times to the plan, and one if it leaves
+/// alternatives.
 pub(super) fn check(scenario: &ScenarioDecl, constants: &Constants<'_>) -> Vec<Diagnostic> {
-    branches(scenario).iter().filter_map(|of| branch(&choices(of, constants))).collect()
+    let warnings = |of| branch(&choices(of, constants)).into_iter().chain(decisions(of));
+    branches(scenario).iter().flat_map(warnings).collect()
 }
 
 /// The delays and assertions of the world's whose times the plan of a scenario chooses, where they are written.
@@ -28,6 +30,26 @@ fn branches(scenario: &ScenarioDecl) -> &[Statement] {
         StatementKind::Parallel(branches) => branches.as_slice(),
         _ => std::slice::from_ref(&scenario.body),
     }
+}
+
+/// A warning if `part` calls nothing and leaves alternatives to the plan. Those of `choose` alone: an `if` is decided by its
+/// condition, and what is optional is never the world's (SPEC 20.1).
+fn decisions(part: &Statement) -> Option<Diagnostic> {
+    let mut found: Vec<(usize, Span)> = Vec::new();
+    let mut is_of_plan = false;
+    part.for_each(&mut |statement| match &statement.kind {
+        StatementKind::Call(..) => is_of_plan = true,
+        StatementKind::Choose(parts) if parts.len() > 1 => {
+            let start = statement.span.start;
+            // What stands for a choice has alternatives that begin with the whole statement.
+            if parts.iter().all(|alternative| alternative.span.start > start) {
+                found.push((parts.len(), Span::new(start, start + "choose".len() as u32)));
+            }
+        }
+        _ => {}
+    });
+    let (count, word) = *found.first()?;
+    (!is_of_plan).then(|| alternatives(count, word, found.len() - 1))
 }
 
 /// What `part` leaves to the plan, in textual order; nothing if it calls anything.
