@@ -14,7 +14,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    check, compare, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report,
+    check, compare, contradict, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report,
     review, robustness, run, simulate, step, stn, tpn, verify,
 };
 
@@ -49,6 +49,7 @@ enum Command {
     Review(review::Args),
     Export(export::Args),
     Compare(compare::Args),
+    Contradict(contradict::Args),
 }
 
 fn main() -> ExitCode {
@@ -74,6 +75,7 @@ fn main() -> ExitCode {
         Command::Review(args) => review::run(args),
         Command::Export(args) => export::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Contradict(args) => contradict::run(args),
     };
     result.unwrap_or_else(|error| {
         output::print_error(&format!("error: {error:#}"));

@@ -130,6 +130,11 @@ impl Compiled {
 }
 
 impl Evaluated {
+    /// Runs from now on are those of another seed; the plan stays.
+    pub const fn reseed(&mut self, seed: u64) {
+        self.manner.seed = seed;
+    }
+
     pub(crate) fn problem(&self) -> planning::Problem<'_> {
         planning::Problem {
             options: Options { trace_events: None, ..self.manner.options },

@@ -26,6 +26,7 @@ pub(crate) fn sections(review: &Review) -> String {
             Section::Plan
             | Section::MissionRules
             | Section::States
+            | Section::Overlaps
             | Section::Durations
             | Section::SeparationViolations
             | Section::Robustness

@@ -34,6 +34,8 @@ pub struct Review {
     pub states: Vec<Line>,
     /// The resources with their margins.
     pub resources: Vec<ResourceReview>,
+    /// Activities of one vehicle that may overlap, although the mission does not say that they can.
+    pub overlaps: Vec<Line>,
     /// Declared durations of which the plan can use only a part.
     pub durations: Vec<Line>,
     /// The events, those with the least slack first.
@@ -246,6 +248,8 @@ pub enum Section {
     States,
     /// [`Review::resources`].
     Resources,
+    /// [`Review::overlaps`].
+    Overlaps,
     /// [`Review::durations`].
     Durations,
     /// [`Review::events`].
@@ -264,7 +268,7 @@ pub enum Section {
 
 impl Section {
     /// All, in the order in which they are read.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Plan,
         Self::MissionRules,
         Self::Choices,
@@ -272,6 +276,7 @@ impl Section {
         Self::Conflicts,
         Self::States,
         Self::Resources,
+        Self::Overlaps,
         Self::Durations,
         Self::Events,
         Self::Traverses,
@@ -289,6 +294,7 @@ impl Section {
             Self::Conflicts => "Threats and orderings",
             Self::States => "States and vehicles",
             Self::Resources => "Resources",
+            Self::Overlaps => "Activities that may overlap",
             Self::Durations => "Durations that the plan narrows",
             Self::Events => "Windows and slack",
             Self::Traverses => "Traverses",
@@ -310,6 +316,7 @@ impl Review {
             Section::Conflicts => self.conflicts.iter().map(|it| &it.line).collect(),
             Section::States => self.states.iter().collect(),
             Section::Resources => self.resources.iter().map(|it| &it.line).collect(),
+            Section::Overlaps => self.overlaps.iter().collect(),
             Section::Durations => self.durations.iter().collect(),
             Section::Events => self.events.iter().map(|it| &it.line).collect(),
             Section::Traverses => self.traverses.iter().map(|it| &it.line).collect(),
@@ -337,6 +344,7 @@ impl Review {
             | Section::CausalLinks
             | Section::States
             | Section::Resources
+            | Section::Overlaps
             | Section::Events
             | Section::Traverses
             | Section::MissionRules
@@ -354,10 +362,11 @@ impl Review {
             Section::Plan | Section::Events => "There is nothing to look at.",
             Section::Choices => "The plan has no choice to make.",
             Section::CausalLinks => "Nothing requires a condition.",
-            Section::Conflicts => "No two conditions contradict each other, so there is no threat.",
-            Section::States => "No variable keeps its value, and no vehicle moves.",
+            Section::Conflicts => "No two conditions of the plan contradict each other, so there is no threat.",
+            Section::States => "Nothing in the plan needs or changes a state, and no vehicle moves.",
             Section::Resources => "No resource is used.",
-            Section::Durations => "Every duration can be used as it is declared.",
+            Section::Overlaps => "No vehicle does two things or more.",
+            Section::Durations => "Every duration, taken alone, can be used as it is declared.",
             Section::Traverses => "No vehicle drives.",
             Section::SeparationViolations => "No two vehicles come too near each other.",
             Section::Robustness => "No runs with chance were made.",

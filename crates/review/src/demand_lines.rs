@@ -5,7 +5,7 @@
 use exact::Rational;
 use rmpl::program::LabelMode;
 use snapshot::Planning;
-use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply};
+use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Variable};
 
 use super::lines::Places;
 use super::{Line, ResourceReview, Status};
@@ -39,7 +39,7 @@ impl DemandLines<'_> {
             let changes = self.changes(index);
             lines.extend(match variable.name.strip_suffix(".at") {
                 Some(vehicle) => self.movements(vehicle, &changes),
-                None => self.values(&variable.name, &changes),
+                None => self.values(variable, &changes),
             });
         }
         lines
@@ -88,7 +88,8 @@ impl DemandLines<'_> {
         Some(self.network.occurrences.get(owner.index())?.name.as_str())
     }
 
-    fn values(&self, name: &str, changes: &[LabelId]) -> Option<Line> {
+    fn values(&self, variable: &Variable, changes: &[LabelId]) -> Option<Line> {
+        let (name, is_from_plant) = (variable.name.as_str(), variable.component().is_some());
         let value = |label: LabelId| {
             let text = self.network.labels[label.index()].text.as_str();
             let value = text.strip_prefix(name).and_then(|rest| rest.strip_prefix('='));
@@ -106,6 +107,7 @@ impl DemandLines<'_> {
             [only] => format!("{name} stays {only}"),
             [first, rest @ ..] => format!("{name} is {first}, then {}", rest.join(", then ")),
         };
+        let text = if is_from_plant { format!("{text}, as long as no component fails") } else { text };
         Some(self.line_of(text, changes, Vec::new()))
     }
 

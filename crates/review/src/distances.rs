@@ -39,6 +39,19 @@ impl Distances {
         Some((distance(to, from)?, distance(from, to)?))
     }
 
+    /// Whether some schedule has the second of two events later than the first.
+    pub fn can_follow(&mut self, from: NodeId, to: NodeId) -> bool {
+        let (Some(from), Some(to)) = (self.network.point(from), self.network.point(to)) else { return false };
+        let known = self.pairs.as_ref().and_then(|pairs| pairs.between(from, to).ok().flatten());
+        let distance = known.unwrap_or_else(|| {
+            let mut row = Vec::new();
+            // Times that do not fit may be any.
+            let is_found = self.network.stn.distances_from(from, &mut row).is_ok();
+            if is_found { row[to.index()] } else { INFINITE }
+        });
+        distance > 0
+    }
+
     /// For each pair, how much later the second event is than the first; `None` if nothing bounds it from below.
     ///
     /// Found on the elimination tree of the plan's constraints; where that leaves something out, by one search of the

@@ -2,6 +2,7 @@
 
 use exact::{Rational, Time};
 use smol_str::SmolStr;
+use snapshot::robustness::Traverses;
 use snapshot::{Robustness, Snapshot};
 use tpn::Supply;
 
@@ -43,12 +44,12 @@ impl MissionRule {
         let broken = if self.waivable { Status::Attention } else { Status::Failed };
         let name = &self.name;
         let (status, text) = match found.map(|it| &it.outcome) {
-            Some(Outcome::Holds) => (Status::Passed, format!("{name}: holds in every execution of the plan")),
+            Some(Outcome::Holds) => (Status::Passed, format!("{name}: holds in every schedule of the plan")),
             Some(Outcome::NeverApplies) => {
                 (Status::Information, format!("{name}: the plan never comes to what it is about"))
             }
             Some(Outcome::Broken(when)) => {
-                (broken, format!("{name}: an execution of the plan breaks it, {when}"))
+                (broken, format!("{name}: a schedule of the plan breaks it, {when}"))
             }
             Some(Outcome::Unsure(when)) => (
                 Status::Attention,
@@ -103,10 +104,15 @@ impl Review {
             line.criterion = Some(CHECKER.to_owned());
         }
         for choice in &mut self.choices {
-            choice.line.criterion = Some("every other alternative was examined".to_owned());
+            choice.line.criterion = Some("every other alternative was examined, with the choices before it as they are".to_owned());
         }
         for line in &mut self.separation_violations {
             line.criterion = Some("vehicles keep 1 m beyond their radii (this program)".to_owned());
+        }
+        for line in &mut self.overlaps {
+            line.criterion = Some(
+                "what may go together is declared: in order, `unordered`, or by resources taken whole (the mission)".to_owned(),
+            );
         }
         for line in &mut self.durations {
             line.criterion =
@@ -118,7 +124,7 @@ impl Review {
         self.judge_resources(rules);
         self.judge_traverses(rules);
         self.robustness =
-            robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it, self.runs_programs));
+            robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it, self));
         let worst =
             Section::ALL.iter().flat_map(|&section| self.lines(section)).map(|line| line.status).max();
         self.status = worst.unwrap_or(Status::Passed).max(Status::Passed);
@@ -207,6 +213,7 @@ impl Review {
             .chain(self.conflicts.iter_mut().map(|it| &mut it.line))
             .chain(&mut self.states)
             .chain(self.resources.iter_mut().map(|it| &mut it.line))
+            .chain(&mut self.overlaps)
             .chain(&mut self.durations)
             .chain(self.events.iter_mut().map(|it| &mut it.line))
             .chain(self.traverses.iter_mut().map(|it| &mut it.line))
@@ -216,7 +223,7 @@ impl Review {
 }
 
 /// What runs with chance came to, held against the rule.
-fn success(rules: &FlightRules, found: &Robustness, runs_programs: bool) -> Line {
+fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
     let (tally, settings) = (&found.tally, &found.settings);
     let (low, high) = tally.interval();
     let rate = tally.probability();
@@ -238,9 +245,12 @@ fn success(rules: &FlightRules, found: &Robustness, runs_programs: bool) -> Line
         1 => text.push_str(", one of them by another plan"),
         several => text.push_str(&format!(", {several} of them by another plan")),
     }
-    let is_by_chance = settings.uncertainty.leaves_something_to_chance(runs_programs);
+    let is_by_chance = settings.uncertainty.leaves_something_to_chance(review.runs_programs);
     if !is_by_chance {
         text.push_str("; nothing was left to chance in them");
+    }
+    if !review.traverses.is_empty() && settings.uncertainty.traverses == Traverses::Drawn {
+        text.push_str("; no vehicle drove in them: durations of traverses were drawn");
     }
     let checked = match (found.is_complete() && is_by_chance, rules.success_rate) {
         (false, _) => Status::Attention,

@@ -2,7 +2,7 @@
 
 use rmpl::diagnostics::exogenous;
 use rmpl::files::Files;
-use rmpl::program::{Controllability, TimeUnit};
+use rmpl::program::{Controllability, Measure, TimeUnit};
 use rmpl::{LineIndex, Severity, Span};
 use snapshot::Goal;
 use snapshot::{Planning, Snapshot, Stage};
@@ -31,6 +31,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         conflicts: Vec::new(),
         states: Vec::new(),
         resources: Vec::new(),
+        overlaps: Vec::new(),
         durations: Vec::new(),
         events: Vec::new(),
         traverses: Vec::new(),
@@ -47,6 +48,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         review.conflicts = lines.conflicts();
         review.states = lines.demands().states();
         review.resources = lines.demands().resources();
+        review.overlaps = lines.overlaps();
         review.durations = lines.durations();
         review.events = lines.events();
         review.traverses = lines.traverses();
@@ -164,12 +166,14 @@ fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) 
             (status, format!("that the plan withstands what nature chooses is not confirmed: {ranges}"))
         }
         (Controllability::Strong, status) => {
-            (status, format!("one schedule suits whatever nature chooses (strongly controllable): {ranges}"))
+            (status, format!(
+                "one schedule suits whatever nature chooses of these durations (strongly controllable): {ranges}"
+            ))
         }
         (Controllability::Dynamic, status) => (
             status,
             format!(
-                "whatever nature chooses, as it is observed, the plan can be executed to its end (dynamically controllable): {ranges}"
+                "whatever nature chooses of these durations, as it is observed, the plan can be executed to its end (dynamically controllable): {ranges}"
             ),
         ),
     };
@@ -202,8 +206,12 @@ const MAX_RANGES: usize = 6;
 fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     let assumed = snapshot.problems.iter().filter(|problem| problem.code == exogenous::CODE.0);
     let line = |problem: &snapshot::Problem| {
-        let what = problem.message.rsplit_once(": ").map_or(problem.message.as_str(), |(_, what)| what);
-        let text = format!("assumes that the world acts when it suits the plan: {what}");
+        let chosen = problem.message.strip_prefix(exogenous::BEGINNING).unwrap_or(&problem.message);
+        let text = match chosen.split_once(": ") {
+            Some(("what", what)) => format!("assumes that the world does what suits the plan: {what}"),
+            Some((_, when)) => format!("assumes that the world acts when it suits the plan: {when}"),
+            None => format!("assumes that the world suits the plan: {chosen}"),
+        };
         places.line(Status::Attention, text, Some(problem.span), Vec::new(), Vec::new())
     };
     assumed.map(line).collect()
@@ -269,6 +277,9 @@ fn worth(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<
     }
     if plan.quality.is_optimal == Some(false) {
         status = status.max(Status::Attention);
+    }
+    if tpn::worth::measures(network).contains(&Measure::End) {
+        text.push_str("; the end is that of the earliest schedule");
     }
     Some(places.plain(status, format!("the plan is worth: {text}")))
 }

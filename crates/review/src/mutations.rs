@@ -321,13 +321,13 @@ fn rules_of_the_mission() {
         (line.status, line.text.clone(), line.criterion.clone().unwrap_or_default())
     };
     let (status, text, criterion) = held(OPEN, "P=OK while A", false);
-    assert_eq!((status, text.as_str()), (Status::Passed, "Open: holds in every execution of the plan"));
+    assert_eq!((status, text.as_str()), (Status::Passed, "Open: holds in every schedule of the plan"));
     assert_eq!(criterion, "P=OK while A (FR 7, flight rules of this mission)");
     // The mission asserts it for too short a time.
     let short = OPEN.replace("do { A() } maintaining P=OK", "A()").replace("[20,20]", "[9,9]");
     let (status, text, _) = held(&short, "never A while P=OK", false);
     assert_eq!(status, Status::Failed, "{text}");
-    assert!(text.contains("an execution of the plan breaks it, from 5 to 9,"), "{text}");
+    assert!(text.contains("a schedule of the plan breaks it, from 5 to 9,"), "{text}");
     assert_eq!(held(&short, "never A while P=OK", true).0, Status::Attention, "it may be waived");
     assert_eq!(held(&short, "P=OK while A", false).0, Status::Attention, "nothing says what it is from 9 on");
     assert_eq!(held(OPEN, "P=OFF", true).0, Status::Failed, "it cannot be read");
@@ -372,4 +372,54 @@ fn rules_are_read_back_and_wrong_ones_refused() {
     ] {
         assert!(FlightRules::from_json(wrong).is_err(), "{wrong}");
     }
+}
+
+#[test]
+fn what_the_mission_does_not_keep_apart() {
+    let mission = |clauses: [&str; 2], scenario: &str| {
+        format!(
+            "location A (0, 0); location B (9, 9); vehicle Rover : ATRV at A; vehicle Other : ATRV at B;
+             resource Arm; resource Mast; primitive Drill()[5,9] requires Rover.at=A {};
+             primitive Brush(rover)[4,6] {}; primitive Dance(rover)[4,6]; scenario S[0,60] = {scenario}",
+            clauses[0], clauses[1]
+        )
+    };
+    let both = "{ { delay; Drill() }, { delay; Brush(Rover) } }";
+    let open = reviewed(&mission(["", ""], both));
+    assert_eq!(
+        texts(&open, Section::Overlaps),
+        ["Drill and Brush may overlap on Rover: in some schedule of the plan Drill#1 and Brush#1 are both under way, at a \
+          time from 0 to 60"]
+    );
+    assert_eq!(worst(&open, Section::Overlaps), Status::Attention);
+    let apart = "no two activities of Rover overlap in any schedule of the plan";
+    for (clauses, scenario) in [
+        (["uses Arm", "uses Arm"], both),
+        (["", ""], "{ unordered { Drill(); Brush(Rover) } }"),
+        (["", ""], "{ Drill(); Brush(Rover) }"),
+        (["", ""], "{ { Drill()[5,5]; delay }, { delay[5,9]; Brush(Rover) } }"),
+    ] {
+        let review = reviewed(&mission(clauses, scenario));
+        assert_eq!(texts(&review, Section::Overlaps), [apart], "{clauses:?} {scenario}");
+        assert_eq!(worst(&review, Section::Overlaps), Status::Passed);
+    }
+    // Both take something whole, and different things.
+    let declared = reviewed(&mission(["uses Arm", "uses Mast"], both));
+    assert_eq!(
+        texts(&declared, Section::Overlaps),
+        [format!("{apart}, but for those that each take a resource of their own")]
+    );
+    // What another vehicle does is no business of this one, and a single activity overlaps nothing.
+    let other = reviewed(&mission(["", ""], "{ { delay; Drill() }, { delay; Brush(Other) } }"));
+    assert_eq!(texts(&other, Section::Overlaps), Vec::<String>::new());
+    assert_eq!(other.section_status(Section::Overlaps), Status::Information);
+    let twice = reviewed(&mission(["", ""], "{ { delay; Dance(Other) }, { delay; Dance(Other) } }"));
+    let [text] = &texts(&twice, Section::Overlaps)[..] else { panic!("one line") };
+    assert!(text.starts_with("two of Dance may overlap on Other: "), "{text}");
+}
+
+#[test]
+fn a_sol_keeps_what_its_rover_does_apart() {
+    let review = reviewed(include_str!("../../../assets/missions/sol.rmpl"));
+    assert_eq!(worst(&review, Section::Overlaps), Status::Passed, "{:?}", review.overlaps);
 }

@@ -14,6 +14,7 @@ use super::alternatives::{Alternative, Examiner};
 use super::demand_lines::{DemandLines, status_by_checker};
 use super::distances::Distances;
 use super::lines::{Places, unit};
+use super::overlaps::overlaps;
 use super::schedule::slack;
 use super::{
     ChoiceReview, ConflictReview, EventReview, Fate, Line, LinkReview, Status, TimeRange, TraverseReview,
@@ -129,7 +130,9 @@ impl<'input> PlanLines<'input> {
                 format!("{} changes it {margin} after that need", next.unwrap_or("the mission"))
             }
         };
-        format!("{before}; {after}")
+        let is_from_plant = self.network.variables[told.literal.variable.index()].component().is_some();
+        let unless = if is_from_plant { ", as long as no component fails" } else { "" };
+        format!("{before}; {after}{unless}")
     }
 
     pub(super) fn conflicts(&mut self) -> Vec<ConflictReview> {
@@ -234,6 +237,12 @@ impl<'input> PlanLines<'input> {
         let after = pairs.map(|order| order.then).chain(changes);
         let after = after.map(|then| (self.network.interval(then).0, then));
         after.min_by_key(|&(start, then)| (earliest(start), earliest(self.network.ready(then))))
+    }
+
+    /// What each vehicle may do at the same time.
+    pub(super) fn overlaps(&mut self) -> Vec<Line> {
+        let planned = (self.network, self.plan);
+        overlaps(self.snapshot, planned, &mut self.distances, self.places, self.checked)
     }
 
     /// The activities of which the plan can use only a part of what is declared.

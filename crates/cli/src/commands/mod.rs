@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod compare;
+pub mod contradict;
 pub mod estimate;
 pub mod execute;
 pub mod explain;

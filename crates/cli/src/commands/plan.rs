@@ -59,7 +59,7 @@ pub struct Args {
     /// Plans without looking for paths of traverses.
     #[arg(long)]
     no_paths: bool,
-    /// Flight rules: holds the plan against those that are in the mission's own language.
+    /// Flight rules: hold every plan against those that are in the mission's own language.
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
     /// Leaves out how long it took, so that the same call gives the same document.
@@ -127,7 +127,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 without_timings(&mut body["stats"]);
             }
             if args.rules.is_some() {
-                body["rules"] = rules.json();
+                body["rules"] = rules.worst_json();
+                body["rules_by_plan"] = rules.by_plan_json();
             }
             problems.extend(Problem::all(&planned.warnings, &mission.source));
             print_json(&document("plan", &problems, body))?;
@@ -226,7 +227,7 @@ fn outcome_json(planned: &Planned, compiled: &Compiled, plan_millis: f64) -> Val
 }
 
 /// All plans that were asked for, each with its network.
-fn all_plans(planned: &Planned) -> impl Iterator<Item = (&Network, &tpn::Plan)> {
+pub fn all_plans(planned: &Planned) -> impl Iterator<Item = (&Network, &tpn::Plan)> {
     let own = planned.planning.outcome.plans.iter().map(|plan| (planned.network.as_ref(), plan));
     own.chain(planned.others.iter().map(|listed| (listed.network.as_ref(), &listed.plan)))
 }

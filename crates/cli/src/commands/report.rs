@@ -200,6 +200,7 @@ fn review_json(review: &Review) -> Value {
             "room": it.room,
         }))).collect::<Vec<_>>(),
         "mission_rules": plain(&review.mission_rules),
+        "overlaps": plain(&review.overlaps),
         "durations": plain(&review.durations),
         "robustness": review.robustness.as_ref().map(|line| line_json(line, json!({}))),
         "events": review.events.iter().map(|it| line_json(&it.line, json!({

@@ -245,3 +245,35 @@ fn a_plan_is_held_against_rules_of_its_mission() {
         (Some(1), &json!("unreadable"), &json!("failed"))
     );
 }
+
+#[test]
+fn every_plan_of_a_list_is_held_against_the_rules() {
+    let file = |name: &str, text: &str| {
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::write(&path, text).expect("a file");
+        path.to_str().expect("a path in UTF-8").to_owned()
+    };
+    let mission = file(
+        "two-ways.rmpl",
+        "primitive Walk()[5,5]; primitive Ride()[2,2]; scenario S[0,9] = { choose { Walk(), Ride() }; delay }",
+    );
+    let rules = file(
+        "two-ways.rules.json",
+        r#"{"format": "enroute-rules/1", "rules": [{"name": "no ride", "rule": "never Ride"}, {"name": "all", "rule": "never Walk while Ride"}]}"#,
+    );
+    let first = enroute(&["plan", &mission, "--rules", &rules]);
+    assert_eq!(first.status.code(), Some(0), "{}", written(&first));
+    let all = enroute(&["plan", &mission, "--all", "--rules", &rules, "--format", "json"]);
+    let answer: Value = serde_json::from_str(&written(&all)).expect("JSON");
+    assert_eq!(all.status.code(), Some(1), "the other plan rides");
+    let outcomes = |rules: &Value| -> Vec<Value> {
+        rules.as_array().expect("a list").iter().map(|rule| rule["outcome"].clone()).collect()
+    };
+    assert_eq!(answer["plans"].as_array().map(Vec::len), Some(2));
+    let by_plan: Vec<_> = answer["rules_by_plan"].as_array().expect("a list").iter().map(outcomes).collect();
+    assert_eq!(by_plan, [["holds", "holds"], ["broken", "holds"]]);
+    assert_eq!(outcomes(&answer["rules"]), ["broken", "holds"]);
+    assert_eq!((&answer["rules"][0]["plan"], &answer["rules"][1]["plan"]), (&json!(2), &json!(1)));
+    let text = written(&enroute(&["plan", &mission, "--all", "--rules", &rules]));
+    assert!(text.contains("rules of plan 2 of 2\nfailed: no ride"), "{text}");
+}

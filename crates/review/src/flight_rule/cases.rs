@@ -44,7 +44,7 @@ pub(super) struct Case {
 pub(super) struct TooMany;
 
 /// How many pairs of events are looked at for one condition.
-const MAX_PAIRS: usize = 3_000_000;
+pub(super) const MAX_PAIRS: usize = 3_000_000;
 /// How many alternatives may be open at a time.
 const MAX_DEPTH: usize = 600;
 

@@ -55,8 +55,21 @@ pub(super) struct Change {
 }
 
 impl Change {
-    fn has_come(&self, is_instant: bool) -> Edge {
+    pub(super) fn has_come(&self, is_instant: bool) -> Edge {
         Edge::past(self.node, !(is_instant && self.is_start))
+    }
+
+    /// By how much it changes the level, in whichever direction.
+    pub(super) fn size(&self) -> Option<Rational> {
+        if self.more.is_negative() { self.more.checked_neg() } else { Some(self.more) }
+    }
+
+    /// Whether it can have come at an instant of `case`, and whether it can still be to come.
+    fn can_come_or_wait(&self, times: &mut Times, case: &Case, is_instant: bool) -> (bool, bool) {
+        let past = self.has_come(is_instant);
+        let can_come = case.future.iter().all(|&future| times.fits(past, future));
+        let can_wait = case.past.iter().all(|&other| times.fits(other, past.negated()));
+        (can_come, can_wait)
     }
 }
 
@@ -72,9 +85,7 @@ impl Resource {
         let mut has_come = vec![false; self.changes.len()];
         let mut free = Vec::new();
         for (index, change) in self.changes.iter().enumerate() {
-            let past = change.has_come(wanted.is_instant);
-            let can_come = case.future.iter().all(|&future| times.fits(past, future));
-            let can_wait = case.past.iter().all(|&other| times.fits(other, past.negated()));
+            let (can_come, can_wait) = change.can_come_or_wait(times, case, wanted.is_instant);
             if can_come && can_wait {
                 free.push(index);
             } else {
@@ -84,10 +95,7 @@ impl Resource {
         // What leads where `wanted` looks is gained, and the rest is lost.
         let leads = |index: &&usize| self.changes[**index].more.is_positive() == wanted.is_above;
         let (gains, losses): (Vec<usize>, Vec<usize>) = free.iter().partition(leads);
-        let size = |&index: &usize| {
-            let more = self.changes[index].more;
-            if more.is_negative() { more.checked_neg() } else { Some(more) }
-        };
+        let size = |&index: &usize| self.changes[index].size();
         let mut flow = Flow {
             gives: gains.iter().map(size).collect::<Option<_>>()?,
             takes: losses.iter().map(size).collect::<Option<_>>()?,
@@ -110,6 +118,13 @@ impl Resource {
             has_come[*index] = lost[at];
         }
         Some((self.level(&has_come)?, has_come))
+    }
+
+    /// The changes that may have come at an instant of `case`, and may be to come.
+    pub(super) fn open(&self, times: &mut Times, case: &Case, is_instant: bool) -> Vec<&Change> {
+        let changes = self.changes.iter();
+        let is_open = |change: &&Change| change.can_come_or_wait(times, case, is_instant) == (true, true);
+        changes.filter(is_open).collect()
     }
 
     /// The level once these changes have come.

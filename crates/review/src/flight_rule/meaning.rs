@@ -7,13 +7,13 @@ mod words;
 use std::ops::ControlFlow;
 
 use exact::{Bound, Rational, Time};
-use rmpl::program::Change as Changes;
+use rmpl::program::{Change as Changes, Program};
 use rmpl::rule::{Activity, Moment, Rule};
 use tpn::{Network, NodeId, OccurrenceKind, Plan, PlanOrder, Supply};
 
 use self::breach::{Breach, at_levels, earliest};
 use self::known::{Asked, Reading};
-use super::cases::{Condition, TooMany, each_case};
+use super::cases::{Condition, MAX_PAIRS, TooMany, each_case};
 use super::cut::{Edge, Times, joined};
 use super::level::{Change, Resource};
 use super::{Finding, Outcome};
@@ -28,6 +28,7 @@ pub(super) fn times_of(rule: &Rule) -> Vec<Time> {
 
 /// A plan, and when its events can be.
 pub(super) struct Meaning<'a> {
+    program: &'a Program,
     network: &'a Network,
     plan: &'a Plan,
     times: Times,
@@ -44,9 +45,9 @@ struct Place {
 }
 
 impl<'a> Meaning<'a> {
-    pub(super) fn new(network: &'a Network, plan: &'a Plan, times: Times) -> Self {
+    pub(super) fn new(program: &'a Program, network: &'a Network, plan: &'a Plan, times: Times) -> Self {
         let resources = (0..network.resources.len()).map(|index| resource(network, plan, index)).collect();
-        Self { network, plan, times, resources, order: PlanOrder::new(plan) }
+        Self { program, network, plan, times, resources, order: PlanOrder::new(plan) }
     }
 
     /// Holds the plan against a rule; `None` if there are too many cases.
@@ -152,9 +153,10 @@ impl<'a> Meaning<'a> {
     ) -> Result<Vec<Breach>, TooMany> {
         let mut found = Vec::new();
         let mut is_decided = true;
+        let mut pairs = MAX_PAIRS;
         let resources = &self.resources;
         each_case(&mut self.times, condition, stop, &mut |times, case| {
-            match at_levels(times, resources, case) {
+            match at_levels(times, resources, case, &mut pairs) {
                 Some(more) => found.extend(more),
                 None => is_decided = false,
             }

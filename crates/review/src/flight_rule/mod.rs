@@ -55,12 +55,12 @@ fn finding(
 ) -> Result<Finding, Outcome> {
     let rule = read(program, network, text).map_err(|found| unreadable(text, &found))?;
     let times = cut::Times::new(network, plan, &meaning::times_of(&rule)).ok_or(Outcome::Undecided)?;
-    let mut meaning = meaning::Meaning::new(network, plan, times);
+    let mut meaning = meaning::Meaning::new(program, network, plan, times);
     meaning.examine(text, &rule, stop).ok_or(Outcome::Undecided)
 }
 
 /// Reads a rule in view of all that the mission has.
-fn read(program: &Program, network: &Network, text: &str) -> Result<Rule, Vec<Diagnostic>> {
+pub(super) fn read(program: &Program, network: &Network, text: &str) -> Result<Rule, Vec<Diagnostic>> {
     let variables: Vec<SmolStr> = network.variables.iter().map(|it| it.name.clone()).collect();
     let called = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
     let activities: Vec<(SmolStr, usize)> =

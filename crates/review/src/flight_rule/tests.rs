@@ -5,7 +5,7 @@ use exact::{Bound, Time};
 use super::super::tests::{MISSION, SCENARIO, snapshot};
 use super::{Finding, MissionRule, Outcome, Stretch, evaluate};
 
-pub(super) fn found(source: &str, rule: &str) -> Finding {
+fn found(source: &str, rule: &str) -> Finding {
     let rules = [MissionRule { name: "R".into(), rule: rule.into(), ..MissionRule::default() }];
     evaluate(&snapshot(source), &rules, &mut || false).remove(0)
 }
@@ -179,4 +179,42 @@ fn nature_has_the_last_word() {
         found(&source.replace("[5,9]", "[5,10]"), "never Drive while Talk").outcome,
         Outcome::Broken(_)
     ));
+}
+
+#[test]
+fn a_state_that_nothing_changes_is_as_it_is_declared() {
+    let source = "state MAST : {DOWN, UP} = UP; state ARM : {STOWED, OUT} = STOWED; location A (0, 0);
+        location B (9, 9); vehicle Rover : ATRV at A; primitive Deploy()[2,3] sets ARM=OUT;
+        scenario M[0,20] = { delay; Deploy(); delay }";
+    for rule in ["MAST=UP", "never MAST=DOWN", "MAST=UP while Deploy", "Rover.at=A", "never Rover.at=B at end"] {
+        holds(source, rule);
+    }
+    broken(source, "MAST=DOWN at end", "from 2 to 20, with scenario#1.end");
+    broken(source, "never Deploy while MAST=UP", "from 0 to 20, after Deploy#1.start, before Deploy#1.end");
+    assert_eq!(found(source, "never Deploy while MAST=DOWN").outcome, Outcome::NeverApplies);
+}
+
+#[test]
+fn two_bounds_on_one_level_are_held_against_each_execution() {
+    // Any of the three may have come: 60, 55, 50, 45, 40, 35, 30 in some order.
+    let source = "resource Battery 0..100 = 60; primitive A()[1,1] consumes Battery 5;
+        primitive B()[1,1] consumes Battery 10; primitive C()[1,1] consumes Battery 15;
+        scenario S[0,40] = { { delay; A(); delay }, { delay; B(); delay }, { delay; C(); delay } }";
+    holds(source, "never (Battery > 50 and Battery < 55)");
+    holds(source, "Battery <= 60 and Battery >= 30");
+    for (rule, level) in [
+        ("never (Battery > 50 and Battery < 60)", 55),
+        ("never (Battery >= 45 and Battery < 50)", 45),
+        ("never (Battery < 40 and Battery > 30)", 35),
+    ] {
+        let Outcome::Broken(words) = found(source, rule).outcome else { panic!("{rule}") };
+        assert!(words.ends_with(&format!("Battery is {level}")), "{rule}: {words}");
+    }
+    // Of two resources at once, too: what takes from one gives to the other.
+    let both = "resource Battery 0..100 = 60; resource Memory 0..100 = 0;
+        primitive A()[0,0] consumes Battery 5 produces Memory 7;
+        primitive B()[0,0] consumes Battery 10 produces Memory 1;
+        scenario S[0,40] = { { delay; A(); delay }, { delay; B(); delay } }";
+    holds(both, "never (Battery <= 50 and Battery > 45 and Memory > 1)");
+    assert!(matches!(found(both, "never (Battery < 60 and Memory < 7)").outcome, Outcome::Broken(_)));
 }

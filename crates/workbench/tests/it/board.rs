@@ -449,7 +449,7 @@ fn rules_of_the_mission_are_evaluated_as_soon_as_they_are_set() {
     let rule = |rule: &str| json!([{ "name": "Way", "rule": rule, "source": "FR 2", "waivable": false }]);
     app.dispatch("review.rules", &json!({ "rules": rule("PATH1=OK while Group-Traverse-Path") }));
     app.settle();
-    let held = ("passed".to_owned(), "Way: holds in every execution of the plan".to_owned());
+    let held = ("passed".to_owned(), "Way: holds in every schedule of the plan".to_owned());
     assert_eq!(lines(&app), [held]);
     assert_eq!(app.session.state().review.rule_tracks().len(), 1);
     // A rule that the plan breaks keeps the board from approving, whatever is acknowledged.

@@ -32,22 +32,36 @@ pub(super) fn earliest(breaches: impl IntoIterator<Item = Breach>) -> Option<Bre
 }
 
 /// Where the levels of a case are as it wants them, and when; `None` if that cannot be told.
-pub(super) fn at_levels(times: &mut Times, resources: &[Resource], case: &Case) -> Option<Vec<Breach>> {
+pub(super) fn at_levels(
+    times: &mut Times,
+    resources: &[Resource],
+    case: &Case,
+    pairs: &mut usize,
+) -> Option<Vec<Breach>> {
     let range = times.range(&case.past, &case.future);
-    let Some(level) = met(times, resources, case)? else { return Some(Vec::new()) };
+    let level = match met(times, resources, case, pairs) {
+        Met::Yes(level) => level,
+        Met::No => return Some(Vec::new()),
+        Met::Unknown => return None,
+    };
     let whole = |times: &Times| {
         vec![Breach { case: case.clone(), stretch: times.stretch(range), level: level.clone() }]
     };
-    let Some(Level { resource, .. }) = &level else { return Some(whole(times)) };
-    let changes = &resources[*resource].changes;
-    if changes.len() > MAX_DRAWN {
+    if level.is_none() {
+        return Some(whole(times));
+    }
+    let mut wanted: Vec<usize> = case.levels.iter().map(|wanted| wanted.resource).collect();
+    wanted.sort_unstable();
+    wanted.dedup();
+    let changes = || wanted.iter().flat_map(|&resource| &resources[resource].changes);
+    if changes().count() > MAX_DRAWN {
         return Some(whole(times));
     }
     // The level that can be reached changes only where an event can come, or has to have come.
     let start = times.start();
     let mut bounds = vec![range.0];
     bounds.extend(range.1);
-    for change in changes {
+    for change in changes() {
         bounds.push(times.earliest(change.node));
         bounds.extend(times.latest(change.node));
     }
@@ -63,9 +77,13 @@ pub(super) fn at_levels(times: &mut Times, resources: &[Resource], case: &Case) 
             .collect();
         for (edges, stretch) in [(point.to_vec(), (at, Some(at))), (behind, (at, next))] {
             let Some(case) = narrowed(times, case, &edges) else { continue };
-            if let Some(level) = met(times, resources, &case)? {
-                let stretch = times.stretch(stretch);
-                found.push(Breach { case, stretch, level });
+            match met(times, resources, &case, pairs) {
+                Met::Yes(level) => {
+                    let stretch = times.stretch(stretch);
+                    found.push(Breach { case, stretch, level });
+                }
+                Met::No => {}
+                Met::Unknown => return None,
             }
         }
     }
@@ -88,29 +106,67 @@ fn narrowed(times: &mut Times, case: &Case, edges: &[Edge]) -> Option<Case> {
     Some(narrow)
 }
 
-/// Whether the levels of a case can be as it wants them, with one of them; `None` if that cannot be told.
-#[expect(clippy::option_option, reason = "the outer one is what cannot be told")]
-fn met(times: &mut Times, resources: &[Resource], case: &Case) -> Option<Option<Option<Level>>> {
-    let mut is_met_together = case.levels.is_empty();
+/// Whether the levels of a case can be as it wants them.
+enum Met {
+    /// They can, with one of them.
+    Yes(Option<Level>),
+    No,
+    /// There are too many ways, or figures that are too large.
+    Unknown,
+}
+
+/// Whether some instant of a case meets all that it wants of levels. Where no level that is the furthest for one bound meets the
+/// others too, a change that is open is taken to have come, and then not to: each leaves fewer levels. `pairs` of events
+/// may be looked at for that.
+fn met(times: &mut Times, resources: &[Resource], case: &Case, pairs: &mut usize) -> Met {
     let mut shown = None;
     for wanted in &case.levels {
         let resource = &resources[wanted.resource];
-        let (level, has_come) = resource.furthest(times, case, wanted)?;
+        let Some((level, has_come)) = resource.furthest(times, case, wanted) else { return Met::Unknown };
         if !wanted.is_met_by(level) {
-            return Some(None);
+            return Met::No;
         }
-        shown = shown.or_else(|| {
-            let leads = |change: &Change| change.more.is_positive() == wanted.is_above;
-            let come = resource.changes.iter().zip(&has_come);
-            let by = come.filter(|(change, has_come)| **has_come && leads(change));
-            let by = by.map(|(change, _)| change.node).collect();
-            Some(Level { resource: wanted.resource, amount: level, by })
-        });
-        // What several levels want at one instant is met if the same events meet all of them.
-        is_met_together |= case.levels.iter().all(|other| {
+        let leads = |change: &Change| change.more.is_positive() == wanted.is_above;
+        let come = resource.changes.iter().zip(&has_come);
+        let by = come.filter(|(change, has_come)| **has_come && leads(change));
+        let by = by.map(|(change, _)| change.node).collect();
+        let found = Level { resource: wanted.resource, amount: level, by };
+        let is_met = case.levels.iter().all(|other| {
             other.resource == wanted.resource
                 && resource.level(&has_come).is_some_and(|level| other.is_met_by(level))
         });
+        if is_met {
+            return Met::Yes(Some(found));
+        }
+        shown = shown.or(Some(found));
     }
-    is_met_together.then_some(Some(shown))
+    let Some(open) = largest_open(times, resources, case) else { return Met::Yes(shown) };
+    let changes: usize = case.levels.iter().map(|wanted| resources[wanted.resource].changes.len()).sum();
+    let Some(left) = pairs.checked_sub(changes * changes) else { return Met::Unknown };
+    *pairs = left;
+    let mut answer = Met::No;
+    for edge in [open, open.negated()] {
+        let Some(narrow) = narrowed(times, case, &[edge]) else { continue };
+        match met(times, resources, &narrow, pairs) {
+            Met::No => {}
+            Met::Unknown => answer = Met::Unknown,
+            met @ Met::Yes(_) => return met,
+        }
+    }
+    answer
+}
+
+/// The largest change of a level that a case speaks of which may have come, and may be to come.
+fn largest_open(times: &mut Times, resources: &[Resource], case: &Case) -> Option<Edge> {
+    let mut largest: Option<(Rational, Edge)> = None;
+    for wanted in &case.levels {
+        let resource = &resources[wanted.resource];
+        for change in resource.open(times, case, wanted.is_instant) {
+            let size = change.size()?;
+            if largest.as_ref().is_none_or(|(other, _)| size > *other) {
+                largest = Some((size, change.has_come(wanted.is_instant)));
+            }
+        }
+    }
+    largest.map(|(_, edge)| edge)
 }

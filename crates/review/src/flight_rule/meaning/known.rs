@@ -114,7 +114,11 @@ impl Meaning<'_> {
             }
             Formula::Amount { resource, order, amount } => {
                 let Some(resource) = self.network.resources.iter().position(|it| it.name == *resource) else {
-                    return Condition::Any(Vec::new());
+                    // Nothing is known of it.
+                    return match asked {
+                        Asked::Known | Asked::Denied => Condition::Any(Vec::new()),
+                        Asked::NotKnown | Asked::NotDenied => Condition::All(Vec::new()),
+                    };
                 };
                 let (is_above, may_equal) = match order {
                     Order::Below => (false, false),
@@ -141,7 +145,11 @@ impl Meaning<'_> {
         is_instant: bool,
     ) -> Condition {
         let Some(index) = self.network.variables.iter().position(|it| it.name == variable) else {
-            return Condition::Any(Vec::new());
+            return match self.untouched(variable) {
+                // It is so from the start of the mission to its end.
+                Some(value) if values.contains(value) == is_among => Condition::All(Vec::new()),
+                _ => Condition::Any(Vec::new()),
+            };
         };
         let declared = &self.network.variables[index];
         let is_meant = |value: tpn::ValueId| {
@@ -188,6 +196,18 @@ impl Meaning<'_> {
             Condition::All(edges)
         });
         Condition::Any(parts.collect())
+    }
+
+    /// The value that a state keeps which nothing in the mission asks for or changes. What is read from the plant is not
+    /// known that way: components fail.
+    fn untouched(&self, variable: &str) -> Option<&smol_str::SmolStr> {
+        let mut declared = self.program.variables.iter().filter(|it| it.name.text == variable);
+        if let Some(declared) = declared.next() {
+            return declared.initial.as_ref().filter(|_| !declared.is_from_plant).map(|value| &value.text);
+        }
+        let vehicle = variable.strip_suffix(".at")?;
+        let mut vehicles = self.program.world.vehicles.iter();
+        vehicles.find(|it| it.name.text == vehicle).map(|it| &it.start.text)
     }
 
     /// What sorts changes of one variable: the first value, then by when they can begin.
