@@ -214,7 +214,7 @@ fn two_bounds_on_one_level_are_held_against_each_execution() {
     let both = "resource Battery 0..100 = 60; resource Memory 0..100 = 0;
         primitive A()[0,0] consumes Battery 5 produces Memory 7;
         primitive B()[0,0] consumes Battery 10 produces Memory 1;
-        scenario S[0,40] = { { delay; A(); delay }, { delay; B(); delay } }";
+        scenario S[0,40] = { { delay; A(); delay[1,40] }, { delay; B(); delay[1,40] } }";
     holds(both, "never (Battery <= 50 and Battery > 45 and Memory > 1)");
     assert!(matches!(found(both, "never (Battery < 60 and Memory < 7)").outcome, Outcome::Broken(_)));
 }
