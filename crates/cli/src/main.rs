@@ -14,8 +14,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use commands::{
-    check, compare, contradict, estimate, execute, explain, export, fmt, hca, import, path, plan, reconfigure, report,
-    review, robustness, run, simulate, step, stn, tpn, verify,
+    check, compare, contradict, estimate, execute, explain, export, fmt, hca, import, path, plan,
+    reconfigure, report, review, robustness, run, simulate, step, stn, tpn, verify,
 };
 
 /// Plans, checks and explains missions written in RMPL.

@@ -5,8 +5,8 @@ use exact::{Bound, Rational, Time};
 use rmpl::program::{Change, LabelMode};
 use smol_str::format_smolstr;
 use tpn::{
-    Arc, ArcId, ArcKind, Choice, DecisionId, EventRef, Extent, Label, LabelId, Literal, Network, Node, NodeId,
-    Occurrence, OccurrenceId, OccurrenceKind, Plan, ResourceId, Role, Use, UseId, ValueId, ValueSet,
+    Arc, ArcId, ArcKind, Choice, DecisionId, EventRef, Extent, Label, LabelId, Literal, Network, Node,
+    NodeId, Occurrence, OccurrenceId, OccurrenceKind, Plan, ResourceId, Role, Use, UseId, ValueId, ValueSet,
     VariableId,
 };
 

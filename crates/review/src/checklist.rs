@@ -362,7 +362,9 @@ impl Review {
             Section::Plan | Section::Events => "There is nothing to look at.",
             Section::Choices => "The plan has no choice to make.",
             Section::CausalLinks => "Nothing requires a condition.",
-            Section::Conflicts => "No two conditions of the plan contradict each other, so there is no threat.",
+            Section::Conflicts => {
+                "No two conditions of the plan contradict each other, so there is no threat."
+            }
             Section::States => "Nothing in the plan needs or changes a state, and no vehicle moves.",
             Section::Resources => "No resource is used.",
             Section::Overlaps => "No vehicle does two things or more.",

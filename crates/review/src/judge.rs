@@ -104,7 +104,9 @@ impl Review {
             line.criterion = Some(CHECKER.to_owned());
         }
         for choice in &mut self.choices {
-            choice.line.criterion = Some("every other alternative was examined, with the choices before it as they are".to_owned());
+            choice.line.criterion = Some(
+                "every other alternative was examined, with the choices before it as they are".to_owned(),
+            );
         }
         for line in &mut self.separation_violations {
             line.criterion = Some("vehicles keep 1 m beyond their radii (this program)".to_owned());
@@ -123,8 +125,7 @@ impl Review {
         self.judge_margins(rules, &unit);
         self.judge_resources(rules);
         self.judge_traverses(rules);
-        self.robustness =
-            robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it, self));
+        self.robustness = robustness.filter(|it| it.tally.runs > 0).map(|it| success(rules, it, self));
         let worst =
             Section::ALL.iter().flat_map(|&section| self.lines(section)).map(|line| line.status).max();
         self.status = worst.unwrap_or(Status::Passed).max(Status::Passed);

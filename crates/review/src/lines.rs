@@ -165,11 +165,12 @@ fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) 
         (_, status @ (Status::Attention | Status::Failed)) => {
             (status, format!("that the plan withstands what nature chooses is not confirmed: {ranges}"))
         }
-        (Controllability::Strong, status) => {
-            (status, format!(
+        (Controllability::Strong, status) => (
+            status,
+            format!(
                 "one schedule suits whatever nature chooses of these durations (strongly controllable): {ranges}"
-            ))
-        }
+            ),
+        ),
         (Controllability::Dynamic, status) => (
             status,
             format!(

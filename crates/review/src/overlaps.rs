@@ -47,12 +47,13 @@ pub(super) fn overlaps(
         let rest = match (found.pairs.is_empty(), found.num_declared) {
             _ if found.is_cut => Some((
                 Status::Attention,
-                format!("{name} does too much to look at every two of its activities: whether more may overlap is not known"),
+                format!(
+                    "{name} does too much to look at every two of its activities: whether more may overlap is not known"
+                ),
             )),
-            (true, 0) => Some((
-                checked,
-                format!("no two activities of {name} overlap in any schedule of the plan"),
-            )),
+            (true, 0) => {
+                Some((checked, format!("no two activities of {name} overlap in any schedule of the plan")))
+            }
             (true, _) => Some((
                 checked,
                 format!(
@@ -71,11 +72,7 @@ pub(super) fn overlaps(
 
 /// Which vehicles each activity that the plan selects is of: those it moves, those among its arguments, and those whose
 /// place or other state it needs or changes. In a mission of one vehicle, that one does everything.
-fn owners(
-    snapshot: &Snapshot,
-    network: &Network,
-    plan: &Plan,
-) -> BTreeMap<OccurrenceId, BTreeSet<SmolStr>> {
+fn owners(snapshot: &Snapshot, network: &Network, plan: &Plan) -> BTreeMap<OccurrenceId, BTreeSet<SmolStr>> {
     let declared: Vec<&SmolStr> =
         snapshot.program.world.vehicles.iter().map(|vehicle| &vehicle.name.text).collect();
     let is_vehicle = |name: &str| declared.iter().any(|it| *it == name);
@@ -93,10 +90,12 @@ fn owners(
         vehicles.extend(moving(&snapshot.program, occurrence).into_iter().flat_map(|it| it.vehicles));
         owners.insert(OccurrenceId::from_index(index), vehicles);
     }
-    let named = network.labels.iter().map(|label| {
-        (label.owner, network.variables[label.literal.variable.index()].name.as_str())
-    });
-    let used = network.uses.iter().map(|used| (used.owner, network.resources[used.resource.index()].name.as_str()));
+    let named = network
+        .labels
+        .iter()
+        .map(|label| (label.owner, network.variables[label.literal.variable.index()].name.as_str()));
+    let used =
+        network.uses.iter().map(|used| (used.owner, network.resources[used.resource.index()].name.as_str()));
     for (owner, name) in named.chain(used) {
         let Some((vehicle, _)) = name.split_once('.').filter(|(vehicle, _)| is_vehicle(vehicle)) else {
             continue;
@@ -164,7 +163,9 @@ impl Search<'_> {
                 BlockKind::Sequence { children: parts }
                 | BlockKind::Choose { alternatives: parts, .. }
                 | BlockKind::Parallel { branches: parts } => parts.as_slice(),
-                BlockKind::Scope { child, .. } | BlockKind::Guard { child, .. } => std::slice::from_ref(child),
+                BlockKind::Scope { child, .. } | BlockKind::Guard { child, .. } => {
+                    std::slice::from_ref(child)
+                }
             };
             let is_parallel = matches!(block.kind, BlockKind::Parallel { .. });
             for part in parts {
@@ -213,8 +214,8 @@ impl Search<'_> {
     /// Whether both can be under way at some time as far as their windows say.
     fn windows_meet(&self, one: &Occurrence, other: &Occurrence) -> bool {
         let meets = |start: &Occurrence, end: &Occurrence| {
-            let windows = [start.start, end.end]
-                .map(|node| self.plan.windows.get(node.index()).copied().flatten());
+            let windows =
+                [start.start, end.end].map(|node| self.plan.windows.get(node.index()).copied().flatten());
             let [Some(start), Some(end)] = windows else { return false };
             Bound::Finite(start.earliest) < end.latest
         };

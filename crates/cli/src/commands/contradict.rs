@@ -99,10 +99,7 @@ fn how(tried: &Tried) -> String {
         1 => Some(format!("1 {one}")),
         count => Some(format!("{count} {several}")),
     };
-    let parts = [
-        counted(tried.schedules, "schedule", "schedules"),
-        counted(tried.runs, "run", "runs"),
-    ];
+    let parts = [counted(tried.schedules, "schedule", "schedules"), counted(tried.runs, "run", "runs")];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     if parts.is_empty() { "not tried".to_owned() } else { parts.join(", ") }
 }
@@ -119,7 +116,12 @@ fn table(tried: &[Tried]) -> String {
     let mut text = String::new();
     let whats: Vec<String> = tried.iter().map(how).collect();
     for (tried, what) in tried.iter().zip(column(whats.iter().map(String::as_str))) {
-        text.push_str(&format!("{:<12}  {what}  {}: {}\n", outcome(tried), tried.section.title(), tried.text));
+        text.push_str(&format!(
+            "{:<12}  {what}  {}: {}\n",
+            outcome(tried),
+            tried.section.title(),
+            tried.text
+        ));
         if let Some(Counterexample { text: found, schedule, seed }) = &tried.counterexample {
             let by = match seed {
                 Some(seed) => format!("run of seed {seed}"),

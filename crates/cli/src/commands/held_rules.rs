@@ -62,7 +62,8 @@ impl HeldRules {
     pub fn worst_json(&self) -> Value {
         let Some(first) = self.plans.first() else { return json!([]) };
         let worst = (0..first.len()).filter_map(|rule| {
-            let of_rule = self.plans.iter().zip(1..).filter_map(|(held, number)| Some((held.get(rule)?, number)));
+            let of_rule =
+                self.plans.iter().zip(1..).filter_map(|(held, number)| Some((held.get(rule)?, number)));
             // The first of those that are alike.
             of_rule.reduce(|worst, next| if next.0.line.status > worst.0.line.status { next } else { worst })
         });

@@ -203,11 +203,31 @@ fn what_a_late_condition_starts_together_with_does_not_wait_for_it() {
     let tell = "Tell(PASS=OPEN)#1";
     for (scenario, names, times) in [
         ("{ { delay; Transmit() }, { PASS=OPEN [60,60] } }", vec!["Transmit#1.start"], vec![five]),
-        ("{ PASS=OPEN [60,60], { delay; Transmit() }, Store() }", vec!["Transmit#1.start", "Store#1.start"], vec![five, zero]),
-        ("{ { delay; choose { Transmit(), Store() } }, PASS=OPEN [60,60] }", vec!["Transmit#1.start"], vec![five]),
-        ("{ { choose { Transmit(), Store() } }, PASS=OPEN [60,60] }", vec!["Transmit#1.start", "Store#1.start"], vec![None, zero]),
-        ("{ { delay; Transmit() }, { Wake(); PASS=OPEN [60,60] } }", vec!["Wake#1.end", "Transmit#1.start"], vec![Some(Time::from(2)), five]),
-        ("{ { delay; Transmit() }, { delay[2,2]; { PASS=OPEN [60,60], Store() } } }", vec!["Store#1.start", "Transmit#1.start"], vec![Some(Time::from(2)), five]),
+        (
+            "{ PASS=OPEN [60,60], { delay; Transmit() }, Store() }",
+            vec!["Transmit#1.start", "Store#1.start"],
+            vec![five, zero],
+        ),
+        (
+            "{ { delay; choose { Transmit(), Store() } }, PASS=OPEN [60,60] }",
+            vec!["Transmit#1.start"],
+            vec![five],
+        ),
+        (
+            "{ { choose { Transmit(), Store() } }, PASS=OPEN [60,60] }",
+            vec!["Transmit#1.start", "Store#1.start"],
+            vec![None, zero],
+        ),
+        (
+            "{ { delay; Transmit() }, { Wake(); PASS=OPEN [60,60] } }",
+            vec!["Wake#1.end", "Transmit#1.start"],
+            vec![Some(Time::from(2)), five],
+        ),
+        (
+            "{ { delay; Transmit() }, { delay[2,2]; { PASS=OPEN [60,60], Store() } } }",
+            vec!["Store#1.start", "Transmit#1.start"],
+            vec![Some(Time::from(2)), five],
+        ),
         ("{ { delay; Transmit() }, Pass() }", vec!["Transmit#1.start"], vec![five]),
     ] {
         let source = format!("{declared} Pass() = {{ PASS=OPEN [60,60] }} scenario Day[0,120] = {scenario}");

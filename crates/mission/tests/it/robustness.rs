@@ -70,7 +70,8 @@ fn a_uniform_duration_gives_the_share_of_it_that_fits() {
 #[test]
 fn a_condition_that_may_be_late_at_a_fork_costs_nothing_where_everything_can_wait() {
     let late = Incident { probability: 0.5, at: Distribution::Uniform(Time::from(1), Time::from(30)) };
-    let uncertainty = Uncertainty { late: [("Tell(PASS=OPEN)".into(), late)].into(), ..Uncertainty::default() };
+    let uncertainty =
+        Uncertainty { late: [("Tell(PASS=OPEN)".into(), late)].into(), ..Uncertainty::default() };
     for branch in ["Transmit()", "choose { Transmit(), Store() }"] {
         let mission = Mission::read(&format!(
             "var PASS : {{CLOSED, OPEN}}; primitive Transmit()[5,10] requires PASS=OPEN; primitive Store()[5,10];

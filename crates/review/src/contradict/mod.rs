@@ -232,15 +232,15 @@ impl Promise {
                     }
                     _ => None,
                 });
-                let unfinished = (ending != Ending::Finished).then(|| "the run did not reach the end".to_owned());
+                let unfinished =
+                    (ending != Ending::Finished).then(|| "the run did not reach the end".to_owned());
                 Some(violation.or(unfinished))
             }
             Self::Levels { resource, low, high } => {
                 let broken = log.iter().find_map(|entry| match &entry.happening {
-                    Happening::Level { resource: of, level, .. } if of.as_str() == resource => {
-                        (level < low || level > high)
-                            .then(|| format!("at {} it is {}", entry.time.readable(), level.readable()))
-                    }
+                    Happening::Level { resource: of, level, .. } if of.as_str() == resource => (level < low
+                        || level > high)
+                        .then(|| format!("at {} it is {}", entry.time.readable(), level.readable())),
                     _ => None,
                 });
                 Some(broken)
@@ -248,14 +248,14 @@ impl Promise {
             Self::Lasts { activity, range } => {
                 let came = |end: &str| {
                     let event = format!("{activity}.{end}");
-                    let is_it = |entry: &&Entry| {
-                        matches!(&entry.happening, Happening::Executed { name } if *name == event)
-                    };
+                    let is_it = |entry: &&Entry| matches!(&entry.happening, Happening::Executed { name } if *name == event);
                     log.iter().find(is_it).map(|entry| entry.time)
                 };
                 // What was never started says nothing.
                 let started = came("start")?;
-                let Some(ended) = came("end") else { return Some(Some("it did not come to its end".to_owned())) };
+                let Some(ended) = came("end") else {
+                    return Some(Some("it did not come to its end".to_owned()));
+                };
                 let lasted = ended.checked_sub(started)?;
                 let is_in = lasted >= range.least && Bound::Finite(lasted) <= range.greatest;
                 Some((!is_in).then(|| format!("it took {}, not {range}", lasted.readable())))

@@ -64,7 +64,9 @@ impl Schedules {
         let first = earliest[at];
         let last = match latest[at] {
             // Without an end it may be as late as anything else that has one, and later.
-            INFINITE => latest.iter().copied().filter(|&ticks| ticks != INFINITE).max()?.max(first).checked_add(1)?,
+            INFINITE => {
+                latest.iter().copied().filter(|&ticks| ticks != INFINITE).max()?.max(first).checked_add(1)?
+            }
             last => last,
         };
         let span = last.checked_sub(first)?;

@@ -67,7 +67,10 @@ fn a_line_that_promises_too_much_is_contradicted() {
     let found = rule.iter().find_map(|it| it.counterexample.as_ref()).expect("a counterexample");
     let time = |name: &str| found.schedule.iter().find(|(it, _)| it == name).map(|(_, time)| *time);
     let both = [time("Drive#1.start"), time("Drive#2.start")].into_iter().max().flatten();
-    assert_eq!(Some(found.text.clone()), both.map(|at| format!("it is not known to hold at {}", at.readable())));
+    assert_eq!(
+        Some(found.text.clone()),
+        both.map(|at| format!("it is not known to hold at {}", at.readable()))
+    );
 }
 
 #[test]
@@ -75,7 +78,10 @@ fn no_schedule_contradicts_what_the_reviews_of_examples_have_passed() {
     let examples: [(&str, &[&str]); 6] = [
         (MISSION, &["PATH1=OK while Group-Traverse-Path", "never Group-Wait while PROCEED=OK"]),
         (SCENARIO, &["PROCEED!=OK while Group-Wait"]),
-        (include_str!("../../../../assets/missions/arm.rmpl"), &["ARM=OUT while Dig", "never Drive while ARM=OUT"]),
+        (
+            include_str!("../../../../assets/missions/arm.rmpl"),
+            &["ARM=OUT while Dig", "never Drive while ARM=OUT"],
+        ),
         (include_str!("../../../../assets/missions/battery.rmpl"), &["Battery >= 10", "Battery <= 100"]),
         (include_str!("../../../../assets/missions/storm.rmpl"), &["RELAY=UP while Send"]),
         (include_str!("../../../../assets/missions/sol.rmpl"), &["RELAY=UP while Downlink", "Memory <= 400"]),

@@ -186,7 +186,9 @@ fn a_state_that_nothing_changes_is_as_it_is_declared() {
     let source = "state MAST : {DOWN, UP} = UP; state ARM : {STOWED, OUT} = STOWED; location A (0, 0);
         location B (9, 9); vehicle Rover : ATRV at A; primitive Deploy()[2,3] sets ARM=OUT;
         scenario M[0,20] = { delay; Deploy(); delay }";
-    for rule in ["MAST=UP", "never MAST=DOWN", "MAST=UP while Deploy", "Rover.at=A", "never Rover.at=B at end"] {
+    for rule in
+        ["MAST=UP", "never MAST=DOWN", "MAST=UP while Deploy", "Rover.at=A", "never Rover.at=B at end"]
+    {
         holds(source, rule);
     }
     broken(source, "MAST=DOWN at end", "from 2 to 20, with scenario#1.end");
