@@ -10,6 +10,8 @@ export interface Plan {
   activities: string[];
   causal_links: { ask: string; tell: string }[];
   conflict_order: [string, string][];
+  conflict_order_omitted?: number;
+  state_order?: Record<string, string[]>;
   orderings_added: [string, string][];
   windows: Record<string, [Time, Time]>;
   /** Uses of resources that planning put in order; with `resources`. */

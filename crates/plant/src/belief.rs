@@ -42,7 +42,7 @@ impl State {
 pub struct Belief {
     entries: Vec<(State, BigUint)>,
     total: BigUint,
-    /// ε.
+    /// An upper bound of the measure that was dropped, ε.
     dropped: BigUint,
 }
 
@@ -75,15 +75,16 @@ impl Belief {
 
     /// Takes out what ordered weights have in common.
     fn reduced(mut entries: Vec<(State, BigUint)>, mut dropped: BigUint) -> Option<Self> {
-        // From the lightest up: the divisor is small at once, and long divisions are few.
-        let divisor = entries.iter().rev().fold(BigUint::zero(), |divisor, (_, weight)| {
+        // From the lightest up: the divisor is small at once, and long divisions are few. What was dropped is divided, too,
+        // and must not become more by that.
+        let divisor = entries.iter().rev().fold(dropped.clone(), |divisor, (_, weight)| {
             if divisor.is_one() { divisor } else { common_divisor(divisor, weight) }
         });
         if !divisor.is_one() && !divisor.is_zero() {
             for (_, weight) in &mut entries {
                 *weight = &*weight / &divisor;
             }
-            dropped = dropped.div_ceil(&divisor);
+            dropped /= &divisor;
         }
         let mut total: BigUint = entries.iter().map(|(_, weight)| weight).sum();
         let excess = total.bits().saturating_sub(KEPT_BITS);

@@ -67,12 +67,15 @@ pub fn update_best(
         let found: BigUint = weights.iter().sum::<BigUint>() * &unit.taken_out;
         dropped += if all > found { all - found } else { BigUint::zero() };
     }
-    let (weights, common) = weighed(model, found.into_iter().zip(weights).collect(), &mut likelihoods);
+    let (mut weights, common) = weighed(model, found.into_iter().zip(weights).collect(), &mut likelihoods);
     if !dropped.is_zero() {
-        dropped = match likelihoods.fewest_of_all() {
-            Some(fewest) => (dropped * common).div_ceil(&(unit.taken_out * fewest)),
-            None => BigUint::zero(),
-        };
+        // In one unit, so that nothing is rounded.
+        let fewest = likelihoods.fewest_of_all();
+        dropped = if fewest.is_some() { dropped * common } else { BigUint::zero() };
+        let unit = unit.taken_out * fewest.unwrap_or_else(BigUint::one);
+        for (_, weight) in &mut weights {
+            *weight *= &unit;
+        }
     }
     let updated = Belief::measured(weights, dropped, most).ok_or(EstimateError::Unexplained)?;
     Ok((updated, statistics))

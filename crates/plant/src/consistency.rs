@@ -1,7 +1,7 @@
 //! Whether modes, and what is observed, can hold together: propagation over value sets, then search.
 
 use crate::domains::{Domains, Settled, Standing};
-use crate::formula::{Formula, Truth};
+use crate::formula::{Formula, Truth, values};
 use crate::island::{Island, Places, Saying, place_bit};
 use crate::model::Model;
 use crate::table::Clause;
@@ -226,7 +226,7 @@ impl<'model> Assumed<'model> {
         let set = domains.sets.get(symbol as usize).copied().unwrap_or(0);
         let mut reason = place_bit(place) | domains.reason_of(symbol);
         let point = domains.point();
-        for value in crate::observe::values(set) {
+        for value in values(set) {
             match self.restrict([(symbol, 1 << value)], domains) {
                 Ok(true) => return Ok(()),
                 Ok(false) => match self.search(domains) {

@@ -27,6 +27,17 @@ pub(crate) enum Truth {
     Open,
 }
 
+/// The values in a set, lowest first.
+pub(crate) fn values(mut set: u64) -> impl Iterator<Item = u8> {
+    std::iter::from_fn(move || {
+        (set != 0).then(|| {
+            let value = set.trailing_zeros() as u8;
+            set &= set - 1;
+            value
+        })
+    })
+}
+
 impl Formula {
     /// The opposite, where `full` gives all values of a symbol.
     pub(crate) fn negated(self, full: &impl Fn(u32) -> u64) -> Self {

@@ -8,9 +8,9 @@ use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
 use crate::formula::Formula;
+use crate::formula::values;
 use crate::island::Island;
 use crate::model::{Commands, ComponentId, Model, Observation};
-use crate::observe::values;
 use crate::successor::is_entailed;
 
 /// A guard with more alternatives is not judged.

@@ -83,13 +83,11 @@ fn decimal(number: &BigInt, scale: &BigInt, decimals: u32) -> String {
 impl fmt::Display for Interval {
     /// `96059601/96668224`, or `0.6381 to 0.6385` where the probability is not known exactly.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.exact() {
-            Some(probability) => probability.fmt(formatter),
-            None => {
-                let (low, high) = self.decimals();
-                write!(formatter, "{low} to {high}")
-            }
+        if let Some(probability) = self.exact() {
+            return probability.fmt(formatter);
         }
+        let (low, high) = self.decimals();
+        write!(formatter, "{low} to {high}")
     }
 }
 

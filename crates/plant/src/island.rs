@@ -91,7 +91,7 @@ pub(crate) fn islands(model: &Model) -> Vec<Island> {
         let variables = island.variables.iter().map(|variable| model.variable_symbol(*variable));
         let components = island.components.iter().map(|component| Model::mode_symbol(*component));
         island.own_symbols = variables.chain(components.filter(|_| island.speaks_of_modes)).collect();
-        island.core = crate::normalization::core(model, island);
+        island.core = crate::island_core::core(model, island);
     }
     islands
 }

@@ -8,9 +8,9 @@ use num_traits::{One as _, Zero as _};
 use crate::consistency::Assumed;
 use crate::diagnosis::shrink;
 use crate::domains::{Domains, Settled};
+use crate::formula::values;
 use crate::island::{Island, Places};
 use crate::model::{ComponentId, Model, Observation};
-use crate::observe::values;
 
 /// Of islands with at most so many combinations of modes all are looked at for the one that admits the fewest observations.
 const MAX_COMBINATIONS: usize = 4096;
@@ -231,8 +231,8 @@ impl<'model> Likelihoods<'model> {
 
     /// The fewest observations that any state admits, or a lower bound of that; `None` if none admits this one.
     pub(crate) fn fewest_of_all(&mut self) -> Option<BigUint> {
-        let each = (0..self.model.islands.len()).map(|at| self.fewest(at));
-        each.fold(Some(BigUint::one()), |all, one| Some(all? * one?))
+        let mut each = (0..self.model.islands.len()).map(|at| self.fewest(at));
+        each.try_fold(BigUint::one(), |all, one| Some(all * one?))
     }
 
     /// Whether an observation made in an island, or modes that contradict each other there, can rule states out.

@@ -127,13 +127,6 @@ pub struct Model {
 }
 
 impl Model {
-    /// Derives from its components and variables what all questions ask for.
-    pub(crate) fn prepare(&mut self) {
-        self.islands = crate::island::islands(self);
-        self.watchers = crate::island::watchers(self);
-        self.led_by_commands = crate::successor::led_by_commands(self);
-    }
-
     /// The component of this id, if the plant has it.
     pub fn component(&self, id: ComponentId) -> Option<&Component> {
         self.components.get(id.0 as usize)

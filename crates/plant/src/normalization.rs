@@ -8,108 +8,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use num_bigint::{BigInt, BigUint};
 use num_rational::BigRational;
-use num_traits::{One as _, Zero as _};
+use num_traits::{One as _, Zero};
 
 use crate::belief::Belief;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
-use crate::formula::{Formula, Truth};
 use crate::island::Island;
 use crate::model::{Model, Observation};
-use crate::observe::values;
 use crate::successor::{Choices, EstimateError};
 
-/// A constraint whose symbols have more combinations of values than this is taken to rule modes out.
-const MAX_COMBINATIONS: u64 = 4096;
 /// Successors of a core are told apart up to this many choices per state and island.
 const MAX_NODES: u64 = 200_000;
-
-/// The places of an island's components whose modes may contradict each other.
-///
-/// A component is taken out as long as each of its modes can hold whatever values the symbols have that the components left
-/// speak of too: then what these agree on can always be completed by it.
-pub(crate) fn core(model: &Model, island: &Island) -> Vec<u32> {
-    let mut left: Vec<u32> = (0..island.components.len() as u32).collect();
-    let mut domains = model.full.clone();
-    loop {
-        let before = left.len();
-        let mut at = 0;
-        while at < left.len() {
-            if completes(model, island, &left, at, &mut domains) {
-                left.remove(at);
-            } else {
-                at += 1;
-            }
-        }
-        if left.len() == before {
-            return left;
-        }
-    }
-}
-
-/// Whether the component at a place among those `left` can complete whatever the others agree on.
-fn completes(model: &Model, island: &Island, left: &[u32], at: usize, domains: &mut [u64]) -> bool {
-    let place = left[at] as usize;
-    let own = Model::mode_symbol(island.components[place]);
-    let others = |symbol: u32| {
-        left.iter().enumerate().filter(|(other, _)| *other != at).any(|(_, &other)| {
-            island.sayings[other as usize].iter().any(|saying| saying.symbols.binary_search(&symbol).is_ok())
-        })
-    };
-    if others(own) {
-        return false;
-    }
-    let Some(component) = model.component(island.components[place]) else { return true };
-    component.modes.iter().zip(&island.sayings[place]).zip(0_u8..).all(|((mode, saying), number)| {
-        let (shared, private): (Vec<u32>, Vec<u32>) = saying
-            .symbols
-            .iter()
-            .filter(|symbol| **symbol != own)
-            .partition(|symbol| (**symbol as usize) < model.components.len() || others(**symbol));
-        let of_symbol = |symbol: &u32| u64::from(model.full[*symbol as usize].count_ones());
-        let all = shared.iter().chain(&private).map(of_symbol).fold(1_u64, u64::saturating_mul);
-        if all > MAX_COMBINATIONS {
-            return false;
-        }
-        domains[own as usize] = 1 << number;
-        let result = for_all(&mode.constraint, &shared, &private, domains);
-        domains[own as usize] = model.full[own as usize];
-        result
-    })
-}
-
-/// Whether for all values of `shared` some values of `private` satisfy a constraint.
-fn for_all(constraint: &Formula, shared: &[u32], private: &[u32], domains: &mut [u64]) -> bool {
-    match constraint.truth(domains) {
-        Truth::True => return true,
-        Truth::False => return false,
-        Truth::Open => {}
-    }
-    let Some((&symbol, rest)) = shared.split_first() else { return for_some(constraint, private, domains) };
-    let full = domains[symbol as usize];
-    let result = values(full).all(|value| {
-        domains[symbol as usize] = 1 << value;
-        for_all(constraint, rest, private, domains)
-    });
-    domains[symbol as usize] = full;
-    result
-}
-
-fn for_some(constraint: &Formula, private: &[u32], domains: &mut [u64]) -> bool {
-    match constraint.truth(domains) {
-        Truth::True => return true,
-        Truth::False => return false,
-        Truth::Open => {}
-    }
-    let Some((&symbol, rest)) = private.split_first() else { return false };
-    let full = domains[symbol as usize];
-    let result = values(full).any(|value| {
-        domains[symbol as usize] = 1 << value;
-        for_some(constraint, rest, domains)
-    });
-    domains[symbol as usize] = full;
-    result
-}
 
 /// What the weights of the successors of some states have to be multiplied with, to be probabilities in one unit.
 pub(crate) struct Normalization {
@@ -126,6 +35,9 @@ pub(crate) struct Normalization {
 /// Factors that would have a longer unit than this, in bits, are rounded to one of this length.
 const UNIT_BITS: u64 = 512;
 
+/// What states share that have one part: an island, and the choices of what takes part in it.
+type Shared = (usize, Vec<(u8, u64)>);
+
 impl Normalization {
     /// The factors of the `rows` states that have these choices; exact ones may be long numbers.
     pub(crate) fn new(model: &Model, choices: &Choices, rows: usize, may_round: bool) -> Self {
@@ -135,7 +47,7 @@ impl Normalization {
             return Self { factors, unit, is_known: vec![true; rows], is_rounded: false };
         }
         let mut domains = Domains::observed(model, &Observation::default());
-        let mut known: BTreeMap<(usize, Vec<(u8, u64)>), Option<BigRational>> = BTreeMap::new();
+        let mut known: BTreeMap<Shared, Option<BigRational>> = BTreeMap::new();
         let mut shares: Vec<Option<BigRational>> = Vec::with_capacity(rows);
         for row in 0..rows {
             let mut share = Some(BigRational::one());
@@ -186,7 +98,7 @@ impl Normalization {
         if self.is_known.contains(&false) {
             return Err(EstimateError::TooMany(MAX_NODES as usize));
         }
-        if self.factors.iter().all(|factor| factor.is_zero()) {
+        if self.factors.iter().all(Zero::is_zero) {
             return Err(EstimateError::Unexplained);
         }
         Ok(self.factors.iter().any(|factor| !factor.is_one()).then(|| belief.rescaled(&self.factors)))

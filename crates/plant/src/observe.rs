@@ -7,17 +7,6 @@ use crate::consistency::Assumed;
 use crate::domains::Domains;
 use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
 
-/// The values in a set, lowest first.
-pub(crate) fn values(mut set: u64) -> impl Iterator<Item = u8> {
-    std::iter::from_fn(move || {
-        (set != 0).then(|| {
-            let value = set.trailing_zeros() as u8;
-            set &= set - 1;
-            value
-        })
-    })
-}
-
 impl Model {
     /// The modes of a state by component.
     pub fn state_names(&self, state: &State) -> BTreeMap<String, String> {

@@ -6,9 +6,9 @@
 use num_traits::ToPrimitive as _;
 
 use crate::belief::{Belief, State};
+use crate::formula::values;
 use crate::likelihood::Likelihoods;
 use crate::model::{ComponentId, Model};
-use crate::observe::values;
 use crate::successor::Choices;
 
 /// Probabilities of the modes that the free components, which may enter several, may enter.

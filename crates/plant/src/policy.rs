@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
+use crate::formula::values;
 use crate::model::{CommandVariableId, Commands, ComponentId, Model, Observation};
-use crate::observe::values;
 use crate::order::CausalOrder;
 use crate::successor::successor;
 
@@ -68,7 +68,7 @@ impl Planner {
             })
             .collect();
         let (order, model) = (CausalOrder::new(model), Arc::clone(model));
-        Self { order, model, steps, policy, is_complete, joint_causes }
+        Self { model, order, steps, policy, is_complete, joint_causes }
     }
 
     /// A component and all others that may have to move before it can, in their order.

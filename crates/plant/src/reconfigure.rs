@@ -8,8 +8,8 @@ use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::diagnosis::shrink;
 use crate::domains::Domains;
+use crate::formula::values;
 use crate::model::{Commands, ComponentId, Model, Observation};
-use crate::observe::values;
 use crate::policy::Planner;
 use crate::successor::nominal;
 

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
+use crate::formula::values;
 use crate::model::{Commands, ComponentId, Model, Observation};
-use crate::observe::values;
 use crate::successor::{EstimateError, distribution, nominal};
 
 /// Random numbers from a seed, the same on every machine (`SplitMix64`, Steele, Lea and Flood 2014).

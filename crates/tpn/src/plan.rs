@@ -201,7 +201,7 @@ pub struct CausalLink {
 /// the first is over before the other begins. The initial value comes first.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct StateOrder {
-    /// The variable.
+    /// What is given its values.
     pub variable: VariableId,
     /// What gives it its values. Neighbors that give it one and the same value may overlap; they are in textual order.
     pub producers: Vec<LabelId>,

@@ -42,7 +42,7 @@ pub enum StepOutcome {
 #[derive(Clone, Debug)]
 pub(super) struct Believed {
     pub(super) belief: FactoredBelief,
-    /// By group.
+    /// For each group of components, in the order of the groups.
     histories: Vec<History>,
 }
 

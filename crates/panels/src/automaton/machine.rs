@@ -25,7 +25,7 @@ pub(super) struct Machine {
 /// How things stand with a component.
 pub(super) struct Standing {
     id: ComponentId,
-    /// By mode.
+    /// For each mode, in the order of declaration.
     likelihoods: Vec<Interval>,
     estimate: u8,
     truth: u8,

@@ -136,8 +136,8 @@ impl Instant<'_> {
                 let known: Vec<_> = parts.iter().map(|part| self.known(part, is_strict)).collect();
                 (known.iter().any(|it| it.0), known.iter().all(|it| it.1))
             }
-            Formula::Is { variable, values } => self.strictly(is_strict, self.variable(variable, values)),
-            Formula::Underway(activity) => self.strictly(is_strict, self.is_under_way(activity)),
+            Formula::Is { variable, values } => strictly(is_strict, self.variable(variable, values)),
+            Formula::Underway(activity) => strictly(is_strict, self.is_under_way(activity)),
             Formula::Amount { resource, order, amount } => {
                 let Some(level) = self.level(resource) else { return (false, false) };
                 let is_so = match order {
@@ -149,10 +149,6 @@ impl Instant<'_> {
                 (is_so, !is_so)
             }
         }
-    }
-
-    const fn strictly(&self, is_strict: bool, (yes, no): (bool, bool)) -> (bool, bool) {
-        if is_strict && yes && no { (false, false) } else { (yes, no) }
     }
 
     fn is_under_way(&self, activity: &Activity) -> (bool, bool) {
@@ -256,4 +252,9 @@ impl Instant<'_> {
         }
         Some(level)
     }
+}
+
+/// What holds and what does not where something both holds and does not: neither, if it has to be strict.
+const fn strictly(is_strict: bool, (yes, no): (bool, bool)) -> (bool, bool) {
+    if is_strict && yes && no { (false, false) } else { (yes, no) }
 }

@@ -202,7 +202,7 @@ impl Promise {
         match self {
             Self::Valid => {
                 let verdict = verify::check_schedule(of.network, of.plan, of.times);
-                Some(verdict.violations.first().map(|it| it.message.to_string()))
+                Some(verdict.violations.first().map(|it| it.message.clone()))
             }
             Self::Range([from, to], range) => {
                 let apart = of.times[to.index()]?.checked_sub(of.times[from.index()]?)?;

@@ -373,7 +373,6 @@ fn rules_are_decided_as_by_looking_at_every_schedule() {
     for outcome in ["never", "holds", "broken", "unsure"] {
         assert!(seen.get(outcome).is_some_and(|count| *count > 10), "{seen:?}");
     }
-    println!("{decided} rules: {seen:?}");
 }
 
 #[test]

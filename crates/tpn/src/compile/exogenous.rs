@@ -33,7 +33,7 @@ fn branches(scenario: &ScenarioDecl) -> &[Statement] {
 }
 
 /// A warning if `part` calls nothing and leaves alternatives to the plan. Those of `choose` alone: an `if` is decided by its
-/// condition, and what is optional is never the world's (SPEC 20.1).
+/// condition, and what is optional is never the world's (SPEC 13.3).
 fn decisions(part: &Statement) -> Option<Diagnostic> {
     let mut found: Vec<(usize, Span)> = Vec::new();
     let mut is_of_plan = false;

@@ -21,13 +21,11 @@ pub(super) const VALUES: &[Row] = &[
     ("believed", |it, _| count(it.plant()?.belief.len())),
     ("likelihood", |it, _| {
         let probability = it.plant_of_moment()?.1.belief.highest_probability();
-        match probability.exact() {
-            Some(exact) => words(format!("{:.3} %", percent(&exact.to_string())?)),
-            None => {
-                let (low, high) = probability.percents(3);
-                words(format!("{low} to {high} %"))
-            }
+        if let Some(exact) = probability.exact() {
+            return words(format!("{:.3} %", percent(&exact.to_string())?));
         }
+        let (low, high) = probability.percents(3);
+        words(format!("{low} to {high} %"))
     }),
     ("commands", |it, _| {
         let named = it.plant()?.next_commands.as_ref()?.iter();
