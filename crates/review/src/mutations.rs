@@ -411,7 +411,7 @@ fn what_the_mission_does_not_keep_apart() {
         texts(&declared, Section::Overlaps),
         [format!("{apart}, but for those that each take a resource of their own")]
     );
-    // What another vehicle does is no business of this one, and a single activity overlaps nothing.
+    // Activities of different vehicles do not count, and a single activity overlaps nothing.
     let other = reviewed(&mission(["", ""], "{ { delay; Drill() }, { delay; Brush(Other) } }"));
     assert_eq!(texts(&other, Section::Overlaps), Vec::<String>::new());
     assert_eq!(other.section_status(Section::Overlaps), Status::Information);

@@ -1,5 +1,6 @@
 //! `enroute contradict`: looks for counterexamples of the lines of a mission's review that have passed.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -7,7 +8,7 @@ use executive::Script;
 use mission::Manner;
 use mission::execution::Ran;
 use review::contradict::{Counterexample, Trial, Tried};
-use review::{FlightRules, review};
+use review::{FlightRules, Section, review};
 use serde_json::{Value, json};
 
 use crate::commands::report::read_rules;
@@ -57,7 +58,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let Some(mut trial) = Trial::new(&snapshot, &reviewed) else {
         match args.format {
             Format::Text => print_text("the mission has no plan, so nothing of it has passed\n")?,
-            Format::Json => print_json(&document("contradict", &snapshot.problems, json!({ "lines": [] })))?,
+            Format::Json => print_json(&document("contradict", &snapshot.problems, json!({ "items": [] })))?,
         }
         return Ok(exit(NO));
     };
@@ -84,8 +85,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     match args.format {
         Format::Text => print_text(&table(&tried))?,
         Format::Json => {
-            let lines: Vec<Value> = tried.iter().map(line_json).collect();
-            let body = json!({ "contradicted": is_contradicted, "lines": lines });
+            let body = json!({ "items": items_json(&tried) });
             print_json(&document("contradict", &snapshot.problems, body))?;
         }
     }
@@ -144,17 +144,23 @@ fn table(tried: &[Tried]) -> String {
     text
 }
 
-fn line_json(tried: &Tried) -> Value {
-    json!({
-        "section": tried.section,
-        "text": tried.text,
-        "schedules": tried.schedules,
-        "runs": tried.runs,
-        "outcome": outcome(tried),
-        "counterexample": tried.counterexample.as_ref().map(|found| json!({
-            "text": found.text,
-            "seed": found.seed,
-            "schedule": found.schedule,
-        })),
-    })
+/// The lines for other programs. An `id` is the section of the review with the number of the line among those of it that have
+/// passed, from 1.
+fn items_json(tried: &[Tried]) -> Value {
+    let mut numbers: BTreeMap<Section, usize> = BTreeMap::new();
+    let item = |tried: &Tried| {
+        let number = numbers.entry(tried.section).or_default();
+        *number += 1;
+        let mut item = json!({
+            "id": format!("{}/{number}", json!(tried.section).as_str().unwrap_or_default()),
+            "text": tried.text,
+            "status": outcome(tried),
+            "tried": { "schedules": tried.schedules, "runs": tried.runs },
+        });
+        if let Some(Counterexample { text, schedule, seed }) = &tried.counterexample {
+            item["counterexample"] = json!({ "text": text, "seed": seed, "schedule": schedule });
+        }
+        item
+    };
+    tried.iter().map(item).collect()
 }

@@ -277,3 +277,23 @@ fn every_plan_of_a_list_is_held_against_the_rules() {
     let text = written(&enroute(&["plan", &mission, "--all", "--rules", &rules]));
     assert!(text.contains("rules of plan 2 of 2\nfailed: no ride"), "{text}");
 }
+
+#[test]
+fn lines_that_have_passed_are_listed_with_how_they_were_tried() {
+    let output = enroute(&["contradict", MISSION, "--schedules", "20", "--runs", "1", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let document: Value = serde_json::from_str(&written(&output)).expect("JSON");
+    assert_eq!(document["format"], "enroute-contradict/1");
+    let items = document["items"].as_array().expect("a list");
+    let ids: std::collections::BTreeSet<&str> = items.iter().filter_map(|item| item["id"].as_str()).collect();
+    assert_eq!(ids.len(), items.len(), "{items:#?}");
+    assert!(ids.contains("choices/1"), "{ids:?}");
+    let survived = items.iter().filter(|item| item["status"] == "survived").count();
+    assert!(survived > 0, "{items:#?}");
+    for item in items {
+        let tried = &item["tried"];
+        let is_tried = tried["schedules"].as_u64() > Some(0) || tried["runs"].as_u64() > Some(0);
+        assert_eq!(item["status"], if is_tried { "survived" } else { "not-tried" }, "{item}");
+        assert_eq!(item.get("counterexample"), None, "{item}");
+    }
+}

@@ -18,7 +18,7 @@ use self::schedules::Schedules;
 use super::flight_rule;
 use super::{Outcome, Review, Section, Status, TimeRange};
 
-/// A line that has passed, and what came of looking for a counterexample.
+/// A line that has passed, how it was tried, and the counterexample if one was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tried {
     pub section: Section,
@@ -127,7 +127,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// What came of it, in the order of the review.
+    /// The lines with how they were tried, in the order of the review.
     pub fn into_tried(self) -> Vec<Tried> {
         self.lines.into_iter().map(|(_, tried)| tried).collect()
     }

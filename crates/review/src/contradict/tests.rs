@@ -7,7 +7,7 @@ use super::super::tests::{MISSION, SCENARIO, snapshot};
 use super::super::{FlightRules, MissionRule, Outcome, Review, Section, review};
 use super::{Trial, Tried};
 
-/// What came of the lines of a mission, once `change` has made of its review what it likes.
+/// The lines of a mission as they were tried, after `change` has changed its review.
 fn tried(source: &str, rules: &[&str], change: impl FnOnce(&mut Review)) -> Vec<Tried> {
     let snapshot = snapshot(source);
     let mut reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
