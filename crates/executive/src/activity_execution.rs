@@ -18,6 +18,9 @@ pub struct ActivityExecution {
     /// After how long a traverse has driven how many metres more than its path has, or fewer, in order of time: as soon as
     /// it has driven more, and when it is there.
     pub extra_metres: Vec<(Time, Rational)>,
+    /// How many metres the plan counts for a traverse, more than its path has, where they are taken from something, and how
+    /// many fewer where they give something.
+    pub counted_margins: [Rational; 2],
 }
 
 /// When an activity will be over.
@@ -32,6 +35,17 @@ pub enum Ends {
     NotBefore(Time),
     /// Never; the reason, such as `the program did not reach its end in 40 steps`.
     Never(String),
+}
+
+/// That two vehicles touch, which ends a run: whatever its plan allows for, that is not among it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contact {
+    /// When, in mission units from the start.
+    pub at: Time,
+    /// The activity under way in which it happens.
+    pub name: SmolStr,
+    /// Who touches whom, and where.
+    pub reason: String,
 }
 
 /// What goes otherwise than it was said when activities were started, from now on.
@@ -68,6 +82,11 @@ pub trait ActivityExecutor {
     /// Where the vehicles of activities that were started are at `now`, or where they stand, in metres.
     fn whereabouts(&self, _: &Network, _: &[OccurrenceId], _: Time) -> Vec<(u32, [f64; 2])> {
         Vec::new()
+    }
+
+    /// When vehicles touch first in what was started so far, if nothing of it is given up.
+    fn contact(&self) -> Option<Contact> {
+        None
     }
 
     /// Activities that were started are given up at `now`: what of them is not over is ended early.

@@ -96,6 +96,7 @@ pub fn run_stage(
         passes: BTreeMap::new(),
         odometers: VecDeque::new(),
         extra_m: BTreeMap::new(),
+        counted_margins: BTreeMap::new(),
         num_changes: 0,
         readings: VecDeque::new(),
         estimated: BTreeMap::new(),
@@ -129,6 +130,8 @@ struct Run<'a> {
     odometers: VecDeque<Odometer>,
     /// How many metres more than their paths have traverses have driven so far.
     extra_m: BTreeMap<OccurrenceId, Rational>,
+    /// How many metres more, or fewer, than their paths have the plan has counted for traverses.
+    counted_margins: BTreeMap<OccurrenceId, [Rational; 2]>,
     /// How many of the world's changes have happened.
     num_changes: usize,
     /// What will be read from the plant, in order of time.
@@ -194,7 +197,8 @@ enum ByWorld {
 impl Run<'_> {
     fn run_to_end(&mut self, replanner: &mut dyn Replanner) -> Result<Ending, PlanError> {
         loop {
-            let Some(next) = self.next()? else {
+            let next = self.next()?;
+            let Some(next) = self.contact_before(next.as_ref()).or(next) else {
                 let is_over = self.stage.times[self.stage.network.end.index()].is_some();
                 if is_over {
                     self.write(Happening::Finished);
@@ -235,6 +239,18 @@ impl Run<'_> {
             self.write(Happening::Stopped { reason });
             return Ok(Ending::Stopped);
         }
+    }
+
+    /// That vehicles touch, if they do no later than what comes next.
+    fn contact_before(&self, next: Option<&Next>) -> Option<Next> {
+        let contact = self.executor.contact()?;
+        let time = contact.at.max(self.now);
+        if next.is_some_and(|next| next.time < time) {
+            return None;
+        }
+        let (name, reason, news) = (contact.name, contact.reason, News::None);
+        let violation = Some(Violation { name, reason, news, is_final: true });
+        Some(Next { point: self.stage.made.origin(), time, violation })
     }
 
     /// Time goes on; what is seen of the activities under way is written down.

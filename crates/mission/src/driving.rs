@@ -35,7 +35,7 @@ const PARTS_PER_UNIT: u32 = 1000;
 /// Followers are placed this often along the leader's path, in metres.
 const FOLLOWER_STEP_M: f64 = 0.4;
 /// A place is left out where driving evenly past it comes this near to it, in metres.
-const EVEN_M: f64 = 0.02;
+pub(crate) const EVEN_M: f64 = 0.02;
 
 /// The motions of all vehicles that move, in the order of the vehicles.
 pub fn motions(drives: &[Drive]) -> Vec<VehicleMotion> {
@@ -62,9 +62,9 @@ pub fn motions(drives: &[Drive]) -> Vec<VehicleMotion> {
 
 /// A place on the way of a vehicle, and which share of its time has then gone by.
 #[derive(Clone, Copy, Debug)]
-struct Place {
-    share: f64,
-    position_m: Point2<f64>,
+pub(crate) struct Place {
+    pub(crate) share: f64,
+    pub(crate) position_m: Point2<f64>,
 }
 
 /// The ways of the vehicles of a drive by itself as paths, the leader's first.
@@ -77,8 +77,8 @@ pub(crate) fn tracks_m(drive: &Drive) -> Vec<Path> {
     tracks(drive, &[]).into_iter().map(path).collect()
 }
 
-/// The ways of the vehicles of a drive, the leader's first.
-fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
+/// The ways of the vehicles of a drive, the leader's first; `before` are the drives that came before it.
+pub(crate) fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
     let (path, driven_m) = prolonged_back(drive, before);
     let length_m = drive.path.length_m();
     let share = |way_m: f64| if length_m > 0.0 { way_m / length_m } else { 1.0 };
@@ -157,12 +157,14 @@ fn even_stretches(track: &[Place]) -> Vec<Place> {
 /// The share of a drive in which a vehicle that comes from elsewhere joins the others.
 const JOINING: f64 = 0.1;
 
+/// The way of a vehicle that joins the others from elsewhere.
+pub(crate) fn joined_from(track: &[Place], position_m: Point2<f64>) -> Vec<Place> {
+    let start = Place { share: 0.0, position_m };
+    std::iter::once(start).chain(track.iter().copied().filter(|place| place.share >= JOINING)).collect()
+}
+
 fn keyframes(track: &[Place], from: Option<Point2<f64>>, start: Time, end: Time) -> Vec<Keyframe> {
-    let mut places: Vec<Place> = track.to_vec();
-    if let Some(position_m) = from {
-        places.retain(|place| place.share >= JOINING);
-        places.insert(0, Place { share: 0.0, position_m });
-    }
+    let places = from.map_or_else(|| track.to_vec(), |position_m| joined_from(track, position_m));
     let (begin, length) = (start.to_f64(), end.to_f64() - start.to_f64());
     let mut heading_rad = 0.0;
     let mut frames = Vec::with_capacity(places.len());

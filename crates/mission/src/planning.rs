@@ -33,7 +33,7 @@ use crate::ground::{FreeSpace, Grounds};
 use crate::listing::{self, Listed};
 use crate::meetings::{self, KeepOuts};
 use crate::programs::{self, Programs};
-use crate::separation;
+use crate::separation::{self, Meeting};
 use crate::simulation::nearest_free;
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
 
@@ -127,7 +127,9 @@ pub struct Planned {
     pub spaces: Vec<(OccurrenceId, Arc<ConfigurationSpace>)>,
     /// Where vehicles are over time.
     pub motions: Vec<VehicleMotion>,
-    /// Vehicles too near each other.
+    /// Vehicles that can be too near each other, for each pair of what they drive.
+    pub meetings: Vec<Meeting>,
+    /// How near they come, for each pair of them.
     pub separation_violations: Vec<SeparationViolation>,
     /// What the author should know.
     pub warnings: Vec<Diagnostic>,
@@ -413,6 +415,7 @@ pub(crate) fn without_paths(network: &Arc<Network>, outcome: Outcome) -> Planned
         counted_m: 0.0,
         spaces: Vec::new(),
         motions: Vec::new(),
+        meetings: Vec::new(),
         separation_violations: Vec::new(),
         warnings: Vec::new(),
     }
@@ -498,7 +501,10 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
         .unwrap_or_else(|_| problem.network.as_ref().clone());
     for (&occurrence, traverse) in inserted {
         match &traverse.legs {
-            Ok(legs) => count_metres(&mut network, occurrence, snapshot::joined(legs).length_m()),
+            Ok(legs) => {
+                let followers = traverse.route.vehicles.len().saturating_sub(1);
+                count_metres(&mut network, occurrence, snapshot::joined(legs).length_m(), followers);
+            }
             Err(_) => block(&mut network, occurrence),
         }
     }
@@ -508,18 +514,22 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
     }
 }
 
-/// Adds what a traverse takes and costs for each metre of its path (SPEC 11, 12), rounded up.
-fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64) {
+/// Adds what a traverse takes, gives and costs for each metre (SPEC 11, 12), rounded up. What a driver takes is counted for
+/// as far as it drives at most along the path, what it gives for as far as it drives at least, and costs for the path itself.
+fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64, followers: usize) {
     let Some(metres) = rounded_up(length_m) else { return };
-    let with = |amount: Rational, per_metre: Rational| {
+    let Some(at_most) = rounded_up(motion::driven_at_most_m(length_m, followers)) else { return };
+    let at_least = rounded_up(motion::driven_at_least_m(length_m)).unwrap_or_default();
+    let with = |amount: Rational, per_metre: Rational, metres: Rational| {
         per_metre.checked_mul(metres).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
     };
     for used in network.uses.iter_mut().filter(|used| used.owner == Some(occurrence)) {
-        used.amount = with(used.amount, used.per_metre);
+        let metres = if used.change == Change::Produces { at_least } else { at_most };
+        used.amount = with(used.amount, used.per_metre, metres);
     }
     let arc = network.occurrences[occurrence.index()].arc;
     for worth in network.worths.iter_mut().filter(|worth| Some(worth.arc) == arc) {
-        worth.cost = with(worth.cost, worth.cost_per_metre);
+        worth.cost = with(worth.cost, worth.cost_per_metre, metres);
     }
 }
 
@@ -602,7 +612,7 @@ fn figures(
         PathFigures {
             length_m: path.legs.get(index).map_or(0.0, |leg| leg.segment_lengths_m.iter().sum()),
             min_clearance_m: traverse::clearance_m(&space.exact, &leg.points_m),
-            max_slope_deg: traverse::steepest_slope_rad(map, &leg.points_m).to_degrees(),
+            max_slope_deg: map.steepest_slope_rad(&leg.points_m).to_degrees(),
             least_duration: least.unwrap_or_default(),
             greatest_duration: greatest.map_or(Bound::Infinite, Bound::Finite),
         }
@@ -664,16 +674,20 @@ fn conclude(
             let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) else { continue };
             let path = snapshot::joined(legs);
             let space = grounds.space(key, map, world, route.model);
+            let drive = drive(world, &network, plan, &route, path.clone(), &space.exact);
+            let tracks = drive.as_ref().map_or_else(|| vec![path.clone()], driving::tracks_m);
+            let clearances_m = tracks.iter().map(|it| traverse::clearance_m(&space.exact, &it.points_m));
+            let slopes_rad = tracks.iter().map(|it| map.steepest_slope_rad(&it.points_m));
             traverses.push(Traverse {
                 occurrence: route.occurrence,
                 vehicles: route.vehicles.iter().map(|&vehicle| vehicle as u32).collect(),
                 length_m: path.length_m(),
-                clearance_m: traverse::clearance_m(&space.exact, &path.points_m),
-                slope_max_rad: traverse::steepest_slope_rad(map, &path.points_m),
+                clearance_m: clearances_m.fold(f64::INFINITY, f64::min),
+                slope_max_rad: slopes_rad.fold(0.0, f64::max),
                 leg_figures: figures(problem, &route, legs, map, &space),
                 legs: legs.clone(),
             });
-            drives.extend(drive(world, &network, plan, &route, path, &space.exact));
+            drives.extend(drive);
             spaces.push((route.occurrence, space.exact));
         }
     }
@@ -682,8 +696,11 @@ fn conclude(
     }
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
     let motions = with_parked(driving::motions(&drives), problem);
-    let separation_violations = separation::violations(&drives, &motions, world);
-    warnings.extend(separation::warnings(&separation_violations, &drives, &network, world));
+    let plan = outcome.plans.first();
+    let meetings = plan.map(|plan| separation::meetings(&drives, &motions, problem.program, &network, plan));
+    let meetings = meetings.unwrap_or_default();
+    let separation_violations = separation::violations(&meetings);
+    warnings.extend(separation::warnings(&separation_violations, &drives, &network, problem.program));
     if let Some(plan) = outcome.plans.first() {
         warnings.extend(programs::overlaps(&problem.programs(), &network, plan));
     }
@@ -706,6 +723,7 @@ fn conclude(
         counted_m,
         spaces,
         motions,
+        meetings,
         separation_violations,
         warnings,
     }
@@ -713,25 +731,17 @@ fn conclude(
 
 /// Where the vehicles are that move, and where those stay that do not: others have to keep apart from these as well.
 fn with_parked(mut motions: Vec<VehicleMotion>, problem: &Problem<'_>) -> Vec<VehicleMotion> {
-    let Problem { program, .. } = problem;
-    let vehicles = &program.world.vehicles;
+    let program = problem.program;
     if motions.is_empty() {
         return motions;
     }
-    let slots = standing::start_slots(program);
-    let place = |vehicle: usize| (&vehicles[vehicle].start.text, slots[vehicle]);
-    for vehicle in 0..vehicles.len() {
+    let starts = standing::own_starts_m(program);
+    for (vehicle, start_m) in starts.into_iter().enumerate() {
         let is_moved = |motion: &VehicleMotion| motion.vehicle as usize == vehicle;
         let has_stopped = places(problem).iter().any(|stopped| stopped.vehicle as usize == vehicle);
-        // One that starts in a formation with another has no place of its own.
-        let is_alone = (0..vehicles.len()).all(|other| other == vehicle || place(other) != place(vehicle));
-        if has_stopped || !is_alone || motions.iter().any(is_moved) {
-            continue;
-        }
-        if let Some(position_m) = standing::start_m(program, vehicle) {
-            let frame = Keyframe { time: Time::ZERO, position_m, heading_rad: 0.0 };
-            motions.push(VehicleMotion { vehicle: vehicle as u32, keyframes: vec![frame] });
-        }
+        let Some(position_m) = start_m.filter(|_| !has_stopped && !motions.iter().any(is_moved)) else { continue };
+        let frame = Keyframe { time: Time::ZERO, position_m, heading_rad: 0.0 };
+        motions.push(VehicleMotion { vehicle: vehicle as u32, keyframes: vec![frame] });
     }
     motions.sort_by_key(|motion| motion.vehicle);
     motions

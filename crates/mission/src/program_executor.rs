@@ -17,7 +17,7 @@ use executive::model_based::{
     ClosedLoop, Estimator, Knowledge, LoopStep, ProgramExecution, StepInput, StepOutcome, System,
 };
 use executive::{
-    ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening, PlantReading, Revision,
+    ActivityExecution, ActivityExecutor, Contact, Disturbance, Ends, Entry, Happening, PlantReading, Revision,
 };
 use plant::{ComponentId, Model, Random};
 use smol_str::SmolStr;
@@ -350,6 +350,10 @@ impl ActivityExecutor for ProgramExecutor<'_> {
     fn abandon(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
         self.others.abandon(network, of, now);
         self.stop_programs(network, of, now);
+    }
+
+    fn contact(&self) -> Option<Contact> {
+        self.others.contact()
     }
 
     fn revise(&mut self) -> Option<Revision> {

@@ -1,53 +1,143 @@
-//! Separation violations: vehicles of different traverses that come too near each other, with time and place.
+//! Separation violations: vehicles of different traverses that come too near each other in some schedule of a plan, with
+//! time, place and schedule.
+
+mod schedules;
+
+use std::collections::BTreeMap;
 
 use motion::TimedPoint;
+use nalgebra::{Point2, distance};
 use rmpl::Diagnostic;
-use rmpl::program::World;
+use rmpl::program::Program;
 use snapshot::vehicle::{GAP_M, flies, radius_m};
-use snapshot::{SeparationViolation, VehicleMotion};
-use tpn::Network;
+use snapshot::{MovementTimes, SeparationViolation, VehicleMotion, standing};
+use tpn::{ArcKind, Network, NodeId, OccurrenceId, Plan};
 
-use crate::driving::Drive;
+use self::schedules::{Gaps, Stretch};
+use crate::driving::{self, Drive, Place};
 
-/// Vehicles that don't drive together and come nearer than the sum of their radii and [`GAP_M`], at the earliest
-/// schedule. A vehicle that has not begun to move or has stopped is where it is.
-pub fn violations(drives: &[Drive], motions: &[VehicleMotion], world: &World) -> Vec<SeparationViolation> {
-    let together = |a: u32, b: u32| {
-        drives.iter().any(|drive| drive.vehicles.contains(&a) && drive.vehicles.contains(&b))
+/// Two vehicles that can be too near each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meeting {
+    pub vehicles: [u32; 2],
+    /// What each of them drives then; nothing for one that stands.
+    pub movements: [Option<OccurrenceId>; 2],
+    /// Where each of them can be while the other one is near, in metres.
+    pub places_m: [Vec<Point2<f64>>; 2],
+    /// Orders of two traverses that may keep them apart, the likeliest first.
+    pub orders: Vec<(OccurrenceId, OccurrenceId)>,
+    pub violation: SeparationViolation,
+}
+
+/// Pieces of paths that are looked at are at most this long, in metres.
+const PIECE_M: f64 = 0.5;
+/// A driver may be this far ahead of or behind an even pace, in metres: it turns before it sets out.
+const PACE_M: f64 = 1.0;
+/// Formations keep their spacing up to rounding, and less is no violation, in metres.
+const ROUNDING_M: f64 = 0.05;
+/// Places that a vehicle passes are told apart from this distance on, in metres.
+const APART_M: f64 = 0.25;
+
+/// What a vehicle does between two events of the plan: it drives, or stands.
+struct Part {
+    movement: Option<OccurrenceId>,
+    track: Vec<Place>,
+    length_m: f64,
+    from: NodeId,
+    until: [NodeId; 2],
+    /// How long a drive takes at least, in mission units.
+    least: f64,
+}
+
+impl Part {
+    /// A vehicle that stands at a place between two events.
+    fn standing(place_m: Point2<f64>, from: NodeId, until: NodeId) -> Self {
+        let track = vec![Place { share: 0.0, position_m: place_m }];
+        Self { movement: None, track, length_m: 0.0, from, until: [until; 2], least: 0.0 }
+    }
+
+    /// When a vehicle is on a piece of one of its segments.
+    fn stretch(&self, segment: usize, [start, end]: [f64; 2]) -> Stretch {
+        let (from, until) = (self.from, self.until);
+        let (Some(a), Some(b)) = (self.track.get(segment), self.track.get(segment + 1)) else {
+            return Stretch { from, after: 0.0, until, share: 1.0 };
+        };
+        let share = |part: f64| a.share + (b.share - a.share) * part;
+        let pace = PACE_M / self.length_m.max(PACE_M);
+        let after = (share(start) - pace).max(0.0) * self.least;
+        Stretch { from, after, until, share: (share(end) + pace).min(1.0) }
+    }
+
+    fn whole(&self) -> Stretch {
+        Stretch { from: self.from, after: 0.0, until: self.until, share: 1.0 }
+    }
+}
+
+/// All pairs of vehicles that do not drive together and can come nearer than the sum of their radii and [`GAP_M`] in some
+/// schedule of the plan, once for each pair of what they drive. A vehicle that has not begun to move or has stopped stands
+/// where it is.
+pub(crate) fn meetings(
+    drives: &[Drive],
+    motions: &[VehicleMotion],
+    program: &Program,
+    network: &Network,
+    plan: &Plan,
+) -> Vec<Meeting> {
+    let world = &program.world;
+    let parts = parts(drives, motions, program, network);
+    let events: Vec<NodeId> = parts.values().flatten().flat_map(|it| [it.from, it.until[1]]).collect();
+    let Some(gaps) = (parts.len() > 1).then(|| Gaps::new(network, plan, &events)).flatten() else {
+        return Vec::new();
     };
-    let last = drives.iter().map(|drive| drive.end.to_f64()).fold(0.0, f64::max);
-    let tracks: Vec<Vec<TimedPoint>> = motions.iter().map(|motion| track(motion, last)).collect();
     let mut found = Vec::new();
-    for (index, (first, first_track)) in motions.iter().zip(&tracks).enumerate() {
-        for (second, second_track) in motions.iter().zip(&tracks).skip(index + 1) {
-            let [one, other] = [first.vehicle, second.vehicle];
-            if together(one, other) || flies(world, one) != flies(world, other) {
+    for (&one, own) in &parts {
+        for (&other, others) in parts.range(one + 1..) {
+            if flies(world, one) != flies(world, other) {
                 continue;
             }
-            let safety_m = radius_m(world, first.vehicle) + radius_m(world, second.vehicle) + GAP_M;
-            let Some(near) = motion::closest_approach(first_track, second_track, safety_m) else { continue };
-            let Some(violation) = near.violation else { continue };
-            let [a, b] = near.closest.positions_m;
-            found.push(SeparationViolation {
-                vehicles: [first.vehicle, second.vehicle],
-                since: violation.time_s,
-                time: near.closest.time_s,
-                position_m: nalgebra::center(&a, &b),
-                distance_m: near.closest.distance_m,
-            });
+            let safety_m = radius_m(world, one) + radius_m(world, other) + GAP_M;
+            for (index, part) in own.iter().enumerate() {
+                for (other_index, other_part) in others.iter().enumerate() {
+                    let is_together = part.movement.is_some() && part.movement == other_part.movement;
+                    let (whole, other_whole) = (part.whole(), other_part.whole());
+                    if is_together || gaps.is_before(&whole, &other_whole) || gaps.is_before(&other_whole, &whole)
+                    {
+                        continue;
+                    }
+                    let Some(meeting) = meeting(&gaps, [one, other], [part, other_part], safety_m) else {
+                        continue;
+                    };
+                    let orders = orders([(own.as_slice(), index), (others.as_slice(), other_index)]);
+                    found.push(Meeting { orders, ..meeting });
+                }
+            }
         }
     }
+    in_earliest_schedule(&mut found, drives, motions);
     found
 }
 
+/// How near each pair of vehicles comes: in the earliest schedule, or in another one where that has nothing to say.
+pub(crate) fn violations(meetings: &[Meeting]) -> Vec<SeparationViolation> {
+    let mut of_pairs: BTreeMap<[u32; 2], &SeparationViolation> = BTreeMap::new();
+    for meeting in meetings {
+        let violation = &meeting.violation;
+        let key = |it: &SeparationViolation| (!it.schedule.is_empty(), it.distance_m);
+        let known = of_pairs.entry(meeting.vehicles).or_insert(violation);
+        if key(violation) < key(known) {
+            *known = violation;
+        }
+    }
+    of_pairs.into_values().cloned().collect()
+}
+
 /// Tells the author, at the traverse of the second vehicle.
-pub fn warnings(
+pub(crate) fn warnings(
     violations: &[SeparationViolation],
     drives: &[Drive],
     network: &Network,
-    world: &World,
+    program: &Program,
 ) -> Vec<Diagnostic> {
-    let name = |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
     violations
         .iter()
         .filter_map(|violation| {
@@ -60,22 +150,162 @@ pub fn warnings(
             let drive = drives.iter().rev().find(under_way);
             let drive = drive.or_else(|| drives.iter().find(own)).or_else(|| drives.iter().find(others))?;
             let span = network.occurrences.get(drive.occurrence.index())?.span?;
-            let place = violation.position_m;
-            let message = format!(
-                "{} and {} come within {:.1} m of each other near ({:.0}, {:.0}) at {:.1}, in the plan's \
-                 earliest schedule",
-                name(first),
-                name(second),
-                violation.distance_m,
-                place.x,
-                place.y,
-                violation.time
-            );
+            let message = violation.words(&program.world, network);
             Some(Diagnostic::warning(SeparationViolation::CODE, span, message).with_hint(
                 "give one of them time to wait or to go around the other; vehicles of one traverse keep formation",
             ))
         })
         .collect()
+}
+
+/// What each vehicle does from the start of the plan to its end, in order.
+fn parts(
+    drives: &[Drive],
+    motions: &[VehicleMotion],
+    program: &Program,
+    network: &Network,
+) -> BTreeMap<u32, Vec<Part>> {
+    let mut parts: BTreeMap<u32, Vec<Part>> = BTreeMap::new();
+    let mut stands: BTreeMap<u32, (NodeId, Point2<f64>)> = BTreeMap::new();
+    let starts = standing::own_starts_m(program);
+    for (index, drive) in drives.iter().enumerate() {
+        let of = &network.occurrences[drive.occurrence.index()];
+        let least = least_duration(network, drive.occurrence);
+        for (&vehicle, mut track) in drive.vehicles.iter().zip(driving::tracks(drive, &drives[..index])) {
+            let Some(first) = track.first().map(|place| place.position_m) else { continue };
+            let (since, stands_m) = stands.get(&vehicle).copied().unwrap_or_else(|| {
+                let own = starts.get(vehicle as usize).copied().flatten();
+                (network.start, own.unwrap_or(first))
+            });
+            if distance(&stands_m, &first) > driving::EVEN_M {
+                track = driving::joined_from(&track, stands_m);
+            }
+            let own = parts.entry(vehicle).or_default();
+            own.push(Part::standing(stands_m, since, of.start));
+            let end_m = track.last().map_or(first, |place| place.position_m);
+            let length_m = drive.path.length_m();
+            let (movement, until) = (Some(drive.occurrence), [of.start, of.end]);
+            own.push(Part { movement, track, length_m, from: of.start, until, least });
+            stands.insert(vehicle, (of.end, end_m));
+        }
+    }
+    for (&vehicle, &(since, place_m)) in &stands {
+        parts.entry(vehicle).or_default().push(Part::standing(place_m, since, network.end));
+    }
+    for motion in motions.iter().filter(|motion| !stands.contains_key(&motion.vehicle)) {
+        let Some(frame) = motion.keyframes.first() else { continue };
+        let part = Part::standing(frame.position_m, network.start, network.end);
+        parts.insert(motion.vehicle, vec![part]);
+    }
+    parts
+}
+
+/// How long a traverse takes at least in every schedule, in mission units: by its own bounds and by its path.
+fn least_duration(network: &Network, occurrence: OccurrenceId) -> f64 {
+    let own = network.occurrences[occurrence.index()].arc.map(|arc| network.arcs[arc.index()].lower.to_f64());
+    let path = network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path && arc.occurrence == Some(occurrence));
+    own.unwrap_or(0.0).max(path.map(|arc| arc.lower.to_f64()).sum())
+}
+
+/// Where two vehicles can be too near each other at once while they do these parts, and how near at the nearest.
+fn meeting(gaps: &Gaps, vehicles: [u32; 2], parts: [&Part; 2], safety_m: f64) -> Option<Meeting> {
+    let points = |part: &Part| part.track.iter().map(|place| place.position_m).collect::<Vec<_>>();
+    let tracks = parts.map(points);
+    let mut near: Vec<(motion::NearPieces, [Stretch; 2])> = Vec::new();
+    motion::near_pieces(&tracks[0], &tracks[1], safety_m - ROUNDING_M, PIECE_M, &mut |pieces| {
+        let stretches = [0, 1].map(|index| parts[index].stretch(pieces.segments[index], pieces.shares[index]));
+        let [one, other] = &stretches;
+        if !gaps.is_before(one, other) && !gaps.is_before(other, one) {
+            near.push((pieces, stretches));
+        }
+    });
+    near.sort_by(|(one, _), (other, _)| one.distance_m.total_cmp(&other.distance_m));
+    let (pieces, (times, time)) =
+        near.iter().take(MAX_SCHEDULES).find_map(|(pieces, [one, other])| {
+            Some((pieces, gaps.meeting(one, other)?))
+        })?;
+    let place = |part: &&Part| {
+        let at = |event: NodeId| times.get(&event).copied().unwrap_or_default();
+        let occurrence = part.movement?;
+        Some(MovementTimes { occurrence, start: at(part.until[0]), end: at(part.until[1]) })
+    };
+    let [a, b] = pieces.places_m;
+    let mut places_m = [Vec::new(), Vec::new()];
+    for (pieces, _) in &near {
+        for (places_m, &place_m) in places_m.iter_mut().zip(&pieces.places_m) {
+            if places_m.iter().all(|known| distance(known, &place_m) >= APART_M) {
+                places_m.push(place_m);
+            }
+        }
+    }
+    let violation = SeparationViolation {
+        vehicles,
+        since: time,
+        time,
+        position_m: nalgebra::center(&a, &b),
+        distance_m: pieces.distance_m,
+        least_m: safety_m,
+        schedule: parts.iter().filter_map(place).collect(),
+    };
+    let (movements, orders) = (parts.map(|part| part.movement), Vec::new());
+    Some(Meeting { vehicles, movements, places_m, orders, violation })
+}
+
+/// Schedules that are looked for in one meeting, nearest places first.
+const MAX_SCHEDULES: usize = 200;
+
+/// The orders of two traverses that may keep two vehicles apart. Of two that drive, the one that is before the other in the
+/// text's order goes first; a vehicle that stands in the way drives on before, or comes there after.
+fn orders(of: [(&[Part], usize); 2]) -> Vec<(OccurrenceId, OccurrenceId)> {
+    let [(own, index), (others, other_index)] = of;
+    let beside = |moving: OccurrenceId, parts: &[Part], standing: usize| {
+        let next = parts.get(standing + 1).and_then(|next| next.movement).map(|next| (next, moving));
+        let before = standing.checked_sub(1).and_then(|at| parts.get(at)).and_then(|before| before.movement);
+        next.into_iter().chain(before.map(|before| (moving, before))).collect::<Vec<_>>()
+    };
+    match (own[index].movement, others[other_index].movement) {
+        (Some(one), Some(other)) => vec![(one, other), (other, one)],
+        (Some(moving), None) => beside(moving, others, other_index),
+        (None, Some(moving)) => beside(moving, own, index),
+        (None, None) => {
+            let (next, other_next) = (own.get(index + 1), others.get(other_index + 1));
+            let before = |parts: &[Part], at: usize| at.checked_sub(1).and_then(|at| parts[at].movement);
+            let leaves_first = next.and_then(|it| it.movement).zip(before(others, other_index));
+            let other_first = other_next.and_then(|it| it.movement).zip(before(own, index));
+            leaves_first.into_iter().chain(other_first).collect()
+        }
+    }
+}
+
+/// What two vehicles come to in the earliest schedule is told of that.
+fn in_earliest_schedule(meetings: &mut [Meeting], drives: &[Drive], motions: &[VehicleMotion]) {
+    let last = drives.iter().map(|drive| drive.end.to_f64()).fold(0.0, f64::max);
+    let track = |vehicle: u32| {
+        let motion = motions.iter().find(|motion| motion.vehicle == vehicle)?;
+        Some(track(motion, last))
+    };
+    for meeting in meetings {
+        let [Some(one), Some(other)] = meeting.vehicles.map(track) else { continue };
+        let Some(near) = motion::closest_approach(&one, &other, meeting.violation.least_m) else { continue };
+        let Some(since) = near.violation else { continue };
+        let is_under_way = |movement: &Option<OccurrenceId>| {
+            movement.is_none_or(|occurrence| {
+                let drive = drives.iter().find(|drive| drive.occurrence == occurrence);
+                drive.is_some_and(|drive| {
+                    (drive.start.to_f64()..=drive.end.to_f64()).contains(&near.closest.time_s)
+                })
+            })
+        };
+        if !meeting.movements.iter().all(is_under_way) {
+            continue;
+        }
+        let [a, b] = near.closest.positions_m;
+        meeting.violation.since = since.time_s;
+        meeting.violation.time = near.closest.time_s;
+        meeting.violation.position_m = nalgebra::center(&a, &b);
+        meeting.violation.distance_m = near.closest.distance_m;
+        meeting.violation.schedule = Vec::new();
+    }
 }
 
 /// The positions of a vehicle from the mission's start till all have stopped.

@@ -5,6 +5,7 @@
 //! disturbances alone. The world that range sensors see holds all rocks, declared obstacles exactly, and what disturbances
 //! put into it; planning knows only the map.
 
+mod contact;
 mod seen;
 mod trip;
 mod way;
@@ -14,12 +15,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::{Overflow, Rational, Time};
-use executive::{ActivityExecution, ActivityExecutor, Disturbance, Ends, Entry, Happening};
+use executive::{ActivityExecution, ActivityExecutor, Contact, Disturbance, Ends, Entry, Happening};
 use motion::FineWorld;
-use nalgebra::Point2;
+use nalgebra::{Point2, distance};
 use rmpl::program::Program;
 use smol_str::SmolStr;
-use snapshot::{DriveFrame, Keyframe, SimulatedDrive, SimulatedVehicle, VehicleMotion};
+use snapshot::vehicle;
+use snapshot::{DriveFrame, Keyframe, SimulatedDrive, SimulatedVehicle, VehicleMotion, standing};
 use terrain::{Obstacle, Terrain};
 use tpn::{EventRef, Network, OccurrenceId};
 
@@ -97,6 +99,10 @@ pub(crate) struct Driving<'run> {
     world: FineWorld,
     /// Where vehicles are that have driven, with their headings.
     stand: BTreeMap<u32, (Point2<f64>, f64)>,
+    /// Where vehicles stand before they first drive.
+    starts_m: Vec<Option<Point2<f64>>>,
+    /// When vehicles touch first in what was driven.
+    contact: Option<Contact>,
     drives: Vec<SimulatedDrive>,
     /// What range finders have seen that is not on the map: the map that all vehicles share.
     seen: SeenMap,
@@ -108,6 +114,8 @@ pub(crate) struct Driving<'run> {
 const MIN_ROCK_M: f64 = 0.4;
 /// Durations are whole multiples of this fraction of a second.
 const TICKS_PER_SECOND: u32 = 10;
+/// Within this distance of a location a vehicle is at it, in metres: it may stop a little before its path ends.
+const AT_GOAL_M: f64 = 0.5;
 /// Metres driven are whole multiples of this fraction of a metre.
 const PARTS_PER_METRE: u32 = 1000;
 impl<'run> Driving<'run> {
@@ -125,7 +133,41 @@ impl<'run> Driving<'run> {
         let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
         let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
         let seen = SeenMap::default();
-        Self { problem, map, disturbances, courses, seed, world, stand, drives, seen, chosen }
+        let (starts_m, contact) = (standing::own_starts_m(problem.program), None);
+        Self { problem, map, disturbances, courses, seed, world, stand, starts_m, contact, drives, seen, chosen }
+    }
+
+    /// Where vehicles stand that do not drive at the moment or have not driven yet, with their numbers.
+    fn standing_m(&self) -> impl Iterator<Item = (u32, Point2<f64>)> + '_ {
+        let starts = self.starts_m.iter().enumerate();
+        let starts = starts.filter_map(|(vehicle, place)| Some((vehicle as u32, (*place)?)));
+        let parked = starts.filter(|(vehicle, _)| !self.stand.contains_key(vehicle));
+        self.stand.iter().map(|(&vehicle, &(place, _))| (vehicle, place)).chain(parked)
+    }
+
+    /// That the leader of a traverse is not at the location that the traverse leads to, but beside it, and who stands there.
+    fn short_of_its_goal(&self, course: &Course, place: Point2<f64>) -> Option<String> {
+        let world = &self.problem.program.world;
+        let goal = course.route.waypoints.last()?;
+        let location = world.locations.iter().find(|location| location.name.text == goal.name)?;
+        let location_m = Point2::from(location.position_m);
+        let short_m = distance(&place, &location_m);
+        if short_m <= AT_GOAL_M {
+            return None;
+        }
+        let name = |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
+        let &leader = course.drive.vehicles.first()?;
+        let is_other = |&(vehicle, _): &(u32, Point2<f64>)| {
+            !course.drive.vehicles.contains(&vehicle)
+                && vehicle::flies(world, vehicle) == vehicle::flies(world, leader)
+        };
+        let others = self.standing_m().filter(is_other);
+        let nearest = others.min_by(|(_, one), (_, other)| {
+            distance(one, &location_m).total_cmp(&distance(other, &location_m))
+        });
+        let there = nearest.filter(|(_, place)| distance(place, &location_m) < short_m);
+        let why = there.map_or_else(String::new, |(other, _)| format!(", where {} stands", name(other)));
+        Some(format!("{} stops {short_m:.2} m short of {}{why}", name(leader), location.name.text))
     }
 
     /// Drives at the speed that durations need which nature chose, by the names of their occurrences.
@@ -133,8 +175,18 @@ impl<'run> Driving<'run> {
         self.chosen = chosen;
     }
 
-    /// What was driven, in order of departure.
-    pub(crate) fn into_drives(self) -> Vec<SimulatedDrive> {
+    /// What was driven, in order of departure; after a contact nothing more.
+    pub(crate) fn into_drives(mut self) -> Vec<SimulatedDrive> {
+        if let Some(contact) = &self.contact {
+            let at = contact.at.to_f64();
+            for drive in &mut self.drives {
+                let frames = drive.vehicles.iter_mut().map(|vehicle| &mut vehicle.frames);
+                for frames in frames.filter(|frames| frames.last().is_some_and(|last| last.time > at)) {
+                    frames.truncate(frames.partition_point(|frame| frame.time <= at));
+                    drive.duration = None;
+                }
+            }
+        }
         self.drives
     }
 }
@@ -150,12 +202,19 @@ impl ActivityExecutor for Driving<'_> {
         let Some(course) = courses.known.get(&occurrence).cloned() else {
             return Ok(ActivityExecution::default());
         };
+        if course.drive.path.length_m() <= 0.0 {
+            // Who is there already has nothing to drive.
+            return Ok(ActivityExecution { ends: Ends::NotBefore(Time::ZERO), ..ActivityExecution::default() });
+        }
         let name = network.occurrences[occurrence.index()].name.clone();
         let mut trip = Trip::new(self, &course, network, start);
         let reached = trip.drive();
         if let Err(reason) = &reached {
             trip.entries.push((trip.convoy.time_s(), format!("{reason}, and gives up")));
+        } else if let Some(note) = self.short_of_its_goal(&course, trip.convoy.state(0).position_m) {
+            trip.entries.push((trip.convoy.time_s(), note));
         }
+        let driven_m = trip.driven_m();
         let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, extra_metres, seen, .. } =
             trip;
         self.seen.extend(seen);
@@ -176,14 +235,20 @@ impl ActivityExecutor for Driving<'_> {
             start,
             duration: reached.is_ok().then_some(duration),
             vehicles: vehicles.map(|(&vehicle, frames)| SimulatedVehicle { vehicle, frames }).collect(),
+            driven_m,
             reroutes,
             least_clearance_m,
         });
+        self.contact = contact::first_contact(self.problem.program, network, &self.drives);
         let entry = |(seconds, text): (f64, String)| {
             let time = start.checked_add(units(seconds)?).ok_or(Overflow)?;
             Ok(Entry { time, happening: Happening::Progress { name: name.clone(), text } })
         };
         let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
+        let length_m = course.drive.path.length_m();
+        let margin = |metres: f64| Rational::from_f64_up(metres, PARTS_PER_METRE).ok_or(Overflow);
+        let taken_m = margin(motion::driven_at_most_m(length_m, course.drive.vehicles.len() - 1) - length_m)?;
+        let given_m = margin(length_m - motion::driven_at_least_m(length_m))?;
         let extra = |(seconds, metres): (f64, f64)| {
             let metres = Rational::from_f64_up(metres, PARTS_PER_METRE).ok_or(Overflow)?;
             Ok((units(seconds)?, metres))
@@ -193,6 +258,7 @@ impl ActivityExecutor for Driving<'_> {
             entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
             passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,
             extra_metres: extra_metres.into_iter().map(extra).collect::<Result<_, _>>()?,
+            counted_margins: [taken_m, given_m],
         })
     }
 
@@ -212,7 +278,11 @@ impl ActivityExecutor for Driving<'_> {
         places.into_iter().collect()
     }
 
-    fn abandon(&mut self, _: &Network, of: &[OccurrenceId], now: Time) {
+    fn contact(&self) -> Option<Contact> {
+        self.contact.clone()
+    }
+
+    fn abandon(&mut self, network: &Network, of: &[OccurrenceId], now: Time) {
         let now = now.to_f64();
         for drive in self.drives.iter_mut().filter(|drive| of.contains(&drive.occurrence)) {
             for vehicle in &mut drive.vehicles {
@@ -228,6 +298,7 @@ impl ActivityExecutor for Driving<'_> {
             }
         }
         self.seen.forget_after(now);
+        self.contact = contact::first_contact(self.problem.program, network, &self.drives);
     }
 }
 

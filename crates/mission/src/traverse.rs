@@ -8,14 +8,14 @@ use std::sync::Arc;
 use exact::Rational;
 use executive::facts::StandingPlace;
 use motion::{DriveLimits, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
-use nalgebra::{Point2, distance};
+use nalgebra::Point2;
 use rmpl::Span;
 use rmpl::program::{Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
 use snapshot::standing;
 use snapshot::vehicle::{Moving, moving};
-use terrain::{ConfigurationSpace, Terrain};
+use terrain::ConfigurationSpace;
 use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
@@ -397,21 +397,6 @@ fn find_leg(
         points_m: motion::simplify(space, &path, CORNER_EXTRA_M).points_m,
         samples: statistics.samples,
     })
-}
-
-/// The steepest slope along a path, in radians, looked at twice per cell.
-pub fn steepest_slope_rad(map: &Terrain, points_m: &[Point2<f64>]) -> f64 {
-    let step_m = map.frame().cell_size_m / 2.0;
-    let mut steepest = 0.0_f64;
-    for pair in points_m.windows(2) {
-        let pieces = (distance(&pair[0], &pair[1]) / step_m).ceil().max(1.0) as u32;
-        for piece in 0..=pieces {
-            let part = f64::from(piece) / f64::from(pieces);
-            let point = pair[0] + (pair[1] - pair[0]) * part;
-            steepest = steepest.max(map.slope_at(point).unwrap_or(0.0));
-        }
-    }
-    steepest
 }
 
 /// The least distance from the vehicle's rim to an obstacle along a path, in metres.

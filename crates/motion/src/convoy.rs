@@ -6,7 +6,7 @@ use parry2d_f64::query::PointQuery as _;
 use parry2d_f64::shape::Ball;
 use terrain::ConfigurationSpace;
 
-use crate::driver::{DriveEvent, Driver, DriverSettings};
+use crate::driver::{DriveEvent, Driver, DriverSettings, step_s};
 use crate::fine_world::FineWorld;
 use crate::path::Path;
 use crate::range_sensor::RangeScan;
@@ -89,7 +89,7 @@ fn follower_share(lag_m: f64) -> f64 {
 }
 
 impl Convoy {
-    /// Vehicles at rest; all decide as often as the one that decides most often.
+    /// Vehicles at rest; all decide as often as the fastest of them needs to.
     pub fn new(members: Vec<ConvoyMember>, spacing_m: f64, seed: u64) -> Self {
         let step_s = members.iter().map(|member| member.settings.step_s).fold(f64::INFINITY, f64::min);
         let members = members
@@ -110,7 +110,7 @@ impl Convoy {
         self.time_s
     }
 
-    /// Seconds between two decisions.
+    /// Seconds from the last decision to the one before it; at first, to the next one.
     pub const fn step_s(&self) -> f64 {
         self.step_s
     }
@@ -146,7 +146,6 @@ impl Convoy {
         pace_mps: f64,
         most_mps: &[f64],
     ) -> Vec<(DriveEvent, RangeScan)> {
-        self.time_s += self.step_s;
         let share = self.leader_share();
         // By what is left to drive, so that a detour counts as lag and what lies behind a vehicle does not.
         let lag_m = |member: &Member| member.remaining_m() - (1.0 - share) * member.planned_m;
@@ -154,15 +153,20 @@ impl Convoy {
         self.give_way(&lags_m);
         let leader_waits = !self.members.first().is_some_and(Member::passes)
             && lags_m.iter().skip(1).any(|&lag_m| self.is_far_behind(lag_m));
-        let mut steps = Vec::with_capacity(self.members.len());
-        for (index, &lag_m) in lags_m.iter().enumerate() {
-            let most = most_mps.get(index).copied().unwrap_or(0.0);
+        let wanted_mps = |(index, member): (usize, &Member)| {
             let wanted = match index {
                 0 if leader_waits => 0.0,
                 0 => pace_mps,
-                _ if self.members[index].passes() => pace_mps,
-                _ => pace_mps * follower_share(lag_m),
+                _ if member.passes() => pace_mps,
+                _ => pace_mps * follower_share(lags_m[index]),
             };
+            wanted.min(most_mps.get(index).copied().unwrap_or(0.0))
+        };
+        let wanted_mps: Vec<f64> = self.members.iter().enumerate().map(wanted_mps).collect();
+        self.step_s = self.next_step_s(&wanted_mps);
+        self.time_s += self.step_s;
+        let mut steps = Vec::with_capacity(self.members.len());
+        for (index, &wanted) in wanted_mps.iter().enumerate() {
             let in_its_way = self.in_its_way(index);
             let is_held = in_its_way.iter().any(|&other| self.waits_behind(index, other))
                 || self.is_held_by(index, around.others);
@@ -171,7 +175,8 @@ impl Convoy {
             let others_are_there = others.all(|(_, other)| other.has_arrived) && self.members.len() > 1;
             let to_pass = self.to_pass(index);
             let member = &mut self.members[index];
-            member.driver.set_cruise(if must_stand { 0.0 } else { wanted.min(most) });
+            member.driver.set_step(self.step_s);
+            member.driver.set_cruise(if must_stand { 0.0 } else { wanted });
             member.driver.set_vehicles(&to_pass);
             let here = member.driver.state().position_m;
             let is_at_hand = |near: &(FineWorld, Point2<f64>)| distance(&near.1, &here) <= AT_HAND_STEP_M;
@@ -187,6 +192,14 @@ impl Convoy {
             steps.push((event, scan));
         }
         steps
+    }
+
+    /// Seconds until all decide again: by the fastest of them, as it is and as it wants to be.
+    fn next_step_s(&self, wanted_mps: &[f64]) -> f64 {
+        let speeds = self.members.iter().map(|member| member.driver.state().speed_mps);
+        let fastest_mps = speeds.chain(wanted_mps.iter().copied()).fold(0.0, f64::max);
+        // While all stand, they look about as they did before.
+        if fastest_mps > 0.0 { step_s(fastest_mps) } else { self.step_s }
     }
 
     /// Where a vehicle is and how it moves.

@@ -1,6 +1,6 @@
 //! A vehicle in simulation: it follows its path and avoids what it meets (SPEC 7.4).
 //!
-//! Every tenth of a second, or every tenth of a metre when it creeps, it sweeps its range sensor and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
+//! Every tenth of a second, or every tenth of a metre when its pace is slow, it sweeps its range sensor and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
 //! something stands between, along a detour around what it has seen (`detour`). It picks the speed and turning rate that
 //! serve this best among those it can reach and from which it can still stop in front of everything it has seen (dynamic
 //! window, Fox, Burgard and Thrun 1997).
@@ -31,8 +31,10 @@ pub struct DriverSettings {
     pub lookahead_m: f64,
     /// How far it may stray from the path before it reports, in metres.
     pub corridor_m: f64,
-    /// How long it may make no way before it reports, in seconds.
+    /// How long it may make no way at least before it reports, in seconds.
     pub blocked_timeout_s: f64,
+    /// How far it must have been told to drive meanwhile, in metres: a vehicle with a slow pace has more patience.
+    pub blocked_way_m: f64,
     /// Within this distance of the path's end it has arrived, in metres.
     pub arrival_m: f64,
     /// The time between two decisions, in seconds.
@@ -53,6 +55,7 @@ impl DriverSettings {
             lookahead_m: 1.6,
             corridor_m: 5.0,
             blocked_timeout_s: 15.0,
+            blocked_way_m: 10.0,
             arrival_m: 0.2,
             step_s: STEP_S,
             sensor: RangeSensor::SICK,
@@ -60,12 +63,9 @@ impl DriverSettings {
         }
     }
 
-    /// The same for a vehicle that drives at most this fast: a slow one decides less often, at every tenth of a metre,
-    /// and may take longer to make way.
+    /// The same for a vehicle that drives at most this fast: a slow one decides less often, at every tenth of a metre.
     pub fn at_most(self, speed_mps: f64) -> Self {
-        let step_s = (STEP_M / speed_mps).clamp(STEP_S, 20.0);
-        let blocked_timeout_s = self.blocked_timeout_s.max(BLOCKED_M / speed_mps);
-        Self { cruise_mps: speed_mps.min(self.limits.speed_mps), step_s, blocked_timeout_s, ..self }
+        Self { cruise_mps: speed_mps.min(self.limits.speed_mps), step_s: step_s(speed_mps), ..self }
     }
 }
 
@@ -75,7 +75,7 @@ pub enum DriveEvent {
     Driving,
     /// At the path's end.
     Arrived,
-    /// It has made no way for the timeout: something blocks the path. Replan from here.
+    /// It has made no way for the timeout, though told to drive: something blocks the path. Replan from here.
     Blocked {
         /// Seconds without way.
         seconds: f64,
@@ -99,6 +99,8 @@ pub struct Driver {
     progress_m: f64,
     /// When it last made way, and how far it was.
     last_way: (f64, f64),
+    /// How far it has been told to drive since, in metres.
+    commanded_m: f64,
     seen: SeenPoints,
     /// The way around what stands in front, while something does.
     detour: Option<Path>,
@@ -116,10 +118,48 @@ const DETOUR_SIGHTS_M: [f64; 6] = [1.1, 0.9, 0.7, 0.5, 0.4, 0.3];
 const DETOUR_PAUSE_STEPS: f64 = 8.0;
 /// The way of a creeping vehicle between two decisions, in metres.
 const STEP_M: f64 = 0.08;
-/// A slow vehicle is blocked when it makes no way for as long as this many metres take it.
-const BLOCKED_M: f64 = 10.0;
+/// The longest time between two decisions, in seconds.
+const MAX_STEP_S: f64 = 20.0;
+/// What a driver drives more and less than its path, as a share of it and in metres.
+const MORE_SHARE: f64 = 0.04;
+const MORE_M: f64 = 1.0;
+const MORE_FOR_FOLLOWER_M: f64 = 1.5;
+/// What it needs more time than its path, as a share of it, in seconds, and in metres that it could have driven meanwhile.
+const LONGER_SHARE: f64 = 0.06;
+const LONGER_S: f64 = 15.0;
+const LONGER_FOR_FOLLOWER_M: f64 = 45.0;
+const LESS_SHARE: f64 = 0.01;
+const LESS_M: f64 = 1.0;
 /// The greatest turn between two decisions, in radians.
 const STEP_TURN_RAD: f64 = 0.2;
+
+/// How far the leader of some followers drives at most along a path of some metres where nothing disturbs it: it goes around
+/// rocks that the map does not show, and where it turns back around its followers. Measured: see
+/// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
+pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
+    if length_m > 0.0 { length_m * (1.0 + MORE_SHARE) + MORE_M + MORE_FOR_FOLLOWER_M * followers as f64 } else { 0.0 }
+}
+
+/// How long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it sets out and at
+/// corners, and goes around what the map does not show; a leader that turns back waits for its followers to let it pass and to
+/// come after it. `speed_mps` is the greatest speed of the traverse. Measured in the same way.
+pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize) -> f64 {
+    if least_s > 0.0 {
+        least_s * (1.0 + LONGER_SHARE) + LONGER_S + LONGER_FOR_FOLLOWER_M * followers as f64 / speed_mps
+    } else {
+        0.0
+    }
+}
+
+/// How far it drives at least: it cuts corners, and has arrived a little before the path's end. Measured in the same way.
+pub fn driven_at_least_m(length_m: f64) -> f64 {
+    (length_m * (1.0 - LESS_SHARE) - LESS_M).max(0.0)
+}
+
+/// The time between two decisions of a vehicle that drives at most this fast, in seconds.
+pub(crate) fn step_s(speed_mps: f64) -> f64 {
+    (STEP_M / speed_mps).clamp(STEP_S, MAX_STEP_S)
+}
 
 impl Driver {
     /// A vehicle at rest at the start of a path.
@@ -133,6 +173,7 @@ impl Driver {
             time_s: 0.0,
             progress_m: 0.0,
             last_way: (0.0, 0.0),
+            commanded_m: 0.0,
             seen: SeenPoints::default(),
             detour: None,
             no_detour_until_s: 0.0,
@@ -212,7 +253,13 @@ impl Driver {
         self.settings.cruise_mps = speed_mps;
         if speed_mps <= 0.0 {
             self.last_way.0 = self.time_s;
+            self.commanded_m = 0.0;
         }
+    }
+
+    /// Changes the time between two decisions, in seconds.
+    pub(crate) const fn set_step(&mut self, step_s: f64) {
+        self.settings.step_s = step_s;
     }
 
     /// Tells it of vehicles that it goes around, as place and radius in metres; those told before are forgotten.
@@ -226,6 +273,7 @@ impl Driver {
         self.path = path;
         self.progress_m = 0.0;
         self.last_way = (self.time_s, 0.0);
+        self.commanded_m = 0.0;
         self.detour = None;
     }
 
@@ -250,6 +298,7 @@ impl Driver {
             self.state = self.state.after(speed, rate, self.settings.step_s / moments, &self.settings.limits);
         }
         self.time_s += self.settings.step_s;
+        self.commanded_m += self.settings.cruise_mps * self.settings.step_s;
         (self.judge(), scan)
     }
 
@@ -423,7 +472,10 @@ impl Driver {
         let (since, way) = self.last_way;
         if self.progress_m > way + 0.25 {
             self.last_way = (self.time_s, self.progress_m);
-        } else if self.time_s - since >= self.settings.blocked_timeout_s {
+            self.commanded_m = 0.0;
+        } else if self.time_s - since >= self.settings.blocked_timeout_s
+            && self.commanded_m >= self.settings.blocked_way_m
+        {
             return DriveEvent::Blocked { seconds: self.time_s - since };
         }
         DriveEvent::Driving

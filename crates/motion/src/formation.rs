@@ -43,7 +43,7 @@ impl Formation {
                 }
                 hanging += 1;
             };
-            let place = if self.keeps_apart(place, &positions) {
+            let place = if self.keeps_apart(place, &positions) && space.is_free(place) {
                 place
             } else {
                 self.nearest_place(space, place, &positions)

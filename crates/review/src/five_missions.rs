@@ -200,6 +200,8 @@ fn cases(snapshot: &Snapshot, rules: &FlightRules) -> Vec<(String, Review)> {
         time: 1.0,
         position_m: nalgebra::Point2::origin(),
         distance_m: 0.1,
+        least_m: 2.2,
+        schedule: Vec::new(),
     };
     add(
         "plan: vehicles meet".to_owned(),

@@ -191,14 +191,16 @@ impl Review {
                 );
             }
             let slope_deg = traverse.slope_max_rad.to_degrees();
-            if let Some(most_deg) = rules.slope_deg {
+            // Who flies is held to no slope.
+            if let Some(most_deg) = rules.slope_deg.filter(|_| traverse.slope_limit_rad.is_some()) {
                 let source = FlightRules::source(|it| it.slope_deg == rules.slope_deg);
                 traverse.line.judge(slope_deg <= most_deg, &format!("slope at most {most_deg}°"), source);
             }
             if let Some(most_rad) = traverse.slope_limit_rad {
                 let most_deg = most_rad.to_degrees();
-                // Slopes are measured between samples, to about a tenth of a degree.
-                let status = if slope_deg <= most_deg + 0.1 { Status::Passed } else { Status::Failed };
+                // Paths are planned by the same slopes, so that there is nothing to round.
+                let is_kept = traverse.slope_max_rad <= most_rad + 1e-9;
+                let status = if is_kept { Status::Passed } else { Status::Failed };
                 let criterion = format!("slope at most {most_deg:.1}°");
                 traverse.line.judge_as(status, &criterion, "what the vehicles can climb");
             }

@@ -47,6 +47,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         review.causal_links = lines.causal_links();
         review.conflicts = lines.conflicts();
         review.states = lines.demands().states();
+        review.states.extend(lines.short_of_their_goals());
         review.resources = lines.demands().resources();
         review.overlaps = lines.overlaps();
         review.durations = lines.durations();
@@ -297,21 +298,14 @@ fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Ve
 }
 
 fn separation_violations(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
-    let vehicles = &snapshot.program.world.vehicles;
+    let (world, Some(network)) = (&snapshot.program.world, &snapshot.network) else { return Vec::new() };
+    let vehicles = &world.vehicles;
     let line = |violation: &snapshot::SeparationViolation| {
         let [first, second] = violation.vehicles.map(|vehicle| vehicles.get(vehicle as usize));
         let (first, second) = (first?, second?);
-        let text = format!(
-            "{} and {} come within {:.1} m of each other at {:.1}, near ({:.0}, {:.0})",
-            first.name.text,
-            second.name.text,
-            violation.distance_m,
-            violation.time,
-            violation.position_m.x,
-            violation.position_m.y
-        );
+        let text = violation.words(world, network);
         let names = vec![first.name.text.to_string(), second.name.text.to_string()];
-        Some(places.line(Status::Attention, text, Some(first.span), names, Vec::new()))
+        Some(places.line(Status::Failed, text, Some(first.span), names, Vec::new()))
     };
     snapshot.separation_violations.iter().filter_map(line).collect()
 }

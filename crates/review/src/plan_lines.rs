@@ -6,7 +6,7 @@ use exact::{Bound, Time};
 use motion::DriveLimits;
 use rmpl::Span;
 use rmpl::program::{Change, LabelMode};
-use snapshot::vehicle::{is_way, moving};
+use snapshot::vehicle::{self, is_way, moving};
 use snapshot::{Planning, Snapshot, joined};
 use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceKind, Plan};
 
@@ -351,15 +351,26 @@ impl<'input> PlanLines<'input> {
         let unit_s = self.snapshot.program.options.time_unit.seconds() as f64;
         let is_too_short =
             needed_s.is_some_and(|needed_s| duration.least.to_f64() * unit_s < needed_s - 1e-3);
+        let driven_s = self.driven_within_s(traverse);
+        let is_tight = duration.greatest.finite().is_some_and(|most| most.to_f64() * unit_s < driven_s - 1e-3);
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
             _ if is_too_short => Status::Failed,
+            _ if is_tight => Status::Attention,
             _ => Status::Passed,
         };
         let slope_limit_rad = self.slope_limit_rad(traverse);
+        let whose = match vehicles.len() {
+            0 | 1 => "its planned path".to_owned(),
+            count => format!("the planned paths of all {count} vehicles"),
+        };
         let clearance = match clearance_m {
-            Some(clearance_m) => format!("{clearance_m:.2} m clear of obstacles"),
+            Some(clearance_m) => format!("{whose} {clearance_m:.2} m clear of obstacles"),
             None => "no obstacle near".to_owned(),
+        };
+        let slope = match slope_limit_rad {
+            Some(_) => format!(", slope up to {:.1}°", traverse.slope_max_rad.to_degrees()),
+            None => String::new(),
         };
         let limits = match needed_s {
             Some(needed_s) if is_too_short => {
@@ -368,11 +379,16 @@ impl<'input> PlanLines<'input> {
             Some(_) => ", within the limits of its vehicles".to_owned(),
             None => String::new(),
         };
+        let driving = if is_tight {
+            let most = driven_s / unit_s;
+            format!("; drivers may need {most:.1} {} where the map does not show everything", unit(self.snapshot))
+        } else {
+            String::new()
+        };
         let text = format!(
-            "{name}: {:.1} m in {}{limits}, {clearance}, slope up to {:.1}°",
+            "{name}: {:.1} m in {}{limits}, {clearance}{slope}{driving}",
             traverse.length_m,
-            self.range_text(duration),
-            traverse.slope_max_rad.to_degrees()
+            self.range_text(duration)
         );
         let mut names = vec![name.clone()];
         names.extend(vehicles.iter().cloned());
@@ -389,6 +405,59 @@ impl<'input> PlanLines<'input> {
             slope_max_rad: traverse.slope_max_rad,
             slope_limit_rad,
         }
+    }
+
+    /// How long the vehicles of a traverse take at most to drive it, by what drivers were measured to need.
+    fn driven_within_s(&self, traverse: &snapshot::Traverse) -> f64 {
+        let program = &self.snapshot.program;
+        let unit_s = program.options.time_unit.seconds() as f64;
+        let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
+        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+        let said_mps = moving(program, occurrence).and_then(|moving| moving.moves.speed_mps);
+        let vehicles =
+            traverse.vehicles.iter().filter_map(|&vehicle| program.world.vehicles.get(vehicle as usize));
+        let models = vehicles.filter_map(|vehicle| motion::vehicle_model(&vehicle.model.text));
+        let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
+        let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
+        motion::driven_within_s(least * unit_s, speed_mps, traverse.vehicles.len().saturating_sub(1))
+    }
+
+    /// Vehicles that do not reach the location that they are then said to be at, because others stand there (SPEC 10.3).
+    pub(super) fn short_of_their_goals(&self) -> Vec<Line> {
+        self.snapshot.traverses.iter().filter_map(|traverse| self.short_of_its_goal(traverse)).collect()
+    }
+
+    fn short_of_its_goal(&self, traverse: &snapshot::Traverse) -> Option<Line> {
+        let world = &self.snapshot.program.world;
+        let last = traverse.legs.last()?;
+        let end_m = last.points_m.last()?;
+        let location = world.locations.iter().find(|location| location.name.text == last.to)?;
+        let location_m = nalgebra::Point2::from(location.position_m);
+        let short_m = nalgebra::distance(end_m, &location_m);
+        if short_m < 0.01 {
+            return None;
+        }
+        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+        let name = |vehicle: u32| Some(world.vehicles.get(vehicle as usize)?.name.text.as_str());
+        let &leader = traverse.vehicles.first()?;
+        let time = self.plan.windows.get(occurrence.end.index()).copied().flatten()?.earliest.to_f64();
+        let away = |motion: &snapshot::VehicleMotion| {
+            let is_other = !traverse.vehicles.contains(&motion.vehicle)
+                && vehicle::flies(world, motion.vehicle) == vehicle::flies(world, leader);
+            let (place_m, _) = motion.at(time).filter(|_| is_other)?;
+            Some((nalgebra::distance(&place_m, &location_m), motion.vehicle))
+        };
+        let nearest = self.snapshot.motions.iter().filter_map(away);
+        let nearest = nearest.min_by(|one, other| one.0.total_cmp(&other.0)).filter(|it| it.0 < short_m);
+        let other = nearest.and_then(|(_, vehicle)| name(vehicle));
+        let why = other.map_or_else(String::new, |other| format!(", where {other} stands"));
+        let (leader, place) = (name(leader)?, &location.name.text);
+        let text = format!(
+            "{leader} stops {short_m:.2} m short of {place} in {}{why}, and counts as at {place}",
+            occurrence.name
+        );
+        let names = [leader, occurrence.name.as_str()].into_iter().chain(other).map(str::to_owned).collect();
+        Some(self.places.line(Status::Attention, text, occurrence.span, names, vec![occurrence.end]))
     }
 
     /// How long the vehicles of a kinodynamic traverse take at least for its way on flat ground, in seconds: driven state by

@@ -15,6 +15,8 @@ pub struct SimulatedDrive {
     pub duration: Option<Time>,
     /// The vehicles, the leader first.
     pub vehicles: Vec<SimulatedVehicle>,
+    /// How far the leader drove, in metres.
+    pub driven_m: f64,
     /// How often another way was looked for.
     pub reroutes: u32,
     /// The least distance of a vehicle's rim from anything it could touch, in metres; infinite in an empty world.

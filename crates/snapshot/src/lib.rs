@@ -18,7 +18,7 @@ pub mod standing;
 pub mod vehicle;
 
 pub use self::snapshot::{
-    Keyframe, LeftOut, Leg, MapKey, PathFigures, Planning, SeparationViolation, Snapshot, Stage, Timings,
+    Keyframe, LeftOut, Leg, MapKey, MovementTimes, PathFigures, Planning, SeparationViolation, Snapshot, Stage, Timings,
     Traverse, Undrivable, VehicleMotion, joined,
 };
 pub use content::{ContentKey, PartKeys};

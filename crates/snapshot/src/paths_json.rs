@@ -39,6 +39,8 @@ pub fn separation_violations_json(violations: &[SeparationViolation], world: &Wo
             "time": violation.time,
             "position_m": violation.position_m,
             "distance_m": violation.distance_m,
+            "least_m": violation.least_m,
+            "in_earliest_schedule": violation.schedule.is_empty(),
         })
     };
     violations.iter().map(one).collect()

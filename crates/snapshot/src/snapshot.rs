@@ -5,7 +5,7 @@ use std::sync::Arc;
 use exact::{Bound, Time};
 use motion::{GrowthTrace, Path};
 use nalgebra::Point2;
-use rmpl::program::Program;
+use rmpl::program::{Program, World};
 use rmpl::spans::Spans;
 use rmpl::{Code, Span};
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ pub struct Snapshot {
     pub traverses: Arc<[Traverse]>,
     /// Where every vehicle is over time, under the earliest schedule of the plan.
     pub motions: Arc<[VehicleMotion]>,
-    /// Traverses whose vehicles come within their safety radius of each other.
+    /// Vehicles that come within their safety radius of each other in some schedule of the plan.
     pub separation_violations: Arc<[SeparationViolation]>,
     /// What is new in this snapshot, and what an earlier one had already.
     pub keys: PartKeys,
@@ -112,9 +112,9 @@ pub struct Traverse {
     pub legs: Vec<Leg>,
     /// The whole length in metres.
     pub length_m: f64,
-    /// The least distance from the leader's path to an obstacle, in metres, beyond the vehicle's own radius.
+    /// The least distance from the path of any of its vehicles to an obstacle, in metres, beyond the radius of the widest.
     pub clearance_m: f64,
-    /// The steepest slope along the path, in radians.
+    /// The steepest slope along the path of any of its vehicles, in radians.
     pub slope_max_rad: f64,
     /// What each leg comes to, in order.
     pub leg_figures: Vec<PathFigures>,
@@ -189,7 +189,15 @@ pub struct Keyframe {
     pub heading_rad: f64,
 }
 
-/// Two vehicles nearer to each other than they may be.
+/// When an activity that moves vehicles starts and ends in a schedule, in mission units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MovementTimes {
+    pub occurrence: OccurrenceId,
+    pub start: f64,
+    pub end: f64,
+}
+
+/// Two vehicles nearer to each other than they may be, in some schedule of the plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeparationViolation {
     /// The vehicles, as indices into the program's world.
@@ -202,11 +210,37 @@ pub struct SeparationViolation {
     pub position_m: Point2<f64>,
     /// How near they come, in metres, from centre to centre.
     pub distance_m: f64,
+    /// How near they may come, in metres.
+    pub least_m: f64,
+    /// The schedule in which they do: when what they drive starts and ends. Empty for the earliest schedule.
+    pub schedule: Vec<MovementTimes>,
 }
 
 impl SeparationViolation {
     /// The warning of one.
     pub const CODE: Code = Code("W-ENCOUNTER");
+
+    /// Who comes how near whom, where, and in which schedule.
+    pub fn words(&self, world: &World, network: &Network) -> String {
+        let vehicle = |index: u32| world.vehicles.get(index as usize).map_or("?", |it| it.name.text.as_str());
+        let [first, second] = self.vehicles.map(vehicle);
+        let movement = |times: &MovementTimes| {
+            let name = network.occurrences.get(times.occurrence.index()).map_or("?", |it| it.name.as_str());
+            format!("{name} lasts from {:.1} to {:.1}", times.start, times.end)
+        };
+        let schedule = match self.schedule.as_slice() {
+            [] => "in the plan's earliest schedule".to_owned(),
+            times => {
+                let times: Vec<String> = times.iter().map(movement).collect();
+                format!("in a schedule in which {}", times.join(" and "))
+            }
+        };
+        let place = self.position_m;
+        format!(
+            "{first} and {second} come within {:.2} m of each other near ({:.0}, {:.0}) at {:.1}, {schedule}; they need {:.2} m",
+            self.distance_m, place.x, place.y, self.time, self.least_m
+        )
+    }
 }
 
 /// Milliseconds per stage, as measured by the host; zero where it has no clock.

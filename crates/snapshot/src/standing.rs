@@ -79,6 +79,21 @@ pub fn start_m(program: &Program, vehicle: usize) -> Option<Point2<f64>> {
     Some(place_m(location.position_m.into(), slot, spacing_m))
 }
 
+/// Where each vehicle stands before it first moves that has a place of its own there, in metres; nothing for one that
+/// starts in a formation with another.
+pub fn own_starts_m(program: &Program) -> Vec<Option<Point2<f64>>> {
+    let vehicles = &program.world.vehicles;
+    let slots = start_slots(program);
+    let place = |vehicle: usize| (&vehicles[vehicle].start.text, slots[vehicle]);
+    let all = 0..vehicles.len();
+    let flies = |vehicle: usize| vehicle::flies(&program.world, vehicle as u32);
+    let shares = |one: usize, other: usize| {
+        one != other && place(one) == place(other) && flies(one) == flies(other)
+    };
+    let is_alone = |vehicle: usize| !all.clone().any(|other| shares(vehicle, other));
+    all.clone().map(|vehicle| start_m(program, vehicle).filter(|_| is_alone(vehicle))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::distance;

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::frame::{Cell, GridFrame};
 use crate::rock::Rock;
+use crate::walk::Walk;
 
 /// Heights at the centres of the cells of a grid. Row 0 is the southernmost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -125,9 +126,23 @@ impl Terrain {
         self.bilinear(point_m).map(|patch| patch.gradient(self.frame.cell_size_m))
     }
 
-    /// The steepest slope at a point, in radians.
-    pub fn slope_at(&self, point_m: Point2<f64>) -> Option<f64> {
-        self.gradient_at(point_m).map(|gradient| libm::atan(gradient.norm()))
+    /// The steepest slope on the way along some points, in radians: of all cells that it passes, the greatest
+    /// [`Self::cell_gradient`]. By the same gradient [`Occupancy`](crate::Occupancy) says which cells are too steep for a
+    /// vehicle, so a path through free cells is never steeper than the vehicle climbs. What lies outside the map is level.
+    /// Linear in the number of cells passed.
+    pub fn steepest_slope_rad(&self, points_m: &[Point2<f64>]) -> f64 {
+        let mut steepest = 0.0_f64;
+        let mut take = |cell: Cell| steepest = steepest.max(self.cell_gradient(cell).norm_squared());
+        points_m.iter().filter_map(|&point| self.frame.cell_at(point)).for_each(&mut take);
+        for pair in points_m.windows(2) {
+            let (from, to) = (self.frame.to_cells(pair[0]), self.frame.to_cells(pair[1]));
+            let length = (to - from).norm();
+            let are_inside = pair.iter().all(|&point| self.frame.cell_at(point).is_some());
+            if length > 0.0 && are_inside {
+                Walk { from, direction: (to - from) / length, length }.for_each_cell(&self.frame, &mut take);
+            }
+        }
+        libm::atan(steepest.sqrt())
     }
 
     /// The upward unit normal (east, north, up) at a point.

@@ -53,6 +53,26 @@ impl Walk {
         Cursor { cell, at, crossings: [self.crossing_of(0, cell[0]), self.crossing_of(1, cell[1])] }
     }
 
+    /// The cells that it passes, in order; where it leaves a cell through a corner, not the two beside it. Both ends have to
+    /// be on the map.
+    pub(crate) fn for_each_cell(&self, frame: &GridFrame, mut visit: impl FnMut(Cell)) {
+        let mut cursor = self.cursor(0.0, frame);
+        // Rounding may place a crossing just before an end on the border of the map.
+        while cursor.in_frame(frame) {
+            visit(cursor.cell());
+            let next = cursor.crossing();
+            if next >= self.length {
+                break;
+            }
+            let crossings = cursor.crossings;
+            for axis in [0, 1] {
+                if crossings[axis] <= next {
+                    self.advance(&mut cursor, axis, next);
+                }
+            }
+        }
+    }
+
     /// How far along the segment it leaves a column (axis 0) or row (axis 1).
     pub(crate) fn crossing_of(&self, axis: usize, cell: i64) -> f64 {
         let direction = self.direction[axis];

@@ -104,6 +104,7 @@ fn drive_json(drive: &SimulatedDrive, network: &Network, program: &Program) -> V
         "activity": network.occurrences[drive.occurrence.index()].name,
         "start": drive.start,
         "duration": drive.duration,
+        "driven_m": drive.driven_m,
         "reroutes": drive.reroutes,
         "least_clearance_m": drive.least_clearance_m.is_finite().then_some(drive.least_clearance_m),
         "vehicles": drive.vehicles.iter().map(|vehicle| json!({

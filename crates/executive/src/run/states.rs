@@ -60,6 +60,7 @@ impl Run<'_> {
         occurrence: OccurrenceId,
         execution: &ActivityExecution,
     ) -> Result<(), Overflow> {
+        self.counted_margins.insert(occurrence, execution.counted_margins);
         for &(after, extra_m) in &execution.extra_metres {
             let at = self.now.checked_add(after).ok_or(Overflow)?;
             let place = self.odometers.partition_point(|before| before.at <= at);
@@ -202,11 +203,13 @@ impl Run<'_> {
     /// A traverse has driven farther than planned, or is there and has driven less: what it takes for each metre counts.
     fn count_metres(&mut self) -> Option<Violation> {
         let Odometer { occurrence, extra_m, .. } = self.odometers.pop_front()?;
-        let before_m = self.extra_m.insert(occurrence, extra_m).unwrap_or_default();
-        let more_m = extra_m.checked_sub(before_m)?;
+        let before_m = self.extra_m.insert(occurrence, extra_m);
+        let [taken_m, given_m] = self.counted_margins.get(&occurrence).copied().unwrap_or_default();
+        // What was counted before it set out is part of what it has driven.
+        let since_m = |counted_m: Option<Rational>| extra_m.checked_sub(before_m.or(counted_m)?);
         let network = std::sync::Arc::clone(&self.stage.network);
         let cause = format!(
-            "{} has driven {} m {} than planned",
+            "{} has driven {} m {} than its path",
             network.occurrences[occurrence.index()].name,
             magnitude(extra_m).readable(),
             if extra_m.is_negative() { "less" } else { "more" }
@@ -216,10 +219,10 @@ impl Run<'_> {
             let Supply::Reservoir { greatest, .. } = network.resources[used.resource.index()].supply else {
                 continue;
             };
-            let Some(amount) = used.per_metre.checked_mul(more_m).filter(|amount| !amount.is_zero()) else {
-                continue;
-            };
             let is_gain = used.change == Change::Produces;
+            let more_m = since_m(if is_gain { given_m.checked_neg() } else { Some(taken_m) });
+            let amount = more_m.and_then(|more_m| used.per_metre.checked_mul(more_m));
+            let Some(amount) = amount.filter(|amount| !amount.is_zero()) else { continue };
             let mut by = if is_gain { amount } else { amount.checked_neg().unwrap_or_default() };
             if !is_gain && by.is_positive() {
                 // What was not taken after all fills a reservoir, and no more.

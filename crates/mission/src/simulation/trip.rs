@@ -150,7 +150,7 @@ impl<'a> Trip<'a> {
         coming.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut fine = if is_flight { FineWorld::default() } else { driving.world.clone() };
         let (mut others, mut standing) = (Vec::new(), Vec::new());
-        for (&vehicle, &(place, _)) in &driving.stand {
+        for (vehicle, place) in driving.standing_m() {
             if drive.vehicles.contains(&vehicle) || flies(vehicle) != is_flight {
                 continue;
             }
@@ -209,6 +209,11 @@ impl<'a> Trip<'a> {
             standing,
             leg_ends_m: course.leg_ends_m.clone(),
         }
+    }
+
+    /// How far the leader has driven, in metres.
+    pub(super) const fn driven_m(&self) -> f64 {
+        self.driven_m
     }
 
     /// Drives until all vehicles are there; an error says who got stuck where.

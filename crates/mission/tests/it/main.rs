@@ -1,5 +1,6 @@
 //! The integration tests of `mission`, in one program: each module is about one thing.
 
+mod agreement;
 mod days;
 mod enroute;
 mod exploration;
@@ -7,6 +8,7 @@ mod geojson;
 mod kinodynamics;
 mod levels;
 mod listing;
+mod margins;
 mod meetings;
 mod movements;
 mod nature;

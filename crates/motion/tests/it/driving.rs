@@ -143,6 +143,26 @@ fn a_creeping_vehicle_passes_rocks_too_and_takes_as_long_as_its_speed_says() {
     assert!(arrived >= 7, "{arrived} of 8 arrived");
 }
 
+/// Its patience is for the way that it is told to drive, not for time: on an empty plain nothing blocks it.
+#[test]
+fn a_vehicle_with_a_slow_pace_is_not_blocked_by_nothing() {
+    let settings = settings().at_most(1.0);
+    for (seed, pace_mps) in [(1, 0.015), (2, 0.004), (3, 0.1)] {
+        let path = Path::new([[0.0, 0.0], [9.0, 0.0]].map(Point2::from).to_vec());
+        let mut convoy = Convoy::new(vec![ConvoyMember { path, heading_rad: 2.0, settings }], 2.0, seed);
+        let world = FineWorld::default();
+        let around = Surroundings { world: &world, has_changed: false, maps: &[], others: &[] };
+        let mut steps = 0;
+        while !convoy.has_arrived() {
+            let (event, _) = convoy.step(&around, pace_mps, &[1.0]).swap_remove(0);
+            assert!(!matches!(event, DriveEvent::Blocked { .. }), "{event:?} at {} s", convoy.time_s());
+            steps += 1;
+            assert!(steps < 1000, "9 m take a step for each 8 cm, and a few to turn");
+        }
+        assert!((8.5 / pace_mps..12.0 / pace_mps).contains(&convoy.time_s()), "{} s", convoy.time_s());
+    }
+}
+
 #[test]
 fn a_convoy_keeps_apart_waits_for_a_stopped_follower_and_arrives() {
     let jr = rover();

@@ -10,8 +10,8 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
     title: "vehicles that come too near each other",
-    meaning: "At the plan's earliest schedule, two vehicles that do not drive together come nearer to each other than their
-radii and a metre. The message says when and where. Vehicles of one traverse keep formation and are not reported.",
+    meaning: "In some schedule of the plan, two vehicles that do not drive together come nearer to each other than their
+radii and a metre. The message says when, where, and in which schedule. Vehicles of one traverse keep formation and are not reported.",
     example: "location WEST (0, 0);
 location EAST (60, 0);
 vehicle Rover1 : ATRV at WEST;

@@ -3,7 +3,9 @@
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use parry2d_f64::shape::{Cuboid, Segment};
-use terrain::{Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random};
+use terrain::{
+    Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random, Terrain, Traversability,
+};
 
 fn random_grid(random: &mut Random, density: f64) -> (GridFrame, Vec<bool>) {
     let frame = GridFrame {
@@ -282,4 +284,46 @@ fn cells_that_only_share_corners_close_a_ring() {
     }
     let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &occupied), 0.0);
     assert!(space.are_separated(Point2::new(4.5, 4.5), Point2::new(0.5, 0.5)));
+}
+
+/// The planner and the review ask the same question: what is free is not too steep, to the last bit.
+#[test]
+fn a_way_through_free_cells_is_never_steeper_than_the_vehicle_climbs() {
+    const MAX_GRADE: f64 = 0.364;
+    let (mut free, mut steepest) = (0, 0.0_f64);
+    for seed in 0..20 {
+        let mut random = Random::from_seed(seed);
+        let frame = GridFrame::new(40, 40, 0.6);
+        let heights = (0..frame.cell_count()).map(|_| random.range(0.0, 0.6) as f32).collect();
+        let terrain = Terrain::new(frame, heights);
+        let ground = Traversability::Ground { max_grade: MAX_GRADE, rock_diameter_m: 0.5 };
+        let space = ConfigurationSpace::new(Occupancy::of_terrain(&terrain, &[], &ground), 0.3);
+        for _ in 0..2000 {
+            let from = Point2::new(random.range(0.0, 24.0), random.range(0.0, 24.0));
+            let to = from + Vector2::new(random.range(-4.0, 4.0), random.range(-4.0, 4.0));
+            if space.is_segment_free(from, to) {
+                free += 1;
+                let slope_rad = terrain.steepest_slope_rad(&[from, to]);
+                assert!(slope_rad <= MAX_GRADE.atan() + 1e-12, "seed {seed}: {slope_rad} from {from} to {to}");
+                steepest = steepest.max(slope_rad);
+            }
+        }
+    }
+    assert!(free > 100 && steepest > 0.9 * MAX_GRADE.atan(), "{free} ways, up to {steepest}");
+}
+
+#[test]
+fn the_slope_of_a_way_is_that_of_the_ramp_that_it_crosses() {
+    let frame = GridFrame::new(40, 40, 0.5);
+    // Level, then a ramp of 3 in 10 from 10 to 15 m east, then level again.
+    let height = |index: usize| (0.3 * ((index % 40) as f64 * 0.5 - 10.0).clamp(0.0, 5.0)) as f32;
+    let terrain = Terrain::new(frame, (0..frame.cell_count()).map(height).collect());
+    let slope = |points: &[[f64; 2]]| {
+        let points: Vec<Point2<f64>> = points.iter().copied().map(Point2::from).collect();
+        terrain.steepest_slope_rad(&points)
+    };
+    assert_eq!(slope(&[[1.0, 5.0], [8.0, 15.0]]), 0.0);
+    assert!((slope(&[[1.0, 5.0], [19.0, 15.0]]) - 0.3_f64.atan()).abs() < 1e-6);
+    assert!((slope(&[[12.0, 2.0], [12.0, 18.0]]) - 0.3_f64.atan()).abs() < 1e-6, "along it, it is as steep");
+    assert!((slope(&[[12.0, 2.0]]) - 0.3_f64.atan()).abs() < 1e-6, "so it is for a vehicle that stands");
 }

@@ -1,0 +1,188 @@
+//! What a plan promises of its drives is what undisturbed runs do: pace, places, metres, and room between vehicles.
+
+use executive::{Ending, Happening, Script};
+use kirk::Options;
+use mission::execution;
+use mission::planning::Planned;
+use nalgebra::distance;
+use snapshot::Execution;
+
+use crate::support::Mission;
+
+const SLOW: &str = "location BASE (0, 0); location ROCK (18, 0); vehicle Rover : ATRV at BASE;
+    primitive Drive(to)[20,25] moves Rover; scenario Sol[0,60] = { Drive(ROCK) }";
+
+const CROSSING: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+    location A (24, 52); location B (60, 56); location C (44, 40); location D (44, 70);
+    vehicle Alpha : ATRV at A; vehicle Delta : ATRV at C;
+    primitive Drive(r, to) contingent [2,30] moves r speed (0.01, 0.5);
+    scenario S[0,100] = { { Drive(Alpha, B) }, { delay[1.3,1.3]; Drive(Delta, D) } }";
+
+fn planned(source: &str, seed: u64) -> Planned {
+    Mission::read(source).with_plan((Options::default(), seed), |_, planned, _, _| planned)
+}
+
+fn executed(source: &str, seed: u64) -> Execution {
+    Mission::read(source).executed(seed, &[])
+}
+
+fn violations(execution: &Execution) -> Vec<&str> {
+    let found = execution.log.iter().filter_map(|entry| match &entry.happening {
+        Happening::Violation { reason, .. } => Some(reason.as_str()),
+        _ => None,
+    });
+    found.collect()
+}
+
+#[test]
+fn a_drive_with_much_time_is_not_given_up() {
+    for seed in 0..10 {
+        let execution = executed(SLOW, seed);
+        assert_eq!(
+            (execution.ending, violations(&execution)),
+            (Ending::Finished, Vec::new()),
+            "seed {seed}"
+        );
+        assert_eq!(execution.drives[0].reroutes, 0, "seed {seed}: nothing stands in its way");
+    }
+    // So much slower that a vehicle that decided as often as at its greatest speed would never be there.
+    let slower = SLOW.replace("[20,25]", "[900,960]").replace("[0,60]", "[0,1000]");
+    assert_eq!(executed(&slower, 1).ending, Ending::Finished);
+}
+
+#[test]
+fn who_is_there_already_takes_no_time() {
+    for base in ["(0, 0)", "(30, -12)"] {
+        let source = format!(
+            "location BASE {base}; location ROCK (18, 0); vehicle Rover : ATRV at BASE;
+            primitive Drive(to)[0,60] moves Rover;
+            scenario Sol[0,60] = {{ Drive(BASE), Drive(BASE); Drive(ROCK); Drive(ROCK) }}"
+        );
+        for seed in 0..3 {
+            let execution = executed(&source, seed);
+            assert_eq!(
+                (execution.ending, violations(&execution)),
+                (Ending::Finished, Vec::new()),
+                "BASE {base}, seed {seed}"
+            );
+            assert_eq!(execution.drives.len(), 1, "only one of them goes anywhere");
+        }
+    }
+}
+
+#[test]
+fn a_vehicle_that_stops_beside_its_goal_says_so() {
+    let source = "location A (0, 0); location B (40, 0); vehicle Alpha : ATRV at A; vehicle Beta : ATRV at B;
+        primitive Drive(r, to)[1,30] moves r speed (0.01, 0.5); scenario S[0,100] = { Drive(Alpha, B) }";
+    let execution = executed(source, 0);
+    let short = execution.log.iter().find_map(|entry| match &entry.happening {
+        Happening::Progress { text, .. } if text.contains("short of B, where Beta stands") => Some(text),
+        _ => None,
+    });
+    assert!(short.is_some(), "{:?}", execution.log);
+    let alone = executed(&source.replace("vehicle Beta : ATRV at B;", ""), 0);
+    let is_short = |entry: &executive::Entry| matches!(&entry.happening, Happening::Progress { text, .. } if text.contains("short of"));
+    assert!(!alone.log.iter().any(is_short), "{:?}", alone.log);
+}
+
+#[test]
+fn paths_that_cross_are_reported_with_a_schedule_in_which_their_vehicles_meet() {
+    let found = planned(CROSSING, 0);
+    let [violation] = found.separation_violations.as_slice() else {
+        panic!("{:?}", found.separation_violations)
+    };
+    assert_eq!(violation.vehicles, [0, 1]);
+    assert!(violation.distance_m < violation.least_m);
+    let crossing = nalgebra::Point2::new(44.0, 54.0);
+    assert!(distance(&violation.position_m, &crossing) < 5.0, "{}", violation.position_m);
+    // The other one sets out when the first is long past, whatever nature chooses: 2 to 30 min, and 31 min later.
+    let late = planned(&CROSSING.replace("delay[1.3,1.3]", "delay[31,31]"), 0);
+    assert_eq!(late.separation_violations, []);
+    // In the earliest schedule they do not meet; where the first one takes longer, they do.
+    let possible = planned(&CROSSING.replace("delay[1.3,1.3]", "delay[8,8]"), 0);
+    let [violation] = possible.separation_violations.as_slice() else {
+        panic!("{:?}", possible.separation_violations)
+    };
+    assert_eq!(violation.schedule.len(), 2, "{violation:?}");
+    for times in &violation.schedule {
+        let lasts = times.end - times.start;
+        assert!((2.0 - 1e-6..=30.0 + 1e-6).contains(&lasts), "{violation:?}");
+    }
+}
+
+#[test]
+fn paths_that_cross_are_put_in_an_order_where_there_is_time() {
+    let source = CROSSING.replace("delay[1.3,1.3]", "delay");
+    let found = planned(&source, 0);
+    assert_eq!(found.separation_violations, []);
+    for seed in 0..10 {
+        assert_eq!(executed(&source, seed).ending, Ending::Finished, "seed {seed}");
+    }
+}
+
+#[test]
+fn vehicles_that_touch_end_the_run() {
+    let mut touched = 0;
+    for seed in 0..10 {
+        let execution = executed(CROSSING, seed);
+        let place = |vehicle: u32, time: f64| {
+            let drives = execution.drives.iter().flat_map(|drive| &drive.vehicles);
+            drives.filter(|it| it.vehicle == vehicle).find_map(|it| Some(it.at(time)?.position_m))
+        };
+        let end = execution.end().to_f64();
+        let nearest = (0..=2000)
+            .filter_map(|step| {
+                let time = end * f64::from(step) / 2000.0;
+                Some(distance(&place(0, time)?, &place(1, time)?))
+            })
+            .fold(f64::INFINITY, f64::min);
+        let tells = violations(&execution).iter().any(|reason| reason.contains("Alpha and Delta touch"));
+        assert_eq!(tells, execution.ending == Ending::Stopped, "seed {seed}: {:?}", violations(&execution));
+        // Frames are up to a metre apart.
+        assert!(tells || nearest > 1.3, "seed {seed}: {nearest} m apart");
+        touched += usize::from(tells);
+    }
+    assert!(touched > 0, "none of these runs tells anything");
+}
+
+#[test]
+fn a_battery_that_is_just_enough_for_the_path_is_not_enough_for_a_driver() {
+    let source = |level: f64| {
+        format!(
+            "location CAMP (0, 0); location LEDGE (36, 4); location OUTCROP (60, 12);
+            vehicle Rover : ATRV at CAMP; resource Battery 0..100 = {level:.3};
+            primitive Drive(to)[5,60] moves Rover speed (0.01, 0.3) consumes Battery 1 per metre;
+            scenario S[0,400] = {{ Drive(LEDGE); delay; Drive(OUTCROP) }}"
+        )
+    };
+    let length_m = planned(&source(100.0), 0).planning.outcome.plans[0].quality.length_m;
+    assert!(planned(&source(length_m + 0.05), 0).planning.outcome.plans.is_empty());
+    for level in [length_m + 2.5, length_m + 4.0] {
+        for seed in 0..5 {
+            let execution = executed(&source(level), seed);
+            assert_eq!(execution.ending, Ending::Finished, "seed {seed}: {:?}", violations(&execution));
+        }
+    }
+}
+
+#[test]
+fn clearance_is_that_of_all_vehicles_of_a_formation() {
+    let source = |vehicles: &str| {
+        format!(
+            "location A (0, 0); location B (60, 0); obstacle ROCK circle (30, 4, 1.5); obstacle LOW circle (30, -4, 1.5);
+            vehicle R1 : ATRV at A; vehicle R2 : ATRV at A; vehicle R3 : ATRV at A;
+            primitive Drive(to)[1,60] moves {vehicles} speed (0.01, 0.5); scenario S[0,100] = {{ Drive(B) }}"
+        )
+    };
+    let clearance_m = |vehicles: &str| planned(&source(vehicles), 0).traverses[0].clearance_m;
+    let (alone_m, together_m) = (clearance_m("R1"), clearance_m("R1, R2, R3"));
+    assert!(together_m < alone_m - 0.2, "{together_m} m with followers beside the path, {alone_m} m without");
+    let run = |vehicles: &str| {
+        Mission::read(&source(vehicles)).with_plan((Options::default(), 0), |problem, planned, grounds, paths| {
+            let ran = execution::execute(problem, &planned, &Script::default(), grounds, paths);
+            ran.expect("there is a plan").expect("its times fit").drives
+        })
+    };
+    let drives = run("R1, R2, R3");
+    assert!(drives[0].least_clearance_m > together_m - 0.5, "{} m", drives[0].least_clearance_m);
+}

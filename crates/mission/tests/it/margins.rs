@@ -1,0 +1,69 @@
+//! What drivers and formations really need, measured over random missions without disturbances: the bounds that plans count
+//! hold for every drive.
+
+use std::fmt::Write as _;
+
+use executive::Script;
+use kirk::Options;
+use mission::execution;
+use terrain::Random;
+
+use crate::support::Mission;
+
+/// A mission with a few places, obstacles, and one to three vehicles that drive together; some on a map whose rocks it does
+/// not show.
+fn random_mission(seed: u64) -> String {
+    let mut random = Random::from_seed(seed);
+    let mut text = String::new();
+    if random.below(2) == 0 {
+        text.push_str("terrain \"tai-plain\" cell 0.6 origin (0, 0);\n");
+    }
+    let places = 2 + random.below(3);
+    for place in 0..places {
+        let _ = writeln!(text, "location P{place} ({:.1}, {:.1});", random.range(20.0, 90.0), random.range(20.0, 90.0));
+    }
+    for number in 0..random.below(5) {
+        let (x, y, r) = (random.range(20.0, 90.0), random.range(20.0, 90.0), random.range(1.0, 6.0));
+        let _ = writeln!(text, "obstacle O{number} circle ({x:.1}, {y:.1}, {r:.1});");
+    }
+    let mut names = Vec::new();
+    for vehicle in 0..=random.below(3) {
+        let model = if random.below(2) == 0 { "ATRV" } else { "ATRV-Jr" };
+        let _ = writeln!(text, "vehicle R{vehicle} : {model} at P0;");
+        names.push(format!("R{vehicle}"));
+    }
+    let greatest = [0.05, 0.2, 0.5, 0.8][random.below(4) as usize];
+    let _ = writeln!(text, "primitive Drive(to)[0,600] moves {} speed (0.005, {greatest});", names.join(", "));
+    let drives: Vec<String> = (1..=places).map(|place| format!("Drive(P{})", place % places)).collect();
+    let _ = writeln!(text, "scenario S[0,4000] = {{ {} }}", drives.join("; delay; "));
+    text
+}
+
+#[test]
+fn no_driver_needs_more_metres_than_plans_count() {
+    let mut drives = 0;
+    for seed in 0..16 {
+        let source = random_mission(seed);
+        Mission::read(&source).with_plan((Options::default(), seed), |problem, planned, grounds, paths| {
+            // A place in an obstacle, or one that no path reaches.
+            let Some(ran) = execution::execute(problem, &planned, &Script::default(), grounds, paths) else { return };
+            for drive in ran.expect("its times fit").drives.iter().filter(|drive| drive.duration.is_some()) {
+                let is_its = |it: &&snapshot::Traverse| it.occurrence == drive.occurrence;
+                let Some(traverse) = planned.traverses.iter().find(is_its) else { continue };
+                let (length_m, followers) = (traverse.length_m, traverse.vehicles.len() - 1);
+                let bounds = [
+                    motion::driven_at_least_m(length_m),
+                    motion::driven_at_most_m(length_m, followers),
+                ];
+                println!("seed {seed}: {followers} followers, {length_m:.2} m, driven {:.2} m", drive.driven_m);
+                assert!(
+                    (bounds[0]..=bounds[1]).contains(&drive.driven_m),
+                    "seed {seed}: {} m along {length_m} m with {followers} followers; {bounds:?} are counted\n{source}",
+                    drive.driven_m
+                );
+                drives += 1;
+            }
+        });
+    }
+    assert!(drives > 10, "only {drives} drives");
+}
