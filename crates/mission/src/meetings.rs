@@ -19,10 +19,10 @@ use tpn::{Network, OccurrenceId, Plan, Resource, ResourceId, Supply, Use};
 use crate::planning::{self, Planned, Problem};
 use crate::separation::Meeting;
 
-/// Orders that are tried for one mission, at most.
+/// Orders that are tried for one mission, and ways around that are looked for, at most: while vehicles meet in the earliest
+/// schedule, and while they meet in others alone.
 const MAX_TRIES: usize = 12;
-/// Ways around that are looked for in one mission, at most.
-const MAX_WAYS: usize = 12;
+const MAX_TRIES_FOR_OTHERS: usize = 4;
 /// Ways around of the same traverse and vehicle: the way around takes longer, so that they meet elsewhere.
 const MAX_WAYS_OF_PAIR: usize = 4;
 /// Metres that a way around keeps beyond what is needed.
@@ -41,7 +41,7 @@ pub(crate) fn kept_apart(
     let mut network = Arc::clone(problem.network);
     let mut tried: BTreeSet<(OccurrenceId, OccurrenceId)> = BTreeSet::new();
     let options = Options { explain: false, relax: false, ..problem.options };
-    while tried.len() < MAX_TRIES {
+    while tried.len() < max_tries(&planned) {
         let orders = planned.meetings.iter().flat_map(|meeting| meeting.orders.iter().copied());
         let untried = orders.into_iter().find(|order| !tried.contains(order));
         let Some((first, then)) = untried else { break };
@@ -49,8 +49,8 @@ pub(crate) fn kept_apart(
         let ordered = Arc::new(with_order(&network, first, then));
         let other = plan_again(&Problem { network: &ordered, options, ..*problem });
         let is_valid = other.planning.verdict.as_ref().is_some_and(|verdict| verdict.valid);
-        let is_better = other.meetings.len() < planned.meetings.len();
-        if is_valid && is_better && planning::has_plan(&other.planning.outcome) {
+        let has_plan = planning::has_plan(&other.planning.outcome);
+        if is_valid && has_plan && is_better(problem.network, &planned, &other) {
             (network, planned) = (ordered, other);
         }
     }
@@ -59,6 +59,31 @@ pub(crate) fn kept_apart(
         admit_worse(problem.network, (&best, counted_m), &mut planned);
     }
     planned
+}
+
+/// How many pairs meet in the earliest schedule.
+fn num_in_earliest(planned: &Planned) -> usize {
+    planned.meetings.iter().filter(|meeting| meeting.violation.schedule.is_empty()).count()
+}
+
+fn max_tries(planned: &Planned) -> usize {
+    if num_in_earliest(planned) > 0 { MAX_TRIES } else { MAX_TRIES_FOR_OTHERS }
+}
+
+/// Whether fewer vehicles meet in another plan. For schedules that need not come about the objective gives up nothing.
+fn is_better(network: &Network, planned: &Planned, other: &Planned) -> bool {
+    let (before, after) = (num_in_earliest(planned), num_in_earliest(other));
+    let is_fewer = other.meetings.len() < planned.meetings.len();
+    after < before || (after == before && is_fewer && !is_worse(network, planned, other))
+}
+
+/// Whether another plan is worse in the first goal of the objective in which the two differ.
+fn is_worse(network: &Network, planned: &Planned, other: &Planned) -> bool {
+    let values = |of: &Planned| worth::goal_values(network, of.planning.outcome.plans.first()?, of.counted_m);
+    let (Some(before), Some(after)) = (values(planned), values(other)) else { return false };
+    let mut goals = network.objective.iter().zip(before.iter().zip(&after));
+    let differs = goals.find(|(_, (before, after))| before != after);
+    differs.is_some_and(|(goal, (before, after))| (before > after) == goal.is_maximized)
 }
 
 /// Where keeping apart made an optimal plan worse, nothing is proven but that none is better than it was without.
@@ -88,7 +113,7 @@ fn led_around(
     let mut keep_outs = KeepOuts::new();
     let mut tried: BTreeSet<(OccurrenceId, u32)> = BTreeSet::new();
     let mut ways = 0;
-    while ways < MAX_WAYS {
+    while ways < max_tries(&planned) {
         let untried = planned.meetings.iter().flat_map(ways_around);
         let Some(way) = untried.into_iter().find(|way| !tried.contains(&way.key())) else { break };
         tried.insert(way.key());
@@ -102,7 +127,7 @@ fn led_around(
             if !is_valid || !planning::has_plan(&other.planning.outcome) {
                 break;
             }
-            if other.meetings.len() < planned.meetings.len() {
+            if is_better(problem.network, &planned, &other) {
                 (keep_outs, planned) = (wider, other);
                 break;
             }

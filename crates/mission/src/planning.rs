@@ -519,7 +519,7 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
 fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64, followers: usize) {
     let Some(metres) = rounded_up(length_m) else { return };
     let Some(at_most) = rounded_up(motion::driven_at_most_m(length_m, followers)) else { return };
-    let at_least = rounded_up(motion::driven_at_least_m(length_m)).unwrap_or_default();
+    let at_least = rounded_up(motion::driven_at_least_m(length_m, followers)).unwrap_or_default();
     let with = |amount: Rational, per_metre: Rational, metres: Rational| {
         per_metre.checked_mul(metres).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
     };

@@ -114,6 +114,7 @@ pub(crate) fn meetings(
         }
     }
     in_earliest_schedule(&mut found, drives, motions);
+    found.sort_by_key(|meeting| !meeting.violation.schedule.is_empty());
     found
 }
 

@@ -247,8 +247,9 @@ impl ActivityExecutor for Driving<'_> {
         let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
         let length_m = course.drive.path.length_m();
         let margin = |metres: f64| Rational::from_f64_up(metres, PARTS_PER_METRE).ok_or(Overflow);
-        let taken_m = margin(motion::driven_at_most_m(length_m, course.drive.vehicles.len() - 1) - length_m)?;
-        let given_m = margin(length_m - motion::driven_at_least_m(length_m))?;
+        let followers = course.drive.vehicles.len().saturating_sub(1);
+        let taken_m = margin(motion::driven_at_most_m(length_m, followers) - length_m)?;
+        let given_m = margin(length_m - motion::driven_at_least_m(length_m, followers))?;
         let extra = |(seconds, metres): (f64, f64)| {
             let metres = Rational::from_f64_up(metres, PARTS_PER_METRE).ok_or(Overflow)?;
             Ok((units(seconds)?, metres))

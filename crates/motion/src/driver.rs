@@ -122,14 +122,15 @@ const STEP_M: f64 = 0.08;
 const MAX_STEP_S: f64 = 20.0;
 /// What a driver drives more and less than its path, as a share of it and in metres.
 const MORE_SHARE: f64 = 0.04;
-const MORE_M: f64 = 1.0;
-const MORE_FOR_FOLLOWER_M: f64 = 1.5;
+const MORE_M: f64 = 1.5;
+const MORE_FOR_FOLLOWER_M: f64 = 2.0;
 /// What it needs more time than its path, as a share of it, in seconds, and in metres that it could have driven meanwhile.
 const LONGER_SHARE: f64 = 0.06;
 const LONGER_S: f64 = 15.0;
-const LONGER_FOR_FOLLOWER_M: f64 = 45.0;
+const LONGER_FOR_FOLLOWER_M: f64 = 80.0;
 const LESS_SHARE: f64 = 0.01;
 const LESS_M: f64 = 1.0;
+const LESS_FOR_FOLLOWER_M: f64 = 1.5;
 /// The greatest turn between two decisions, in radians.
 const STEP_TURN_RAD: f64 = 0.2;
 
@@ -141,19 +142,22 @@ pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
 }
 
 /// How long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it sets out and at
-/// corners, and goes around what the map does not show; a leader that turns back waits for its followers to let it pass and to
-/// come after it. `speed_mps` is the greatest speed of the traverse. Measured in the same way.
-pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize) -> f64 {
+/// corners, and goes around what the map does not show; one that turns back waits for its followers to let it pass and to
+/// come after it. `followers_behind` are those where it turns back, `speed_mps` is the greatest speed of the traverse. Measured
+/// in the same way.
+pub fn driven_within_s(least_s: f64, speed_mps: f64, followers_behind: usize) -> f64 {
     if least_s > 0.0 {
-        least_s * (1.0 + LONGER_SHARE) + LONGER_S + LONGER_FOR_FOLLOWER_M * followers as f64 / speed_mps
+        let turning_m = LONGER_FOR_FOLLOWER_M * followers_behind as f64;
+        least_s * (1.0 + LONGER_SHARE) + LONGER_S + turning_m / speed_mps
     } else {
         0.0
     }
 }
 
-/// How far it drives at least: it cuts corners, and has arrived a little before the path's end. Measured in the same way.
-pub fn driven_at_least_m(length_m: f64) -> f64 {
-    (length_m * (1.0 - LESS_SHARE) - LESS_M).max(0.0)
+/// How far it drives at least: it cuts corners, and has arrived a little before the path's end, or as near to it as its
+/// followers leave it room. Measured in the same way.
+pub fn driven_at_least_m(length_m: f64, followers: usize) -> f64 {
+    (length_m * (1.0 - LESS_SHARE) - LESS_M - LESS_FOR_FOLLOWER_M * followers as f64).max(0.0)
 }
 
 /// The time between two decisions of a vehicle that drives at most this fast, in seconds.

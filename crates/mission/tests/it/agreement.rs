@@ -157,7 +157,7 @@ fn a_battery_that_is_just_enough_for_the_path_is_not_enough_for_a_driver() {
     };
     let length_m = planned(&source(100.0), 0).planning.outcome.plans[0].quality.length_m;
     assert!(planned(&source(length_m + 0.05), 0).planning.outcome.plans.is_empty());
-    for level in [length_m + 2.5, length_m + 4.0] {
+    for level in [length_m + 6.0, length_m + 8.0] {
         for seed in 0..5 {
             let execution = executed(&source(level), seed);
             assert_eq!(execution.ending, Ending::Finished, "seed {seed}: {:?}", violations(&execution));

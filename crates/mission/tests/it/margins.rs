@@ -52,7 +52,7 @@ fn no_driver_needs_more_metres_than_plans_count() {
                 let Some(traverse) = planned.traverses.iter().find(is_its) else { continue };
                 let (length_m, followers) = (traverse.length_m, traverse.vehicles.len() - 1);
                 let bounds = [
-                    motion::driven_at_least_m(length_m),
+                    motion::driven_at_least_m(length_m, followers),
                     motion::driven_at_most_m(length_m, followers),
                 ];
                 println!("seed {seed}: {followers} followers, {length_m:.2} m, driven {:.2} m", drive.driven_m);
