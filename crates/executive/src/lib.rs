@@ -18,7 +18,9 @@ pub mod strategy;
 pub mod world;
 mod world_state;
 
-pub use activity_execution::{ActivityExecution, ActivityExecutor, AsPlanned, Contact, Ends, PlantReading, Revision};
+pub use activity_execution::{
+    ActivityExecution, ActivityExecutor, AsPlanned, Contact, Ends, PlantReading, Revision,
+};
 pub use facts::Facts;
 pub use log::{Ending, Entry, Happening};
 pub use pinned::PinnedPlan;

@@ -100,7 +100,9 @@ pub(crate) fn meetings(
                 for (other_index, other_part) in others.iter().enumerate() {
                     let is_together = part.movement.is_some() && part.movement == other_part.movement;
                     let (whole, other_whole) = (part.whole(), other_part.whole());
-                    if is_together || gaps.is_before(&whole, &other_whole) || gaps.is_before(&other_whole, &whole)
+                    if is_together
+                        || gaps.is_before(&whole, &other_whole)
+                        || gaps.is_before(&other_whole, &whole)
                     {
                         continue;
                     }
@@ -204,7 +206,8 @@ fn parts(
 /// How long a traverse takes at least in every schedule, in mission units: by its own bounds and by its path.
 fn least_duration(network: &Network, occurrence: OccurrenceId) -> f64 {
     let own = network.occurrences[occurrence.index()].arc.map(|arc| network.arcs[arc.index()].lower.to_f64());
-    let path = network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path && arc.occurrence == Some(occurrence));
+    let path =
+        network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path && arc.occurrence == Some(occurrence));
     own.unwrap_or(0.0).max(path.map(|arc| arc.lower.to_f64()).sum())
 }
 
@@ -214,17 +217,18 @@ fn meeting(gaps: &Gaps, vehicles: [u32; 2], parts: [&Part; 2], safety_m: f64) ->
     let tracks = parts.map(points);
     let mut near: Vec<(motion::NearPieces, [Stretch; 2])> = Vec::new();
     motion::near_pieces(&tracks[0], &tracks[1], safety_m - ROUNDING_M, PIECE_M, &mut |pieces| {
-        let stretches = [0, 1].map(|index| parts[index].stretch(pieces.segments[index], pieces.shares[index]));
+        let stretches =
+            [0, 1].map(|index| parts[index].stretch(pieces.segments[index], pieces.shares[index]));
         let [one, other] = &stretches;
         if !gaps.is_before(one, other) && !gaps.is_before(other, one) {
             near.push((pieces, stretches));
         }
     });
     near.sort_by(|(one, _), (other, _)| one.distance_m.total_cmp(&other.distance_m));
-    let (pieces, (times, time)) =
-        near.iter().take(MAX_SCHEDULES).find_map(|(pieces, [one, other])| {
-            Some((pieces, gaps.meeting(one, other)?))
-        })?;
+    let (pieces, (times, time)) = near
+        .iter()
+        .take(MAX_SCHEDULES)
+        .find_map(|(pieces, [one, other])| Some((pieces, gaps.meeting(one, other)?)))?;
     let place = |part: &&Part| {
         let at = |event: NodeId| times.get(&event).copied().unwrap_or_default();
         let occurrence = part.movement?;

@@ -134,7 +134,20 @@ impl<'run> Driving<'run> {
         let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
         let seen = SeenMap::default();
         let (starts_m, contact) = (standing::own_starts_m(problem.program), None);
-        Self { problem, map, disturbances, courses, seed, world, stand, starts_m, contact, drives, seen, chosen }
+        Self {
+            problem,
+            map,
+            disturbances,
+            courses,
+            seed,
+            world,
+            stand,
+            starts_m,
+            contact,
+            drives,
+            seen,
+            chosen,
+        }
     }
 
     /// Where vehicles stand that do not drive at the moment or have not driven yet, with their numbers.
@@ -155,7 +168,8 @@ impl<'run> Driving<'run> {
         if short_m <= AT_GOAL_M {
             return None;
         }
-        let name = |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
+        let name =
+            |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
         let &leader = course.drive.vehicles.first()?;
         let is_other = |&(vehicle, _): &(u32, Point2<f64>)| {
             !course.drive.vehicles.contains(&vehicle)
@@ -204,7 +218,10 @@ impl ActivityExecutor for Driving<'_> {
         };
         if course.drive.path.length_m() <= 0.0 {
             // Who is there already has nothing to drive.
-            return Ok(ActivityExecution { ends: Ends::NotBefore(Time::ZERO), ..ActivityExecution::default() });
+            return Ok(ActivityExecution {
+                ends: Ends::NotBefore(Time::ZERO),
+                ..ActivityExecution::default()
+            });
         }
         let name = network.occurrences[occurrence.index()].name.clone();
         let mut trip = Trip::new(self, &course, network, start);

@@ -138,7 +138,11 @@ const STEP_TURN_RAD: f64 = 0.2;
 /// rocks that the map does not show, and where it turns back around its followers. Measured: see
 /// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
 pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
-    if length_m > 0.0 { length_m * (1.0 + MORE_SHARE) + MORE_M + MORE_FOR_FOLLOWER_M * followers as f64 } else { 0.0 }
+    if length_m > 0.0 {
+        length_m * (1.0 + MORE_SHARE) + MORE_M + MORE_FOR_FOLLOWER_M * followers as f64
+    } else {
+        0.0
+    }
 }
 
 /// How long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it sets out and at

@@ -67,7 +67,8 @@ fn nearest_places(a: [Point2<f64>; 2], b: [Point2<f64>; 2]) -> ([Point2<f64>; 2]
     let on = |segment: [Point2<f64>; 2], point: Point2<f64>| {
         let ahead = segment[1] - segment[0];
         let squared = ahead.norm_squared();
-        let share = if squared > 0.0 { ((point - segment[0]).dot(&ahead) / squared).clamp(0.0, 1.0) } else { 0.0 };
+        let share =
+            if squared > 0.0 { ((point - segment[0]).dot(&ahead) / squared).clamp(0.0, 1.0) } else { 0.0 };
         between(segment[0], segment[1], share)
     };
     let pairs = [[a[0], on(b, a[0])], [a[1], on(b, a[1])], [on(a, b[0]), b[0]], [on(a, b[1]), b[1]]];

@@ -355,7 +355,8 @@ impl<'input> PlanLines<'input> {
         let is_too_short =
             needed_s.is_some_and(|needed_s| duration.least.to_f64() * unit_s < needed_s - 1e-3);
         let driven_s = self.driven_within_s(traverse);
-        let is_tight = duration.greatest.finite().is_some_and(|most| most.to_f64() * unit_s < driven_s - 1e-3);
+        let is_tight =
+            duration.greatest.finite().is_some_and(|most| most.to_f64() * unit_s < driven_s - 1e-3);
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
             _ if is_too_short => Status::Failed,
@@ -384,7 +385,10 @@ impl<'input> PlanLines<'input> {
         };
         let driving = if is_tight {
             let most = driven_s / unit_s;
-            format!("; drivers may need {most:.1} {} where the map does not show everything", unit(self.snapshot))
+            format!(
+                "; drivers may need {most:.1} {} where the map does not show everything",
+                unit(self.snapshot)
+            )
         } else {
             String::new()
         };

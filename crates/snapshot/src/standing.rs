@@ -87,9 +87,8 @@ pub fn own_starts_m(program: &Program) -> Vec<Option<Point2<f64>>> {
     let place = |vehicle: usize| (&vehicles[vehicle].start.text, slots[vehicle]);
     let all = 0..vehicles.len();
     let flies = |vehicle: usize| vehicle::flies(&program.world, vehicle as u32);
-    let shares = |one: usize, other: usize| {
-        one != other && place(one) == place(other) && flies(one) == flies(other)
-    };
+    let shares =
+        |one: usize, other: usize| one != other && place(one) == place(other) && flies(one) == flies(other);
     let is_alone = |vehicle: usize| !all.clone().any(|other| shares(vehicle, other));
     all.clone().map(|vehicle| start_m(program, vehicle).filter(|_| is_alone(vehicle))).collect()
 }

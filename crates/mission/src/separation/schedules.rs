@@ -101,7 +101,8 @@ impl Gaps {
         let ((early, [a, b]), (late, [c, d])) = (only(0)?, only(1)?);
         // Between the two, where both have as much room.
         let part = (a - b) / ((a - b) - (c - d));
-        let mixed = early.iter().map(|(&event, &time)| (event, time + (late[&event] - time) * part)).collect();
+        let mixed =
+            early.iter().map(|(&event, &time)| (event, time + (late[&event] - time) * part)).collect();
         let times: Times = mixed;
         let is_at_once = leaves(one, &times) - arrives(other, &times) >= -TOLERANCE;
         is_at_once.then(|| at_once(one, other, times))

@@ -38,11 +38,7 @@ fn violations(execution: &Execution) -> Vec<&str> {
 fn a_drive_with_much_time_is_not_given_up() {
     for seed in 0..10 {
         let execution = executed(SLOW, seed);
-        assert_eq!(
-            (execution.ending, violations(&execution)),
-            (Ending::Finished, Vec::new()),
-            "seed {seed}"
-        );
+        assert_eq!((execution.ending, violations(&execution)), (Ending::Finished, Vec::new()), "seed {seed}");
         assert_eq!(execution.drives[0].reroutes, 0, "seed {seed}: nothing stands in its way");
     }
     // So much slower that a vehicle that decided as often as at its greatest speed would never be there.
@@ -178,10 +174,13 @@ fn clearance_is_that_of_all_vehicles_of_a_formation() {
     let (alone_m, together_m) = (clearance_m("R1"), clearance_m("R1, R2, R3"));
     assert!(together_m < alone_m - 0.2, "{together_m} m with followers beside the path, {alone_m} m without");
     let run = |vehicles: &str| {
-        Mission::read(&source(vehicles)).with_plan((Options::default(), 0), |problem, planned, grounds, paths| {
-            let ran = execution::execute(problem, &planned, &Script::default(), grounds, paths);
-            ran.expect("there is a plan").expect("its times fit").drives
-        })
+        Mission::read(&source(vehicles)).with_plan(
+            (Options::default(), 0),
+            |problem, planned, grounds, paths| {
+                let ran = execution::execute(problem, &planned, &Script::default(), grounds, paths);
+                ran.expect("there is a plan").expect("its times fit").drives
+            },
+        )
     };
     let drives = run("R1, R2, R3");
     assert!(drives[0].least_clearance_m > together_m - 0.5, "{} m", drives[0].least_clearance_m);

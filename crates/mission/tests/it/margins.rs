@@ -20,7 +20,12 @@ fn random_mission(seed: u64) -> String {
     }
     let places = 2 + random.below(3);
     for place in 0..places {
-        let _ = writeln!(text, "location P{place} ({:.1}, {:.1});", random.range(20.0, 90.0), random.range(20.0, 90.0));
+        let _ = writeln!(
+            text,
+            "location P{place} ({:.1}, {:.1});",
+            random.range(20.0, 90.0),
+            random.range(20.0, 90.0)
+        );
     }
     for number in 0..random.below(5) {
         let (x, y, r) = (random.range(20.0, 90.0), random.range(20.0, 90.0), random.range(1.0, 6.0));
@@ -33,7 +38,8 @@ fn random_mission(seed: u64) -> String {
         names.push(format!("R{vehicle}"));
     }
     let greatest = [0.05, 0.2, 0.5, 0.8][random.below(4) as usize];
-    let _ = writeln!(text, "primitive Drive(to)[0,600] moves {} speed (0.005, {greatest});", names.join(", "));
+    let _ =
+        writeln!(text, "primitive Drive(to)[0,600] moves {} speed (0.005, {greatest});", names.join(", "));
     let drives: Vec<String> = (1..=places).map(|place| format!("Drive(P{})", place % places)).collect();
     let _ = writeln!(text, "scenario S[0,4000] = {{ {} }}", drives.join("; delay; "));
     text

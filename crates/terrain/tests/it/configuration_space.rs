@@ -4,7 +4,8 @@
 use nalgebra::{Isometry2, Point2, Vector2};
 use parry2d_f64::shape::{Cuboid, Segment};
 use terrain::{
-    Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random, Terrain, Traversability,
+    Cell, CellState, Collision, ConfigurationSpace, GridFrame, Obstacle, Occupancy, Random, Terrain,
+    Traversability,
 };
 
 fn random_grid(random: &mut Random, density: f64) -> (GridFrame, Vec<bool>) {
@@ -304,7 +305,10 @@ fn a_way_through_free_cells_is_never_steeper_than_the_vehicle_climbs() {
             if space.is_segment_free(from, to) {
                 free += 1;
                 let slope_rad = terrain.steepest_slope_rad(&[from, to]);
-                assert!(slope_rad <= MAX_GRADE.atan() + 1e-12, "seed {seed}: {slope_rad} from {from} to {to}");
+                assert!(
+                    slope_rad <= MAX_GRADE.atan() + 1e-12,
+                    "seed {seed}: {slope_rad} from {from} to {to}"
+                );
                 steepest = steepest.max(slope_rad);
             }
         }
