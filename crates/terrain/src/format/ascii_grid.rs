@@ -6,16 +6,17 @@ const FORMAT: &str = "ESRI ASCII grid";
 
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let text = std::str::from_utf8(bytes).map_err(|_| malformed("it is not text".into()))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut words = text.split_ascii_whitespace().peekable();
     let (mut width, mut height, mut cell_size_m, mut cell_height_m, mut no_data) =
         (None, None, None, None, None);
     while let Some(keyword) =
-        words.next_if(|word| word.starts_with(|first: char| first.is_ascii_alphabetic()))
+        words.next_if(|word| word.starts_with(|first: char| first.is_ascii_alphabetic()) && !is_absent(word))
     {
-        if keyword.eq_ignore_ascii_case("nan") {
-            return Err(malformed("the values begin with `nan` before the header is complete".into()));
-        }
         let value = words.next().unwrap_or_default();
+        if keyword.eq_ignore_ascii_case("nodata_value") && is_absent(value) {
+            continue;
+        }
         let number: f64 =
             value.parse().map_err(|_| malformed(format!("`{keyword}` is `{value}`, which is no number")))?;
         match keyword.to_ascii_lowercase().as_str() {
@@ -48,8 +49,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     }
     let mut samples = Vec::with_capacity(count);
     for word in words {
-        let value: f64 =
-            word.parse().map_err(|_| malformed(format!("value {} is `{word}`", samples.len() + 1)))?;
+        let value = if is_absent(word) { Ok(f64::NAN) } else { word.parse() };
+        let value = value.map_err(|_| malformed(format!("value {} is `{word}`", samples.len() + 1)))?;
         samples.push(if Some(value) == no_data { f32::NAN } else { value as f32 });
         if samples.len() > count {
             return Err(malformed(format!("it has more than {width} × {height} values")));
@@ -66,6 +67,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         origin_m: None,
         meaning: Meaning::Levels { greatest: None },
     })
+}
+
+/// Whether a word stands for a height that is not there, as programs write it: in place of a value, and as `NODATA_value`.
+fn is_absent(word: &str) -> bool {
+    ["nan", "-nan", "null", "none", "na"].iter().any(|absent| word.eq_ignore_ascii_case(absent))
 }
 
 fn malformed(problem: String) -> FormatError {

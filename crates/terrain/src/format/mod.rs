@@ -139,7 +139,7 @@ impl FileFormat {
     pub fn detect(bytes: &[u8]) -> Option<Self> {
         let text = bytes.get(..bytes.len().min(512))?;
         let starts = |prefix: &str| {
-            let trimmed = text.trim_ascii_start();
+            let trimmed = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text).trim_ascii_start();
             trimmed.get(..prefix.len()).is_some_and(|start| start.eq_ignore_ascii_case(prefix.as_bytes()))
         };
         if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {

@@ -498,3 +498,19 @@ fn formats_are_recognised_by_their_first_bytes() {
     assert_eq!(FileFormat::detect(b"\nNCOLS 3"), Some(FileFormat::AsciiGrid));
     assert_eq!(FileFormat::detect(b"nothing known"), None);
 }
+
+/// Other programs write absent heights as words, also first of all, name such a word in the header, and begin with a byte-order
+/// mark.
+#[test]
+fn absent_heights_of_an_ascii_grid_may_be_words() {
+    for absent in ["nan", "NaN", "null", "NA", "none"] {
+        let grid =
+            format!("\u{feff}ncols 2\nnrows 2\ncellsize 1\nNODATA_value {absent}\n{absent} 1\n2 {absent}\n");
+        let raster = read(grid.as_bytes()).unwrap_or_else(|error| panic!("{absent}: {error}"));
+        let [a, b, c, d] = raster.samples[..] else { panic!("{absent}: {:?}", raster.samples) };
+        assert!(a.is_nan() && b == 1.0 && c == 2.0 && d.is_nan(), "{absent}: {:?}", raster.samples);
+    }
+    let error = read(b"ncols 2\nnrows 2\ncellsize 1\nnan 1 2 nothing\n");
+    let error = error.expect_err("`nothing` is not a number").to_string();
+    assert!(error.contains("value 4 is `nothing`"), "{error}");
+}
