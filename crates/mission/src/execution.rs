@@ -235,13 +235,19 @@ fn without_facts(facts: &Facts, network: &Arc<Network>, mut plan: Plan) -> (Arc<
     (Arc::new(stripped), plan)
 }
 
-/// The plan with the windows of what happened closed to when it did.
+/// The plan with the windows of what happened closed to when it did. What did not happen comes no earlier than the last of it:
+/// where a run stops late, the plan's own times for the rest may be over.
 fn with_times(plan: &Plan, times: &[Option<Time>]) -> Plan {
     let mut plan = plan.clone();
+    let last = times.iter().flatten().max().copied().unwrap_or_default();
     for (window, time) in plan.windows.iter_mut().zip(times) {
-        if let (Some(_), Some(time)) = (&window, *time) {
-            *window = Some(Window { earliest: time, latest: Bound::Finite(time) });
-        }
+        let Some(window) = window else { continue };
+        *window = match *time {
+            Some(time) => Window { earliest: time, latest: Bound::Finite(time) },
+            None => {
+                Window { earliest: window.earliest.max(last), latest: window.latest.max(Bound::Finite(last)) }
+            }
+        };
     }
     plan
 }

@@ -27,7 +27,7 @@ use tpn::{EventRef, Network, OccurrenceId};
 
 use self::seen::SeenMap;
 use self::trip::Trip;
-use crate::driving::Drive;
+use crate::driving::{self, Drive};
 use crate::planning::{self, Planned, Problem};
 use crate::traverse::{self, Route};
 
@@ -116,6 +116,8 @@ const MIN_ROCK_M: f64 = 0.4;
 const TICKS_PER_SECOND: u32 = 10;
 /// Within this distance of a location a vehicle is at it, in metres: it may stop a little before its path ends.
 const AT_GOAL_M: f64 = 0.5;
+/// Where a vehicle stands first, no rock comes nearer to its body than this, in metres.
+const STARTING_ROOM_M: f64 = 0.1;
 /// Metres driven are whole multiples of this fraction of a metre.
 const PARTS_PER_METRE: u32 = 1000;
 impl<'run> Driving<'run> {
@@ -224,7 +226,15 @@ impl ActivityExecutor for Driving<'_> {
             });
         }
         let name = network.occurrences[occurrence.index()].name.clone();
-        let mut trip = Trip::new(self, &course, network, start);
+        let tracks = driving::tracks_m(&course.drive);
+        for (vehicle, track) in course.drive.vehicles.iter().zip(&tracks) {
+            // Where it stands from the beginning no rock is, whatever the map leaves out.
+            if let (Some(&place), false) = (track.points_m.first(), self.stand.contains_key(vehicle)) {
+                let radius_m = vehicle::radius_m(&self.problem.program.world, *vehicle);
+                self.world.clear_rocks(place, radius_m + STARTING_ROOM_M);
+            }
+        }
+        let mut trip = Trip::new(self, &course, tracks, network, start);
         let reached = trip.drive();
         if let Err(reason) = &reached {
             trip.entries.push((trip.convoy.time_s(), format!("{reason}, and gives up")));

@@ -75,19 +75,12 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
             Some((OccurrenceId::from_index(index), moving))
         })
         .collect();
-    // Movements that take no time may have one earliest departure: the plan says which comes first.
-    let mut ranks: BTreeMap<OccurrenceId, usize> = BTreeMap::new();
-    for order in &plan.state_order {
-        for (rank, label) in order.producers.iter().enumerate() {
-            if let Some(owner) = network.labels[label.index()].owner {
-                *ranks.entry(owner).or_default() += rank;
-            }
-        }
-    }
-    moving.sort_by_key(|(id, _)| {
+    let departure = |id: OccurrenceId| {
         let start = network.occurrences[id.index()].start;
-        (plan.windows[start.index()].map(|window| window.earliest), ranks.get(id).copied(), *id)
-    });
+        plan.windows[start.index()].map(|window| window.earliest)
+    };
+    moving.sort_by_key(|(id, _)| (departure(*id), *id));
+    let moving = in_plan_order(network, plan, moving);
     let mut routes = Vec::new();
     let mut stopped: Vec<&StandingPlace> = places.iter().collect();
     for (id, moving) in moving {
@@ -118,6 +111,38 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
         routes.push(route);
     }
     routes
+}
+
+/// Movements in the order of departures: of those that depart at one time, because some take no time, each comes after the ones
+/// before it in the order that the plan gives the values of a state.
+fn in_plan_order<'program>(
+    network: &Network,
+    plan: &Plan,
+    moving: Vec<(OccurrenceId, Moving<'program>)>,
+) -> Vec<(OccurrenceId, Moving<'program>)> {
+    let order: Vec<OccurrenceId> = moving.iter().map(|&(id, _)| id).collect();
+    let mut open: BTreeMap<OccurrenceId, Moving<'program>> = moving.into_iter().collect();
+    let mut before: BTreeMap<OccurrenceId, Vec<OccurrenceId>> = BTreeMap::new();
+    let owner = |label: tpn::LabelId| network.labels[label.index()].owner.filter(|id| open.contains_key(id));
+    for state in &plan.state_order {
+        let owners: Vec<OccurrenceId> = state.producers.iter().filter_map(|&label| owner(label)).collect();
+        for pair in owners.windows(2) {
+            before.entry(pair[1]).or_default().push(pair[0]);
+        }
+    }
+    let mut ordered = Vec::with_capacity(order.len());
+    for id in order {
+        let mut next = vec![id];
+        while let Some(&id) = next.last() {
+            if let Some(earlier) = before.remove(&id) {
+                next.extend(earlier);
+            } else {
+                next.pop();
+                ordered.extend(open.remove_entry(&id));
+            }
+        }
+    }
+    ordered
 }
 
 fn waypoint(world: &World, name: &str) -> Option<Waypoint> {

@@ -19,6 +19,18 @@ pub struct Convoy {
     spacing_m: f64,
     step_s: f64,
     time_s: f64,
+    stall: Stall,
+}
+
+/// How far the convoy could have come since it last came farther.
+#[derive(Clone, Debug)]
+struct Stall {
+    /// What all its vehicles together still had to go then, in metres.
+    remaining_m: f64,
+    /// What its pace would have been since, in metres.
+    commanded_m: f64,
+    /// How often it stalled there.
+    count: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -82,6 +94,16 @@ const AT_HAND_STEP_M: f64 = 4.0;
 /// The leader waits when a follower is this many spacings behind its place.
 const WAITING_SPACINGS: f64 = 3.0;
 
+/// A follower that drives at less than this share of the leader's pace waits for it. It is not zero: the leader may wait for
+/// one that is beside it, and each then drives more slowly as the other does, without ever standing.
+const WAITING_SHARE: f64 = 0.5;
+/// Who has come no farther together, though the leader's pace was so many metres meanwhile, has stalled.
+const STALL_M: f64 = 4.0;
+/// A vehicle stands while another one goes around it that is no farther from it than so many metres.
+const PASSING_M: f64 = 0.6;
+/// Coming farther means so many metres less to go for all together.
+const STALL_WAY_M: f64 = 0.5;
+
 /// The share of the leader's pace at which a follower keeps up that is so many metres behind its place; none, and it
 /// waits for the leader, where it is far ahead of it.
 fn follower_share(lag_m: f64) -> f64 {
@@ -102,7 +124,8 @@ impl Convoy {
                 Member { driver, planned_m, has_arrived: false, passes_until_m: 0.0, near: None }
             })
             .collect();
-        Self { members, spacing_m, step_s, time_s: 0.0 }
+        let stall = Stall { remaining_m: f64::INFINITY, commanded_m: 0.0, count: 0 };
+        Self { members, spacing_m, step_s, time_s: 0.0, stall }
     }
 
     /// Seconds driven.
@@ -136,6 +159,14 @@ impl Convoy {
             member.driver.follow(path);
             member.has_arrived = false;
             member.passes_until_m = 0.0;
+            self.stall.remaining_m = f64::INFINITY;
+        }
+    }
+
+    /// A vehicle is to stay where it is.
+    pub fn stay(&mut self, vehicle: usize) {
+        if let Some(member) = self.members.get_mut(vehicle) {
+            member.has_arrived = true;
         }
     }
 
@@ -151,6 +182,7 @@ impl Convoy {
         let lag_m = |member: &Member| member.remaining_m() - (1.0 - share) * member.planned_m;
         let lags_m: Vec<f64> = self.members.iter().map(lag_m).collect();
         self.give_way(&lags_m);
+        self.end_stall(pace_mps, most_mps);
         let leader_waits = !self.members.first().is_some_and(Member::passes)
             && lags_m.iter().skip(1).any(|&lag_m| self.is_far_behind(lag_m));
         let wanted_mps = |(index, member): (usize, &Member)| {
@@ -169,6 +201,7 @@ impl Convoy {
         for (index, &wanted) in wanted_mps.iter().enumerate() {
             let in_its_way = self.in_its_way(index);
             let is_held = in_its_way.iter().any(|&other| self.waits_behind(index, other))
+                || self.lets_pass(index)
                 || self.is_held_by(index, around.others);
             let must_stand = is_held || self.members[index].has_arrived;
             let mut others = self.members.iter().enumerate().filter(|(other, _)| *other != index);
@@ -228,7 +261,7 @@ impl Convoy {
             let mut found = self.in_its_way(vehicle);
             if vehicle == 0 {
                 found.extend((1..count).filter(|&other| self.is_far_behind(lags_m[other])));
-            } else if follower_share(lags_m[vehicle]) <= 0.0 {
+            } else if follower_share(lags_m[vehicle]) < WAITING_SHARE {
                 found.push(0);
             }
             found
@@ -252,9 +285,53 @@ impl Convoy {
         }
     }
 
+    /// Where all wait for each other in a way that is no ring, one after the other goes around the others.
+    fn end_stall(&mut self, pace_mps: f64, most_mps: &[f64]) {
+        let remaining_m = self.members.iter().map(Member::remaining_m).sum();
+        // Who waits for one that cannot drive waits for as long as that takes.
+        let is_stopped = |(member, &most_mps): (&Member, &f64)| !member.has_arrived && most_mps <= 0.0;
+        let waits_for_one = self.members.iter().zip(most_mps).any(is_stopped);
+        if waits_for_one || remaining_m < self.stall.remaining_m - STALL_WAY_M {
+            self.stall = Stall { remaining_m, commanded_m: 0.0, count: 0 };
+            return;
+        }
+        self.stall.commanded_m += pace_mps * self.step_s;
+        if self.stall.commanded_m < STALL_M {
+            return;
+        }
+        let under_way: Vec<usize> =
+            (0..self.members.len()).filter(|&vehicle| !self.members[vehicle].has_arrived).collect();
+        if let Some(&vehicle) = under_way.get(self.stall.count % under_way.len().max(1)) {
+            for member in &mut self.members {
+                member.passes_until_m = 0.0;
+            }
+            let member = &mut self.members[vehicle];
+            member.passes_until_m = member.driver.progress_m() + self.spacing_m;
+        }
+        self.stall.commanded_m = 0.0;
+        self.stall.count += 1;
+    }
+
     /// Whether a vehicle stands behind another that is in its way, rather than go around it.
     fn waits_behind(&self, vehicle: usize, other: usize) -> bool {
         !self.members[vehicle].passes() && !self.members[other].has_arrived
+    }
+
+    /// Whether a vehicle stands because another one goes around it close by, before it if both do.
+    fn lets_pass(&self, vehicle: usize) -> bool {
+        let own = &self.members[vehicle];
+        let radius_m = own.driver.settings().radius_m + PASSING_M;
+        let here = own.driver.state().position_m;
+        self.members.iter().enumerate().any(|(index, other)| {
+            let driver = &other.driver;
+            let is_close =
+                distance(&driver.state().position_m, &here) <= radius_m + driver.settings().radius_m;
+            index != vehicle
+                && other.passes()
+                && !other.has_arrived
+                && (!own.passes() || index < vehicle)
+                && is_close
+        })
     }
 
     /// The vehicles of the convoy that one goes around, as place and radius in metres.

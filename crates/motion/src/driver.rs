@@ -124,18 +124,23 @@ const MAX_STEP_S: f64 = 20.0;
 const MORE_SHARE: f64 = 0.04;
 const MORE_M: f64 = 1.5;
 const MORE_FOR_FOLLOWER_M: f64 = 2.0;
+const DETOUR_M: f64 = 10.0;
+const DETOUR_FOR_FOLLOWER_M: f64 = 5.0;
 /// What it needs more time than its path, as a share of it, in seconds, and in metres that it could have driven meanwhile.
 const LONGER_SHARE: f64 = 0.06;
 const LONGER_S: f64 = 15.0;
-const LONGER_FOR_FOLLOWER_M: f64 = 80.0;
+const LONGER_FOR_FOLLOWER_M: f64 = 10.0;
+const AROUND_ROCKS_M: f64 = 20.0;
 const LESS_SHARE: f64 = 0.01;
-const LESS_M: f64 = 1.0;
+const LESS_M: f64 = 2.5;
 const LESS_FOR_FOLLOWER_M: f64 = 1.5;
+/// The share of its margin that a vehicle keeps from what it is too near already.
+const CLOSE_SHARE: f64 = 0.25;
 /// The greatest turn between two decisions, in radians.
 const STEP_TURN_RAD: f64 = 0.2;
 
-/// How far the leader of some followers drives at most along a path of some metres where nothing disturbs it: it goes around
-/// rocks that the map does not show, and where it turns back around its followers. Measured: see
+/// How far the leader of some followers drives at most along a path of some metres where nothing disturbs it and the map shows
+/// everything that stands in its way: where it turns back, it goes around its followers. Measured: see
 /// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
 pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
     if length_m > 0.0 {
@@ -145,14 +150,20 @@ pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
     }
 }
 
+/// How much more than that it drives at most to go around rocks that the map does not show, in metres. Measured in the same way,
+/// on maps with rocks of all sizes.
+pub fn detours_at_most_m(followers: usize) -> f64 {
+    DETOUR_M + DETOUR_FOR_FOLLOWER_M * followers as f64
+}
+
 /// How long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it sets out and at
-/// corners, and goes around what the map does not show; one that turns back waits for its followers to let it pass and to
-/// come after it. `followers_behind` are those where it turns back, `speed_mps` is the greatest speed of the traverse. Measured
-/// in the same way.
-pub fn driven_within_s(least_s: f64, speed_mps: f64, followers_behind: usize) -> f64 {
+/// corners, and goes around what the map does not show, if `leaves_out_rocks`; followers have to sort themselves out.
+/// `speed_mps` is the greatest speed of the traverse. Measured in the same way.
+pub fn driven_within_s(least_s: f64, speed_mps: f64, followers: usize, leaves_out_rocks: bool) -> f64 {
     if least_s > 0.0 {
-        let turning_m = LONGER_FOR_FOLLOWER_M * followers_behind as f64;
-        least_s * (1.0 + LONGER_SHARE) + LONGER_S + turning_m / speed_mps
+        let followers = followers as f64;
+        let rocks_m = if leaves_out_rocks { AROUND_ROCKS_M * (1.0 + followers) } else { 0.0 };
+        least_s * (1.0 + LONGER_SHARE) + LONGER_S + (LONGER_FOR_FOLLOWER_M * followers + rocks_m) / speed_mps
     } else {
         0.0
     }
@@ -441,15 +452,21 @@ impl Driver {
         let here = self.state.position_m;
         let mut state = MotionState { speed_mps: speed, turn_rate_rps: rate, ..self.state };
         let mut way = 0.0;
-        // A vehicle that is nearer to something than its margin may leave it.
-        let mut before: Vec<f64> = near.iter().map(|&point| distance_squared(&point, &here)).collect();
+        // A vehicle that is nearer to something than its margin may leave it, past it where that does not touch it.
+        let least = self.settings.radius_m + CLOSE_SHARE * self.settings.margin_m;
+        let room = |before: f64| if before < reach * reach { least } else { reach };
+        let mut before: Vec<(f64, f64)> = near
+            .iter()
+            .map(|&point| distance_squared(&point, &here))
+            .map(|squared| (squared, room(squared)))
+            .collect();
         while way < most {
             let next = coast(state, PIECE_M / speed);
-            let touches = near.iter().zip(&mut before).any(|(&point, before)| {
+            let touches = near.iter().zip(&mut before).any(|(&point, (before, room))| {
                 let squared = distance_squared(&point, &next.position_m);
                 let nearer = squared < *before;
                 *before = squared;
-                nearer && squared < reach * reach
+                nearer && squared < *room * *room
             });
             let leaves_map = map.is_some_and(|map| {
                 map.is_free(state.position_m) && !map.is_segment_free(state.position_m, next.position_m)

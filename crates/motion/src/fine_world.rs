@@ -20,6 +20,7 @@ pub struct FineWorld {
 struct Disc {
     center_m: Point2<f64>,
     shape: Ball,
+    is_rock: bool,
 }
 
 impl FineWorld {
@@ -27,7 +28,8 @@ impl FineWorld {
     pub fn new(terrain: &Terrain, obstacles: &[Obstacle], min_rock_m: f64) -> Self {
         let mut world = Self::default();
         for rock in terrain.rocks().iter().filter(|rock| rock.diameter_m >= min_rock_m) {
-            world.add(&Obstacle::Circle { center_m: rock.center_m, radius_m: 0.5 * rock.diameter_m });
+            let shape = Ball::new(0.5 * rock.diameter_m);
+            world.discs.push(Disc { center_m: rock.center_m, shape, is_rock: true });
         }
         for obstacle in obstacles {
             world.add(obstacle);
@@ -39,7 +41,7 @@ impl FineWorld {
     pub fn add(&mut self, obstacle: &Obstacle) {
         match obstacle {
             Obstacle::Circle { center_m, radius_m } => {
-                self.discs.push(Disc { center_m: *center_m, shape: Ball::new(*radius_m) });
+                self.discs.push(Disc { center_m: *center_m, shape: Ball::new(*radius_m), is_rock: false });
             }
             Obstacle::Polygon { corners_m } => {
                 let next = corners_m.iter().cycle().skip(1);
@@ -48,11 +50,16 @@ impl FineWorld {
         }
     }
 
+    /// Takes away the rocks that come within a range of a point, because a vehicle stands there.
+    pub fn clear_rocks(&mut self, point_m: Point2<f64>, range_m: f64) {
+        self.discs.retain(|disc| !disc.is_rock || disc.distance_m(point_m) >= range_m);
+    }
+
     /// Puts a round thing into the world that lies below the plane of range finders; a polygon stands as high as any.
     pub fn add_low(&mut self, obstacle: &Obstacle) {
         match obstacle {
             Obstacle::Circle { center_m, radius_m } => {
-                self.low.push(Disc { center_m: *center_m, shape: Ball::new(*radius_m) });
+                self.low.push(Disc { center_m: *center_m, shape: Ball::new(*radius_m), is_rock: false });
             }
             Obstacle::Polygon { .. } => self.add(obstacle),
         }

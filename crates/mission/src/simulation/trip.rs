@@ -17,12 +17,13 @@ use tpn::{ArcKind, EventEnd, EventRef, Network, OccurrenceId};
 use super::seen::{SeenMap, is_blocked};
 use super::way::{nearest_free, rest_of, until};
 use super::{Course, DriveFrame, Driving, SimulatedVehicle};
-use crate::driving;
 
 /// Frames are kept this far apart, in metres and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
 const FRAME_RAD: f64 = 0.4;
 const FRAME_STEPS: u32 = 40;
+/// Of a vehicle that moves so many metres from another one, or nearer, every step is kept.
+const CLOSE_M: f64 = 0.5;
 /// How far ahead a frame shows the way, in metres.
 const SHOWN_PLAN_M: f64 = 6.0;
 /// The leader aims to be there this share of its time early: what it meets costs time.
@@ -32,6 +33,10 @@ const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
 /// Steps of simulation that one drive takes at most, so that none goes on without end.
 const MAX_STEPS: u32 = 500_000;
+/// It stays where it is, when it is this near to the end of its way, in metres, and something stands no farther beside that
+/// than it needs itself and so much more.
+const STAYS_WITHIN_M: f64 = 4.0;
+const BESIDE_M: f64 = 0.3;
 /// What is seen this near to what the map shows, in metres, is taken for that.
 const KNOWN_M: f64 = 0.9;
 /// What sonars hear goes on the map from this near on, in metres.
@@ -84,7 +89,14 @@ pub(super) struct Trip<'a> {
 }
 
 impl<'a> Trip<'a> {
-    pub(super) fn new(driving: &'a Driving<'_>, course: &'a Course, network: &Network, start: Time) -> Self {
+    /// Of vehicles whose ways are `tracks`, the leader's first.
+    pub(super) fn new(
+        driving: &'a Driving<'_>,
+        course: &'a Course,
+        tracks: Vec<Path>,
+        network: &Network,
+        start: Time,
+    ) -> Self {
         let world = &driving.problem.program.world;
         let unit_s = driving.problem.program.options.time_unit.seconds() as f64;
         let start = start.to_f64();
@@ -99,7 +111,7 @@ impl<'a> Trip<'a> {
         let members: Vec<ConvoyMember> = drive
             .vehicles
             .iter()
-            .zip(driving::tracks_m(drive))
+            .zip(tracks)
             .zip(&models)
             .map(|((vehicle, track), model)| {
                 let mut points = track.points_m;
@@ -326,6 +338,13 @@ impl<'a> Trip<'a> {
         let rest_m = rest_m.unwrap_or(0.0);
         let after = rest_of(&path, path.length_m() - rest_m);
         let Some(&goal_m) = after.first() else { return Err(stuck) };
+        // Where something that the map does not show leaves no room at the end of its way, it stays beside that.
+        let reach_m = model.circumradius_m + model.margin_m + BESIDE_M;
+        let is_taken = driver.seen_m().any(|point| distance(&point, &goal_m) <= reach_m);
+        if rest_m <= 0.0 && is_taken && distance(&here, &goal_m) <= STAYS_WITHIN_M {
+            self.convoy.stay(vehicle);
+            return Ok(());
+        }
         // What others have seen counts while it leaves a way: whole cells are taken for what fills a part of them.
         let mut shared = occupancy.clone();
         for &center_m in &self.known {
@@ -458,7 +477,20 @@ impl<'a> Trip<'a> {
         }
     }
 
-    /// Keeps a frame of each vehicle that has moved or turned since its last one.
+    /// Whether others are so near a vehicle that contact is told by every step.
+    fn is_close_to_others(&self, vehicle: usize) -> bool {
+        let own_m = self.models[vehicle].circumradius_m + CLOSE_M;
+        let here = self.convoy.state(vehicle).position_m;
+        let now = self.start + self.convoy.time_s() / self.unit_s;
+        let mut members = self.models.iter().enumerate().filter(|(index, _)| *index != vehicle);
+        members.any(|(index, model)| {
+            distance(&self.convoy.state(index).position_m, &here) <= own_m + model.circumradius_m
+        }) || self.others.iter().any(|(other, radius_m)| {
+            other.at(now).is_some_and(|it| distance(&it.position_m, &here) <= own_m + radius_m)
+        })
+    }
+
+    /// Keeps a frame of each vehicle that has moved or turned since its last one, set out or stopped, or is close to others.
     fn record_all(&mut self, steps: &[(DriveEvent, RangeScan)]) {
         let is_over = self.convoy.has_arrived();
         for index in 0..self.models.len() {
@@ -470,8 +502,9 @@ impl<'a> Trip<'a> {
                 let turned = motion::heading_difference(last.heading_rad, state.heading_rad).abs();
                 distance(&last.position_m, &state.position_m) >= FRAME_M
                     || turned >= FRAME_RAD
+                    || (last.speed_mps > 0.0) != (state.speed_mps > 0.0)
                     || self.steps_since_frame[index] >= FRAME_STEPS
-            });
+            }) || (state.speed_mps > 0.0 && self.is_close_to_others(index));
             if !is_due && !is_over {
                 continue;
             }

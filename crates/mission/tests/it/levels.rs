@@ -201,12 +201,12 @@ fn disturbances_of_what_the_mission_does_not_have_are_refused() {
 #[test]
 fn what_a_path_takes_makes_room_for_a_charge() {
     let source =
-        ROVER.replace("0..200 = 106", "0..200 = 200").replace("choose { Nap(), Charge() }", "Charge()");
+        ROVER.replace("0..200 = 111", "0..200 = 200").replace("choose { Nap(), Charge() }", "Charge()");
     let execution = run(&source, &[]);
     assert_eq!((execution.ending, reasons(&execution)), (Ending::Finished, Vec::new()));
     // Without a drive before it there is none.
     let source = ROVER
-        .replace("0..200 = 106", "0..200 = 200")
+        .replace("0..200 = 111", "0..200 = 200")
         .replace("Drive(A); choose { Nap(), Charge() }; Drive(B)", "Charge(); delay[1,1]; Drive(A)");
     assert!(std::panic::catch_unwind(|| run(&source, &[])).is_err(), "it charges a battery that is full");
 }

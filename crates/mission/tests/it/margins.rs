@@ -11,8 +11,8 @@ use terrain::Random;
 use crate::support::Mission;
 
 /// A mission with a few places, obstacles, and one to three vehicles that drive together; some on a map whose rocks it does
-/// not show.
-fn random_mission(seed: u64) -> String {
+/// not show; and the greatest speed of its drives, in m/s.
+fn random_mission(seed: u64) -> (String, f64) {
     let mut random = Random::from_seed(seed);
     let mut text = String::new();
     if random.below(2) == 0 {
@@ -42,34 +42,40 @@ fn random_mission(seed: u64) -> String {
         writeln!(text, "primitive Drive(to)[0,600] moves {} speed (0.005, {greatest});", names.join(", "));
     let drives: Vec<String> = (1..=places).map(|place| format!("Drive(P{})", place % places)).collect();
     let _ = writeln!(text, "scenario S[0,4000] = {{ {} }}", drives.join("; delay; "));
-    text
+    (text, greatest)
 }
 
 #[test]
-fn no_driver_needs_more_metres_than_plans_count() {
+fn no_driver_gives_up_or_needs_more_than_plans_count() {
     let mut drives = 0;
-    for seed in 0..16 {
-        let source = random_mission(seed);
+    for seed in 0..24 {
+        let (source, speed_mps) = random_mission(seed);
+        let has_map = source.contains("terrain");
         Mission::read(&source).with_plan((Options::default(), seed), |problem, planned, grounds, paths| {
             // A place in an obstacle, or one that no path reaches.
             let Some(ran) = execution::execute(problem, &planned, &Script::default(), grounds, paths) else { return };
-            for drive in ran.expect("its times fit").drives.iter().filter(|drive| drive.duration.is_some()) {
+            for drive in ran.expect("its times fit").drives {
+                let duration = drive.duration.unwrap_or_else(|| panic!("seed {seed}: a drive is given up\n{source}"));
                 let is_its = |it: &&snapshot::Traverse| it.occurrence == drive.occurrence;
                 let Some(traverse) = planned.traverses.iter().find(is_its) else { continue };
                 let (length_m, followers) = (traverse.length_m, traverse.vehicles.len() - 1);
+                let detours_m = if has_map { motion::detours_at_most_m(followers) } else { 0.0 };
                 let bounds = [
                     motion::driven_at_least_m(length_m, followers),
-                    motion::driven_at_most_m(length_m, followers),
+                    motion::driven_at_most_m(length_m, followers) + detours_m,
                 ];
-                println!("seed {seed}: {followers} followers, {length_m:.2} m, driven {:.2} m", drive.driven_m);
                 assert!(
                     (bounds[0]..=bounds[1]).contains(&drive.driven_m),
                     "seed {seed}: {} m along {length_m} m with {followers} followers; {bounds:?} are counted\n{source}",
                     drive.driven_m
                 );
+                let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
+                let within_s = motion::driven_within_s(least * 60.0, speed_mps, followers, has_map);
+                let took_s = duration.to_f64() * 60.0;
+                assert!(took_s <= within_s, "seed {seed}: {took_s} s, where {within_s} s are counted\n{source}");
                 drives += 1;
             }
         });
     }
-    assert!(drives > 10, "only {drives} drives");
+    assert!(drives > 40, "only {drives} drives");
 }
