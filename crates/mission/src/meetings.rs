@@ -19,12 +19,12 @@ use tpn::{Network, OccurrenceId, Plan, Resource, ResourceId, Supply, Use};
 use crate::planning::{self, Planned, Problem};
 use crate::separation::Meeting;
 
-/// Orders that are tried for one mission, and ways around that are looked for, at most: while vehicles meet in the earliest
-/// schedule, and while they meet in others alone.
-const MAX_TRIES: usize = 12;
-const MAX_TRIES_FOR_OTHERS: usize = 4;
-/// Ways around of the same traverse and vehicle: the way around takes longer, so that they meet elsewhere.
-const MAX_WAYS_OF_PAIR: usize = 4;
+/// Orders that are tried in vain for one mission, and ways around, at most: while vehicles meet in the earliest schedule, and
+/// while they meet only in others.
+const MAX_IN_VAIN: usize = 12;
+const MAX_IN_VAIN_FOR_OTHERS: usize = 4;
+/// Ways around of the same traverse, at most: on the way around it may meet others, or the same vehicle elsewhere.
+const MAX_WAYS_OF_TRAVERSE: usize = 4;
 /// Metres that a way around keeps beyond what is needed.
 const SPARE_M: f64 = 0.3;
 
@@ -41,7 +41,8 @@ pub(crate) fn kept_apart(
     let mut network = Arc::clone(problem.network);
     let mut tried: BTreeSet<(OccurrenceId, OccurrenceId)> = BTreeSet::new();
     let options = Options { explain: false, relax: false, ..problem.options };
-    while tried.len() < max_tries(&planned) {
+    let mut in_vain = 0;
+    while in_vain < max_in_vain(&planned) {
         let orders = planned.meetings.iter().flat_map(|meeting| meeting.orders.iter().copied());
         let untried = orders.into_iter().find(|order| !tried.contains(order));
         let Some((first, then)) = untried else { break };
@@ -52,6 +53,8 @@ pub(crate) fn kept_apart(
         let has_plan = planning::has_plan(&other.planning.outcome);
         if is_valid && has_plan && is_better(problem.network, &planned, &other) {
             (network, planned) = (ordered, other);
+        } else {
+            in_vain += 1;
         }
     }
     let mut planned = led_around(&Problem { network: &network, options, ..*problem }, planned, plan_again);
@@ -66,15 +69,16 @@ fn num_in_earliest(planned: &Planned) -> usize {
     planned.meetings.iter().filter(|meeting| meeting.violation.schedule.is_empty()).count()
 }
 
-fn max_tries(planned: &Planned) -> usize {
-    if num_in_earliest(planned) > 0 { MAX_TRIES } else { MAX_TRIES_FOR_OTHERS }
+fn max_in_vain(planned: &Planned) -> usize {
+    if num_in_earliest(planned) > 0 { MAX_IN_VAIN } else { MAX_IN_VAIN_FOR_OTHERS }
 }
 
-/// Whether fewer vehicles meet in another plan. For schedules that need not come about the objective gives up nothing.
+/// Whether fewer vehicles meet in another plan; those that meet in the earliest schedule count twice. For schedules that need
+/// not come about the objective gives up nothing.
 fn is_better(network: &Network, planned: &Planned, other: &Planned) -> bool {
     let (before, after) = (num_in_earliest(planned), num_in_earliest(other));
-    let is_fewer = other.meetings.len() < planned.meetings.len();
-    after < before || (after == before && is_fewer && !is_worse(network, planned, other))
+    let is_fewer = other.meetings.len() + after < planned.meetings.len() + before;
+    is_fewer && (after < before || !is_worse(network, planned, other))
 }
 
 /// Whether another plan is worse in the first goal of the objective in which the two differ.
@@ -112,26 +116,25 @@ fn led_around(
 ) -> Planned {
     let mut keep_outs = KeepOuts::new();
     let mut tried: BTreeSet<(OccurrenceId, u32)> = BTreeSet::new();
-    let mut ways = 0;
-    while ways < max_tries(&planned) {
+    let mut in_vain = 0;
+    while in_vain < max_in_vain(&planned) {
         let untried = planned.meetings.iter().flat_map(ways_around);
         let Some(way) = untried.into_iter().find(|way| !tried.contains(&way.key())) else { break };
         tried.insert(way.key());
         let mut wider = keep_outs.clone();
         let mut places = way.places(problem);
-        for _ in 0..MAX_WAYS_OF_PAIR {
+        for _ in 0..MAX_WAYS_OF_TRAVERSE {
             wider.entry(way.occurrence).or_default().append(&mut places);
-            ways += 1;
             let other = plan_again(&Problem { keep_outs: Some(&wider), ..*problem });
             let is_valid = other.planning.verdict.as_ref().is_some_and(|verdict| verdict.valid);
-            if !is_valid || !planning::has_plan(&other.planning.outcome) {
-                break;
-            }
-            if is_better(problem.network, &planned, &other) {
+            let fits = is_valid && planning::has_plan(&other.planning.outcome);
+            if fits && is_better(problem.network, &planned, &other) {
                 (keep_outs, planned) = (wider, other);
                 break;
             }
-            let again = other.meetings.iter().flat_map(ways_around).find(|again| again.key() == way.key());
+            in_vain += 1;
+            let mut again = other.meetings.iter().flat_map(ways_around);
+            let again = fits.then(|| again.find(|again| again.occurrence == way.occurrence)).flatten();
             let Some(again) = again else { break };
             places = again.places(problem);
         }
@@ -142,7 +145,7 @@ fn led_around(
 /// A traverse that could go around where another vehicle is.
 struct WayAround {
     occurrence: OccurrenceId,
-    /// Who is there.
+    /// Who can be there.
     stays: u32,
     /// Where that one can be while the other one is near, in metres.
     places_m: Vec<Point2<f64>>,

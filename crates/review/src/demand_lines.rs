@@ -3,9 +3,9 @@
 //! valid.
 
 use exact::Rational;
-use rmpl::program::LabelMode;
+use rmpl::program::{Change, LabelMode};
 use snapshot::Planning;
-use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Variable};
+use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Use, Variable};
 
 use super::lines::Places;
 use super::{Line, ResourceReview, Status};
@@ -15,6 +15,10 @@ pub(super) struct DemandLines<'input> {
     pub(super) network: &'input Network,
     pub(super) plan: &'input Plan,
     pub(super) places: &'input Places<'input>,
+    /// The drives of the plan.
+    pub(super) traverses: &'input [snapshot::Traverse],
+    /// Whether they lead over a map, which may leave out rocks.
+    pub(super) has_map: bool,
     /// How everything stands that the checker examines.
     pub(super) status: Status,
 }
@@ -51,6 +55,23 @@ impl DemandLines<'_> {
         all.filter(|(resource, _)| !resource.name.contains('#'))
             .filter_map(|(resource, &levels)| self.resource(resource, levels))
             .collect()
+    }
+
+    /// What drives may take of a resource beyond what the plan counts, to go around rocks that the map does not show.
+    fn detours(&self, resource: &Resource) -> Option<Rational> {
+        let consumed = |used: &&Use| {
+            self.network.resources[used.resource.index()].name == resource.name
+                && used.change == Change::Consumes
+                && !used.per_metre.is_zero()
+        };
+        let taken = self.network.uses.iter().filter(consumed).filter_map(|used| {
+            let traverse = self.traverses.iter().find(|it| Some(it.occurrence) == used.owner)?;
+            let more_m = motion::detours_at_most_m(traverse.vehicles.len().saturating_sub(1));
+            used.per_metre.checked_mul(Rational::from_f64_nearest(more_m, 1)?)
+        });
+        let taken: Vec<Rational> = taken.collect();
+        let sum = taken.iter().try_fold(Rational::ZERO, |sum, &more| sum.checked_add(more))?;
+        (self.has_map && sum.is_positive()).then_some(sum)
     }
 
     fn requirements(&self) -> Option<Line> {
@@ -178,7 +199,18 @@ impl DemandLines<'_> {
             _ => return None,
         };
         let is_short = spare.is_negative() || room.is_some_and(Rational::is_negative);
-        let status = if is_short { Status::Failed } else { self.status };
+        let detours = self.detours(resource);
+        let is_tight = room.is_some() && detours.is_some_and(|detours| detours > spare);
+        let (status, text) = match detours {
+            _ if is_short => (Status::Failed, text),
+            Some(detours) if is_tight => {
+                let more = detours.readable();
+                let text =
+                    format!("{text}; drives around rocks that the map does not show may take {more} more");
+                (self.status.max(Status::Attention), text)
+            }
+            _ => (self.status, text),
+        };
         let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());
         Some(ResourceReview { line, name: name.to_owned(), supply: resource.supply, levels, spare, room })
     }

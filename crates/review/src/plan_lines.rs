@@ -20,9 +20,6 @@ use super::{
     ChoiceReview, ConflictReview, EventReview, Fate, Line, LinkReview, Status, TimeRange, TraverseReview,
 };
 
-/// A formation that turns by more than this before it sets out has its followers in its way, in radians.
-const TURNING_BACK_RAD: f64 = std::f64::consts::FRAC_PI_4;
-
 /// What the lines about a plan are made from.
 pub(super) struct PlanLines<'input> {
     snapshot: &'input Snapshot,
@@ -47,8 +44,15 @@ impl<'input> PlanLines<'input> {
     }
 
     /// The lines about what lasts and what is limited.
-    pub(super) const fn demands(&self) -> DemandLines<'input> {
-        DemandLines { network: self.network, plan: self.plan, places: self.places, status: self.checked }
+    pub(super) fn demands(&self) -> DemandLines<'input> {
+        DemandLines {
+            network: self.network,
+            plan: self.plan,
+            places: self.places,
+            traverses: &self.snapshot.traverses,
+            has_map: self.snapshot.map.is_some(),
+            status: self.checked,
+        }
     }
 
     pub(super) fn choices(&mut self, stop: &mut dyn FnMut() -> bool) -> Vec<ChoiceReview> {
@@ -427,23 +431,7 @@ impl<'input> PlanLines<'input> {
         let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
         let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
         let followers = traverse.vehicles.len().saturating_sub(1);
-        let followers_behind = if self.turns_back(traverse) { followers } else { 0 };
-        motion::driven_within_s(least * unit_s, speed_mps, followers_behind)
-    }
-
-    /// Whether a formation sets out in another direction than that in which it arrived, so that those behind are in its way.
-    fn turns_back(&self, traverse: &snapshot::Traverse) -> bool {
-        let path = joined(&traverse.legs);
-        let Some((from, to)) = path.segments().find(|(from, to)| from != to) else { return false };
-        let arrives_here = |it: &&snapshot::Traverse| {
-            it.vehicles == traverse.vehicles
-                && it.legs.last().and_then(|leg| leg.points_m.last()) == Some(&from)
-        };
-        let before = self.snapshot.traverses.iter().filter(arrives_here);
-        before.filter_map(|it| it.legs.iter().rev().find_map(snapshot::Leg::heading_rad)).any(|heading_rad| {
-            let ahead_rad = libm::atan2(to.y - from.y, to.x - from.x);
-            motion::heading_difference(heading_rad, ahead_rad).abs() > TURNING_BACK_RAD
-        })
+        motion::driven_within_s(least * unit_s, speed_mps, followers, self.snapshot.map.is_some())
     }
 
     /// Vehicles that do not reach the location that they are then said to be at, because others stand there (SPEC 10.3).

@@ -18,8 +18,8 @@ pub mod standing;
 pub mod vehicle;
 
 pub use self::snapshot::{
-    Keyframe, LeftOut, Leg, MapKey, MovementTimes, PathFigures, Planning, SeparationViolation, Snapshot, Stage, Timings,
-    Traverse, Undrivable, VehicleMotion, joined,
+    Keyframe, LeftOut, Leg, MapKey, MovementTimes, PathFigures, Planning, SeparationViolation, Snapshot,
+    Stage, Timings, Traverse, Undrivable, VehicleMotion, joined,
 };
 pub use content::{ContentKey, PartKeys};
 pub use drive::{DriveFrame, SimulatedDrive, SimulatedVehicle};
