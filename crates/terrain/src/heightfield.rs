@@ -195,7 +195,7 @@ impl Terrain {
             .collect()
     }
 
-    fn bilinear(&self, point_m: Point2<f64>) -> Option<Patch> {
+    pub(crate) fn bilinear(&self, point_m: Point2<f64>) -> Option<Patch> {
         let own = self.height_of(self.frame.cell_at(point_m)?)?;
         let point = self.frame.to_cells(point_m);
         let (column, row) = ((point.x - 0.5).floor(), (point.y - 0.5).floor());
@@ -203,6 +203,7 @@ impl Terrain {
             |east: i64, north: i64| self.sample(column as i64 + east, row as i64 + north).unwrap_or(own);
         Some(Patch {
             corners: [near(0, 0), near(1, 0), near(0, 1), near(1, 1)],
+            corner: Point2::new(column + 0.5, row + 0.5),
             fraction: Vector2::new(point.x - 0.5 - column, point.y - 0.5 - row),
         })
     }
@@ -215,9 +216,11 @@ fn normal_of_gradient(gradient: Vector2<f64>) -> UnitVector3<f64> {
 }
 
 /// The surface between four cell centres.
-struct Patch {
-    /// South-west, south-east, north-west, north-east.
-    corners: [f64; 4],
+pub(crate) struct Patch {
+    /// Heights in the south-west, south-east, north-west and north-east.
+    pub(crate) corners: [f64; 4],
+    /// The south-west centre, in cells.
+    pub(crate) corner: Point2<f64>,
     /// From the south-west centre, in cells.
     fraction: Vector2<f64>,
 }

@@ -29,7 +29,7 @@ impl Measurement {
         Some(Self {
             ends_m,
             profile: map.profile(from, to)?,
-            sight: map.line_of_sight(from, to, EYE_HEIGHT_M)?,
+            sight: map.line_of_sight(from, to, [EYE_HEIGHT_M; 2])?,
         })
     }
 

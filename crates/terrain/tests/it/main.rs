@@ -3,5 +3,6 @@
 mod configuration_space;
 mod formats;
 mod geotiff;
+mod line_of_sight;
+mod profile;
 mod ros_maps;
-mod sight;

@@ -1,4 +1,4 @@
-//! The ground between two places: lengths and views of ground whose shape is known.
+//! The ground between two places: lengths of ground whose shape is known.
 
 use nalgebra::Point2;
 use terrain::{GridFrame, Terrain};
@@ -38,29 +38,6 @@ fn over_a_wall_the_ground_is_longer_by_going_up_and_down() {
 }
 
 #[test]
-fn a_wall_hides_what_is_behind_it_and_its_near_flank_is_said() {
-    let ground = walled();
-    let sight =
-        ground.line_of_sight(Point2::new(20.5, 50.5), Point2::new(80.5, 50.5), 1.5).expect("on the map");
-    let at = sight.blocked_at_m.expect("hidden");
-    assert!((47.0..49.0).contains(&at.x) && (at.y - 50.5).abs() < 1e-9 && at.z > 1.5, "{at}");
-    let back =
-        ground.line_of_sight(Point2::new(80.5, 50.5), Point2::new(20.5, 50.5), 1.5).expect("on the map");
-    assert!(back.blocked_at_m.is_some_and(|at| (51.0..53.0).contains(&at.x)));
-}
-
-#[test]
-fn places_on_the_same_side_and_eyes_above_the_wall_see_each_other() {
-    let ground = walled();
-    let clear =
-        |from, to, eye| ground.line_of_sight(from, to, eye).expect("on the map").blocked_at_m.is_none();
-    assert!(clear(Point2::new(20.5, 20.5), Point2::new(40.5, 80.5), 1.5));
-    assert!(clear(Point2::new(20.5, 50.5), Point2::new(80.5, 50.5), 10.5));
-    assert!(clear(Point2::new(20.5, 50.5), Point2::new(50.5, 50.5), 1.5), "the top of the wall is seen");
-}
-
-#[test]
 fn places_outside_the_map_have_no_profile() {
     assert_eq!(slope().profile(Point2::new(-1.0, 5.0), Point2::new(5.0, 5.0)), None);
-    assert_eq!(slope().line_of_sight(Point2::new(5.0, 5.0), Point2::new(5.0, 500.0), 1.5), None);
 }

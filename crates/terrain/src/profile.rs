@@ -1,6 +1,6 @@
-//! The ground between two places: its profile, its length, and whether they see each other.
+//! The ground between two places: its profile and its length.
 
-use nalgebra::{Point2, Point3, distance};
+use nalgebra::{Point2, distance};
 use serde::{Deserialize, Serialize};
 
 use crate::heightfield::Terrain;
@@ -18,13 +18,6 @@ pub struct GroundProfile {
     pub climb_m: [f64; 2],
     /// The steepest slope along the line, in radians.
     pub slope_max_rad: f64,
-}
-
-/// Whether two places see each other over the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LineOfSight {
-    /// Where the ground first hides the second place from the first (east, north, up); `None` when nothing does.
-    pub blocked_at_m: Option<Point3<f64>>,
 }
 
 impl Terrain {
@@ -50,24 +43,5 @@ impl Terrain {
             profile.slope_max_rad = profile.slope_max_rad.max(libm::atan2(piece.y.abs(), piece.x));
         }
         Some(profile)
-    }
-
-    /// Whether eyes `eye_height_m` over the ground at two places see each other over the ground between them; declared
-    /// obstacles and rocks do not count. `None` when one of the places has no height.
-    pub fn line_of_sight(
-        &self,
-        from_m: Point2<f64>,
-        to_m: Point2<f64>,
-        eye_height_m: f64,
-    ) -> Option<LineOfSight> {
-        let from = self.height_at(from_m)? + eye_height_m;
-        let to = self.height_at(to_m)? + eye_height_m;
-        let ground = self.drape(from_m, to_m);
-        let pieces = ground.len().saturating_sub(1).max(1) as f64;
-        let inner = ground.iter().enumerate().skip(1).take(ground.len().saturating_sub(2));
-        let hides =
-            |&(index, point): &(usize, &Point3<f64>)| point.z > from + (to - from) * index as f64 / pieces;
-        let blocked_at_m = inner.into_iter().find(hides).map(|(_, point)| *point);
-        Some(LineOfSight { blocked_at_m })
     }
 }
