@@ -252,6 +252,10 @@ impl Told<'_> {
         if let Some(bounds) = self.bounds() {
             return format!("{requires}: {bounds}");
         }
+        let unseen = self.network.unseen(label, self.network.labels.iter());
+        if !unseen.is_empty() {
+            return format!("{requires}, but {}", joined(&unseen));
+        }
         let is_asserted = self
             .network
             .labels
@@ -288,7 +292,15 @@ impl Told<'_> {
                 names.push(name);
             }
         }
-        let kept_apart = format!("{} cannot be kept apart", joined(&names));
+        let labels: Vec<&tpn::Label> =
+            self.conditions().iter().map(|label| &self.network.labels[label.index()]).collect();
+        let unseen: Vec<String> = labels
+            .iter()
+            .filter(|label| label.mode == LabelMode::Ask)
+            .flat_map(|ask| self.network.unseen(ask, labels.iter().copied()))
+            .collect();
+        let reason = if unseen.is_empty() { String::new() } else { format!(", for {}", joined(&unseen)) };
+        let kept_apart = format!("{} cannot be kept apart{reason}", joined(&names));
         match self.bounds().or_else(|| self.room()) {
             Some(bounds) => format!("{kept_apart}: {bounds}"),
             None => kept_apart,

@@ -27,6 +27,7 @@ mod reading;
 pub mod repairs;
 pub mod sampling;
 pub mod separation;
+mod sight;
 mod simulation;
 pub mod traverse;
 

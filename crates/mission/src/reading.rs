@@ -13,12 +13,15 @@ use rmpl::spans::Spans as _;
 use rmpl::{Diagnostic, Parse, Severity, Shift};
 use smol_str::SmolStr;
 use snapshot::ContentKey;
-use snapshot::Goal;
 use snapshot::content::{Keyed, Keys};
+use snapshot::{Goal, MapKey};
 use tpn::{Network, Top};
 
+use crate::evaluated::Ground;
+use crate::ground::Grounds;
 use crate::network_text::NetworkText;
 use crate::programs::Programs;
+use crate::sight::{self, Seeing};
 
 /// What an edit came to.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +51,8 @@ pub(crate) struct Reading {
 #[derive(Debug)]
 struct Compiled {
     goal: Goal,
+    /// The map that decided what is in sight, if that counts.
+    map: Option<MapKey>,
     /// The network, whether or not an error forbids to plan it.
     network: Option<Keyed<Network>>,
     is_sound: bool,
@@ -131,7 +136,8 @@ impl Reading {
         self.program = Some(Keyed { key: keys.fresh(), value: Arc::default() });
         let diagnostics = read.found.clone();
         let (is_sound, found) = (read.is_sound(), Vec::new());
-        self.compiled = Some(Compiled { goal: Goal::Default, network, is_sound, found, diagnostics });
+        self.compiled =
+            Some(Compiled { goal: Goal::Default, map: None, network, is_sound, found, diagnostics });
         self.network_text = Some(read);
         Followed::Changed
     }
@@ -195,24 +201,27 @@ impl Reading {
         self.programs.as_ref().map_or_else(Arc::default, |known| Arc::clone(&known.programs))
     }
 
-    /// The network of `goal`, if no error prevents it, and all that is wrong with the text.
+    /// The network of `goal` on its ground, if no error prevents it, and all that is wrong with the text.
     pub(crate) fn compile(
         &mut self,
         goal: &Goal,
+        grounds: &mut Grounds,
         keys: &mut Keys,
     ) -> (Option<Keyed<Network>>, Vec<Diagnostic>) {
         // A network is one thing to plan, whatever the goal.
         let is_network = self.network_text.is_some();
-        let known = self.compiled.as_ref().filter(|known| is_network || known.goal == *goal);
-        if let Some(known) = known {
+        let program = self.program();
+        let ground = sight::ground(&program.value, grounds);
+        let map = ground.as_ref().map(|(key, _)| key.clone());
+        let is_known = |known: &&Compiled| is_network || (known.goal == *goal && known.map == map);
+        if let Some(known) = self.compiled.as_ref().filter(is_known) {
             return known.answer();
         }
-        let program = self.program();
-        let (network, found) = tpn::compile(&program.value, &top(&program.value, goal));
+        let (network, found) = compiled_on(&program.value, goal, ground.as_ref());
         self.compile_programs(network.as_ref());
         let network = network.map(|network| Keyed { key: keys.fresh(), value: Arc::new(network) });
         let goal = goal.clone();
-        let mut compiled = Compiled { goal, network, is_sound: false, found, diagnostics: Vec::new() };
+        let mut compiled = Compiled { goal, map, network, is_sound: false, found, diagnostics: Vec::new() };
         compiled.tell(&self.parse, self.programs.as_ref());
         let answer = compiled.answer();
         self.compiled = Some(compiled);
@@ -237,6 +246,7 @@ impl Compiled {
 /// `diagnostics`. Only with `keep` do the networks stay: they may be many.
 pub(crate) fn compile_scenarios(
     program: &Program,
+    grounds: &mut Grounds,
     diagnostics: &mut Vec<Diagnostic>,
     keep: bool,
 ) -> Option<Vec<Network>> {
@@ -244,7 +254,10 @@ pub(crate) fn compile_scenarios(
     let mut is_whole = true;
     let (_, mut of_programs) = Programs::compile(program, None);
     let depend_on_calls = Programs::depend_on_calls(program);
-    let found = tpn::compile_scenarios(program, |network| {
+    let ground = sight::ground(program, grounds);
+    let seeing = ground.as_ref().map(|(_, map)| Seeing::new(&program.world, map));
+    let ground = seeing.as_ref().map_or(&tpn::Level as &dyn tpn::Ground, |seeing| seeing);
+    let found = tpn::compile_scenarios(program, ground, |network| {
         if depend_on_calls {
             let (_, found) = Programs::compile(program, network.as_ref());
             for diagnostic in found {
@@ -262,12 +275,44 @@ pub(crate) fn compile_scenarios(
     (is_whole && is_sound).then_some(networks)
 }
 
-/// The network of what is to be planned, if no error prevents it; adds what compiling finds to `diagnostics`.
+/// The network of what is to be planned without heights, if no error prevents it; adds what compiling finds to
+/// `diagnostics`.
 pub fn compile(program: &Program, goal: &Goal, diagnostics: &mut Vec<Diagnostic>) -> Option<Network> {
-    let (network, found) = tpn::compile(program, &top(program, goal));
+    compile_over(program, goal, None, diagnostics)
+}
+
+/// [`compile`] on the ground of the mission.
+pub(crate) fn compile_on(
+    program: &Program,
+    goal: &Goal,
+    grounds: &mut Grounds,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Network> {
+    compile_over(program, goal, sight::ground(program, grounds).as_ref(), diagnostics)
+}
+
+fn compile_over(
+    program: &Program,
+    goal: &Goal,
+    ground: Option<&Ground>,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Network> {
+    let (network, found) = compiled_on(program, goal, ground);
     tpn::merge_diagnostics(diagnostics, found);
     diagnostics.extend(Programs::compile(program, network.as_ref()).1);
     network.filter(|_| diagnostics.iter().all(|found| found.severity != Severity::Error))
+}
+
+fn compiled_on(
+    program: &Program,
+    goal: &Goal,
+    ground: Option<&Ground>,
+) -> (Option<Network>, Vec<Diagnostic>) {
+    let top = top(program, goal);
+    match ground {
+        Some((_, map)) => tpn::compile_on(program, &top, &Seeing::new(&program.world, map)),
+        None => tpn::compile(program, &top),
+    }
 }
 
 fn top(program: &Program, goal: &Goal) -> Top {

@@ -14,6 +14,8 @@ pub struct VehicleModel {
     pub width_m: f64,
     /// From the ground to the top, or for a blimp of its hull, in metres.
     pub height_m: f64,
+    /// Height of the antenna over the ground in metres, or for a blimp over its hull (SPEC 10.5).
+    pub mast_m: f64,
     /// Radius in metres of the least disc around the vehicle's centre that holds it in every heading.
     pub circumradius_m: f64,
     /// What is kept free around that disc, in metres.
@@ -57,13 +59,14 @@ pub enum Drive {
 }
 
 /// The models of the paper's mission. Dimensions and speeds of the rovers are those of SPEC 7.1; grades, rock sizes,
-/// margins and the whole blimp (about the size of outdoor research blimps of those years) are this project's choice.
+/// margins masts and the whole blimp (about the size of outdoor research blimps of those years) are this project's choice.
 pub const VEHICLE_MODELS: [VehicleModel; 3] = [
     VehicleModel {
         name: "ATRV",
         length_m: 1.02,
         width_m: 0.84,
         height_m: 0.65,
+        mast_m: 1.5,
         circumradius_m: 0.661,
         margin_m: 0.1,
         speed_mps: 0.8,
@@ -83,6 +86,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         length_m: 0.80,
         width_m: 0.65,
         height_m: 0.55,
+        mast_m: 1.5,
         circumradius_m: 0.515,
         margin_m: 0.1,
         speed_mps: 1.0,
@@ -102,6 +106,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         length_m: 8.0,
         width_m: 2.0,
         height_m: 2.4,
+        mast_m: 0.0,
         circumradius_m: 4.124,
         margin_m: 0.5,
         speed_mps: 4.0,
@@ -121,6 +126,18 @@ impl VehicleModel {
     /// The radius by which obstacles are grown: circumradius and margin, in metres.
     pub fn radius_m(&self) -> f64 {
         self.circumradius_m + self.margin_m
+    }
+
+    /// How high the antenna is over the ground where that is `ground_m` high, in metres: a blimp cruises in the middle of
+    /// its band.
+    pub fn antenna_m(&self, terrain: &Terrain, ground_m: f64) -> f64 {
+        match self.drive {
+            Drive::SkidSteer { .. } => self.mast_m,
+            Drive::Flight { altitude_band_m: [low, high], ground_clearance_m, .. } => {
+                let lowest = terrain.height_range_m().map_or(0.0, |[low, _]| f64::from(low));
+                (lowest + f64::midpoint(low, high) - ground_m).max(ground_clearance_m) + self.mast_m
+            }
+        }
     }
 
     /// What the vehicle asks of the ground of a map.

@@ -36,6 +36,7 @@ impl DemandLines<'_> {
     /// What requirements rest on, the values of each state in their order, and the movements of each vehicle.
     pub(super) fn states(&self) -> Vec<Line> {
         let mut lines: Vec<Line> = self.requirements().into_iter().collect();
+        lines.extend(self.sights());
         for (index, variable) in self.network.variables.iter().enumerate() {
             if !variable.is_lasting {
                 continue;
@@ -83,6 +84,26 @@ impl DemandLines<'_> {
             _ => format!("every requirement of a state rests on a change that holds: {count} requirements"),
         };
         Some(self.places.line(self.status, text, None, Vec::new(), Vec::new()))
+    }
+
+    /// What vehicles see where they have to, or do not see where they must not, and from where (SPEC 10.5).
+    fn sights(&self) -> Vec<Line> {
+        let mut lines = Vec::new();
+        for link in &self.plan.causal_links {
+            let ask = &self.network.labels[link.ask.index()];
+            let Some(sight) = self.network.sight(ask) else { continue };
+            let vehicle = self.network.variables[sight.variable.index()].name.trim_end_matches(".at");
+            let tell = &self.network.labels[link.tell.index()].literal;
+            let place = self.network.value_names(tell).join(", ");
+            let verb = if ask.text.starts_with("not(") { "does not see" } else { "sees" };
+            let owner = self.owner(link.ask).map(|owner| format!(" during {owner}")).unwrap_or_default();
+            let scope = "rocks and declared obstacles do not count";
+            let text = format!("{vehicle} {verb} {} from {place}{owner}; {scope}", sight.location);
+            let names = self.owner(link.ask).map(str::to_owned).into_iter().collect();
+            let (start, end) = self.network.interval(link.ask);
+            lines.push(self.places.line(self.status, text, ask.span, names, vec![start, end]));
+        }
+        lines
     }
 
     /// What the plan makes of a variable that keeps its value, from first to last.

@@ -576,7 +576,7 @@ pub enum ArgumentValue {
     Condition(Condition),
 }
 
-/// A literal: `X`, `X=V`, `X!=V`, `X in {V, W}`, or the negation of one. Negations are folded into `negated`.
+/// A literal: `X`, `X=V`, `X!=V`, `X in {V, W}`, `V.at in visible(L)`, or the negation of one. Negations are folded into `negated`.
 ///
 /// `X_V` is still written as the author wrote it (`variable` = `X_V`, no value): how it splits depends on the file
 /// (SPEC 1.3) and on substitution of formals; [`crate::program::Program`]'s users resolve it after substitution.
@@ -584,8 +584,10 @@ pub enum ArgumentValue {
 pub struct Condition {
     /// The variable, the atom, or a formal that stands for one; of a vehicle's place `V.at`.
     pub variable: Name,
-    /// The value, or several of which the variable has one; an atom has none.
+    /// The value, or several of which the variable has one; an atom has none, and neither has what is to see a location.
     pub values: Vec<Name>,
+    /// The location that is in sight from where the vehicle is, or a formal that stands for one (SPEC 10.5).
+    pub sees: Option<Name>,
     /// Whether the literal is negated an odd number of times (`not`, `!`, `!=`).
     pub negated: bool,
     /// Where it stands.

@@ -22,7 +22,7 @@ use crate::diagnostics::{arity, syntax, undefined, value};
 use crate::lower::bounds::expression;
 use crate::lower::condition::literal;
 use crate::parser::{parse_rule, replacement};
-use crate::program::Program;
+use crate::program::{Name, Program};
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
@@ -106,6 +106,17 @@ pub struct Undeclared<'a> {
     pub variables: &'a [SmolStr],
     /// Activities that are only called, with how many arguments.
     pub activities: &'a [(SmolStr, usize)],
+    /// Which places see which locations, as far as the mission asks (SPEC 10.5).
+    pub sights: &'a [Sight],
+}
+
+/// The places from which a vehicle sees a location.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sight {
+    /// `V.at` of the vehicle.
+    pub variable: SmolStr,
+    pub location: SmolStr,
+    pub places: Vec<SmolStr>,
 }
 
 /// Reads a rule.
@@ -225,7 +236,10 @@ impl Reader<'_> {
             let formula = Formula::Underway(activity);
             return Some(if found.negated { Formula::Not(Box::new(formula)) } else { formula });
         }
-        let (variable, values) = self.variable(variable, span, &found.values)?;
+        let (variable, values) = match &found.sees {
+            Some(location) => self.sight(variable, location, found.span)?,
+            None => self.variable(variable, span, &found.values)?,
+        };
         let formula = Formula::Is { variable, values };
         Some(if found.negated { Formula::Not(Box::new(formula)) } else { formula })
     }
@@ -316,13 +330,32 @@ impl Reader<'_> {
         Some(Activity { name: name.into(), arguments })
     }
 
+    /// The places of a vehicle that see a location.
+    fn sight(&mut self, variable: &str, location: &Name, span: Span) -> Option<(SmolStr, Vec<SmolStr>)> {
+        let mut known = self.undeclared.sights.iter();
+        let found = known.find(|it| it.variable == variable && it.location == location.text);
+        if let Some(sight) = found {
+            return Some((sight.variable.clone(), sight.places.clone()));
+        }
+        let vehicles = self.program.world.vehicles.iter();
+        if !vehicles.clone().any(|it| variable.strip_suffix(".at") == Some(it.name.text.as_str())) {
+            self.diagnostics.push(value::sight_of_no_place(variable, span, false));
+        } else if self.program.world.locations.iter().all(|it| it.name.text != location.text) {
+            let names = self.program.world.locations.iter().map(|it| it.name.text.as_str());
+            let nearest = nearest(&location.text, names);
+            self.diagnostics.push(value::no_location(&location.text, location.span, nearest.as_deref()));
+        } else {
+            let message =
+                format!("nothing in the mission requires `{variable} in visible({})`", location.text);
+            let hint =
+                "a rule may ask what the mission asks somewhere: only that is worked out over the terrain";
+            self.diagnostics.push(Diagnostic::error(undefined::CODE, span, message).with_hint(hint));
+        }
+        None
+    }
+
     /// The variable and the values of a literal (SPEC 1.3).
-    fn variable(
-        &mut self,
-        written: &str,
-        span: Span,
-        values: &[crate::program::Name],
-    ) -> Option<(SmolStr, Vec<SmolStr>)> {
+    fn variable(&mut self, written: &str, span: Span, values: &[Name]) -> Option<(SmolStr, Vec<SmolStr>)> {
         if let Some(domain) = self.domain(written) {
             if values.is_empty() && !domain.iter().any(|it| it == "true") {
                 let shown: Vec<&str> = domain.iter().map(SmolStr::as_str).collect();
@@ -396,7 +429,7 @@ fn unquoted(name: SyntaxToken<'_>) -> &str {
     name.text.trim_matches('"')
 }
 
-fn values_of(values: &[crate::program::Name]) -> Vec<SmolStr> {
+fn values_of(values: &[Name]) -> Vec<SmolStr> {
     if values.is_empty() {
         return vec!["true".into()];
     }
@@ -425,7 +458,13 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
     fn read(text: &str) -> Result<Rule, Vec<String>> {
         let program = crate::parse(MISSION).program();
         let activities = [("Wait".into(), 0), ("Go To(A)".into(), 0), ("GoTo(A)".into(), 0)];
-        let undeclared = Undeclared { variables: &["LIGHT".into()], activities: &activities };
+        let sights = [Sight {
+            variable: "Rover1.at".into(),
+            location: "Base".into(),
+            places: vec!["Base".into(), "Rock".into()],
+        }];
+        let undeclared =
+            Undeclared { variables: &["LIGHT".into()], activities: &activities, sights: &sights };
         let rule = super::read(text, &program, undeclared);
         rule.map_err(|found| {
             found.iter().map(|it| format!("{} {}: {}", it.span.start, it.code, it.message)).collect()
@@ -522,6 +561,24 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
             let found = wrong(text);
             assert!(found.len() == 1 && found[0].contains("E-SYNTAX"), "{text}: {found:?}");
         }
+    }
+
+    #[test]
+    fn a_rule_asks_for_what_is_in_sight_where_the_mission_does() {
+        let rule = read("always (Rover1.at in visible(Base)) and LIGHT").expect("it is one");
+        let Formula::All(parts) = &rule.holds else { panic!("{rule:?}") };
+        let places = vec!["Base".into(), "Rock".into()];
+        assert_eq!(parts[0], Formula::Is { variable: "Rover1.at".into(), values: places });
+        let wrong = |text: &str| read(text).expect_err("it is wrong");
+        assert_eq!(
+            wrong("Rover1.at in visible(Rock)"),
+            ["0 E-UNDEF: nothing in the mission requires `Rover1.at in visible(Rock)`"]
+        );
+        assert_eq!(wrong("Rover1.at in visible(Bace)"), ["21 E-VALUE: no location `Bace` is declared"]);
+        assert_eq!(
+            wrong("Mast in visible(Base)"),
+            ["0 E-VALUE: `Mast` is not the place of a vehicle, and only a vehicle sees a location"]
+        );
     }
 
     #[test]

@@ -100,7 +100,7 @@ spans! {
     Expr { kind, span }
     Statement { kind, bounds, span }
     Argument { value, span }
-    Condition { variable, values, span }
+    Condition { variable, values, sees, span }
     World { terrain, locations, obstacles, vehicles }
     TerrainDecl { asset_span, span }
     LocationDecl { name, numbers_span, span }

@@ -70,6 +70,7 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         paths: view.paths,
         obstacles: view.obstacles,
         rays: view.rays,
+        sights: view.sights,
         vehicle_scale: vehicle_scale(camera.distance_m),
     };
     let appeared: Vec<_> = if state.is_executing() {

@@ -18,5 +18,6 @@ mod rocks;
 pub mod scale;
 pub mod scene;
 pub mod shapes;
+mod sights;
 mod tree;
 mod vehicles;

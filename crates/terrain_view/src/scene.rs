@@ -10,6 +10,7 @@ use workbench::state::growth::Growth;
 use crate::driving;
 use crate::ground::Ground;
 use crate::shapes::{Shapes, circle_outline};
+use crate::sights;
 use crate::tree;
 use crate::vehicles::{VehicleShape, airship, rover};
 
@@ -42,6 +43,8 @@ pub struct SceneOptions {
     pub obstacles: bool,
     /// What laser range finders see, in a run.
     pub rays: bool,
+    /// What is in sight of what, as far as conditions ask.
+    pub sights: bool,
     /// How many times larger than life vehicles are drawn.
     pub vehicle_scale: f32,
 }
@@ -103,6 +106,9 @@ pub fn build(input: &SceneInput<'_>) -> Shapes {
     locations(&mut shapes, world, input);
     if input.growth.shown().is_none() {
         paths(&mut shapes, input);
+    }
+    if input.options.sights {
+        sights::draw(&mut shapes, input);
     }
     separation_violations(&mut shapes, input);
     driving::draw(&mut shapes, input);

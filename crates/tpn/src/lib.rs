@@ -13,12 +13,13 @@ pub mod plan;
 pub mod plan_json;
 pub mod precedence;
 pub mod selection;
+pub mod sight;
 mod spans;
 pub mod text;
 pub mod vocabulary;
 pub mod worth;
 
-pub use compile::{Top, assumed, compile, compile_scenarios, merge_diagnostics};
+pub use compile::{Ground, Level, Top, assumed, compile, compile_on, compile_scenarios, merge_diagnostics};
 pub use network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, Departure, Distance, EventEnd,
     EventRef, Extent, Goal, Label, LabelId, Literal, Network, Node, NodeId, Occurrence, OccurrenceId,
@@ -29,3 +30,4 @@ pub use plan::{
     CausalLink, Choice, Levels, Ordering, Plan, PlanOrder, Precedence, Quality, StateOrder, UseOrdering,
     Window,
 };
+pub use sight::{Hidden, Sight};

@@ -9,6 +9,8 @@ use rmpl::program::{Change, Controllability, LabelMode, Measure, component_of_st
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
+use crate::sight::Sight;
+
 macro_rules! id {
     ($($(#[$doc:meta])* $name:ident;)*) => {$(
         $(#[$doc])*
@@ -80,6 +82,9 @@ pub struct Network {
     pub occurrences: Vec<Occurrence>,
     /// The state variables that labels speak of.
     pub variables: Vec<Variable>,
+    /// What vehicles see of the locations that conditions are about (SPEC 10.5).
+    #[serde(default)]
+    pub sights: Vec<Sight>,
     /// The resources that are used (SPEC 11).
     pub resources: Vec<Resource>,
     /// Who uses them, in textual order.

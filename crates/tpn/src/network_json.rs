@@ -12,6 +12,7 @@ use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
     NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Use, Variable, Worth,
 };
+use crate::sight::Sight;
 use crate::text::kind_name;
 use crate::vocabulary::Vocabulary;
 
@@ -80,6 +81,7 @@ pub fn network_to_json(network: &Network) -> Value {
         insert_unless_empty(members, "resources", &resources);
         insert_unless_empty(members, "uses", &uses);
         insert_unless_empty(members, "worths", &network.worths);
+        insert_unless_empty(members, "sights", &network.sights);
         insert_unless_empty(members, "objective", &objective);
         if network.controllability != Controllability::Dynamic {
             members.insert("controllability".into(), json!(network.controllability));
@@ -105,6 +107,9 @@ fn arc_to_json(network: &Network, id: usize, arc: &Arc) -> Value {
         .map(|&label| {
             let label = &network.labels[label.index()];
             let mut members = object(json!({"type": mode_name(label.mode), "literal": label.text}));
+            if network.sight(label).is_some() {
+                members.insert("values".into(), network.value_names(&label.literal).into());
+            }
             if label.extent != Extent::Whole {
                 members.insert("extent".into(), json!(label.extent));
             }
@@ -171,6 +176,10 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
     let (resources, uses): (Vec<Resource>, Vec<Use>) =
         (read_list(document, "resources")?, read_list(document, "uses")?);
     let worths: Vec<Worth> = read_list(document, "worths")?;
+    let sights: Vec<Sight> = read_list(document, "sights")?;
+    if sights.iter().any(|sight| sight.variable.index() >= vocabulary.variables.len()) {
+        return Err(error("sights", "names a variable that does not exist"));
+    }
     let is_known = |used: &Use| {
         used.resource.index() < resources.len()
             && used.arc.index() < reader.arcs.len()
@@ -196,6 +205,7 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
         decisions: reader.decisions,
         occurrences: reader.occurrences,
         variables: vocabulary.variables,
+        sights,
         blocks: Vec::new(),
         root: None,
         start,
@@ -396,8 +406,16 @@ impl Reader {
             _ => return Err(error(place, "a label's `type` is `Ask` or `Tell`")),
         };
         let text = text(value, "literal", place)?;
-        let literal = vocabulary
-            .literal(&text)
+        // A condition on what is in sight names the places that it comes to.
+        let values: Option<Vec<&str>> = value
+            .get("values")
+            .and_then(Value::as_array)
+            .map(|values| values.iter().filter_map(Value::as_str).collect());
+        let literal = match text.trim_start_matches("not(").split_once(" in ").zip(values) {
+            Some(((variable, _), values)) => vocabulary.one_of(variable, &values),
+            None => vocabulary.literal(&text),
+        };
+        let literal = literal
             .ok_or_else(|| error(place, &format!("`{text}` is no literal of the declared variables")))?;
         let owner = match value.get("owner").and_then(Value::as_str) {
             Some(name) => self.by_name.get(name).copied(),

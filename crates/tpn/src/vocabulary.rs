@@ -29,9 +29,19 @@ impl Vocabulary {
         }
         let index = self.variable(name, values.is_empty())?;
         let values = if values.is_empty() { vec!["true"] } else { values };
+        self.literal_of(index, &values, is_negated)
+    }
+
+    /// The literal of a variable of this name with one of these values.
+    pub fn one_of(&mut self, name: &str, values: &[&str]) -> Option<Literal> {
+        let index = self.variable(name, false)?;
+        self.literal_of(index, values, false)
+    }
+
+    fn literal_of(&mut self, index: usize, values: &[&str], is_negated: bool) -> Option<Literal> {
         let variable = &mut self.variables[index];
         let mut listed = Vec::new();
-        for value in values {
+        for &value in values {
             let position = match variable.values.iter().position(|known| known == value) {
                 Some(position) => position,
                 None if self.is_complete || variable.closed => return None,

@@ -78,6 +78,11 @@ pub const EXAMPLES: &[Example] = &[
         source: include_str!("../../../assets/missions/sol.rmpl"),
     },
     Example {
+        name: "relay",
+        title: "In sight of the base",
+        source: include_str!("../../../assets/missions/relay.rmpl"),
+    },
+    Example {
         name: "fleet",
         title: "Four rovers and a blimp",
         source: include_str!("../../../assets/missions/fleet.rmpl"),

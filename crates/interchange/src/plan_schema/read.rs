@@ -36,6 +36,7 @@ pub(super) fn read(objects: Map<String, Value>) -> Result<Document, PlanSchemaEr
         resources: Vec::new(),
         uses: Vec::new(),
         worths: Vec::new(),
+        sights: Vec::new(),
         departures: Vec::new(),
         distances: Vec::new(),
         objective: Vec::new(),

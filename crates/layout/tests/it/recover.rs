@@ -41,6 +41,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
         resources: Vec::new(),
         uses: Vec::new(),
         worths: Vec::new(),
+        sights: Vec::new(),
         objective: Vec::new(),
         departures: Vec::new(),
         distances: Vec::new(),

@@ -33,7 +33,7 @@ impl Core {
         let begun = host.now_millis();
         self.read(update);
         let parsed = host.now_millis();
-        let (network, diagnostics) = self.reading.compile(&update.goal, &mut self.keys);
+        let (network, diagnostics) = self.reading.compile(&update.goal, &mut self.grounds, &mut self.keys);
         let compile_millis = host.now_millis() - parsed;
         Compiled {
             source: Arc::clone(update.source.text()),
@@ -65,7 +65,7 @@ impl Core {
             return Scenarios { program, diagnostics, scenarios: Vec::new() };
         }
         let has_ground = program.world != World::default();
-        let networks = reading::compile_scenarios(&program, &mut diagnostics, has_ground);
+        let networks = reading::compile_scenarios(&program, &mut self.grounds, &mut diagnostics, has_ground);
         let scenario = |network: Network| Compiled {
             source: Arc::clone(update.source.text()),
             goal: Goal::Default,

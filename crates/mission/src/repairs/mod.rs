@@ -57,7 +57,7 @@ fn gives_a_plan(
     let parse = rmpl::parse(source);
     let program = parse.program();
     let mut diagnostics = parse.diagnostics();
-    let Some(network) = reading::compile(&program, goal, &mut diagnostics) else { return false };
+    let Some(network) = reading::compile_on(&program, goal, grounds, &mut diagnostics) else { return false };
     let network = Arc::new(network);
     let options =
         Options { all: false, best: 1, explain: false, relax: false, trace_events: None, ..problem.options };

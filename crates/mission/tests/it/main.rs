@@ -18,6 +18,7 @@ mod programs;
 mod repairs;
 mod robustness;
 mod sessions;
+mod sight;
 mod simulation;
 mod standing;
 mod support;

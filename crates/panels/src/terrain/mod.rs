@@ -320,6 +320,9 @@ fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measur
             text.push_str(&format!(" {} at {:.0}, {:.0}.", vehicle.name.text, place.x, place.y));
         }
     }
+    for sight in snapshot.network.iter().flat_map(|network| &network.sights) {
+        text.push_str(&sight_words(snapshot, sight));
+    }
     if let Some(run) = context.state.run_shown() {
         for (vehicle, frame) in driving::under_way(run, time) {
             let vehicle = snapshot.program.world.vehicles.get(vehicle as usize);
@@ -336,6 +339,17 @@ fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measur
         text.push_str(&format!(" Measured: {}.", rows.collect::<Vec<_>>().join(", ")));
     }
     text
+}
+
+/// What a vehicle sees of a location.
+fn sight_words(snapshot: &Snapshot, sight: &tpn::Sight) -> String {
+    let variable = snapshot.network.as_ref().and_then(|it| it.variables.get(sight.variable.index()));
+    let vehicle = variable.map_or("A vehicle", |it| it.name.trim_end_matches(".at"));
+    if sight.hidden.is_empty() {
+        return format!(" {vehicle} sees {} from everywhere.", sight.location);
+    }
+    let reasons: Vec<String> = sight.hidden.iter().map(tpn::Hidden::reason).collect();
+    format!(" {vehicle} does not see {} from everywhere: {}.", sight.location, reasons.join(", "))
 }
 
 /// A mission without places: what to write, and a button that writes it.

@@ -56,6 +56,7 @@ fn show_menu(ui: &mut Ui, view: &mut TerrainView) {
         (&mut view.paths, "Paths", "The paths of the plan's traverses"),
         (&mut view.trees, "Search trees", "The trees that found the paths"),
         (&mut view.rays, "Laser rays", "What the laser range finders of vehicles see, in a run"),
+        (&mut view.sights, "Lines of sight", "From where vehicles see what the mission asks them to see"),
         (&mut view.names, "Names", "Names of places and vehicles"),
         (&mut view.obstacles, "Obstacles", "Declared obstacles"),
         (&mut view.clearance, "Clearance map", "How much room a vehicle has everywhere (C)"),

@@ -65,7 +65,16 @@ pub(super) fn read(program: &Program, network: &Network, text: &str) -> Result<R
     let called = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
     let activities: Vec<(SmolStr, usize)> =
         called.map(|it| (it.activity.clone(), it.arguments.len())).collect();
-    let undeclared = Undeclared { variables: &variables, activities: &activities };
+    let sights: Vec<rmpl::rule::Sight> = network
+        .sights
+        .iter()
+        .map(|sight| rmpl::rule::Sight {
+            variable: network.variables[sight.variable.index()].name.clone(),
+            location: sight.location.clone(),
+            places: network.seen_from(sight),
+        })
+        .collect();
+    let undeclared = Undeclared { variables: &variables, activities: &activities, sights: &sights };
     rmpl::rule::read(text, program, undeclared)
 }
 

@@ -176,6 +176,7 @@ impl Collector<'_> {
             let condition = Condition {
                 variable: effect.variable.clone(),
                 values: vec![effect.value.clone()],
+                sees: None,
                 negated: false,
                 span: effect.span,
             };
@@ -375,12 +376,14 @@ impl Collector<'_> {
                 is_formal: self.formals.contains(&owner),
             }
         });
-        for value in condition.values.iter().filter(|_| vehicle.is_some()) {
+        let places = condition.values.iter().filter(|_| vehicle.is_some());
+        for value in places.chain(&condition.sees) {
             if !self.formals.contains(&value.text) {
                 self.name_use(UseKind::Place, &value.text, value.span);
             }
         }
-        let split = text.rsplit_once('_').filter(|_| condition.values.is_empty());
+        let is_atom = condition.values.is_empty() && condition.sees.is_none();
+        let split = text.rsplit_once('_').filter(|_| is_atom);
         let split = split.filter(|(variable, value)| !variable.is_empty() && !value.is_empty());
         let literal = Literal {
             mode,
@@ -399,6 +402,7 @@ impl Collector<'_> {
             variable_is_formal: self.formals.contains(text)
                 || component_of_state(text).is_some_and(|owner| self.formals.contains(&SmolStr::new(owner))),
             value_is_formal: condition.values.iter().any(|value| self.formals.contains(&value.text)),
+            is_sight: condition.sees.is_some(),
             is_bare,
             origin,
             vehicle,

@@ -510,7 +510,7 @@ impl Index {
             value: literal.values.first().map(|&(value, _)| value),
             negated: literal.negated,
             is_split: false,
-            is_any: literal.value_is_formal || literal.values.len() > 1,
+            is_any: literal.value_is_formal || literal.is_sight || literal.values.len() > 1,
             is_watched: literal.origin == Origin::Watched,
         };
         self.facts[literal.variable.index()].tell(told, is_added);

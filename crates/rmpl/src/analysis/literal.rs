@@ -14,6 +14,9 @@ impl Checker<'_> {
         if is_call || literal.variable_is_formal {
             return;
         }
+        if literal.is_sight && !self.is_place_asked(literal) {
+            return;
+        }
         if let Some(vehicle) = literal.vehicle {
             self.place_of(literal, vehicle);
             return;
@@ -41,6 +44,19 @@ impl Checker<'_> {
         self.support(literal, variable, value);
     }
 
+    /// Whether `in visible(…)` stands behind the place of a vehicle and requires something of it, as it can only do.
+    fn is_place_asked(&mut self, literal: &Literal) -> bool {
+        let is_told = literal.mode == LabelMode::Tell && literal.origin == Origin::Written;
+        let name = self.text(literal.variable);
+        if literal.vehicle.is_none() {
+            let is_vehicle = self.index.facts(literal.variable).definition(Namespace::Vehicle).is_some();
+            self.push(value::sight_of_no_place(name, literal.variable_span, is_vehicle));
+        } else if is_told {
+            self.push(value::sight_told(name, literal.span));
+        }
+        literal.vehicle.is_some() && !is_told
+    }
+
     /// A condition on the place of a vehicle, which is a state variable.
     fn place_of(&mut self, literal: &Literal, vehicle: Vehicle) {
         let definition = self.index.facts(vehicle.name).definition(Namespace::Vehicle);
@@ -50,7 +66,7 @@ impl Checker<'_> {
             self.push_once(Namespace::Vehicle, vehicle.name, diagnostic);
             return;
         }
-        if self.is_no_change(literal, literal.variable, None, &[]) || vehicle.is_formal {
+        if self.is_no_change(literal, literal.variable, None, &[]) || vehicle.is_formal || literal.is_sight {
             return;
         }
         self.support(literal, literal.variable, literal.values.first().map(|&(value, _)| value));

@@ -97,6 +97,8 @@ pub(crate) struct Literal {
     pub(crate) variable_is_formal: bool,
     /// A parameter stands for the value.
     pub(crate) value_is_formal: bool,
+    /// What decides about it is which places see a location, which only the ground tells.
+    pub(crate) is_sight: bool,
     pub(crate) is_bare: bool,
     pub(crate) origin: Origin,
     /// The vehicle of a variable `V.at`.

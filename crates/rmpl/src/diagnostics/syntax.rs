@@ -206,6 +206,14 @@ pub(crate) fn constrain_in_block(span: Span) -> Diagnostic {
         .with_hint("it relates events wherever they are: name their occurrences with `as`, and write it behind the block")
 }
 
+/// What is to be in sight is itself somewhere else at every time.
+pub(crate) fn sight_of_vehicle(span: Span) -> Diagnostic {
+    error(span, "`visible(…)` names a location, and a vehicle is at several").with_hint(
+        "require each vehicle to see a location, or write one condition for each location: \
+         `do … maintaining R2.at=HILL and R1.at in visible(HILL)`",
+    )
+}
+
 /// An argument of several conditions.
 pub(crate) fn joined_argument(span: Span) -> Diagnostic {
     error(span, "an argument is one condition, and this joins another one").with_hint(

@@ -70,6 +70,24 @@ pub(crate) fn no_single_value(variable: &str, values: &[&str], span: Span) -> Di
     })
 }
 
+/// Something else than a vehicle's place that is to be where a location is in sight.
+pub(crate) fn sight_of_no_place(name: &str, span: Span, is_vehicle: bool) -> Diagnostic {
+    let message = format!("`{name}` is not the place of a vehicle, and only a vehicle sees a location");
+    let diagnostic = Diagnostic::error(CODE, span, message)
+        .with_hint("`V.at in visible(L)` holds while the vehicle V is where it sees the location L");
+    if !is_vehicle {
+        return diagnostic;
+    }
+    let mended = format!("{name}.at");
+    diagnostic.with_fix(replacement(format!("Change to `{mended}`"), span, mended))
+}
+
+/// An assertion that a vehicle sees something, which its movements decide.
+pub(crate) fn sight_told(variable: &str, span: Span) -> Diagnostic {
+    let message = format!("what is in sight follows from `{variable}`: it can be required, not asserted");
+    Diagnostic::error(CODE, span, message).with_fix(insertion("Write `ask`", span.start, "ask "))
+}
+
 /// How many values are offered as fixes.
 const MAX_FIXES: usize = 5;
 

@@ -401,7 +401,13 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         "else" => "`if c thennext A else B`: planning chooses A where `c` holds, or B where it does not.",
         "and" => "`a and b`: both hold.",
         "or" => "`a or b`: planning chooses which of the two it relies on.",
-        "in" => "`X in {V, W}`: X has one of these values.",
+        "in" => {
+            "`X in {V, W}`: X has one of these values. `V.at in visible(L)`: V is where it sees the location L."
+        }
+        "visible" => {
+            "`V.at in visible(L)`: V is at a location from which the straight line from its mast to 2 m above L clears the \
+             terrain."
+        }
         "s" | "min" | "h" | "d" | "sol" => {
             "A unit of time: `s`, `min`, `h`, `d` (24 hours) or `sol` (88 775.244 seconds), converted exactly."
         }

@@ -160,6 +160,11 @@ impl<'a> Collector<'a> {
             SyntaxKind::Argument => self.argument(names().next()),
             SyntaxKind::BareName => self.bare(names().next()),
             SyntaxKind::Condition => self.condition(node),
+            SyntaxKind::Visible => {
+                if let Some(location) = names().nth(1) {
+                    self.refer_to(location, NameKind::Location);
+                }
+            }
             _ => {}
         }
     }
@@ -274,6 +279,9 @@ impl<'a> Collector<'a> {
     fn condition(&mut self, node: SyntaxNode<'a>) {
         if let Some(dotted) = node.child(SyntaxKind::Dotted) {
             if is_mode(dotted) {
+                return;
+            }
+            if node.child(SyntaxKind::Visible).is_some() {
                 return;
             }
             let domain = node.child(SyntaxKind::Domain);

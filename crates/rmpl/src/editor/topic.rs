@@ -101,7 +101,7 @@ impl Topic {
             "objective" | "minimize" | "maximize" | "cost" | "reward" | "end" | "length" | "costs"
             | "rewards" => Self::Objectives,
             "aborts" => Self::EarlyEnds,
-            "else" | "and" | "or" | "in" => Self::Conditions,
+            "else" | "and" | "or" | "in" | "visible" => Self::Conditions,
             "s" | "min" | "h" | "d" | "sol" => Self::Bounds,
             "as" | "constrain" | "to" => Self::ThreadBounds,
             "import" => Self::Files,

@@ -68,6 +68,7 @@ impl Layout {
             | SyntaxKind::NotOf
             | SyntaxKind::ConditionGroup
             | SyntaxKind::Effect => Place::Condition,
+            SyntaxKind::Visible => Place::Sight,
             SyntaxKind::Goal => Place::Expression,
             SyntaxKind::Coordinates => Place::Coordinates,
             SyntaxKind::Domain => Place::Domain,

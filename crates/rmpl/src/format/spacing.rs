@@ -14,6 +14,8 @@ pub(super) enum Place {
     /// The `[` of bounds that stand apart from what they bound: `PATH1=OK [450,450]`.
     SpacedBounds,
     Condition,
+    /// `visible(BASE)`, whose parentheses are those of a call.
+    Sight,
     /// `(x, y)` of the world, which stands apart from the name before it.
     Coordinates,
     Domain,

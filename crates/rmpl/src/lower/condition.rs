@@ -106,9 +106,18 @@ pub(crate) fn literal(node: SyntaxNode<'_>) -> Option<Condition> {
         compared = true;
         values = names(domain).collect();
     }
+    let visible = node.child(SyntaxKind::Visible);
+    // The first name is the word `visible` itself.
+    let sees = visible.filter(|visible| visible.token(SyntaxKind::Dot).is_none());
+    let sees = sees.and_then(|visible| names(visible).nth(1));
+    if visible.is_some() {
+        compared = sees.is_none();
+        values.clear();
+    }
     (compared != values.is_empty()).then_some(Condition {
         variable: variable?,
         values,
+        sees,
         negated,
         span: node.span(),
     })

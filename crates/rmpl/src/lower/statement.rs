@@ -126,7 +126,7 @@ impl Lowering<'_> {
         let span = name.span;
         StatementKind::Condition(
             LabelMode::Tell,
-            Condition { variable: name, values: Vec::new(), negated: false, span },
+            Condition { variable: name, values: Vec::new(), sees: None, negated: false, span },
         )
     }
 

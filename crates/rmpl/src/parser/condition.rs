@@ -1,6 +1,6 @@
 //! Conditions: literals with `not`, `!` and parentheses (SPEC 1.2), joined by `and` and `or` (SPEC 14).
 //!
-//! `and`, `or` and `in` are words of the language only behind a literal.
+//! `and`, `or` and `in` are words of the language only behind a literal, and `visible` only behind `in`.
 
 use super::{MAX_NESTING, Mark, Parser};
 use crate::diagnostics::syntax;
@@ -77,10 +77,14 @@ impl Parser<'_> {
         } else if self.is_rule && matches!(self.kind_at(index), SyntaxKind::Order | SyntaxKind::LeftParen) {
             index = self.behind_rule_atom(index);
         } else if self.kind_at(index) == SyntaxKind::Name && self.text_of(index) == "in" {
-            while !matches!(
-                self.kind_at(index),
-                SyntaxKind::RightBrace | SyntaxKind::Semicolon | SyntaxKind::End
-            ) {
+            let set = self.index_after(index);
+            let last = match self.kind_at(set) {
+                SyntaxKind::Name => SyntaxKind::RightParen,
+                _ => SyntaxKind::RightBrace,
+            };
+            while !matches!(self.kind_at(index), SyntaxKind::Semicolon | SyntaxKind::End)
+                && self.kind_at(index) != last
+            {
                 index = self.index_after(index);
             }
             index = self.index_after(index);
@@ -156,7 +160,11 @@ impl Parser<'_> {
         }
         if self.at_word("in") {
             self.bump();
-            self.domain();
+            if self.at_word("visible") {
+                self.visible();
+            } else {
+                self.domain();
+            }
             return;
         }
         if self.is_rule && self.rule_atom() {
@@ -169,6 +177,24 @@ impl Parser<'_> {
             self.report_expected("`=` and a location");
             self.skip_until(|parser| !parser.at(SyntaxKind::LeftParen));
         }
+    }
+
+    /// `visible(BASE)`
+    fn visible(&mut self) {
+        let node = self.open();
+        self.bump();
+        if self.expect(SyntaxKind::LeftParen) {
+            self.declared_name("the location that has to be in sight");
+            if self.at(SyntaxKind::Dot) {
+                let diagnostic = syntax::sight_of_vehicle(self.here());
+                self.report(diagnostic);
+                self.bump();
+                self.hush();
+                self.eat(SyntaxKind::Name);
+            }
+            self.expect_behind(SyntaxKind::RightParen, ")");
+        }
+        self.close(node, SyntaxKind::Visible);
     }
 
     /// The name of a variable: that of a vehicle's place is `V.at`, that of a component's mode `C.mode`.

@@ -226,6 +226,8 @@ pub enum SyntaxKind {
     Delay,
     /// A literal with its negations and parentheses.
     Condition,
+    /// `visible(BASE)` behind `in`.
+    Visible,
     /// Conditions joined by `and`.
     AllOf,
     /// Conditions joined by `or`.

@@ -63,6 +63,9 @@ fn clauses_are_completed_by_what_they_are_about() {
     completes("primitive Dig(s)[1,2] requires Scout.$0", &["at"], &["ARM", "start"]);
     completes("primitive Dig(s)[1,2] requires Scout.at=$0", &["BASE", "s"], &["OUT", "Scout"]);
     completes("primitive Dig(s)[1,2] requires Scout.at in {$0", &["BASE"], &["OUT"]);
+    completes("primitive Dig(s)[1,2] requires Scout.at in $0", &["visible", "{ … }"], &["BASE", "sets"]);
+    completes("primitive Dig(s)[1,2] requires Scout.at in visible($0", &["BASE", "s"], &["ARM", "Scout"]);
+    completes("scenario S[0,9] = { ask Scout.at in visible($0", &["BASE"], &["ARM", "Scout"]);
     completes("primitive Dig(s)[1,2] sets $0", &["ARM", "Scout.at", "s"], &["LIGHT", "Power", "not"]);
     completes("primitive Dig(s)[1,2] sets ARM=$0", &["STOWED", "OUT"], &["BASE"]);
     completes("primitive Dig(s)[1,2] sets ARM=OUT, $0", &["ARM", "Scout.at"], &["LIGHT"]);

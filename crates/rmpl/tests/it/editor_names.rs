@@ -32,6 +32,15 @@ fn check_rename_refused(before: &str, new_name: &str, problem: RenameProblem) {
 }
 
 #[test]
+fn a_location_is_renamed_where_it_has_to_be_in_sight() {
+    check_rename(
+        "location BASE (0, 0);\nvehicle R : ATRV at BASE;\nprimitive A(p)[1,2] requires R.at in visible(BA$0SE) and R.at in visible(p);\nscenario S = { A(BASE) }",
+        "CAMP",
+        "location CAMP (0, 0);\nvehicle R : ATRV at CAMP;\nprimitive A(p)[1,2] requires R.at in visible(CAMP) and R.at in visible(p);\nscenario S = { A(CAMP) }",
+    );
+}
+
+#[test]
 fn an_activity_is_found_in_calls_with_and_without_parentheses() {
     check_references(
         "\

@@ -50,6 +50,15 @@ fn what_larger_missions_are_written_with_has_its_blanks() {
 }
 
 #[test]
+fn what_is_in_sight_is_written_like_a_call() {
+    check(
+        "primitive A(r,p)[1,2] requires r.at in visible ( p )and not(r.at in visible(B));",
+        "primitive A(r, p)[1,2] requires r.at in visible(p) and not(r.at in visible(B));\n",
+    );
+    check("scenario S={ask R.at in visible(B)[1,2]}", "scenario S = { ask R.at in visible(B) [1,2] }\n");
+}
+
+#[test]
 fn the_papers_text_is_laid_out_by_its_structure() {
     let paper = include_str!("../../../../tests/conformance/c01_enroute_verbatim.rmpl");
     check(

@@ -117,7 +117,10 @@ fn over_random_ground_it_agrees_with_many_samples() {
             Some(at) => {
                 blocked_count += 1;
                 let share = (at.xy() - from).norm() / (to - from).norm();
-                assert!(first_over.is_none_or(|first| first > share - 1e-9), "seed {seed}: {share} {first_over:?}");
+                assert!(
+                    first_over.is_none_or(|first| first > share - 1e-9),
+                    "seed {seed}: {share} {first_over:?}"
+                );
                 // Right behind the place the ground is over the line; steps at obstacles are as sharp as that.
                 let near = (0..200).map(|step| over((share + f64::from(step) * 1e-7).min(1.0)));
                 assert!(near.fold(f64::NEG_INFINITY, f64::max) > -1e-6, "seed {seed}: {share}");

@@ -243,6 +243,7 @@ impl Builder {
         self.drafts.sort_by_key(|draft| draft.arc);
         let facts: Vec<Fact> = self.drafts.iter().map(|draft| draft.fact.clone()).collect();
         let (variables, literals) = vocabulary.literals(&facts);
+        let sights = vocabulary.sights(&facts, &variables);
         let mut labels = Vec::with_capacity(self.drafts.len());
         for (draft, literal) in self.drafts.into_iter().zip(literals) {
             self.arcs[draft.arc.index()].labels.push(LabelId::from_index(labels.len()));
@@ -283,6 +284,7 @@ impl Builder {
             decisions: self.decisions,
             occurrences: self.occurrences,
             variables,
+            sights,
             resources: self.resources,
             uses: self.uses,
             worths: self.worths,

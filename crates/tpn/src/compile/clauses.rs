@@ -64,7 +64,7 @@ impl Expander<'_> {
                 if self.vocabulary.is_lasting(&variable)
                     && effects.iter().all(|(known, _)| known.variable != variable)
                 {
-                    let fact = Fact { variable, values: vec![place.clone()], negated: false };
+                    let fact = Fact::is(variable, place.clone());
                     effects.push((fact, moves.span));
                 }
             }
@@ -73,6 +73,7 @@ impl Expander<'_> {
             let condition = Condition {
                 variable: effect.variable.clone(),
                 values: vec![effect.value.clone()],
+                sees: None,
                 negated: false,
                 span: effect.span,
             };

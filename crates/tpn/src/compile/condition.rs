@@ -141,7 +141,8 @@ impl<'program> Expander<'program> {
     /// What is asserted: of a variable that keeps its value, one value.
     pub(super) fn told(&mut self, condition: &Condition, scope: &Scope) -> Option<Fact> {
         let fact = self.fact(condition, scope)?;
-        if !self.vocabulary.is_lasting(&fact.variable) || (!fact.negated && fact.values.len() == 1) {
+        let is_one = !fact.negated && fact.values.len() == 1 && fact.sees.is_none();
+        if !self.vocabulary.is_lasting(&fact.variable) || is_one {
             return Some(fact);
         }
         let message = format!(

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use rmpl::Diagnostic;
 use rmpl::program::{ActivityDecl, PrimitiveDecl, Program};
 
+use super::Ground;
 use super::build::{Builder, Root};
 use super::constants::Constants;
 use super::constraint::Named;
@@ -75,7 +76,11 @@ pub(super) struct Declared<'program> {
 }
 
 impl<'program> Declared<'program> {
-    pub(super) fn new(program: &'program Program, constants: Constants<'program>) -> Self {
+    pub(super) fn new(
+        program: &'program Program,
+        constants: Constants<'program>,
+        ground: &'program dyn Ground,
+    ) -> Self {
         let mut activities = BTreeMap::new();
         for activity in &program.activities {
             activities.entry(activity.name.text.as_str()).or_insert(activity);
@@ -86,7 +91,7 @@ impl<'program> Declared<'program> {
         }
         Self {
             program,
-            vocabulary: Rc::new(Vocabulary::new(program)),
+            vocabulary: Rc::new(Vocabulary::new(program, ground)),
             constants: Rc::new(constants),
             activities: Rc::new(activities),
             primitives: Rc::new(primitives),

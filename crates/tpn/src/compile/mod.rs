@@ -28,6 +28,7 @@ use rmpl::{Code, Diagnostic, Severity, Span, listed};
 use smol_str::SmolStr;
 
 use crate::network::Network;
+use crate::sight::Hidden;
 pub use exogenous::assumed;
 
 use constants::Constants;
@@ -71,29 +72,54 @@ impl Top {
 /// assert_eq!(names, ["scenario#1", "Drive#1", "delay#1", "Dig#1"]);
 /// ```
 pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic>) {
+    compile_on(program, top, &Level)
+}
+
+/// The ground of a mission, which decides what vehicles see (SPEC 10.5).
+pub trait Ground {
+    /// The places from which a vehicle does not see a location.
+    fn hidden(&self, vehicle: &str, location: &str) -> Vec<Hidden>;
+}
+
+/// Ground without heights: everything is in sight.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Level;
+
+impl Ground for Level {
+    fn hidden(&self, _vehicle: &str, _location: &str) -> Vec<Hidden> {
+        Vec::new()
+    }
+}
+
+/// [`compile`] for a mission on `ground`.
+pub fn compile_on(program: &Program, top: &Top, ground: &dyn Ground) -> (Option<Network>, Vec<Diagnostic>) {
     let (constants, mut diagnostics) = Constants::new(program);
     let are_constants_sound = diagnostics.is_empty();
     diagnostics.extend(statics::check(program, &constants));
     if !are_constants_sound || diagnostics.iter().any(|found| found.code == recursion::CODE) {
         return (None, listed(without_repeats(diagnostics)));
     }
-    let (network, found) = expand(program, Declared::new(program, constants), top);
+    let (network, found) = expand(program, Declared::new(program, constants, ground), top);
     diagnostics.extend(found);
     let diagnostics = listed(without_repeats(diagnostics));
     let is_sound = diagnostics.iter().all(|found| found.severity != Severity::Error);
     (network.filter(|_| is_sound), diagnostics)
 }
 
-/// Compiles every scenario of `program`, and hands each network to `take` unless an error prevents it. What is wrong with
+/// Compiles every scenario of `program` on `ground`, and hands each network to `take` unless an error prevents it. What is wrong with
 /// any of them comes back. What the scenarios share is read once, so that time is linear in the program and its networks.
-pub fn compile_scenarios(program: &Program, mut take: impl FnMut(Option<Network>)) -> Vec<Diagnostic> {
+pub fn compile_scenarios(
+    program: &Program,
+    ground: &dyn Ground,
+    mut take: impl FnMut(Option<Network>),
+) -> Vec<Diagnostic> {
     let (constants, mut diagnostics) = Constants::new(program);
     let are_constants_sound = diagnostics.is_empty();
     diagnostics.extend(statics::check(program, &constants));
     if !are_constants_sound || diagnostics.iter().any(|found| found.code == recursion::CODE) {
         return listed(without_repeats(diagnostics));
     }
-    let declared = Declared::new(program, constants);
+    let declared = Declared::new(program, constants, ground);
     let mut names = BTreeSet::new();
     for scenario in program.scenarios.iter().filter(|scenario| names.insert(&scenario.name.text)) {
         let (network, found) = expand_scenario(Expander::new(declared.clone()), scenario);

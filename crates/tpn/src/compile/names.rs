@@ -1,13 +1,16 @@
 //! What the names in conditions stand for: substitution of formals, the `X_V` rule (SPEC 1.3), domains and value sets.
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind};
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
+use super::Ground;
 use super::scope::argument_text;
 use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
+use crate::sight::{Hidden, Sight, sight_text};
 
 /// What is named is not there: an activity, a variable, a value or a resource.
 pub(super) const E_UNDEF: Code = Code("E-UNDEF");
@@ -21,6 +24,8 @@ pub(super) struct Fact {
     pub(super) variable: SmolStr,
     /// An atom has none; several are the set of which the variable has one.
     pub(super) values: Vec<SmolStr>,
+    /// The location that is in sight from all of the values, and from no other.
+    pub(super) sees: Option<SmolStr>,
     pub(super) negated: bool,
 }
 
@@ -30,8 +35,14 @@ impl Fact {
         Self {
             variable: condition.variable.text.clone(),
             values: condition.values.iter().map(|value| value.text.clone()).collect(),
+            sees: condition.sees.as_ref().map(|location| location.text.clone()),
             negated: condition.negated,
         }
+    }
+
+    /// A variable has a value.
+    pub(super) fn is(variable: SmolStr, value: SmolStr) -> Self {
+        Self { variable, values: vec![value], sees: None, negated: false }
     }
 
     /// The fact that holds exactly when this one does not.
@@ -41,16 +52,17 @@ impl Fact {
 
     /// The values; of an atom that it is true.
     fn values(&self) -> impl Iterator<Item = &str> {
-        let atom = self.values.is_empty().then_some("true");
+        let atom = (self.values.is_empty() && self.sees.is_none()).then_some("true");
         atom.into_iter().chain(self.values.iter().map(SmolStr::as_str))
     }
 
     /// As the contracts print it (DESIGN 4.1).
     pub(super) fn text(&self) -> SmolStr {
-        let positive = match self.values.as_slice() {
-            [] => self.variable.to_string(),
-            [value] => format!("{}={value}", self.variable),
-            values => format!("{} in {{{}}}", self.variable, values.join(", ")),
+        let positive = match (&self.sees, self.values.as_slice()) {
+            (Some(location), _) => sight_text(&self.variable, location),
+            (None, []) => self.variable.to_string(),
+            (None, [value]) => format!("{}={value}", self.variable),
+            (None, values) => format!("{} in {{{}}}", self.variable, values.join(", ")),
         };
         if self.negated { format!("not({positive})").into() } else { positive.into() }
     }
@@ -82,11 +94,14 @@ pub(super) struct Vocabulary<'program> {
     initial: Vec<(SmolStr, SmolStr, Span)>,
     /// The places that vehicles can be at, by `V.at`.
     places: BTreeMap<SmolStr, Vec<&'program str>>,
+    ground: &'program dyn Ground,
+    /// From which places vehicles do not see locations, by `V.at` and location, as far as it was asked for.
+    hidden: RefCell<BTreeMap<(SmolStr, SmolStr), Vec<Hidden>>>,
 }
 
 impl<'program> Vocabulary<'program> {
     /// Reads declarations and literals in one pass.
-    pub(super) fn new(program: &'program Program) -> Self {
+    pub(super) fn new(program: &'program Program, ground: &'program dyn Ground) -> Self {
         let mut domains = BTreeMap::new();
         let mut without_component = BTreeSet::new();
         for declared in &program.variables {
@@ -128,7 +143,8 @@ impl<'program> Vocabulary<'program> {
                 }
             });
         }
-        Self { domains, without_component, compared, initial, places }
+        let hidden = RefCell::default();
+        Self { domains, without_component, compared, initial, places, ground, hidden }
     }
 
     /// Whether a variable keeps its value until something changes it (SPEC 10).
@@ -138,9 +154,7 @@ impl<'program> Vocabulary<'program> {
 
     /// What holds at the start of everything, and where that is declared.
     pub(super) fn initial_values(&self) -> impl Iterator<Item = (Fact, Span)> + '_ {
-        self.initial.iter().map(|(variable, value, span)| {
-            (Fact { variable: variable.clone(), values: vec![value.clone()], negated: false }, *span)
-        })
+        self.initial.iter().map(|(variable, value, span)| (Fact::is(variable.clone(), value.clone()), *span))
     }
 
     fn domain(&self, variable: &str) -> Option<&Vec<&'program str>> {
@@ -157,24 +171,66 @@ impl<'program> Vocabulary<'program> {
         let negated = condition.negated;
         let written = match substitute(&condition.variable.text) {
             // A parameter that stands for a whole condition, whose own names mean something at the call.
-            Some(ArgumentValue::Condition(handed)) if condition.values.is_empty() => {
+            Some(ArgumentValue::Condition(handed))
+                if condition.values.is_empty() && condition.sees.is_none() =>
+            {
                 let fact = Fact::written(&handed);
                 Fact { negated: fact.negated != negated, ..fact }
             }
             _ => Fact {
                 variable: text(&condition.variable.text),
                 values: condition.values.iter().map(|value| text(&value.text)).collect(),
+                sees: condition.sees.as_ref().map(|location| text(&location.text)),
                 negated,
             },
         };
-        let fact = match self.split(&written.variable).filter(|_| written.values.is_empty()) {
+        let is_atom = written.values.is_empty() && written.sees.is_none();
+        let fact = match self.split(&written.variable).filter(|_| is_atom) {
             Some((variable, value)) => {
-                Fact { variable: variable.into(), values: vec![value.into()], negated: written.negated }
+                Fact { negated: written.negated, ..Fact::is(variable.into(), value.into()) }
             }
             None => written,
         };
         self.check(&fact, condition)?;
-        Ok(fact)
+        self.with_places(fact, condition)
+    }
+
+    /// What is to see a location, with the places from which it does.
+    fn with_places(&self, fact: Fact, condition: &Condition) -> Result<Fact, Diagnostic> {
+        let Some(location) = &fact.sees else { return Ok(fact) };
+        let span = condition.sees.as_ref().map_or(condition.span, |location| location.span);
+        let Some(domain) = self.places.get(&fact.variable) else {
+            let message = format!("`{}` is not the place of a vehicle, so it sees nothing", fact.variable);
+            return Err(Diagnostic::error(E_VALUE, condition.variable.span, message).with_hint(
+                "`V.at in visible(L)` holds while the vehicle V is where it sees the location L",
+            ));
+        };
+        if !domain.contains(&location.as_str()) {
+            let message = format!("there is no location `{location}`");
+            return Err(Diagnostic::error(E_VALUE, span, message)
+                .with_hint("`visible(L)` names a location, or a parameter that stands for one"));
+        }
+        let mut known = self.hidden.borrow_mut();
+        let hidden = known.entry((fact.variable.clone(), location.clone())).or_insert_with(|| {
+            let vehicle = fact.variable.strip_suffix(".at").unwrap_or_default();
+            self.ground.hidden(vehicle, location)
+        });
+        let is_seen = |place: &&&str| hidden.iter().all(|it| it.place != **place);
+        let values = domain.iter().filter(is_seen).map(|&place| place.into()).collect();
+        Ok(Fact { values, ..fact })
+    }
+
+    /// What was worked out of what vehicles see, as far as `facts` ask for it, with the variables of the network.
+    pub(super) fn sights(&self, facts: &[Fact], variables: &[Variable]) -> Vec<Sight> {
+        let asked: BTreeSet<(&SmolStr, &SmolStr)> =
+            facts.iter().filter_map(|fact| Some((&fact.variable, fact.sees.as_ref()?))).collect();
+        let known = self.hidden.borrow();
+        let sights = asked.into_iter().filter_map(|(variable, location)| {
+            let hidden = known.get(&(variable.clone(), location.clone()))?.clone();
+            let at = variables.iter().position(|it| it.name == *variable)?;
+            Some(Sight { variable: VariableId::from_index(at), location: location.clone(), hidden })
+        });
+        sights.collect()
     }
 
     /// The `X_V` rule.

@@ -52,12 +52,14 @@ impl Scope {
         };
         if let Some(ArgumentValue::Condition(handed)) = self.argument(&condition.variable.text)
             && condition.values.is_empty()
+            && condition.sees.is_none()
         {
             return Condition { negated: handed.negated != condition.negated, ..handed };
         }
         Condition {
             variable: replace(&condition.variable),
             values: condition.values.iter().map(replace).collect(),
+            sees: condition.sees.as_ref().map(replace),
             ..condition.clone()
         }
     }

@@ -330,6 +330,8 @@ pub struct TerrainView {
     pub obstacles: bool,
     /// What laser range finders see, in a run.
     pub rays: bool,
+    /// Lines of sight that conditions ask for.
+    pub sights: bool,
     /// Contour lines.
     pub contours: bool,
     /// A grid in mission coordinates.
@@ -361,6 +363,7 @@ impl Default for TerrainView {
             trees: false,
             obstacles: true,
             rays: true,
+            sights: true,
             contours: true,
             grid: false,
             clearance: false,

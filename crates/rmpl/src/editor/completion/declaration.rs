@@ -1,6 +1,6 @@
 //! Places in the declarations that have no body, and in the clauses of primitives.
 
-use super::place::{Place, in_set, innermost, value_of};
+use super::place::{Place, in_set, innermost, is_sight, value_of};
 use crate::parser::{CLAUSE_WORDS, CONTINGENT};
 use crate::program::{Measure, Per};
 use crate::syntax::{SyntaxKind, SyntaxToken};
@@ -148,6 +148,7 @@ fn in_requires(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     let words = |more: &[&'static str]| Place::Words([more, &CLAUSE_WORDS].concat());
     match (innermost(clause), last.kind, last.text) {
         (Some((SyntaxKind::LeftBrace, at)), ..) => in_set(clause, at).unwrap_or(Place::Nothing),
+        (Some((SyntaxKind::LeftParen, at)), ..) if is_sight(clause, at) => Place::Location,
         (_, SyntaxKind::Equals | SyntaxKind::NotEquals, _) => value_of(clause, clause.len() - 1),
         (_, SyntaxKind::Comma | SyntaxKind::NotKeyword | SyntaxKind::Bang | SyntaxKind::LeftParen, _) => {
             Place::Condition

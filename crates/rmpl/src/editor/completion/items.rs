@@ -68,6 +68,10 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
             declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items);
         }
+        Place::SetOfLocations => {
+            items.push(keyword("visible", "visible($1)$0"));
+            items.push(keyword("{ … }", "{$1}$0"));
+        }
         Place::Model => {
             items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
         }

@@ -29,6 +29,8 @@ pub(super) enum Place {
     Argument,
     Vehicle,
     Location,
+    /// Behind `V.at in`.
+    SetOfLocations,
     Model,
     Option,
     OptionValue(String),
@@ -52,14 +54,20 @@ pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
             _ => vec!["at", "mode"],
         });
     }
+    if let Some(place) = behind_place_in(context) {
+        return place;
+    }
     if let Some(place) = in_declaration(context, *last) {
         return place;
     }
     match innermost(context) {
         Some((Kind::LeftBracket, _)) => return Place::Bound,
         Some((Kind::LeftParen, at)) => {
-            let owner = at.checked_sub(1).and_then(|at| context.get(at)).map(|token| token.kind);
-            if owner == Some(Kind::Name) {
+            let owner = at.checked_sub(1).and_then(|at| context.get(at));
+            if is_sight(context, at) {
+                return Place::Location;
+            }
+            if owner.is_some_and(|owner| owner.kind == Kind::Name) {
                 return Place::Argument;
             }
         }
@@ -97,6 +105,21 @@ pub(super) fn in_set(context: &[SyntaxToken<'_>], at: usize) -> Option<Place> {
     let word = context.get(at.checked_sub(1)?)?;
     let is_set = word.kind == SyntaxKind::Name && word.text == "in";
     is_set.then(|| value_of(context, at - 1))
+}
+
+/// Whether `(` at this index follows `in visible`.
+pub(super) fn is_sight(context: &[SyntaxToken<'_>], at: usize) -> bool {
+    let is_word = |back: usize, word: &str| {
+        at.checked_sub(back).and_then(|at| context.get(at)).is_some_and(|token| token.text == word)
+    };
+    is_word(1, "visible") && is_word(2, "in")
+}
+
+/// The set of which the place of a vehicle is one, if the tokens end with `V.at in`.
+pub(super) fn behind_place_in(context: &[SyntaxToken<'_>]) -> Option<Place> {
+    let from_end = |back: usize| context.len().checked_sub(back).and_then(|at| context.get(at));
+    let is_in = from_end(1)?.text == "in" && from_end(2)?.text == "at";
+    (is_in && from_end(3)?.kind == SyntaxKind::Dot).then_some(Place::SetOfLocations)
 }
 
 /// The values of the variable before `at`; those of `V.at` are the locations, those of `C.mode` the component's modes.

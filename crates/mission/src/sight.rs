@@ -1,0 +1,91 @@
+//! What vehicles see over the ground of a mission: the conditions `V.at in visible(L)` (SPEC 10.5).
+
+use nalgebra::Point2;
+use rmpl::program::{ArgumentValue, Condition, LocationDecl, Program, Statement, StatementKind, World};
+use terrain::Terrain;
+use tpn::Hidden;
+
+use crate::evaluated::Ground;
+use crate::ground::Grounds;
+
+/// How high what has to be in sight is over the ground at its location, in meters.
+const TARGET_M: f64 = 2.0;
+
+/// The ground of a mission, if a condition asks what is in sight and a terrain is declared: without one, everything is.
+pub(crate) fn ground(program: &Program, grounds: &mut Grounds) -> Option<Ground> {
+    if program.world.terrain.is_none() || !asks(program) {
+        return None;
+    }
+    grounds.resolve(&program.world).0
+}
+
+/// Whether a condition asks what is in sight.
+fn asks(program: &Program) -> bool {
+    let is_sight = |condition: &Condition| condition.sees.is_some();
+    let mut is_asked = program
+        .primitives
+        .iter()
+        .flat_map(|primitive| &primitive.requires)
+        .any(|required| is_sight(&required.condition));
+    let mut visit = |statement: &Statement| {
+        is_asked |= match &statement.kind {
+            StatementKind::Maintaining(_, condition)
+            | StatementKind::Watching(_, condition)
+            | StatementKind::Telling(_, condition)
+            | StatementKind::IfThennext(condition, _)
+            | StatementKind::Condition(_, condition) => is_sight(condition),
+            StatementKind::Call(_, arguments) => arguments.iter().any(
+                |argument| matches!(&argument.value, ArgumentValue::Condition(condition) if is_sight(condition)),
+            ),
+            _ => false,
+        };
+    };
+    program.activities.iter().for_each(|activity| activity.body.for_each(&mut visit));
+    program.scenarios.iter().for_each(|scenario| scenario.body.for_each(&mut visit));
+    is_asked
+}
+
+/// The vehicles of a world on its map.
+pub(crate) struct Seeing<'a> {
+    world: &'a World,
+    map: &'a Terrain,
+}
+
+impl<'a> Seeing<'a> {
+    pub(crate) const fn new(world: &'a World, map: &'a Terrain) -> Self {
+        Self { world, map }
+    }
+
+    /// Why a location is hidden from a place of a vehicle, if it is. A place sees itself.
+    fn hidden_from(
+        &self,
+        model: &motion::VehicleModel,
+        place: &LocationDecl,
+        target: &LocationDecl,
+    ) -> Option<Hidden> {
+        if place.name.text == target.name.text {
+            return None;
+        }
+        let [from, to] = [place, target].map(|it| Point2::from(it.position_m));
+        let sight = self.map.height_at(from).and_then(|ground_m| {
+            let heights_m = [model.antenna_m(self.map, ground_m), TARGET_M];
+            self.map.line_of_sight(from, to, heights_m)
+        });
+        let blocked_at_m = match sight {
+            None => None,
+            Some(sight) => Some(sight.blocked_at_m?.into()),
+        };
+        Some(Hidden { place: place.name.text.clone(), blocked_at_m })
+    }
+}
+
+impl tpn::Ground for Seeing<'_> {
+    fn hidden(&self, vehicle: &str, location: &str) -> Vec<Hidden> {
+        let vehicle = self.world.vehicles.iter().find(|it| it.name.text == vehicle);
+        let model = vehicle.and_then(|it| motion::vehicle_model(&it.model.text));
+        let target = self.world.locations.iter().find(|it| it.name.text == location);
+        let (Some(model), Some(target)) = (model, target) else { return Vec::new() };
+        let places = self.world.locations.iter();
+        places.filter_map(|place| self.hidden_from(model, place, target)).collect()
+    }
+}
