@@ -449,21 +449,3 @@ fn the_camera_is_there_at_once_where_nothing_is_to_move_by_itself() {
     let later = place(&app, "HERE").distance(place(&app, "THERE"));
     assert!(at_once > 1.2 * before && (at_once - later).abs() < 0.5, "{before} {at_once} {later}");
 }
-
-#[test]
-fn the_map_says_what_a_mission_asks_vehicles_to_see() {
-    let mut app = support::start();
-    app.settle();
-    let source =
-        MISSION.replace("Run()[l,u]", "primitive Talk(v)[1,2] requires v.at in visible(DEPOT);\nRun()[l,u]");
-    let source = source.replace("{ Run()[0,60] }", "{ Run()[0,50]; Talk(Rover1) }");
-    app.harness.state_mut().run(Command::OpenSource { name: "test".into(), source });
-    for _ in 0..20 {
-        app.settle();
-    }
-    assert_eq!(app.json()["status"], "plan", "{}", app.json()["diagnostics"]);
-    app.harness.get_by(|node| {
-        let label = node.label().unwrap_or_default();
-        label.starts_with("Terrain.") && label.contains("Rover1 sees DEPOT from everywhere.")
-    });
-}
