@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use exact::Bound;
 use stn::{Checkpoint, Inconsistency, PointId, Stn, Tag};
-use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, Plan, Window};
+use tpn::{ArcId, CausalLink, Choice, DecisionId, DistinctPlans, LabelId, NodeId, Ordering, Plan, Window};
 use typed_index_collections::TiVec;
 
 use crate::demanding;
@@ -26,8 +26,7 @@ pub(crate) fn search(
     termination: &mut dyn Termination,
 ) -> Result<Outcome, Unplannable> {
     let mut search = ChronologicalSearch::new(model, options);
-    let mut plans: Vec<Plan> = Vec::new();
-    let mut known = BTreeSet::new();
+    let mut plans = DistinctPlans::default();
     let mut is_found = search.begin()?;
     let status = loop {
         is_found = is_found && search.next_solution(termination)?;
@@ -36,7 +35,7 @@ pub(crate) fn search(
         }
         if !is_found {
             search.exhausted(options.all);
-            break if plans.is_empty() { Status::NoPlan } else { Status::Plan };
+            break if plans.plans().is_empty() { Status::NoPlan } else { Status::Plan };
         }
         let plan = search.plan()?;
         let makes = |choices: &Vec<Choice>| choices.iter().all(|choice| plan.choices.contains(choice));
@@ -44,21 +43,21 @@ pub(crate) fn search(
             is_found = search.backtrack()?;
             continue;
         }
-        if known.insert(demanding::told_apart(&plan)) {
-            search.log(|_| Event::Solution { plan: plans.len() as u32 });
-            plans.push(plan);
+        let count = plans.plans().len();
+        if plans.insert(plan) {
+            search.log(|_| Event::Solution { plan: count as u32 });
         }
         if !options.all {
             break Status::Plan;
         }
-        if plans.len() >= options.max_plans {
+        if plans.plans().len() >= options.max_plans {
             break Status::Limit;
         }
         is_found = search.backtrack()?;
     };
     Ok(Outcome {
         status,
-        plans,
+        plans: plans.into_plans(),
         bound: None,
         failure: None,
         stats: search.stats,

@@ -73,7 +73,7 @@ pub(crate) fn add_plans(
             break;
         }
         let mut known = first.iter().chain(listed.iter().map(|listed| &listed.plan));
-        if known.any(|known| is_same(known, plan)) {
+        if known.any(|known| known.is_same(plan)) {
             continue;
         }
         match listing.driven(plan, grounds, paths, stop) {
@@ -119,13 +119,6 @@ pub(crate) fn add_best(
     planned.others.sort_by(|one, other| worth::compare(problem.network, &one.plan, &other.plan));
 }
 
-fn is_same(one: &Plan, other: &Plan) -> bool {
-    one.choices == other.choices
-        && one.causal_links == other.causal_links
-        && one.conflict_order == other.conflict_order
-        && one.state_order == other.state_order
-}
-
 /// What tells ways to drive from each other: the choices, and the places that each traverse passes.
 type Way = (Vec<Choice>, Vec<(OccurrenceId, Vec<SmolStr>)>);
 
@@ -166,7 +159,7 @@ impl Listing<'_, '_> {
         }
         Some(match self.ways.get(&way)? {
             Ok((network, plans)) => {
-                let same = plans.iter().find(|known| is_same(known, plan));
+                let same = plans.iter().find(|known| known.is_same(plan));
                 let listed = |plan: &Plan| Listed { network: Arc::clone(network), plan: plan.clone() };
                 same.map(listed).ok_or_else(|| "in this order there is no time for its drives".to_owned())
             }

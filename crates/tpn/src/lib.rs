@@ -27,7 +27,7 @@ pub use network::{
     Worth,
 };
 pub use plan::{
-    CausalLink, Choice, Levels, Ordering, Plan, PlanOrder, Precedence, Quality, StateOrder, UseOrdering,
-    Window,
+    CausalLink, Choice, DistinctPlans, Levels, Ordering, Plan, PlanOrder, Precedence, Quality, StateOrder,
+    UseOrdering, Window,
 };
 pub use sight::{Hidden, Sight};

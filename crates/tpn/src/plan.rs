@@ -62,6 +62,17 @@ pub struct Precedence {
 }
 
 impl Plan {
+    /// Whether another plan of the network is the same: they make the same choices, rest each requirement on the same assertion,
+    /// and order the same way what excludes each other. How they order uses of resources does not tell them apart.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.identity() == other.identity()
+    }
+
+    /// What makes it another plan than others of its network.
+    fn identity(&self) -> (&[Choice], &[CausalLink], &[Ordering], &[StateOrder]) {
+        (&self.choices, &self.causal_links, &self.conflict_order, &self.state_order)
+    }
+
     /// All that planning added to the network: what causal links, orderings and orderings of uses say about times.
     pub fn precedences(&self, network: &Network) -> Vec<Precedence> {
         let natures = network.natures_events(&self.selected_arcs);
@@ -207,6 +218,36 @@ pub struct StateOrder {
     pub producers: Vec<LabelId>,
 }
 
+/// Plans of one network, each once, in the order in which they were found.
+#[derive(Clone, Debug, Default)]
+pub struct DistinctPlans {
+    plans: Vec<Plan>,
+    /// Their places, by what tells them apart.
+    sorted: Vec<usize>,
+}
+
+impl DistinctPlans {
+    /// The plans.
+    pub fn plans(&self) -> &[Plan] {
+        &self.plans
+    }
+
+    /// Adds a plan. Returns whether it is none of those that are there.
+    pub fn insert(&mut self, plan: Plan) -> bool {
+        let place = self.sorted.binary_search_by(|&at| self.plans[at].identity().cmp(&plan.identity()));
+        if let Err(place) = place {
+            self.sorted.insert(place, self.plans.len());
+            self.plans.push(plan);
+        }
+        place.is_err()
+    }
+
+    /// The plans by themselves.
+    pub fn into_plans(self) -> Vec<Plan> {
+        self.plans
+    }
+}
+
 /// Which of two intervals of one variable a plan puts first, where they exclude each other.
 #[derive(Clone, Debug, Default)]
 pub struct PlanOrder {
@@ -300,7 +341,8 @@ pub struct Window {
 mod tests {
     use serde_json::json;
 
-    use crate::network::{Network, NodeId};
+    use super::{Choice, DistinctPlans, UseOrdering};
+    use crate::network::{DecisionId, Network, NodeId, UseId};
     use crate::{Plan, Top, plan_json};
 
     fn network(text: &str) -> Network {
@@ -315,6 +357,24 @@ mod tests {
             "uses_ordered": orderings["uses"], "windows": {},
         });
         plan_json::plan_from_json(network, &stated).expect("the plan is of the network")
+    }
+
+    #[test]
+    fn plans_are_told_apart_by_choices_links_and_orders() {
+        let network =
+            network("resource R capacity 2; primitive A()[1,2] uses R; scenario S[0,9] = { A(), A() }");
+        let none = json!([]);
+        let first = plan(&network, &none, &json!({ "states": [], "uses": [] }));
+        let mut ordered = first.clone();
+        ordered.uses_ordered.push(UseOrdering { first: UseId::from_index(0), then: UseId::from_index(1) });
+        ordered.windows.iter_mut().for_each(|window| *window = None);
+        let mut chosen = first.clone();
+        chosen.choices.push(Choice { decision: DecisionId::from_index(0), alternative: 1 });
+        assert!(first.is_same(&ordered) && !first.is_same(&chosen));
+        let mut plans = DistinctPlans::default();
+        let inserted = [&chosen, &first, &ordered, &chosen].map(|plan| plans.insert(plan.clone()));
+        assert_eq!(inserted, [true, true, false, false]);
+        assert_eq!(plans.into_plans(), [chosen, first]);
     }
 
     /// Whether the pairs lead from one event to another.

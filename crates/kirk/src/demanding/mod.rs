@@ -7,10 +7,8 @@
 
 mod best_first;
 
-use std::collections::BTreeSet;
-
 use exact::Rational;
-use tpn::{CausalLink, Choice, LabelId, Network, Ordering, Plan, StateOrder};
+use tpn::{Choice, DistinctPlans, LabelId, Network, Plan, StateOrder};
 
 use crate::choices::Choices;
 use crate::demands::{LastingVariable, ModelGoal, lasting_variables};
@@ -73,12 +71,6 @@ pub(crate) fn nested_changes(model: &Model, selected_arcs: &[bool]) -> Vec<State
         variable.in_order(&model.conditions, &changes, is_before)
     });
     of_variable.collect()
-}
-
-/// What tells plans of one network apart: plans that differ only in how uses of resources are ordered are one.
-pub(crate) fn told_apart(plan: &Plan) -> (Vec<Choice>, Vec<CausalLink>, Vec<Ordering>, Vec<StateOrder>) {
-    let Plan { choices, causal_links, conflict_order, state_order, .. } = plan;
-    (choices.clone(), causal_links.clone(), conflict_order.clone(), state_order.clone())
 }
 
 /// The plan that makes the same choices as another one, if there is one.
@@ -369,10 +361,9 @@ impl<'a> Searching<'a> {
 
     /// Every plan that differs in its choices, its links, or the order of what excludes each other.
     fn all(&mut self, most: usize) -> Result<(Status, Vec<Plan>), Unplannable> {
-        let mut plans: Vec<Plan> = Vec::new();
         let attempt = self.recorded_problem(&Vec::new(), true, Touching::Where)?;
         let Some(Attempt { mut problem, mut solver, .. }) = attempt else {
-            return Ok((Status::Limit, plans));
+            return Ok((Status::Limit, Vec::new()));
         };
         let (termination, stats) = (&mut *self.termination, self.stats);
         let mut stop = || termination.should_stop(&stats);
@@ -380,24 +371,24 @@ impl<'a> Searching<'a> {
             Ok(()) => {}
             Err(Unencoded::Stopped) => {
                 self.record = solver.record.take();
-                return Ok((Status::Limit, plans));
+                return Ok((Status::Limit, Vec::new()));
             }
             Err(_) => return Err(Unplannable::Links),
         }
         solver.record_choice_points(&problem);
-        let mut known = BTreeSet::new();
+        let mut plans = DistinctPlans::default();
         let is_complete = loop {
             let plan = match self.next_plan((&mut problem, &mut solver), &Vec::new(), None)? {
                 Next::Stopped => break false,
                 Next::Nothing => break true,
                 Next::Plan(plan) => plan,
             };
-            if known.insert(told_apart(&plan)) {
+            let count = plans.plans().len();
+            if plans.insert(*plan) {
                 if let Some(record) = &mut solver.record {
-                    record.tell_plan(plans.len() as u32);
+                    record.tell_plan(count as u32);
                 }
-                plans.push(*plan);
-                if plans.len() >= most {
+                if count + 1 >= most {
                     break false;
                 }
             }
@@ -405,6 +396,7 @@ impl<'a> Searching<'a> {
             solver.record_restart(&problem);
         };
         self.record = solver.record.take();
+        let plans = plans.into_plans();
         let status = match (is_complete, plans.is_empty()) {
             (false, _) => Status::Limit,
             (true, true) => Status::NoPlan,
