@@ -9,8 +9,8 @@ use rmpl::program::Change;
 use stn::{Inconsistency, PointId, Stn};
 use tpn::selection::closure;
 use tpn::{
-    ArcId, CausalLink, Choice, DecisionId, LabelId, Levels, Network, NodeId, Ordering, Plan, Precedence,
-    StateOrder, UseId, UseOrdering, Window,
+    ArcId, CausalLink, Choice, LabelId, Levels, Network, NodeId, Ordering, Plan, Precedence, StateOrder,
+    UseOrdering, Window,
 };
 use typed_index_collections::TiVec;
 
@@ -18,23 +18,9 @@ use crate::antichain::heaviest_antichain;
 use crate::demands::{ModelSupply, ModelUse, ResourceDemand};
 use crate::instants::{self, Before};
 use crate::model::{Alternatives, INFINITE, Model};
-use crate::solver::{Kept, turns};
+use crate::solver::{Solution, turns};
 use crate::state_order::neighbors;
 use crate::unplannable::Unplannable;
-
-/// What a solution chooses, and times that fit.
-#[derive(Clone, Debug)]
-pub(crate) struct Solution {
-    pub(crate) alternatives: TiVec<DecisionId, Option<u32>>,
-    /// Of variables that are known only where they are asserted: what carries each requirement.
-    pub(crate) carriers: TiVec<LabelId, Option<LabelId>>,
-    pub(crate) kept: Kept,
-    /// Conflicting pairs that were ordered by choice, the earlier one first.
-    pub(crate) orders: Vec<(LabelId, LabelId)>,
-    /// Uses of resources that were, too.
-    pub(crate) uses_ordered: Vec<(UseId, UseId)>,
-    pub(crate) times: TiVec<NodeId, i64>,
-}
 
 /// The plan of a solution; `None` if intervals that the solution only lets touch are not forced to, so that the gap
 /// between them that SPEC 5.3 asks for is not there.

@@ -6,8 +6,8 @@
 use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Side};
+use super::premise::Premise;
 use super::queue::PropagationQueue;
-use super::refutation::Premise;
 use super::trail::{Cause, Conflict, Trail};
 use crate::ids::{CommonBoundId, EventId};
 

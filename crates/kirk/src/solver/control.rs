@@ -15,7 +15,7 @@ use typed_index_collections::TiVec;
 use super::Solver;
 use super::encode::Problem;
 use super::literal::{Literal, Variable};
-use super::refutation::Premise;
+use super::premise::Premise;
 use super::resources::{Task, ids};
 use crate::antichain::heaviest_antichain;
 use crate::demands::ModelSupply;

@@ -17,7 +17,7 @@ use typed_index_collections::TiVec;
 
 use super::lists::Lists;
 use super::literal::{Literal, Side, Variable};
-use super::refutation::Premise;
+use super::premise::Premise;
 use super::trail::{self, Cause, Conflict, Trail};
 use crate::ids::{CycleId, DifferenceId, EventId};
 

@@ -3,20 +3,19 @@
 //!
 //! Only intervals that exist for sure count. Everything is told for one direction of time and done for both.
 
-use tpn::LabelId;
 use typed_index_collections::TiVec;
 
-use super::encode::{DueGap, Interval, Problem};
+use super::interval::Interval;
 use super::literal::{Literal, Side};
+use super::premise::Premise;
 use super::queue::PropagationQueue;
-use super::refutation::Premise;
 use super::trail::{Conflict, Trail};
 use crate::ids::ExclusionId;
 
 /// In larger sets only overloads are looked for.
 const MAX_EDGE_FINDING: usize = 24;
 /// Larger sets are left to the pairs.
-const MAX_TASKS: usize = 200;
+pub(super) const MAX_TASKS: usize = 200;
 
 #[derive(Clone, Debug)]
 struct Exclusion {
@@ -56,35 +55,9 @@ struct Gap {
 }
 
 impl Disjunctives {
-    /// Finds sets among the labels of one variable that must be kept apart, `gap` between each two.
-    pub(crate) fn add(&mut self, problem: &mut Problem<'_>, labels: &[LabelId], premise: Premise) {
-        let mut is_covered = vec![false; labels.len()];
-        for (first, &seed) in labels.iter().enumerate() {
-            if is_covered[first] || labels.len() > MAX_TASKS {
-                continue;
-            }
-            let mut members = vec![seed];
-            let mut due = DueGap::Always;
-            for (position, &label) in labels.iter().enumerate() {
-                if position == first || problem.intervals[label].duration == 0 {
-                    continue;
-                }
-                let relations =
-                    members.iter().map(|&member| problem.exclusion(member.min(label), member.max(label)));
-                let relations: Option<Vec<DueGap>> = relations.collect();
-                if let Some(relations) = relations {
-                    due = relations.into_iter().fold(due, DueGap::min);
-                    members.push(label);
-                    is_covered[position] = true;
-                }
-            }
-            if members.len() > 2 {
-                let tasks = members.iter().map(|&label| problem.intervals[label]).collect();
-                let when = if due == DueGap::Assumed { problem.touches.none } else { Literal::TRUE };
-                let gap = if due == DueGap::Never { 0 } else { problem.model.gap };
-                self.add_set(Exclusion { tasks, gap, when, premise });
-            }
-        }
+    /// Adds a set of intervals of which no two overlap, `gap` between each two where `when` holds.
+    pub(crate) fn add_apart(&mut self, tasks: Vec<Interval>, (gap, when): (i64, Literal), premise: Premise) {
+        self.add_set(Exclusion { tasks, gap, when, premise });
     }
 
     /// Adds a set of intervals of which no two overlap.

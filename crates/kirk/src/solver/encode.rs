@@ -9,39 +9,20 @@ use super::alternatives::Way;
 use super::enclosure::Enclosures;
 use super::growth::{Growth, LINK, Unencoded};
 use super::instants::Instants;
+use super::interval::{DueGap, Interval};
 use super::lasting::Sides;
 use super::literal::{Literal, Side, Variable};
-use super::refutation::Premise;
+use super::premise::Premise;
 use super::resources::Shares;
+use super::solution::Solution;
 use super::touching::{Touches, Touching};
 use super::{ChoicePoint, ChoicePointKind, Solver, interchangeable};
 use crate::choices::Choices;
 use crate::failure::Member;
 use crate::model::UNBOUNDED_BELOW;
 use crate::model::{Alternatives, Context, INFINITE, Model, ModelArc, node};
-use crate::partial_order::Solution;
 use crate::structure::Relation;
 use crate::trace::{Constraint, TreeChoice};
-
-/// A labelled interval.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Interval {
-    pub(crate) start: Variable,
-    pub(crate) end: Variable,
-    pub(crate) presence: Literal,
-    /// The least that it lasts.
-    pub(crate) duration: i64,
-}
-
-/// The gap between two intervals that exclude each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum DueGap {
-    /// They may touch.
-    Never,
-    /// As long as it is assumed that none touch.
-    Assumed,
-    Always,
-}
 
 /// What a search is asked for, beside the model.
 #[derive(Clone, Copy, Debug)]
@@ -538,7 +519,8 @@ impl<'m> Problem<'m> {
         // Events that are always at one time have one variable.
         points.retain(|&point| !std::mem::replace(&mut is_there[point], true));
         solver.sweeps.set_points(points, solver.trail.num_variables());
-        if let Err(conflict) = solver.sweep_all() {
+        let Solver { sweeps, differences, trail, .. } = &mut *solver;
+        if let Err(conflict) = sweeps.sweep_all(differences, trail) {
             solver.refute(&conflict);
         }
     }

@@ -10,7 +10,7 @@ use typed_index_collections::TiVec;
 use super::Solver;
 use super::encode::Problem;
 use super::literal::Literal;
-use super::refutation::Premise;
+use super::premise::Premise;
 use crate::demands::ModelSupply;
 use crate::instants::{self, Before, Turn};
 use crate::model::{Model, node};

@@ -6,12 +6,14 @@
 
 use std::collections::BTreeMap;
 
-use tpn::{CausalLink, LabelId, Ordering, StateOrder};
+use tpn::{CausalLink, LabelId, Ordering};
 
-use super::encode::{Interval, Part, Problem};
+use super::encode::{Part, Problem};
 use super::growth::{CLAUSE, Growth, LINK, ORDER, Unencoded};
+use super::interval::Interval;
 use super::literal::Literal;
-use super::refutation::Premise;
+use super::premise::Premise;
+use super::solution::Kept;
 use super::tours::MAX_MOVEMENTS;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::LastingVariable;
@@ -39,17 +41,6 @@ pub(crate) struct Sides {
     pub(super) departures: Vec<(Departing, Literal)>,
     /// How long a movement takes at least, by the literal of where it begins.
     pub(super) least_movements: BTreeMap<Literal, i64>,
-}
-
-/// What a solution says of variables that keep their values.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Kept {
-    /// What each selected requirement rests on, in textual order of the requirements.
-    pub(crate) links: Vec<(LabelId, LabelId)>,
-    /// What gives each variable its values, in order; only of variables that something changes.
-    pub(crate) order: Vec<StateOrder>,
-    /// Requirements that are over before a change that would break them, the requirement first.
-    pub(crate) over_before: Vec<(LabelId, LabelId)>,
 }
 
 impl Problem<'_> {

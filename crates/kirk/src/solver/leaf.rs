@@ -4,10 +4,12 @@ use std::collections::BTreeSet;
 
 use tpn::{LabelId, VariableId};
 
+use super::disjunctive::MAX_TASKS;
 use super::encode::Problem;
 use super::growth::{Growth, ORDER, Unencoded};
+use super::interval::DueGap;
 use super::literal::Literal;
-use super::refutation::Premise;
+use super::premise::Premise;
 use super::touching::{Touching, Unordered};
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::failure::Member;
@@ -58,9 +60,40 @@ impl Solver {
             let exists = |label: &LabelId| !self.trail.fails(problem.intervals[*label].presence);
             let labels: Vec<LabelId> =
                 problem.labels_by_variable[variable].iter().copied().filter(exists).collect();
-            self.disjunctives.add(problem, &labels, Premise::Variable(variable));
+            self.exclude_sets(problem, &labels, Premise::Variable(variable));
         }
         true
+    }
+
+    /// Finds sets among the labels of one variable that must be kept apart.
+    fn exclude_sets(&mut self, problem: &mut Problem<'_>, labels: &[LabelId], premise: Premise) {
+        let mut is_covered = vec![false; labels.len()];
+        for (first, &seed) in labels.iter().enumerate() {
+            if is_covered[first] || labels.len() > MAX_TASKS {
+                continue;
+            }
+            let mut members = vec![seed];
+            let mut due = DueGap::Always;
+            for (position, &label) in labels.iter().enumerate() {
+                if position == first || problem.intervals[label].duration == 0 {
+                    continue;
+                }
+                let relations =
+                    members.iter().map(|&member| problem.exclusion(member.min(label), member.max(label)));
+                let relations: Option<Vec<DueGap>> = relations.collect();
+                if let Some(relations) = relations {
+                    due = relations.into_iter().fold(due, DueGap::min);
+                    members.push(label);
+                    is_covered[position] = true;
+                }
+            }
+            if members.len() > 2 {
+                let tasks = members.iter().map(|&label| problem.intervals[label]).collect();
+                let when = if due == DueGap::Assumed { problem.touches.none } else { Literal::TRUE };
+                let gap = if due == DueGap::Never { 0 } else { problem.model.gap };
+                self.disjunctives.add_apart(tasks, (gap, when), premise);
+            }
+        }
     }
 
     /// Makes all conflicting pairs choice points, so that solutions differ in their orders.

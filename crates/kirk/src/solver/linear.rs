@@ -4,8 +4,8 @@
 use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Variable};
+use super::premise::Premise;
 use super::queue::PropagationQueue;
-use super::refutation::Premise;
 use super::trail::{Conflict, Trail};
 use crate::ids::LinearId;
 

@@ -31,17 +31,20 @@ mod goals;
 mod growth;
 mod instants;
 mod interchangeable;
+mod interval;
 mod lasting;
 mod leaf;
 mod linear;
 mod lists;
 mod literal;
+mod premise;
 mod queue;
 mod record;
 mod refutation;
 mod relaxation;
 mod resources;
 mod simplex;
+mod solution;
 mod sweeps;
 mod touching;
 mod tours;
@@ -63,6 +66,7 @@ use disjunctive::Disjunctives;
 use linear::Linears;
 use lists::Lists;
 use literal::{Literal, Side, Variable};
+use premise::Premise;
 use record::Origin;
 use refutation::Derivations;
 use resources::Sharing;
@@ -75,9 +79,8 @@ pub(crate) use encode::{Part, Problem};
 pub(crate) use goals::GoalSums;
 pub(crate) use growth::{Growth, Unencoded};
 pub(crate) use instants::turns;
-pub(crate) use lasting::Kept;
 pub(crate) use record::Record;
-pub(crate) use refutation::Premise;
+pub(crate) use solution::Solution;
 pub(crate) use touching::Touching;
 
 /// How a search came to an end.
@@ -592,7 +595,9 @@ impl Solver {
                 return self.give_up_burst(level, before);
             }
         }
-        match self.sweep_new().and_then(|()| self.propagate(stop)) {
+        self.trail.premise = Premise::Structure;
+        let swept = self.sweeps.sweep_new(&self.differences, &mut self.trail, self.theory_head);
+        match swept.and_then(|()| self.propagate(stop)) {
             Ok(_) => self.burst = self.burst.saturating_mul(2),
             Err(_) => self.give_up_burst(level, before),
         }

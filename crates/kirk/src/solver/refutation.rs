@@ -6,33 +6,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use tpn::{ArcId, VariableId};
+use tpn::ArcId;
 use typed_index_collections::TiVec;
 
 use super::Solver;
 use super::encode::Problem;
 use super::literal::{Literal, Side, Variable};
+use super::premise::Premise;
 use super::trail::Cause;
 use crate::failure::Member;
-use crate::ids::{ClauseId, CommonBoundId, CycleId, DerivationId, DifferenceId, EventId};
+use crate::ids::{ClauseId, CommonBoundId, DerivationId, DifferenceId, EventId};
 use crate::trace::Constraint;
-
-/// What something that the solver was told comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Premise {
-    /// The way the program is built, which is no part of any reason.
-    #[default]
-    Structure,
-    Member(Member),
-    /// That conditions of a variable exclude each other, and how long they last.
-    Variable(VariableId),
-    /// What a resource has, and how long its uses last; by position.
-    Resource(usize),
-    /// The differences of a negative cycle.
-    Cycle(CycleId),
-    /// Nothing that has a name.
-    Unknown,
-}
 
 /// A premise that a derivation uses, and the sides that its conclusion was drawn from: of what is shared by many, those at
 /// these sides count.

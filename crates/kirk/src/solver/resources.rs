@@ -9,10 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use rmpl::program::Change;
 use tpn::{NodeId, UseId, UseOrdering};
 
-use super::encode::{Interval, Part, Problem};
+use super::encode::{Part, Problem};
 use super::instants::Instants;
+use super::interval::Interval;
 use super::literal::{Literal, Variable};
-use super::refutation::Premise;
+use super::premise::Premise;
 use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::{ModelSupply, ModelUse};

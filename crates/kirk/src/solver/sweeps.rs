@@ -5,10 +5,8 @@ use std::ops::Range;
 
 use typed_index_collections::TiVec;
 
-use super::Solver;
 use super::difference::Differences;
 use super::literal::{Side, Variable};
-use super::refutation::Premise;
 use super::trail::{Conflict, Trail};
 use crate::ids::EventId;
 
@@ -132,39 +130,38 @@ impl Sweeps {
         }
         Ok(self.num_waiting == 0)
     }
-}
 
-impl Solver {
     /// Carries on all bounds. At the root.
-    pub(super) fn sweep_all(&mut self) -> Result<(), Conflict> {
-        let Self { sweeps, differences, trail, .. } = self;
+    pub(super) fn sweep_all(&mut self, differences: &Differences, trail: &mut Trail) -> Result<(), Conflict> {
         let first = trail.events.len();
-        sweeps.clear();
-        for position in 0..sweeps.points.len() {
-            let point = sweeps.points[position];
+        self.clear();
+        for position in 0..self.points.len() {
+            let point = self.points[position];
             for side in [point.lower(), point.upper()] {
-                sweeps.wait(side, position);
+                self.wait(side, position);
             }
         }
-        let settled = sweeps.run(differences, trail, first);
-        sweeps.clear();
+        let settled = self.run(differences, trail, first);
+        self.clear();
         if settled? {
-            sweeps.settled[0] = first..trail.events.len();
+            self.settled[0] = first..trail.events.len();
         }
         Ok(())
     }
 
-    /// Carries on the bounds of the events that have not been propagated to the theories yet.
-    pub(super) fn sweep_new(&mut self) -> Result<(), Conflict> {
-        self.trail.premise = Premise::Structure;
-        let Self { sweeps, differences, trail, .. } = self;
-        let first = self.theory_head;
-        sweeps.waits.resize(2 * trail.num_variables(), false);
-        sweeps.clear();
-        let settled = sweeps.run(differences, trail, first);
-        sweeps.clear();
+    /// Carries on the bounds of the events from `first` on, which have not been propagated to the theories yet.
+    pub(super) fn sweep_new(
+        &mut self,
+        differences: &Differences,
+        trail: &mut Trail,
+        first: usize,
+    ) -> Result<(), Conflict> {
+        self.waits.resize(2 * trail.num_variables(), false);
+        self.clear();
+        let settled = self.run(differences, trail, first);
+        self.clear();
         if settled? {
-            sweeps.settled[1] = first..trail.events.len();
+            self.settled[1] = first..trail.events.len();
         }
         Ok(())
     }

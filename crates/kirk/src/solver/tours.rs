@@ -3,10 +3,10 @@
 
 use typed_index_collections::TiVec;
 
-use super::encode::Interval;
+use super::interval::Interval;
 use super::literal::Literal;
+use super::premise::Premise;
 use super::queue::PropagationQueue;
-use super::refutation::Premise;
 use super::trail::{Conflict, Trail};
 use crate::ids::TourId;
 

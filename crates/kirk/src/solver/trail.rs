@@ -3,7 +3,7 @@
 use typed_index_collections::TiVec;
 
 use super::literal::{Literal, Side, Variable};
-use super::refutation::Premise;
+use super::premise::Premise;
 use crate::ids::{ClauseId, CommonBoundId, DifferenceId, EventId, NoteId};
 
 /// Why a bound holds. What else it rests on is found out only if somebody asks.
