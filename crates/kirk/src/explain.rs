@@ -4,16 +4,19 @@
 //! after the other while what remains is still contradictory makes it minimal. Where there are too many failures to
 //! list, the mission as a whole gets one reason.
 
+use std::collections::BTreeSet;
+
 use rmpl::Span;
 use tpn::{Choice, DecisionId, LabelId, Network, OccurrenceKind};
 use typed_index_collections::TiVec;
 
+use crate::choices::Choices;
 use crate::failure::{Failure, Member, Reason};
 use crate::model::{INFINITE, Model, UNBOUNDED_BELOW};
 use crate::options::{Stats, Termination, Unlimited};
 use crate::solver::{self, Answer, Problem, Touching};
 use crate::trace::{Constraint, CycleMember};
-use crate::{demanding, whole, wording};
+use crate::{demanding, rotation, whole, wording};
 
 /// Explaining stops adding reasons after this many.
 const MAX_REASONS: usize = 64;
@@ -46,13 +49,8 @@ impl<'t> Effort<'t> {
         self.searches > 0
     }
 
-    /// What the solver says of a part of a problem, unless that takes too long; with what a refutation rests on, if that
-    /// is wanted and known.
-    pub(crate) fn solve(
-        &mut self,
-        model: &Model,
-        part: solver::Part<'_>,
-    ) -> Option<(Answer, Option<Vec<Member>>)> {
+    /// What the solver says of a part of a problem, unless that takes too long.
+    pub(crate) fn solve(&mut self, model: &Model, part: solver::Part<'_>) -> Option<Refuted> {
         let mut is_stopped = false;
         let mut is_spent = |stats: &Stats| {
             is_stopped |= self.termination.should_stop(stats);
@@ -65,15 +63,19 @@ impl<'t> Effort<'t> {
         if is_stopped {
             self.searches = 0;
         }
-        (answer != Answer::Stopped).then(|| (answer, problem.core(&solver)))
+        match answer {
+            Answer::Solved => Some(Refuted::No(problem.solution(&solver))),
+            Answer::Unsolvable => Some(Refuted::By(problem.core(&solver))),
+            Answer::Stopped => None,
+        }
     }
 }
 
 /// What the solver makes of a part.
 pub(crate) enum Refuted {
-    /// It has a plan.
-    No,
-    /// With what that rests on, if it is known.
+    /// It has a solution.
+    No(Choices),
+    /// With what that rests on, if it is wanted and known.
     By(Option<Vec<Member>>),
 }
 
@@ -310,6 +312,20 @@ impl<'m> Part<'m> {
         }
     }
 
+    /// Members that are needed, by a solution of `members` without `dropped`.
+    pub(crate) fn needed(
+        &self,
+        members: &[Member],
+        dropped: &[Member],
+        solution: &Choices,
+    ) -> BTreeSet<Member> {
+        // What withstands nature is more than a solution.
+        if self.mission.has_uncertainty && !self.ignores_nature {
+            return BTreeSet::new();
+        }
+        rotation::needed(self.mission, members, dropped, solution)
+    }
+
     /// Leaves the alternative of a decision open, or gives it.
     pub(crate) fn assume(&mut self, decision: DecisionId, alternative: Option<u32>) {
         self.assumed[decision] = alternative;
@@ -336,9 +352,6 @@ impl<'m> Part<'m> {
             touching: Touching::Unneeded,
             mission: Some(self.mission),
         };
-        match effort.solve(&self.model, part)? {
-            (Answer::Unsolvable, core) => Some(Refuted::By(core)),
-            _ => Some(Refuted::No),
-        }
+        effort.solve(&self.model, part)
     }
 }

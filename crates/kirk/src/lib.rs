@@ -24,6 +24,7 @@ mod planner;
 mod precedence;
 mod relax;
 mod replay;
+mod rotation;
 mod solver;
 mod state_order;
 mod structure;

@@ -6,11 +6,12 @@ use exact::{Bound, Time};
 use rmpl::Span;
 use tpn::{ArcId, Network};
 
-use crate::explain::Effort;
+use crate::choices::Choices;
+use crate::explain::{Effort, Refuted};
 use crate::failure::{Failure, Member, Relaxation};
-use crate::model::{INFINITE, Model};
+use crate::model::{Context, INFINITE, Model};
 use crate::options::{Options, Search, Stats, Status, Termination};
-use crate::solver::{Answer, Part};
+use crate::solver::Part;
 use crate::trace::Constraint;
 use crate::unplannable::Unplannable;
 use crate::{answer, wording};
@@ -120,6 +121,15 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
         .collect()
 }
 
+/// What planning makes of a value.
+enum Trying {
+    /// There is a plan with it, and with this value, which is no further from the old one.
+    Plans(i64),
+    Fails,
+    /// It takes too long to find out.
+    Unknown,
+}
+
 struct Trial<'a> {
     network: &'a Network,
     model: Model,
@@ -137,48 +147,53 @@ impl Trial<'_> {
             (true, true) => (lower, upper),
             (true, false) => (upper, lower),
         };
-        if old == most || !self.plans_with(arcs, is_lower, most, (lower, upper))? {
+        let bounds = (lower, upper);
+        if old == most {
             return Ok(None);
         }
-        // Step away from the old value ever faster until there is a plan, then halve the gap.
+        let Trying::Plans(widest) = self.plans_with(arcs, is_lower, most, bounds)? else { return Ok(None) };
+        // Step away from the old value ever faster until there is a plan, then halve what is between.
         let (mut fails, mut step) = (old, 1_i64);
         let mut plans = loop {
             let next = if most < old {
-                old.saturating_sub(step).max(most)
+                old.saturating_sub(step).max(widest)
             } else {
-                old.saturating_add(step).min(most)
+                old.saturating_add(step).min(widest)
             };
             if next >= INFINITE / 4 {
                 return Ok(None);
             }
-            if self.plans_with(arcs, is_lower, next, (lower, upper))? {
-                break next;
+            if next == widest {
+                break widest;
             }
-            if self.effort.searches == 0 || next == most {
-                return Ok(None);
+            match self.plans_with(arcs, is_lower, next, bounds)? {
+                Trying::Plans(closest) => break closest,
+                Trying::Fails => (fails, step) = (next, step.saturating_mul(2)),
+                Trying::Unknown => return Ok(None),
             }
-            (fails, step) = (next, step.saturating_mul(2));
         };
         while plans.abs_diff(fails) > 1 {
             let middle = plans.midpoint(fails);
-            if self.plans_with(arcs, is_lower, middle, (lower, upper))? {
-                plans = middle;
-            } else {
-                fails = middle;
+            match self.plans_with(arcs, is_lower, middle, bounds)? {
+                Trying::Plans(closest) => plans = closest,
+                Trying::Fails => fails = middle,
+                // A change that may be larger than it has to be is none to offer.
+                Trying::Unknown => return Ok(None),
             }
         }
         Ok(Some(plans))
     }
 
+    /// What planning makes of a value.
     fn plans_with(
         &mut self,
         arcs: &[ArcId],
         is_lower: bool,
         value: i64,
         (lower, upper): (i64, i64),
-    ) -> Result<bool, Unplannable> {
+    ) -> Result<Trying, Unplannable> {
         if !self.effort.spend() {
-            return Ok(false);
+            return Ok(Trying::Unknown);
         }
         let (new_lower, new_upper) = if is_lower { (value, upper) } else { (lower, value) };
         for &arc in arcs {
@@ -190,7 +205,34 @@ impl Trial<'_> {
             self.model.set_bounds(self.network, arc, lower, upper);
         }
         self.model.refresh_structure()?;
-        Ok(solved.is_some_and(|(answer, _)| answer == Answer::Solved))
+        Ok(match solved {
+            Some(Refuted::No(solution)) => {
+                Trying::Plans(self.closest_within(arcs, is_lower, value, &solution))
+            }
+            Some(Refuted::By(_)) => Trying::Fails,
+            None => Trying::Unknown,
+        })
+    }
+
+    /// The value closest to the old one that a solution for another value keeps, too: what its arcs really take.
+    fn closest_within(&self, arcs: &[ArcId], is_lower: bool, value: i64, solution: &Choices) -> i64 {
+        // Nature takes what it likes.
+        if self.model.has_uncertainty {
+            return value;
+        }
+        let is_there = |context: Context| {
+            context.is_none_or(|choice| solution.alternatives[choice.decision] == Some(choice.alternative))
+        };
+        let takes = |arc: &ArcId| {
+            let arc = &self.model.arcs[*arc];
+            let counts = is_there(arc.context) && is_there(arc.other_context);
+            counts.then(|| solution.times[arc.to.index()] - solution.times[arc.from.index()])
+        };
+        let taken = arcs.iter().filter_map(takes);
+        let closest = if is_lower { taken.min() } else { taken.max() };
+        // The old value has no plan.
+        let old = &self.model.arcs[arcs[0]];
+        closest.filter(|&it| if is_lower { it < old.lower } else { it > old.upper }).unwrap_or(value)
     }
 }
 

@@ -26,12 +26,20 @@ pub(crate) fn reason(
 ) -> Option<Reason> {
     let all = members(model);
     let part = Part::new(model, choices);
-    let mut search = Shrinking { part, members: Vec::new(), proven: all.clone(), wants_core: true, effort };
+    let mut search = Shrinking {
+        part,
+        members: Vec::new(),
+        proven: all.clone(),
+        needed: BTreeSet::new(),
+        wants_core: true,
+        effort,
+    };
     search.keep(&all);
     let Refuted::By(core) = search.part.refute(search.effort, true)? else { return None };
     let mut is_minimal = core.is_some_and(|core| search.shrink_core(&core));
     if !is_minimal && !search.effort.is_exhausted() {
         search.wants_core = false;
+        search.needed.clear();
         search.keep(&all);
         for group in by_subject(network) {
             search.leave_out(&group);
@@ -67,6 +75,8 @@ struct Shrinking<'a, 't> {
     members: Vec<Member>,
     /// The last members that were proven to be a contradiction themselves.
     proven: Vec<Member>,
+    /// Those that are known to be needed: without one of them the members, and so any part of them, have a solution.
+    needed: BTreeSet<Member>,
     /// Whether what a proof does not need is left out, too.
     wants_core: bool,
     effort: &'a mut Effort<'t>,
@@ -96,9 +106,12 @@ impl Shrinking<'_, '_> {
             let mut end = self.members.len();
             while end > 0 && !self.effort.is_exhausted() {
                 let start = end.saturating_sub(size);
-                let chunk = self.members[start..end].to_vec();
-                let left_out = self.leave_out(&chunk);
-                is_minimal &= size > 1 || left_out.is_some();
+                let open = |member: &&Member| !self.needed.contains(*member);
+                let chunk: Vec<Member> = self.members[start..end].iter().filter(open).copied().collect();
+                if !chunk.is_empty() {
+                    let left_out = self.leave_out(&chunk);
+                    is_minimal &= size > 1 || left_out.is_some();
+                }
                 // More than the chunk may be gone.
                 end = start.min(self.members.len());
             }
@@ -124,28 +137,39 @@ impl Shrinking<'_, '_> {
 
     /// Whether the members are a contradiction; if so, only those stay that the proof needs. `None` if nobody knows.
     fn is_refuted(&mut self) -> Option<bool> {
-        let Refuted::By(core) = self.part.refute(self.effort, self.wants_core)? else { return Some(false) };
+        Some(matches!(self.refute()?, Refuted::By(_)))
+    }
+
+    fn refute(&mut self) -> Option<Refuted> {
+        let refuted = self.part.refute(self.effort, self.wants_core)?;
+        let Refuted::By(core) = &refuted else { return Some(refuted) };
         self.proven.clone_from(&self.members);
         if let Some(core) = core {
-            let core: BTreeSet<Member> = core.into_iter().collect();
-            let needed =
-                self.members.iter().copied().filter(|member| core.contains(member)).collect::<Vec<_>>();
-            self.keep(&needed);
+            let core: BTreeSet<Member> = core.iter().copied().collect();
+            let rest = self.members.iter().copied().filter(|member| core.contains(member));
+            let rest: Vec<Member> = rest.collect();
+            self.keep(&rest);
         }
-        Some(true)
+        Some(refuted)
     }
 
     /// Leaves members out if what remains is a contradiction still. Whether it did; `None` if nobody knows.
     fn leave_out(&mut self, chunk: &[Member]) -> Option<bool> {
         let before = self.members.clone();
-        let chunk: BTreeSet<Member> = chunk.iter().copied().collect();
-        let others: Vec<Member> = before.iter().copied().filter(|member| !chunk.contains(member)).collect();
+        let dropped: BTreeSet<Member> = chunk.iter().copied().collect();
+        let others: Vec<Member> = before.iter().copied().filter(|member| !dropped.contains(member)).collect();
         self.keep(&others);
-        let is_refuted = self.is_refuted();
-        if is_refuted != Some(true) {
+        let refuted = self.refute();
+        if !matches!(refuted, Some(Refuted::By(_))) {
             self.keep(&before);
         }
-        is_refuted
+        if let Some(Refuted::No(solution)) = &refuted {
+            if let [only] = chunk {
+                self.needed.insert(*only);
+            }
+            self.needed.extend(self.part.needed(&before, chunk, solution));
+        }
+        Some(matches!(refuted?, Refuted::By(_)))
     }
 
     /// Leaves a choice open if what remains is a contradiction whatever is chosen there. Whether it did.
@@ -296,9 +320,8 @@ mod tests {
     use super::*;
     use crate::options::Unlimited;
 
-    /// What a refutation rests on is a contradiction by itself.
-    #[test]
-    fn cores_are_contradictions() {
+    /// Missions most of which have no plan.
+    fn texts() -> Vec<String> {
         let mut texts = vec![pigeonholes(5, 1), pigeonholes(12, 1), symmetric(6, 3, 1), chain(30, false)];
         for seed in 0..60 {
             texts.push(nested(20 + seed as usize * 3, 60, seed));
@@ -308,12 +331,24 @@ mod tests {
             let count = 3 + seed as usize % 5;
             texts.push(lasting(count, seed as usize));
             texts.push(sharing(count, seed as usize));
+            texts.push(jobs(count, seed as usize));
         }
+        texts
+    }
+
+    fn model(text: &str) -> (Network, Model) {
+        let (network, diagnostics) = compile(&rmpl::parse(text).program(), &Top::Scenario(None));
+        let network = network.unwrap_or_else(|| panic!("does not compile: {diagnostics:?}\n{text}"));
+        let model = Model::new(&network, None).expect("times fit");
+        (network, model)
+    }
+
+    /// What a refutation rests on is a contradiction by itself.
+    #[test]
+    fn cores_are_contradictions() {
         let (mut cores, mut unnamed, mut plans) = (0, 0, 0);
-        for text in &texts {
-            let (network, diagnostics) = compile(&rmpl::parse(text).program(), &Top::Scenario(None));
-            let network = network.unwrap_or_else(|| panic!("does not compile: {diagnostics:?}\n{text}"));
-            let model = Model::new(&network, None).expect("times fit");
+        for text in &texts() {
+            let (_, model) = model(text);
             let mut unlimited = Unlimited;
             let mut effort = Effort::for_size(model.num_nodes, &mut unlimited);
             let mut part = Part::new(&model, &[]);
@@ -339,6 +374,60 @@ mod tests {
             assert_eq!(rest.is_refuted(&mut effort), Some(true), "{core:?}\n{text}");
         }
         assert!(cores > 200 && unnamed < 10, "{cores} cores, {unnamed} without a name, {plans} plans");
+    }
+
+    /// No member of a minimal reason can be left out, also of those that no search was made for.
+    #[test]
+    fn what_moved_solutions_show_to_be_needed_is() {
+        let (mut searched, mut told) = (0, 0);
+        for text in &texts() {
+            let (_, model) = model(text);
+            let mut unlimited = Unlimited;
+            let mut effort = Effort::for_size(model.num_nodes, &mut unlimited);
+            let mut part = Part::new(&model, &[]);
+            let mut all = members(&model);
+            for &member in &all {
+                part.set(member, true);
+            }
+            if !matches!(part.refute(&mut effort, false), Some(Refuted::By(_))) {
+                continue;
+            }
+            let mut shown: BTreeSet<Member> = BTreeSet::new();
+            let mut at = all.len();
+            while at > 0 {
+                at -= 1;
+                let member = all[at];
+                let is_shown = shown.contains(&member);
+                part.set(member, false);
+                match part.refute(&mut effort, false) {
+                    Some(Refuted::No(solution)) => {
+                        shown.extend(part.needed(&all, &[member], &solution));
+                        part.set(member, true);
+                        *if is_shown { &mut told } else { &mut searched } += 1;
+                    }
+                    refuted => {
+                        assert!(!is_shown || refuted.is_none(), "{member:?} is not needed\n{text}");
+                        all.remove(at);
+                    }
+                }
+            }
+        }
+        assert!(searched > 1_000 && told > 1_000, "{searched} searched for, {told} told by others");
+    }
+
+    /// Jobs that go through two shops each, in a horizon that is too short for one of these.
+    fn jobs(count: usize, seed: usize) -> String {
+        let length = |at: usize| 2 + (at * 5 + seed) % 6;
+        let activities = (0..count).map(|at| {
+            format!("primitive One{at}()[{0},{0}] uses M; primitive Two{at}()[1,9] uses N;", length(at))
+        });
+        let calls = (0..count).map(|at| format!("{{ delay; Two{at}(); delay; One{at}(); delay[1,inf] }}"));
+        format!(
+            "resource M; resource N; {} scenario S[0,{}] = {{ {} }}",
+            activities.collect::<String>(),
+            (0..count).map(length).sum::<usize>() + 1,
+            calls.collect::<Vec<_>>().join(", ")
+        )
     }
 
     /// Changes of one state, one after the other, in a horizon that is too short for all of them.
