@@ -1,12 +1,14 @@
 //! Changes that might give a plan, by what is in conflict. Whether they do is found by planning.
 
-use exact::Rational;
+use std::collections::BTreeMap;
+
 use kirk::{Failure, FailureKind, Member, Reason};
 use rmpl::program::{Change, LabelMode, PrimitiveDecl, Program, VariableDecl};
 use rmpl::{Edit, Fix, Span};
 use smol_str::SmolStr;
-use tpn::{ArcId, BlockId, Extent, Label, LabelId, Network, Resource, Supply, Use, ValueSet};
+use tpn::{ArcId, BlockId, Extent, Label, LabelId, Network, ResourceId, Supply, Use, ValueSet};
 
+use super::amounts::Amount;
 use super::places::Places;
 
 /// Reasons, and members of each, that are looked at.
@@ -15,14 +17,30 @@ const MAX_MEMBERS: usize = 4;
 /// Longer texts are not repeated in a label.
 const MAX_SHOWN: usize = 40;
 
+/// A change to try.
+pub(super) enum Candidate {
+    Change(Fix),
+    /// More of a resource; how much has to be found out.
+    More(Amount),
+}
+
 /// The changes to try, the likeliest first, each once.
-pub(super) fn of(failure: &Failure, network: &Network, program: &Program, source: &str) -> Vec<Fix> {
+pub(super) fn of(failure: &Failure, network: &Network, program: &Program, source: &str) -> Vec<Candidate> {
     let candidates = Candidates { network, program, source, places: Places::new(network) };
-    let mut found: Vec<Fix> = Vec::new();
+    let mut changes: Vec<Vec<Edit>> = Vec::new();
+    let mut amounts: Vec<Amount> = Vec::new();
+    let mut found: Vec<Candidate> = Vec::new();
     for reason in failure.reasons.iter().take(MAX_REASONS) {
         for fix in candidates.of_reason(reason) {
-            if found.iter().all(|known| known.edits != fix.edits) {
-                found.push(fix);
+            if !changes.contains(&fix.edits) {
+                changes.push(fix.edits.clone());
+                found.push(Candidate::Change(fix));
+            }
+        }
+        for amount in candidates.amounts(reason) {
+            if !amounts.contains(&amount) {
+                amounts.push(amount.clone());
+                found.push(Candidate::More(amount));
             }
         }
     }
@@ -44,12 +62,6 @@ impl Candidates<'_> {
                 Member::Bound(_) | Member::Use(_) => None,
             })
         };
-        let uses: Vec<&Use> = (reason.conflict.iter())
-            .filter_map(|member| match member {
-                Member::Use(used) => Some(&self.network.uses[used.index()]),
-                _ => None,
-            })
-            .collect();
         match reason.kind {
             FailureKind::Threat => {
                 let arcs: Vec<ArcId> = labels().map(|label| self.label(label).arc).collect();
@@ -58,9 +70,30 @@ impl Candidates<'_> {
             FailureKind::OpenCondition => {
                 labels().take(MAX_MEMBERS).flat_map(|ask| self.for_condition(self.label(ask))).collect()
             }
-            FailureKind::Resource => self.for_resource(&uses),
+            FailureKind::Resource => self.for_resource(&self.uses(reason)),
             FailureKind::Temporal | FailureKind::Controllability => Vec::new(),
         }
+    }
+
+    /// The resources that a reason has too little of.
+    fn amounts(&self, reason: &Reason) -> Vec<Amount> {
+        if reason.kind != FailureKind::Resource {
+            return Vec::new();
+        }
+        let mut of_resource: BTreeMap<ResourceId, Vec<&Use>> = BTreeMap::new();
+        for used in self.uses(reason) {
+            of_resource.entry(used.resource).or_default().push(used);
+        }
+        let amounts = of_resource.values();
+        amounts.filter_map(|uses| Amount::new(self.network, self.program, self.source, uses)).collect()
+    }
+
+    fn uses(&self, reason: &Reason) -> Vec<&Use> {
+        let used = reason.conflict.iter().filter_map(|member| match member {
+            Member::Use(used) => Some(&self.network.uses[used.index()]),
+            Member::Bound(_) | Member::Condition(_) => None,
+        });
+        used.collect()
     }
 
     fn label(&self, label: LabelId) -> &Label {
@@ -190,15 +223,13 @@ impl Candidates<'_> {
         Some(Fix { label: format!("let {name} keep its value: {text}"), edits: vec![edit] })
     }
 
-    /// Activities that need more than there is: one waits, something gives more first, or there is more.
+    /// Activities that need more than there is: one waits, or something gives more first.
     fn for_resource(&self, uses: &[&Use]) -> Vec<Fix> {
         let Some(first) = uses.first() else { return Vec::new() };
         let resource = &self.network.resources[first.resource.index()];
         let arcs: Vec<ArcId> = uses.iter().map(|used| used.arc).collect();
         let Supply::Reservoir { .. } = resource.supply else {
-            let mut found = self.orders(&arcs);
-            found.extend(self.more(resource, uses));
-            return found;
+            return self.orders(&arcs);
         };
         let own = self.network.uses.iter().filter(|used| used.resource == first.resource);
         let (givers, takers): (Vec<&Use>, Vec<&Use>) = own.partition(|used| used.change == Change::Produces);
@@ -219,39 +250,7 @@ impl Candidates<'_> {
                 }
             }
         }
-        found.extend(self.more(resource, uses));
         found
-    }
-
-    /// That there is as much of a resource as `uses` need.
-    fn more(&self, resource: &Resource, uses: &[&Use]) -> Option<Fix> {
-        let declared = self.program.resources.iter().find(|it| it.name.text == resource.name)?;
-        let sum = |wanted: &[Change]| {
-            let amounts = uses.iter().filter(|used| wanted.contains(&used.change)).map(|used| used.amount);
-            amounts.into_iter().try_fold(Rational::ZERO, Rational::checked_add)
-        };
-        let name = &resource.name;
-        let (text, label) = match (&declared.supply, resource.supply) {
-            (rmpl::program::Supply::Reusable { .. }, Supply::Reusable { .. }) => {
-                let needed = sum(&[Change::Uses])?.readable();
-                let text = format!("resource {name} capacity {needed};");
-                (text.clone(), format!("have {needed} of {name} at a time: {text}"))
-            }
-            (
-                rmpl::program::Supply::Reservoir { least, greatest, .. },
-                Supply::Reservoir { least: lowest, greatest: highest, level },
-            ) => {
-                let after =
-                    level.checked_sub(sum(&[Change::Consumes])?)?.checked_add(sum(&[Change::Produces])?)?;
-                let missing = lowest.checked_sub(after).filter(|missing| missing.is_positive())?;
-                let needed = level.checked_add(missing).filter(|needed| *needed <= highest)?.readable();
-                let (least, greatest) = (self.text(least.span), self.text(greatest.span));
-                let text = format!("resource {name} {least} .. {greatest} = {needed};");
-                (text.clone(), format!("start with {needed} of {name}: {text}"))
-            }
-            _ => return None,
-        };
-        Some(Fix { label, edits: vec![Edit { span: declared.span, text }] })
     }
 }
 

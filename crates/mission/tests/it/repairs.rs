@@ -122,6 +122,39 @@ fn of_a_resource_one_waits_or_there_is_more() {
     assert_eq!(labels(&short), ["have 2 of Antenna at a time: resource Antenna capacity 2;"]);
 }
 
+/// Four activities that each take 4, with time for two of them one after the other.
+const CREW: &str = "resource Crew capacity 3; primitive Lift()[4,4] uses Crew 2;
+    scenario X[0,8] = { { delay; Lift(); delay }, { delay; Lift(); delay }, { delay; Lift(); delay },
+        { delay; Lift(); delay } }";
+
+#[test]
+fn no_more_of_a_resource_is_offered_than_it_takes() {
+    // All four at a time would take 8.
+    assert_eq!(labels(&offered(CREW)), ["have 4 of Crew at a time: resource Crew capacity 4;"]);
+    let three = CREW.replace("[0,8]", "[0,7]");
+    assert_eq!(labels(&offered(&three)), ["have 8 of Crew at a time: resource Crew capacity 8;"]);
+    let parts = CREW.replace("Crew 2", "Crew 1.25").replace("capacity 3", "capacity 2");
+    assert_eq!(labels(&offered(&parts)), ["have 2.5 of Crew at a time: resource Crew capacity 2.5;"]);
+    // There is too little of two things, and more of one of them does not help.
+    let tools = format!("resource Tool; {}", CREW.replace("uses Crew 2", "uses Crew 2, Tool"));
+    assert!(offered(&tools).is_empty());
+}
+
+#[test]
+fn a_battery_is_no_fuller_at_the_start_than_it_has_to_be() {
+    let source = "resource Battery 0 .. 60 = 10; primitive Charge()[5,10] produces Battery 40;
+        primitive Go()[5,10] consumes Battery 30; scenario X[0,100] = { Go(); Charge(); Go() }";
+    let fixes = offered(source);
+    assert!(
+        labels(&fixes).contains(&"start with 30 of Battery: resource Battery 0 .. 60 = 30;"),
+        "{fixes:?}"
+    );
+    // What it would have to have at the start for what comes later, it has no room for.
+    let full = "resource Battery 0 .. 50 = 10; primitive Charge()[5,10] produces Battery 40;
+        primitive Go()[5,10] consumes Battery 30; scenario X[0,25] = { Charge(); Go(); Go(); Go() }";
+    assert!(labels(&offered(full)).iter().all(|label| !label.starts_with("start with")));
+}
+
 #[test]
 fn a_battery_is_charged_first_or_fuller_at_the_start() {
     let source = "const FULL = 100; resource Battery 0 .. FULL = 50;
