@@ -14,6 +14,16 @@ use workbench::state::search::exclusions;
 /// Random missions of each kind.
 const MISSIONS: u64 = 150;
 
+/// What is cheap takes long, and there is too little time for that everywhere: the search for the best plan opens states from
+/// which it need not go on.
+const BARGAINS: &str = "objective minimize cost;
+    primitive Fast()[1,1] costs 7; primitive Steady()[3,3] costs 4; primitive Slow()[5,5] costs 2;
+    scenario S[0,19] = {
+        choose { Fast(), Steady(), Slow() }; choose { Fast(), Steady(), Slow() };
+        choose { Fast(), Steady(), Slow() }; choose { Fast(), Steady(), Slow() };
+        choose { Fast(), Steady(), Slow() }; choose { Fast(), Steady(), Slow() }
+    }";
+
 /// The states on the way to a plan, the plan's own included.
 fn ways_to_plans(trace: &Trace) -> BTreeSet<TreeNodeId> {
     let mut ways = BTreeSet::new();
@@ -62,7 +72,7 @@ fn open_states(trace: &Trace) -> Vec<String> {
 fn a_finished_search_leaves_no_state_open() {
     let mut wrong = Vec::new();
     let (mut finished, mut excluded, mut jumps) = (0, 0, 0);
-    for (name, text) in missions(MISSIONS) {
+    for (name, text) in missions(MISSIONS).into_iter().chain([("bargains".to_owned(), BARGAINS.to_owned())]) {
         let (Some(network), _) = compile(&text, &Top::Scenario(None)) else { continue };
         for search in Search::ALL {
             let options = Options {
@@ -88,7 +98,7 @@ fn a_finished_search_leaves_no_state_open() {
     }
     assert!(wrong.is_empty(), "{} of {finished}: {}", wrong.len(), wrong.join("\n"));
     assert!(
-        finished > 1_500 && jumps > 100 && excluded > 25,
+        finished > 1_500 && jumps > 100 && excluded > 50,
         "{finished} searches, {jumps} jumps, {excluded} excluded"
     );
 }
