@@ -6,6 +6,22 @@ use anyhow::Context as _;
 use exact::{Bound, Time};
 use snapshot::Goal;
 
+use crate::deadline::TimeLimit;
+use crate::output::Format;
+
+/// How commands plan and answer that need a plan with its paths.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct PlanOptions {
+    /// Seeds path planning.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    #[command(flatten)]
+    pub time_limit: TimeLimit,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+}
+
 /// What is to be compiled or planned.
 #[derive(clap::Args, Debug)]
 pub struct Target {

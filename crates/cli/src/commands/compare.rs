@@ -11,12 +11,11 @@ use serde_json::{Value, json};
 use snapshot::{Goal, Problem};
 use tpn::Window;
 
-use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
 use crate::input::{mission_of, read_text};
 use crate::opened::Opened;
 use crate::output::{Format, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
-use crate::target::Target;
+use crate::target::{PlanOptions, Target};
 
 /// Compares two plans: what was added, removed, moved, re-chosen or done otherwise.
 ///
@@ -30,14 +29,8 @@ pub struct Args {
     /// The scenario of mission texts; the first of the file by default.
     #[arg(long)]
     scenario: Option<String>,
-    /// Seeds path planning.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
-    time_limit: TimeLimit,
-    /// For whom the answer is.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    options: PlanOptions,
 }
 
 /// One side, read.
@@ -52,7 +45,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (before, after) = (args.read(&args.before)?, args.read(&args.after)?);
     let comparison = compare(&before.side, &after.side);
     let is_wrong = any_error(&before.problems) || any_error(&after.problems);
-    match args.format {
+    match args.options.format {
         Format::Json => {
             let problems: Vec<Problem> = before.problems.iter().chain(&after.problems).cloned().collect();
             print_json(&document("compare", &problems, body(&before.side, &after.side, &comparison)))?;
@@ -87,7 +80,7 @@ impl Args {
                 activity: None,
                 bounds: None,
             };
-            return self.evaluated(path, &mission_of(path, &text)?, target.goal()?, self.seed);
+            return self.evaluated(path, &mission_of(path, &text)?, target.goal()?, self.options.seed);
         }
         let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
         if is_record(&value) {
@@ -103,7 +96,7 @@ impl Args {
 
     fn evaluated(&self, file: &Path, source: &str, goal: Goal, seed: u64) -> anyhow::Result<Read> {
         let name = file.display().to_string();
-        let deadline = self.time_limit.start();
+        let deadline = self.options.time_limit.start();
         let mission = Opened::new(file, source.to_owned(), goal);
         let (snapshot, _) = mission.evaluate(seed, deadline).with_context(|| name.clone())?;
         let side = Side::of_snapshot(&name, &snapshot);

@@ -16,10 +16,9 @@ use snapshot::Snapshot;
 
 use crate::commands::import::{parse_degrees, parse_radius};
 use crate::commands::report::read_record;
-use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_verbatim};
-use crate::target::Target;
+use crate::target::{PlanOptions, Target};
 
 /// Writes a plan's schedule for other tools.
 #[derive(clap::Args)]
@@ -57,14 +56,8 @@ pub struct Args {
     /// Writes to a file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Seeds path planning.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
-    time_limit: TimeLimit,
-    /// For whom the answer is where there is no schedule.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    options: PlanOptions,
 }
 
 /// The formats.
@@ -90,13 +83,13 @@ enum Form {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mission = args.target.open()?;
     let name = mission.short_name();
-    let (snapshot, _) = mission.evaluate(args.seed, args.time_limit.start())?;
+    let (snapshot, _) = mission.evaluate(args.options.seed, args.options.time_limit.start())?;
     let is_planned = snapshot.plan().is_some();
-    if args.format == Format::Text {
+    if args.options.format == Format::Text {
         print_problems(&name, &snapshot.source, &snapshot.problems)?;
     }
     if !is_planned {
-        match args.format {
+        match args.options.format {
             Format::Json => {
                 print_json(&document("export", &snapshot.problems, json!({ "status": "no-plan" })))?;
             }
@@ -118,9 +111,9 @@ impl Args {
     fn text(&self, snapshot: &Snapshot) -> anyhow::Result<String> {
         let goal = self.target.goal()?;
         let record = self.review.as_deref().map(read_record).transpose()?;
-        let hash = content_hash(&snapshot.source, snapshot.map.as_ref(), &goal, self.seed);
+        let hash = content_hash(&snapshot.source, snapshot.map.as_ref(), &goal, self.options.seed);
         let status = record.map_or(PlanStatus::Draft, |record| {
-            let mut review = review(snapshot, &goal, self.seed, &mut || false);
+            let mut review = review(snapshot, &goal, self.options.seed, &mut || false);
             let found = record.runs_of(&hash).map(Runs::robustness);
             review.hold_against(snapshot, record.rules(), found.as_ref(), &mut || false);
             standing(&record, &Present::of_review(&review)).status

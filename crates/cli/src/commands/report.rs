@@ -9,11 +9,11 @@ use review::{FlightRules, Line, Present, Record, Review, Section, Status, TimeRa
 use serde_json::{Value, json};
 use snapshot::{Robustness, RobustnessSettings};
 
-use crate::deadline::{TimeLimit, Undecided};
+use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
-use crate::target::Target;
+use crate::target::{PlanOptions, Target};
 
 /// Reviews a mission: a checklist of its plan, and a report that prints and needs no network.
 #[derive(clap::Args)]
@@ -32,24 +32,18 @@ pub struct Args {
     /// What runs with chance came to, as `enroute robustness --format json` prints it.
     #[arg(long, value_name = "ROBUSTNESS.json")]
     robustness: Option<PathBuf>,
-    /// Seeds path planning.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
-    time_limit: TimeLimit,
-    /// For whom the answer is.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    options: PlanOptions,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let deadline = args.time_limit.start();
+    let deadline = args.options.time_limit.start();
     let mission = args.target.open()?;
     let name = &mission.short_name();
-    let (snapshot, ground) = &mission.evaluate(args.seed, deadline)?;
+    let (snapshot, ground) = &mission.evaluate(args.options.seed, deadline)?;
     let limit = deadline.enforce(Undecided::Review);
-    let mut review = review(snapshot, &args.target.goal()?, args.seed, &mut || false);
+    let mut review = review(snapshot, &args.target.goal()?, args.options.seed, &mut || false);
     let record = args.review.as_deref().map(read_record).transpose()?.unwrap_or_default();
     let rules = match &args.rules {
         Some(path) => read_rules(path)?,
@@ -67,7 +61,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             review: &review,
             record: Some(&record),
             robustness: robustness.as_ref(),
-            seed: args.seed,
+            seed: args.options.seed,
             ground: ground.as_deref(),
         });
         (path, page)
@@ -76,7 +70,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some((path, page)) = page {
         std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()))?;
     }
-    match args.format {
+    match args.options.format {
         Format::Json => {
             let mut body = review_json(&review);
             body["plan_status"] = json!(standing(&record, &Present::of_review(&review)).status);

@@ -7,10 +7,10 @@ use review::record::{Entry, RecordError, Runs, short};
 use review::{PlanStatus, Present, Record, Standing, review, standing};
 use serde_json::{Value, json};
 
-use crate::deadline::{TimeLimit, Undecided};
+use crate::deadline::Undecided;
 use crate::input::read_text;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
-use crate::target::Target;
+use crate::target::{PlanOptions, Target};
 
 /// Checks the history of a review, and says how the plan stands with its board.
 ///
@@ -26,14 +26,8 @@ pub struct Args {
     /// The scenario of the mission; the first one by default.
     #[arg(long, requires = "mission")]
     scenario: Option<String>,
-    /// Seeds path planning.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
-    time_limit: TimeLimit,
-    /// For whom the answer is.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    options: PlanOptions,
 }
 
 /// Runs the command.
@@ -42,7 +36,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let record = match Record::from_json(&text) {
         Ok(record) => record,
         Err(RecordError::Broken(why)) => {
-            match args.format {
+            match args.options.format {
                 Format::Json => {
                     print_json(&document("review-check", &[], json!({ "intact": false, "reason": why })))?;
                 }
@@ -62,10 +56,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let target =
         Target { file: mission.clone(), scenario: args.scenario.clone(), activity: None, bounds: None };
-    let deadline = args.time_limit.start();
-    let (snapshot, _) = target.open()?.evaluate(args.seed, deadline)?;
+    let deadline = args.options.time_limit.start();
+    let (snapshot, _) = target.open()?.evaluate(args.options.seed, deadline)?;
     let limit = deadline.enforce(Undecided::Review);
-    let mut review = review(&snapshot, &target.goal()?, args.seed, &mut || false);
+    let mut review = review(&snapshot, &target.goal()?, args.options.seed, &mut || false);
     let found = record.runs_of(&review.content_hash).map(Runs::robustness);
     review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);
     let standing = standing(&record, &Present::of_review(&review));
@@ -77,7 +71,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 impl Args {
     fn answer(&self, record: &Record, standing: &Standing<'_>, content_hash: &str) -> anyhow::Result<()> {
         let blockers = if self.mission.is_some() { standing.blockers() } else { Vec::new() };
-        match self.format {
+        match self.options.format {
             Format::Json => {
                 print_json(&document("review-check", &[], body(record, standing, content_hash, &blockers)))
             }
