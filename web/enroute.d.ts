@@ -107,6 +107,8 @@ export type State = {
   execution: Execution | null;
   /** What many runs with chance came to; `null` until runs were made. */
   robustness: Robustness | null;
+  /** How the passed lines of the review were tried; `null` until some were. */
+  contradiction: Contradiction | null;
   selection: { kind: string; name: string | null; id: unknown } | null;
   caret: Caret;
   canUndo: boolean;
@@ -325,6 +327,23 @@ export type Robustness = {
   interval: [number, number];
   /** The events that broke plans, the worst first. */
   worst: Array<string>;
+};
+
+/** How the passed lines of the present review were tried. */
+export type Contradiction = {
+  isRunning: boolean;
+  /** How many schedules and runs have been tried, and how many are to be; `null` unless some are being tried. */
+  progress: [number, number] | null;
+  items: Array<TriedItem>;
+};
+
+/** How one line was tried. */
+export type TriedItem = {
+  /** The line. */
+  text: string;
+  status: "survived" | "contradicted" | "not-tried";
+  /** How it came out, in one sentence. */
+  outcome: string;
 };
 
 /** Events pinned to times on the timeline, and the windows that they leave to all events. */

@@ -4,6 +4,7 @@ mod checker;
 mod conformance;
 mod constraints;
 mod contingent;
+mod contradicted;
 mod controllability;
 mod explanations;
 mod interchange;

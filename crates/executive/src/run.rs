@@ -83,6 +83,7 @@ pub fn run_stage(
     let adversary = Adversary::of(world, &stage)?;
     let mut run = Run {
         state: WorldState::new(&stage.network),
+        scheduled: world.scheduled(&stage.network),
         adversary,
         frontier: None,
         stage,
@@ -144,6 +145,8 @@ struct Run<'a> {
     news: Facts,
     /// The plans that were given up.
     plans: Vec<ExecutedPlan>,
+    /// When each node is to happen at the earliest, by the schedule of the first plan; empty without one.
+    scheduled: Vec<Option<Time>>,
     /// Who makes the present plan fail, if somebody does.
     adversary: Option<Adversary>,
     /// What may be next in a plan with many events.
@@ -436,6 +439,9 @@ impl Run<'_> {
         let mut time = earliest.max(self.now);
         let pace = self.pace(node).map_err(|_| self.too_large(node))?;
         time = pace.map_or(time, |pace| time.max(pace));
+        if let Some(scheduled) = self.scheduled.get(node.index()).copied().flatten() {
+            time = time.max(latest.map_or(scheduled, |latest| scheduled.min(latest)));
+        }
         let mut known = News::None;
         let violation = |time: Time, reason: String, news: News| {
             let name = self.stage.name(node).into();
@@ -744,6 +750,7 @@ impl Run<'_> {
         self.adversary = Adversary::of(self.world, &stage)?;
         let before = std::mem::replace(&mut self.stage, stage);
         self.plans.push(before.close());
+        self.scheduled.clear();
         self.restart_frontier()?;
         Ok(kept.err().map(|node| format!("the new plan does not keep {} in the past", self.stage.name(node))))
     }

@@ -8,7 +8,7 @@ use rmpl::program::LabelMode;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 use smol_str::SmolStr;
-use tpn::{Network, Occurrence, OccurrenceKind, ValueId};
+use tpn::{Network, NodeId, Occurrence, OccurrenceKind, ValueId};
 
 /// Something that goes otherwise than planned. Times and durations are in mission units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -146,16 +146,37 @@ impl Disturbance {
     }
 }
 
-/// What goes otherwise than planned in one run, as a file holds it: `{"disturbances": […]}`. Other members are not
-/// looked at, so that the log of a run can be given as the script of the next.
+/// What one run of a plan is, as a file holds it: `{"disturbances": […]}`. Other members are not looked at, so that the
+/// log of a run can be given as the script of the next.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Script {
-    /// In any order; of two of a kind about one thing the later counts.
+    /// What goes otherwise than planned, in any order; of two of a kind about one thing the later counts.
     #[serde(deserialize_with = "sound")]
     pub disturbances: Vec<Disturbance>,
     /// Whether nature chooses durations so as to break the plan, and ends of ranges where it cannot.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub adversary: bool,
+    /// Seeds what is drawn in the run; otherwise the seed of the paths does. The paths stay those of their own seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub run_seed: Option<u64>,
+    /// The durations that nature chooses, by occurrence, within their ranges; those that are not listed are drawn.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub nature: BTreeMap<SmolStr, Time>,
+    /// A schedule of the plan, by event: the first plan of the run is executed at these times. An activity that has both of
+    /// its events here is not driven or run, but takes as long as they say. Events that are not listed come as early as they
+    /// may.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub schedule: BTreeMap<SmolStr, Time>,
+}
+
+impl Script {
+    /// What is wrong with its numbers, if something is.
+    pub fn problem(&self) -> Option<&'static str> {
+        let times = self.nature.values().chain(self.schedule.values());
+        let mut problems = self.disturbances.iter().map(Disturbance::problem);
+        let is_before = || times.clone().any(|time| time.is_negative()).then_some("a time is not negative");
+        problems.find_map(|problem| problem).or_else(is_before)
+    }
 }
 
 /// Reads disturbances and refuses those that mean nothing.
@@ -184,6 +205,8 @@ pub struct World {
     /// How long nature makes things take.
     chosen: BTreeMap<SmolStr, Time>,
     is_adversary: bool,
+    /// When the events of the first plan happen.
+    schedule: BTreeMap<SmolStr, Time>,
 }
 
 /// What the world makes of a variable that lasts or of a reservoir.
@@ -265,6 +288,44 @@ impl World {
         self
     }
 
+    /// The same world, in which the first plan is executed by a schedule: see [`Script::schedule`].
+    #[must_use]
+    pub fn with_schedule(mut self, schedule: BTreeMap<SmolStr, Time>) -> Self {
+        self.schedule = schedule;
+        self
+    }
+
+    /// When each node of the first plan is to happen at the earliest; nothing without a schedule.
+    pub(crate) fn scheduled(&self, network: &Network) -> Vec<Option<Time>> {
+        if self.schedule.is_empty() {
+            return Vec::new();
+        }
+        let time = |index: usize| {
+            let events = network.nodes[index].events.iter().map(|&event| network.event_name(event));
+            let named = tpn::plan_json::node_name(network, NodeId::from_index(index));
+            events.chain([named]).find_map(|name| self.schedule.get(name.as_str()).copied())
+        };
+        (0..network.nodes.len()).map(time).collect()
+    }
+
+    /// How long the schedule lets an occurrence take, if it has both of its events.
+    fn scheduled_duration(
+        &self,
+        network: &Network,
+        occurrence: &Occurrence,
+    ) -> Result<Option<Time>, Overflow> {
+        if self.schedule.is_empty() {
+            return Ok(None);
+        }
+        let is_natures = || occurrence.arc.is_some_and(|arc| network.arcs[arc.index()].is_contingent);
+        if occurrence.kind != OccurrenceKind::Primitive && !is_natures() {
+            return Ok(None);
+        }
+        let time = |end: &str| self.schedule.get(format!("{}.{end}", occurrence.name).as_str()).copied();
+        let Some((start, end)) = time("start").zip(time("end")) else { return Ok(None) };
+        end.checked_sub(start).ok_or(Overflow).map(Some)
+    }
+
     /// Whether nature is to make plans fail.
     pub const fn is_adversary(&self) -> bool {
         self.is_adversary
@@ -286,6 +347,9 @@ impl World {
         if let Some(&duration) = self.durations.get(&occurrence.name) {
             return Ok(Some(duration));
         }
+        if let Some(duration) = self.scheduled_duration(network, occurrence)? {
+            return Ok(Some(duration));
+        }
         if occurrence.kind != OccurrenceKind::Primitive {
             return Ok(None);
         }
@@ -304,7 +368,7 @@ impl World {
     /// All times and durations that it brings into a run of `network`: ticks must be fine enough for them.
     pub fn times(&self, network: &Network) -> Result<Vec<Time>, Overflow> {
         let absolute = self.durations.values().chain(self.withdrawn.values()).chain(self.late.values());
-        let absolute = absolute.chain(self.chosen.values());
+        let absolute = absolute.chain(self.chosen.values()).chain(self.schedule.values());
         let slow = network.occurrences.iter().filter(|occurrence| self.slow.contains_key(&occurrence.name));
         let slow = slow.filter_map(|occurrence| self.duration(network, occurrence).transpose());
         let changes = self.changes.iter().map(|change| Ok(change.at()));

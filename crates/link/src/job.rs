@@ -35,6 +35,8 @@ pub enum Kind {
     Update,
     /// Review the plan of a text.
     Review,
+    /// Look for counterexamples of what has passed in a review.
+    Contradict,
     /// Plan another text, to compare with.
     Evaluate,
     /// Search a network both ways.
@@ -66,10 +68,10 @@ pub struct Rule {
 }
 
 /// The rules of all kinds, in the order of [`Kind`].
-pub const RULES: [Rule; 10] = {
+pub const RULES: [Rule; 11] = {
     use Kind::{
-        CompareSearches, Evaluate, Execute, GrowPath, ImportMap, Review, RunControl, Sample, SampleProgram,
-        Update,
+        CompareSearches, Contradict, Evaluate, Execute, GrowPath, ImportMap, Review, RunControl, Sample,
+        SampleProgram, Update,
     };
     [
         Rule {
@@ -78,6 +80,7 @@ pub const RULES: [Rule; 10] = {
             supersedes: &[
                 Update,
                 Review,
+                Contradict,
                 CompareSearches,
                 Execute,
                 Sample,
@@ -93,6 +96,12 @@ pub const RULES: [Rule; 10] = {
             supersedes: &[Review],
             key: "as of Update, and the rules of the mission",
             kept: "as of Update",
+        },
+        Rule {
+            kind: Contradict,
+            supersedes: &[Contradict],
+            key: "as of Update, the review, the line, how much is tried, the first step",
+            kept: "as of Update, and how far the lines were tried",
         },
         Rule { kind: Evaluate, supersedes: &[Evaluate], key: "token, as of Update", kept: "paths" },
         Rule {
@@ -155,6 +164,7 @@ impl Request {
         match self {
             Self::Update(_) => Kind::Update,
             Self::Review { .. } => Kind::Review,
+            Self::Contradict { .. } => Kind::Contradict,
             Self::Evaluate { .. } => Kind::Evaluate,
             Self::CompareSearches(_) => Kind::CompareSearches,
             Self::Execute { .. } => Kind::Execute,
@@ -171,6 +181,7 @@ impl Request {
         match self {
             Self::Update(update)
             | Self::Review { update, .. }
+            | Self::Contradict { update, .. }
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. } => Some(update.revision),
@@ -186,6 +197,7 @@ impl Request {
         match self {
             Self::Update(update)
             | Self::Review { update, .. }
+            | Self::Contradict { update, .. }
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. }
@@ -202,6 +214,7 @@ impl Request {
         match self {
             Self::Update(update)
             | Self::Review { update, .. }
+            | Self::Contradict { update, .. }
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. }

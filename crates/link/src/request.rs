@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use review::contradict::{Effort, Tried};
+use review::record::LineKey;
 use review::{MissionRule, Review};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
@@ -54,6 +56,20 @@ pub enum Request {
         update: Update,
         /// The rules of the mission to hold the plan against.
         rules: Vec<MissionRule>,
+    },
+    /// Look for counterexamples of what has passed in the review of the plan of a text: the schedules and runs from one number
+    /// on. The answer says how far it got.
+    Contradict {
+        /// The text and how it is planned.
+        update: Update,
+        /// Its review, held against its rules.
+        review: Arc<Review>,
+        /// The one line that is tried; otherwise all that have passed.
+        only: Option<LineKey>,
+        /// How much is tried.
+        effort: Effort,
+        /// How many schedules and runs have been tried.
+        from: u64,
     },
     /// Plan another text than the open one, to compare with: answered once, when it is done.
     Evaluate {
@@ -116,6 +132,17 @@ pub enum Response {
         revision: u64,
         /// What was found.
         review: Arc<Review>,
+    },
+    /// How far the lines of a review were tried.
+    Contradicted {
+        /// The revision of the text.
+        revision: u64,
+        /// The one line that is tried.
+        only: Option<LineKey>,
+        /// How many schedules and runs have been tried, and how many are to be.
+        progress: [u64; 2],
+        /// The lines so far; or why they cannot be tried.
+        tried: Result<Vec<Tried>, String>,
     },
     /// Another text, planned.
     Evaluated {

@@ -8,7 +8,7 @@ use link::Update;
 use rmpl::Diagnostic;
 use rmpl::program::Program;
 use snapshot::content::Keyed;
-use snapshot::{Goal, MapKey, Problem, Timings, Uncertainty};
+use snapshot::{Goal, MapKey, Problem, Snapshot, Stage, Timings, Uncertainty};
 use terrain::Terrain;
 use tpn::Network;
 
@@ -122,23 +122,39 @@ impl Compiled {
         Problem::all(&self.diagnostics, &self.source)
     }
 
-    /// Whether the disturbances mean something and are about what the mission has; if not, what is wrong with them.
-    pub fn check_disturbances(&self, script: &Script) -> Result<(), String> {
+    /// Whether a script means something and is about what the mission has; if not, what is wrong with it.
+    pub fn check_script(&self, script: &Script) -> Result<(), String> {
         let Some(network) = self.network() else { return Ok(()) };
-        execution::check_disturbances(network, &self.program, &self.programs, &script.disturbances)
+        execution::check_script(network, &self.program, &self.programs, script)
     }
 }
 
 impl Evaluated {
-    /// Runs from now on are those of another seed; the plan stays.
-    pub const fn reseed(&mut self, seed: u64) {
-        self.manner.seed = seed;
-    }
-
     pub(crate) fn problem(&self) -> planning::Problem<'_> {
         planning::Problem {
             options: Options { trace_events: None, ..self.manner.options },
             ..self.compiled.problem(&self.network, self.ground.as_ref(), self.manner.seed)
+        }
+    }
+
+    /// What is known of it, as panels and reviews read it; without keys, which tell what an edit changed.
+    pub fn snapshot(&self) -> Snapshot {
+        let Self { compiled, planned, ground, .. } = self;
+        let warnings = Problem::all(&planned.warnings, &compiled.source);
+        let mut problems: Vec<Problem> = compiled.problems().into_iter().chain(warnings).collect();
+        problems.sort_by_key(|problem| (problem.span, problem.severity));
+        Snapshot {
+            stage: Stage::Complete,
+            problems: problems.into(),
+            program: Arc::clone(&compiled.program),
+            network: Some(Arc::clone(&planned.network)),
+            planning: Some(Arc::clone(&planned.planning)),
+            map: ground.as_ref().map(|(key, _)| key.clone()),
+            traverses: planned.traverses.clone().into(),
+            motions: planned.motions.clone().into(),
+            separation_violations: planned.separation_violations.clone().into(),
+            timings: compiled.timings,
+            ..Snapshot::empty(0, Arc::clone(&compiled.source))
         }
     }
 

@@ -4,18 +4,20 @@
 //! disturbance at the present moment, the whole run is executed again, and nothing before that moment changes.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use exact::{Bound, Rational, Time};
-use executive::world::natures_ranges;
+use executive::world::{abort_name, natures_ranges};
 use executive::{
     ActivityExecutor, AsPlanned, Disturbance, Facts, PlanError, Replanner, RunOutcome, Script, Stage, World,
     run_stage,
 };
-use rmpl::program::Program;
+use rmpl::program::{Controllability, Program};
 use smol_str::SmolStr;
 use snapshot::{Commanded, Executed, Execution, SimulatedDrive};
-use tpn::{Network, OccurrenceKind, Plan, Supply, Window};
+use tpn::plan_json::node_name;
+use tpn::{Network, NodeId, OccurrenceKind, Plan, Supply, Window};
 
 use crate::ground::Grounds;
 use crate::nature::{self, Nature};
@@ -37,7 +39,8 @@ pub struct Ran {
 }
 
 /// Executes the plan of `planned`, which `problem` gave; `None` if it has no plan. Vehicles drive their traverses in
-/// simulation, as late as that makes them; what nature chooses is drawn by the seed of `problem`.
+/// simulation, as late as that makes them; what nature chooses and the script does not say is drawn by the seed of the
+/// script, or of `problem`.
 pub fn execute(
     problem: &Problem<'_>,
     planned: &Planned,
@@ -48,18 +51,20 @@ pub fn execute(
     let plan = planned.planning.outcome.plans.first()?.clone();
     let disturbances = &script.disturbances;
     let nature = if script.adversary { Nature::Adversary } else { Nature::Chance };
-    let chosen = match nature::choose(&planned.network, problem.seed, nature, &|_| None) {
+    let seed = script.run_seed.unwrap_or(problem.seed);
+    let mut chosen = match nature::choose(&planned.network, seed, nature, &|_| None) {
         Ok(chosen) => chosen,
         Err(overflow) => return Some(Err(overflow.into())),
     };
-    let mut world = World::new(disturbances).with_chosen(chosen.clone());
+    chosen.extend(script.nature.clone());
+    let mut world =
+        World::new(disturbances).with_chosen(chosen.clone()).with_schedule(script.schedule.clone());
     if script.adversary {
         world = world.with_adversary();
     }
     let courses = RefCell::new(Courses::default());
     courses.borrow_mut().learn(problem.program, planned);
-    let mut driving =
-        problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses, problem.seed));
+    let mut driving = problem.ground.map(|(_, map)| Driving::new(problem, map, disturbances, &courses, seed));
     if let Some(driving) = &mut driving {
         driving.hurry(chosen);
     }
@@ -74,7 +79,7 @@ pub fn execute(
     let grid = world.times(&planned.network).map_err(PlanError::from);
     let stage = grid.and_then(|mut grid| {
         grid.push(granularity);
-        Stage::new(Arc::clone(&planned.network), plan, &grid)
+        Stage::new(dispatched(&planned.network, script), plan, &grid)
     });
     let ran = stage.and_then(|stage| {
         let mut replanner =
@@ -86,6 +91,16 @@ pub fn execute(
     let drives = driving.map(Driving::into_drives).unwrap_or_default();
     let commanded = programs.commanded(&planned.network);
     Some(ran.map(|(outcome, replanned)| Ran { outcome, replanned, drives, commanded }))
+}
+
+/// The network that the first plan is dispatched in. A schedule says what nature does as well, so that nobody waits for it.
+fn dispatched(network: &Arc<Network>, script: &Script) -> Arc<Network> {
+    if script.schedule.is_empty() {
+        return Arc::clone(network);
+    }
+    let mut scheduled = Network::clone(network);
+    scheduled.controllability = Controllability::None;
+    Arc::new(scheduled)
 }
 
 /// Executes a plan of `problem` that was made ready for `world` and `executor`, which looks for its traverses in
@@ -105,16 +120,18 @@ pub(crate) fn execute_stage(
     Ok(Ran { outcome, replanned: replanner.replanned, drives: Vec::new(), commanded: None })
 }
 
-/// Whether disturbances mean something and are about what the mission has; if not, what is wrong with them.
-pub fn check_disturbances(
+/// Whether a script means something and is about what the mission has; if not, what is wrong with it.
+pub fn check_script(
     network: &Network,
     program: &Program,
     programs: &Programs,
-    disturbances: &[Disturbance],
+    script: &Script,
 ) -> Result<(), String> {
-    if let Some(problem) = disturbances.iter().find_map(Disturbance::problem) {
+    let disturbances = &script.disturbances;
+    if let Some(problem) = script.problem() {
         return Err(problem.to_owned());
     }
+    check_names(network, script)?;
     let is_unknown = |name: &&SmolStr| !program.world.vehicles.iter().any(|it| it.name.text == **name);
     let vehicles = disturbances.iter().filter_map(Disturbance::vehicle).filter(is_unknown).cloned();
     let unknown: Vec<SmolStr> = World::unknown(network, disturbances).into_iter().chain(vehicles).collect();
@@ -135,6 +152,28 @@ pub fn check_disturbances(
         Disturbance::Level { resource, level, .. } => check_level(network, resource, *level),
         _ => Ok(()),
     })
+}
+
+/// Whether nature's durations and the events of a schedule are those of the mission. Vertices of paths are not in its network.
+fn check_names(network: &Network, script: &Script) -> Result<(), String> {
+    let is_natures = |name: &SmolStr| {
+        let is_abort = |it: &tpn::Occurrence| it.aborts.is_some() && abort_name(it) == *name;
+        natures_ranges(network).any(|(it, _)| it.name == *name) || network.occurrences.iter().any(is_abort)
+    };
+    if let Some(name) = script.nature.keys().find(|name| !is_natures(name)) {
+        return Err(format!("nature does not choose how long {name} lasts"));
+    }
+    if script.schedule.is_empty() {
+        return Ok(());
+    }
+    let nodes = (0..network.nodes.len()).map(NodeId::from_index);
+    let mut known: BTreeSet<String> = nodes.map(|node| node_name(network, node)).collect();
+    known.extend(network.nodes.iter().flat_map(|node| &node.events).map(|&event| network.event_name(event)));
+    let is_unknown = |name: &&SmolStr| !known.contains(name.as_str()) && !name.contains(".leg");
+    match script.schedule.keys().find(is_unknown) {
+        Some(name) => Err(format!("the mission has no event {name}")),
+        None => Ok(()),
+    }
 }
 
 /// What is wrong with a disturbance that is about an occurrence of another kind, such as an activity that is to be withdrawn.

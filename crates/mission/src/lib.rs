@@ -5,6 +5,7 @@
 //! stage's result so that an edit redoes only what it touched.
 
 mod both_searches;
+mod contradicting;
 pub mod control;
 mod core;
 mod departures;
@@ -12,6 +13,7 @@ pub mod draws;
 mod driving;
 mod evaluated;
 pub mod execution;
+mod given_plan;
 pub mod ground;
 mod host;
 mod listing;

@@ -242,7 +242,7 @@ pub(crate) fn network_of(
 }
 
 /// The paths of these routes; why there are none.
-fn inserted(
+pub(crate) fn inserted(
     problem: &Problem<'_>,
     routes: Vec<Route>,
     grounds: &mut Grounds,

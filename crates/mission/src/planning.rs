@@ -646,7 +646,7 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
     }
 }
 
-fn conclude(
+pub(crate) fn conclude(
     problem: &Problem<'_>,
     grounds: &mut Grounds,
     mut network: Arc<Network>,

@@ -72,7 +72,11 @@ pub(super) fn overlaps(
 
 /// Which vehicles each activity that the plan selects is of: those it moves, those among its arguments, and those whose
 /// place or other state it needs or changes. In a mission of one vehicle, that one does everything.
-fn owners(snapshot: &Snapshot, network: &Network, plan: &Plan) -> BTreeMap<OccurrenceId, BTreeSet<SmolStr>> {
+pub(super) fn owners(
+    snapshot: &Snapshot,
+    network: &Network,
+    plan: &Plan,
+) -> BTreeMap<OccurrenceId, BTreeSet<SmolStr>> {
     let declared: Vec<&SmolStr> =
         snapshot.program.world.vehicles.iter().map(|vehicle| &vehicle.name.text).collect();
     let is_vehicle = |name: &str| declared.iter().any(|it| *it == name);
@@ -108,7 +112,7 @@ fn owners(snapshot: &Snapshot, network: &Network, plan: &Plan) -> BTreeMap<Occur
 }
 
 /// The activities that take some resource whole, so that nothing else can be done with it.
-fn occupied(network: &Network) -> BTreeSet<OccurrenceId> {
+pub(super) fn occupied(network: &Network) -> BTreeSet<OccurrenceId> {
     let whole = network.uses.iter().filter(|used| {
         let resource = &network.resources[used.resource.index()];
         // Orders, such as that of the parts of `unordered`, are no resources of the mission.

@@ -3,162 +3,182 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
-use executive::Script;
+use anyhow::Context as _;
+use exact::Time;
 use mission::Manner;
-use mission::execution::Ran;
-use review::contradict::{Counterexample, Trial, Tried};
+use review::contradict::{Counterexample, Effort, Trial, Tried, Verdict};
 use review::{FlightRules, Section, review};
 use serde_json::{Value, json};
+use smol_str::SmolStr;
+use tpn::Network;
+use tpn::plan_json::plan_from_json;
 
 use crate::commands::report::read_rules;
-use crate::deadline::{TimeLimit, Undecided};
+use crate::commands::verify::without_path_vertices;
+use crate::deadline::Undecided;
+use crate::input::read_json;
 use crate::output::{Format, NO, YES, column, document, exit, print_json, print_text};
-use crate::target::Target;
+use crate::target::{PlanOptions, Target};
 
-/// Looks for counterexamples of what has passed in a mission's review: in schedules of its plan, and in runs.
+/// Looks for counterexamples of what has passed in a mission's review: in schedules of its plan, and in undisturbed runs.
+///
+/// The exit status is 1 when a passed line is contradicted.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
+    /// The plan to review instead of the mission's own, as enroute plan prints it.
+    #[arg(long, value_name = "PLAN.json")]
+    plan: Option<PathBuf>,
     /// Flight rules to hold the plan against; otherwise the usual ones.
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
-    /// How many schedules to try: the earliest, the latest, and others by chance.
-    #[arg(long, value_name = "N", default_value_t = 200)]
-    schedules: usize,
-    /// How many undisturbed runs to try; vehicles drive in them.
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    /// Seconds to try at most; planning and review come before.
+    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    budget: f64,
+    /// Maximum number of schedules: the earliest, the latest, and random ones.
+    #[arg(long, value_name = "N", default_value_t = Effort::default().schedules)]
+    schedules: u64,
+    /// Maximum number of undisturbed runs; vehicles drive in them.
+    #[arg(long, value_name = "N", default_value_t = Effort::default().runs)]
     runs: u64,
-    /// Seeds schedules and runs; paths are those of seed 0.
+    /// Seeds the schedules and runs.
     #[arg(long, default_value_t = 0)]
-    seed: u64,
+    run_seed: u64,
     #[command(flatten)]
-    time_limit: TimeLimit,
-    /// For whom the answer is.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    options: PlanOptions,
 }
-
-/// The paths of the plan are those of this seed.
-const PATH_SEED: u64 = 0;
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let deadline = args.time_limit.start();
-    let (snapshot, _) = args.target.open()?.evaluate(PATH_SEED, deadline)?;
+    let PlanOptions { seed, time_limit, format } = args.options;
+    let deadline = time_limit.start();
+    let mut mission = args.target.open()?;
+    let compiled = mission.compile()?;
+    let problems = compiled.problems();
+    if compiled.network().is_none() {
+        return mission.refuse(&problems, format, ("contradict", json!({ "items": [] })));
+    }
+    let ground = mission.ground(&compiled)?;
+    let mut evaluated = mission.plan(compiled, ground, Manner { seed, ..Manner::default() }, deadline)?;
+    if let Some(path) = &args.plan {
+        let stated = only_plan(read_json(path)?).with_context(|| format!("cannot use {}", path.display()))?;
+        let read = |network: &Network| {
+            let whole = plan_from_json(network, &stated);
+            let plan = whole.or_else(|_| plan_from_json(network, &without_path_vertices(&stated)));
+            plan.map_err(|error| error.to_string())
+        };
+        let taken = mission.core.take_plan(&mut evaluated, &read);
+        taken.map_err(anyhow::Error::msg).with_context(|| format!("cannot use {}", path.display()))?;
+    }
     let limit = deadline.enforce(Undecided::Review);
-    let mut reviewed = review(&snapshot, &args.target.goal()?, PATH_SEED, &mut || false);
+    let snapshot = evaluated.snapshot();
+    let mut reviewed = review(&snapshot, &args.target.goal()?, seed, &mut || false);
     let rules = match &args.rules {
         Some(path) => read_rules(path)?,
         None => FlightRules::default(),
     };
     reviewed.hold_against(&snapshot, &rules, None, &mut || false);
     limit.answered();
-    let Some(mut trial) = Trial::new(&snapshot, &reviewed) else {
-        match args.format {
-            Format::Text => print_text("the mission has no plan, so nothing of it has passed\n")?,
+    let effort = Effort { schedules: args.schedules, runs: args.runs, seed: args.run_seed };
+    let Some(mut trial) = Trial::new(&snapshot, &reviewed, None, effort) else {
+        match format {
+            Format::Text => print_text("the mission has no plan, so no line of its review has passed\n")?,
             Format::Json => print_json(&document("contradict", &snapshot.problems, json!({ "items": [] })))?,
         }
         return Ok(exit(NO));
     };
-    trial.try_schedules(args.schedules, args.seed, &mut || deadline.is_over());
-    let mut mission = args.target.open()?;
-    let compiled = mission.compile()?;
-    let ground = mission.ground(&compiled)?;
-    let manner = Manner { seed: PATH_SEED, ..Manner::default() };
-    let mut evaluated = mission.plan(compiled, ground, manner, deadline)?;
-    for number in 0..args.runs {
-        if deadline.is_over() {
-            break;
-        }
-        let seed = args.seed.wrapping_add(number);
-        evaluated.reseed(seed);
-        // Nature ends its durations anywhere in every other run, and at ends of their ranges in the others.
-        let script = Script { adversary: number % 2 == 1, ..Script::default() };
-        let Some(ran) = mission.core.run(&evaluated, &script) else { break };
-        let Ran { outcome, .. } = ran?;
-        trial.try_run(&outcome.log, outcome.ending, seed);
-    }
-    let tried = trial.into_tried();
-    let is_contradicted = tried.iter().any(|it| it.counterexample.is_some());
-    match args.format {
+    let begun = Instant::now();
+    // What is too long for a duration is no limit.
+    let budget = Duration::try_from_secs_f64(args.budget.max(0.0)).unwrap_or(Duration::MAX);
+    while begun.elapsed() < budget && mission.core.try_next(&evaluated, &mut trial)? {}
+    let tried: Vec<&Tried> = trial.tried().collect();
+    let is_contradicted = tried.iter().any(|it| it.verdict() == Verdict::Contradicted);
+    match format {
         Format::Text => print_text(&table(&tried))?,
         Format::Json => {
-            let body = json!({ "items": items_json(&tried) });
+            let body = json!({ "seed": seed, "items": items_json(&tried) });
             print_json(&document("contradict", &snapshot.problems, body))?;
         }
     }
     Ok(exit(if is_contradicted { NO } else { YES }))
 }
 
-/// What was done to a line.
-fn how(tried: &Tried) -> String {
-    let counted = |count: usize, one: &str, several: &str| match count {
-        0 => None,
-        1 => Some(format!("1 {one}")),
-        count => Some(format!("{count} {several}")),
-    };
-    let parts = [counted(tried.schedules, "schedule", "schedules"), counted(tried.runs, "run", "runs")];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
-    if parts.is_empty() { "not tried".to_owned() } else { parts.join(", ") }
-}
-
-const fn outcome(tried: &Tried) -> &'static str {
-    match (&tried.counterexample, tried.schedules, tried.runs) {
-        (Some(_), ..) => "contradicted",
-        (None, 0, 0) => "not-tried",
-        (None, ..) => "survived",
+/// The first plan of a document.
+fn only_plan(mut stated: Value) -> anyhow::Result<Value> {
+    match stated.get_mut("plans").map(Value::take) {
+        Some(Value::Array(plans)) => plans.into_iter().next().context("the document lists no plan"),
+        Some(_) => anyhow::bail!("`plans` is not a list"),
+        None => Ok(stated),
     }
 }
 
-fn table(tried: &[Tried]) -> String {
+const fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Survived => "survived",
+        Verdict::Contradicted => "contradicted",
+        Verdict::NotTried => "not tried",
+    }
+}
+
+fn table(tried: &[&Tried]) -> String {
     let mut text = String::new();
-    let whats: Vec<String> = tried.iter().map(how).collect();
-    for (tried, what) in tried.iter().zip(column(whats.iter().map(String::as_str))) {
-        text.push_str(&format!(
-            "{:<12}  {what}  {}: {}\n",
-            outcome(tried),
-            tried.section.title(),
-            tried.text
-        ));
-        if let Some(Counterexample { text: found, schedule, seed }) = &tried.counterexample {
-            let by = match seed {
-                Some(seed) => format!("run of seed {seed}"),
-                None => "schedule".to_owned(),
+    let hows: Vec<String> = tried.iter().map(|it| it.how()).collect();
+    for (tried, how) in tried.iter().zip(column(hows.iter().map(String::as_str))) {
+        let (verdict, title) = (word(tried.verdict()), tried.line.section.title());
+        text.push_str(&format!("{verdict:<12}  {how}  {title}: {}\n", tried.line.text));
+        let Some(Counterexample { text: found, script }) = &tried.counterexample else { continue };
+        if script.schedule.is_empty() {
+            text.push_str(&format!("    run: {found}\n"));
+            let as_drawn = script.nature.is_empty();
+            let how = match (script.run_seed, script.adversary, as_drawn) {
+                (_, true, _) => "nature chooses against the plan".to_owned(),
+                (Some(seed), false, true) => format!("seed {seed}"),
+                _ => "nature chooses:".to_owned(),
             };
-            text.push_str(&format!("    {by}: {found}\n"));
-            for (event, time) in schedule {
-                text.push_str(&format!("      {:>9}  {event}\n", time.readable()));
-            }
+            text.push_str(&format!("      {how}\n"));
+            text.push_str(&times(&script.nature));
+        } else {
+            text.push_str(&format!("    schedule: {found}\n"));
+            text.push_str(&times(&script.schedule));
         }
     }
-    let count = |wanted: &str| tried.iter().filter(|it| outcome(it) == wanted).count();
+    let count = |wanted: Verdict| tried.iter().filter(|it| it.verdict() == wanted).count();
     text.push_str(&format!(
         "{} of {} lines survived, {} contradicted, {} not tried\n",
-        count("survived"),
+        count(Verdict::Survived),
         tried.len(),
-        count("contradicted"),
-        count("not-tried")
+        count(Verdict::Contradicted),
+        count(Verdict::NotTried)
     ));
     text
 }
 
+/// Times by name, the earliest first.
+fn times(of: &BTreeMap<SmolStr, Time>) -> String {
+    let mut sorted: Vec<(&SmolStr, &Time)> = of.iter().collect();
+    sorted.sort_by_key(|&(name, time)| (time, name));
+    sorted.iter().map(|(name, time)| format!("      {:>9}  {name}\n", time.readable())).collect()
+}
+
 /// The lines for other programs. An `id` is the section of the review with the number of the line among those of it that have
 /// passed, from 1.
-fn items_json(tried: &[Tried]) -> Value {
+fn items_json(tried: &[&Tried]) -> Value {
     let mut numbers: BTreeMap<Section, usize> = BTreeMap::new();
-    let item = |tried: &Tried| {
-        let number = numbers.entry(tried.section).or_default();
+    let item = |tried: &&Tried| {
+        let section = tried.line.section;
+        let number = numbers.entry(section).or_default();
         *number += 1;
         let mut item = json!({
-            "id": format!("{}/{number}", json!(tried.section).as_str().unwrap_or_default()),
-            "text": tried.text,
-            "status": outcome(tried),
+            "id": format!("{}/{number}", json!(section).as_str().unwrap_or_default()),
+            "text": tried.line.text,
+            "status": tried.verdict(),
             "tried": { "schedules": tried.schedules, "runs": tried.runs },
         });
-        if let Some(Counterexample { text, schedule, seed }) = &tried.counterexample {
-            item["counterexample"] = json!({ "text": text, "seed": seed, "schedule": schedule });
+        if let Some(Counterexample { text, script }) = &tried.counterexample {
+            item["counterexample"] = json!({ "text": text, "script": script });
         }
         item
     };

@@ -11,32 +11,27 @@ use serde_json::{Value, json};
 use snapshot::{DriveFrame, Problem, SimulatedDrive};
 use tpn::Network;
 
-use crate::deadline::{TimeLimit, Undecided};
+use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
 use crate::input::read_json;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
-use crate::target::Target;
+use crate::target::{PlanOptions, Target};
 
 /// Executes a mission's plan in the simulated world, planning again when the plan cannot be kept.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// Seeds path planning.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late" | "state" |
-    /// "level" | "fault" | "obstacle" | "vehicle-slow", …}…]}; `docs/simulation.md` lists their members.
+    /// "level" | "fault" | "obstacle" | "vehicle-slow", …}…]}, or a counterexample of `enroute contradict`; `docs/simulation.md`
+    /// lists all members.
     #[arg(long, value_name = "D.json")]
     disturb: Option<PathBuf>,
     /// Lets nature choose its durations so as to break the plan: ends of ranges, where nothing breaks it.
     #[arg(long)]
     adversary: bool,
     #[command(flatten)]
-    time_limit: TimeLimit,
-    /// For whom the answer is.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    options: PlanOptions,
 }
 
 /// Runs the command.
@@ -53,20 +48,20 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         print_problems(&mission.name, &mission.source, &problems)?;
         return Ok(exit(WRONG));
     }
-    compiled.check_disturbances(&script).map_err(anyhow::Error::msg)?;
+    compiled.check_script(&script).map_err(anyhow::Error::msg)?;
     let ground = mission.ground(&compiled)?;
-    let deadline = args.time_limit.start();
-    let manner = Manner { seed: args.seed, ..Manner::default() };
+    let deadline = args.options.time_limit.start();
+    let manner = Manner { seed: args.options.seed, ..Manner::default() };
     let evaluated = mission.plan(compiled, ground, manner, deadline)?;
     problems.extend(Problem::all(&evaluated.planned.warnings, &mission.source));
-    if matches!(args.format, Format::Text) {
+    if matches!(args.options.format, Format::Text) {
         print_problems(&mission.name, &mission.source, &problems)?;
     }
     let limit = deadline.enforce(Undecided::Execution);
     let executed = mission.core.run(&evaluated, &script);
     limit.answered();
     let Some(outcome) = executed else {
-        match args.format {
+        match args.options.format {
             Format::Text => print_text("the mission has no plan to execute; `enroute plan` says why\n")?,
             Format::Json => {
                 let body = json!({ "status": "no-plan", "log": [] });
@@ -77,16 +72,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let Ran { outcome, drives, .. } = outcome?;
     let drive = |drive| drive_json(drive, &evaluated.network, &evaluated.compiled.program);
-    match args.format {
+    match args.options.format {
         Format::Text => print_text(&outcome.log.iter().map(line).collect::<String>())?,
         Format::Json => {
-            let body = json!({
+            let mut body = json!({
                 "status": outcome.ending,
-                "seed": args.seed,
-                "disturbances": script.disturbances,
+                "seed": args.options.seed,
                 "log": outcome.log,
                 "drives": drives.iter().map(drive).collect::<Vec<_>>(),
             });
+            if let (Some(body), Value::Object(script)) = (body.as_object_mut(), json!(script)) {
+                body.extend(script);
+            }
             print_json(&document("simulate", &problems, body))?;
         }
     }

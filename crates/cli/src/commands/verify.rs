@@ -9,12 +9,11 @@ use serde_json::{Value, json};
 use tpn::plan_json::{PlanError, plan_from_json, selected_activities, stated_activities};
 use tpn::{EventEnd, Network};
 
-use crate::deadline::TimeLimit;
 use crate::diagnostics::print_problems;
 use crate::input::read_json;
 use crate::opened::Opened;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
-use crate::target::{Target, parse_threat_gap};
+use crate::target::{PlanOptions, Target, parse_threat_gap};
 
 /// Checks a plan against a mission or a network, from the definitions.
 #[derive(clap::Args)]
@@ -26,14 +25,8 @@ pub struct Args {
     /// The least gap between ordered intervals that the plan was made with; the file's own by default.
     #[arg(long, value_name = "G")]
     threat_gap: Option<String>,
-    /// The seed that path planning had.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
-    time_limit: TimeLimit,
-    /// For whom the answer is.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    options: PlanOptions,
 }
 
 /// Runs the command.
@@ -46,7 +39,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let stated: Value = read_json(&args.plan)?;
     let problems = compiled.problems();
     let Some(network) = compiled.network() else {
-        return mission.refuse(&problems, args.format, ("verify", json!({ "valid": null })));
+        return mission.refuse(&problems, args.options.format, ("verify", json!({ "valid": null })));
     };
     let plans: Vec<&Value> = match stated.get("plans").and_then(Value::as_array) {
         Some(plans) => plans.iter().collect(),
@@ -62,7 +55,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     let is_valid = violations.is_empty();
-    match args.format {
+    match args.options.format {
         Format::Json => {
             let body = json!({ "valid": is_valid, "plans": plans.len(), "violations": violations });
             print_json(&document("verify", &problems, body))?;
@@ -144,7 +137,7 @@ fn orders_ways(stated: &Value) -> bool {
 }
 
 /// A plan less what it says of paths.
-fn without_path_vertices(stated: &Value) -> Value {
+pub(super) fn without_path_vertices(stated: &Value) -> Value {
     let mut stated = stated.clone();
     if let Some(windows) = stated.get_mut("windows").and_then(Value::as_object_mut) {
         windows.retain(|event, _| !event.contains(".leg"));
@@ -164,8 +157,8 @@ fn with_paths(
         return Ok(Arc::clone(network));
     }
     let ground = mission.ground(compiled)?;
-    let manner = Manner { seed: args.seed, ..Manner::default() };
-    let evaluated = mission.plan(compiled.clone(), ground, manner, args.time_limit.start())?;
+    let manner = Manner { seed: args.options.seed, ..Manner::default() };
+    let evaluated = mission.plan(compiled.clone(), ground, manner, args.options.time_limit.start())?;
     // Another plan than the first one has paths of its own.
     let own = &evaluated.planned.network;
     let is_own = |plan: tpn::Plan| verify::check_plan(own, &plan).valid;

@@ -280,7 +280,8 @@ fn every_plan_of_a_list_is_held_against_the_rules() {
 
 #[test]
 fn lines_that_have_passed_are_listed_with_how_they_were_tried() {
-    let output = enroute(&["contradict", MISSION, "--schedules", "20", "--runs", "1", "--format", "json"]);
+    let effort = ["--budget", "1000", "--schedules", "20", "--runs", "1", "--format", "json"];
+    let output = enroute(&[&["contradict", MISSION][..], &effort].concat());
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let document: Value = serde_json::from_str(&written(&output)).expect("JSON");
     assert_eq!(document["format"], "enroute-contradict/1");
@@ -296,4 +297,44 @@ fn lines_that_have_passed_are_listed_with_how_they_were_tried() {
         assert_eq!(item["status"], if is_tried { "survived" } else { "not-tried" }, "{item}");
         assert_eq!(item.get("counterexample"), None, "{item}");
     }
+    let none = enroute(&["contradict", MISSION, "--budget", "0", "--format", "json"]);
+    let document: Value = serde_json::from_str(&written(&none)).expect("JSON");
+    let is_untried = |item: &Value| item["status"] == "not-tried";
+    assert!(document["items"].as_array().is_some_and(|items| items.iter().all(is_untried)), "{document}");
+}
+
+#[test]
+fn a_plan_that_is_given_is_tried_and_a_schedule_replays() {
+    let file = |name: &str, text: &str| {
+        let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+        std::fs::write(&path, text).expect("a file");
+        path.to_str().expect("a path in UTF-8").to_owned()
+    };
+    let mission = file(
+        "contradict.rmpl",
+        "primitive Walk()[5,5]; primitive Ride()[2,2]; primitive Rest()[1,1];
+scenario S[0,20] = { choose { Walk(), Ride() }; delay; Rest() }",
+    );
+    let all = enroute(&["plan", &mission, "--all", "--format", "json"]);
+    let mut document: Value = serde_json::from_str(&written(&all)).expect("JSON");
+    let plans = document["plans"].as_array_mut().expect("a list");
+    let other = plans.pop().expect("two plans");
+    assert_eq!((plans.len(), &other["choices"]["D1"]), (1, &json!(1)));
+    let other = file("contradict.plan.json", &other.to_string());
+    let tried = enroute(&["contradict", &mission, "--plan", &other, "--format", "json"]);
+    assert_eq!(tried.status.code(), Some(0), "{tried:?}");
+    let tried: Value = serde_json::from_str(&written(&tried)).expect("JSON");
+    let choice = tried["items"].as_array().expect("a list").iter().find(|it| it["id"] == "choices/1");
+    let text = choice.and_then(|it| it["text"].as_str()).expect("the choice");
+    assert!(text.contains("Ride") && !text.contains("takes Walk"), "{text}");
+    let wrong = file("contradict.wrong.json", r#"{"choices": {"D7": 0}}"#);
+    let refused = enroute(&["contradict", &mission, "--plan", &wrong]);
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    let script = file("contradict.script.json", r#"{"disturbances": [], "schedule": {"Rest#1.start": 11}}"#);
+    let run = enroute(&["simulate", &mission, "--disturb", &script, "--format", "json"]);
+    let run: Value = serde_json::from_str(&written(&run)).expect("JSON");
+    assert_eq!((&run["status"], &run["schedule"]), (&json!("finished"), &json!({ "Rest#1.start": 11 })));
+    let log = run["log"].as_array().expect("a list");
+    let start = log.iter().find(|it| it["name"] == "Rest#1.start").expect("it happens");
+    assert_eq!(start["time"], json!(11));
 }

@@ -16,6 +16,7 @@ use super::Core;
 use crate::control::check_control;
 use crate::evaluated::{Compiled, Evaluated, Ground, Manner, Scenarios};
 use crate::execution::{self, Ran};
+use crate::given_plan;
 use crate::host::CoreHost;
 use crate::listing;
 use crate::programs::Programs;
@@ -124,6 +125,19 @@ impl Core {
         let manner = Manner::of(update);
         let planned = self.plan_kept(&compiled, &network, ground.as_ref(), manner, host)?.planned.clone();
         Some(Ok(Evaluated { compiled, network: network.value, ground, planned, manner }))
+    }
+
+    /// Puts a plan that is given in the place of the one that was found, with the paths of its own traverses. `read` reads
+    /// it as a plan of a network; fails if it is a plan of none, or its traverses can't be driven.
+    pub fn take_plan(
+        &mut self,
+        evaluated: &mut Evaluated,
+        read: &dyn Fn(&Network) -> Result<Plan, String>,
+    ) -> Result<(), String> {
+        let problem = evaluated.problem();
+        evaluated.planned =
+            given_plan::planned(&problem, &evaluated.planned, read, &mut self.grounds, &mut self.paths)?;
+        Ok(())
     }
 
     /// Executes the plan; `None` if there is none.

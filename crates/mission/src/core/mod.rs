@@ -22,6 +22,7 @@ use snapshot::{MapKey, Snapshot, Stage, Timings};
 use terrain::Terrain;
 
 use crate::both_searches;
+use crate::contradicting::Trying;
 use crate::control::ControlTexts;
 use crate::evaluated::{Manner, TRACE_EVENTS};
 use crate::ground::Grounds;
@@ -41,6 +42,7 @@ pub struct Core {
     reading: Reading,
     last: Option<planned::Last>,
     sampler: Option<Sampled>,
+    trying: Option<Trying>,
     controls: ControlTexts,
     control_run: Option<control_run::Session>,
     growth: Vec<path_growth::Session>,
@@ -66,6 +68,9 @@ impl Core {
                 self.sample_program((revision, source.text()), chance, from, host);
             }
             Request::Review { update, rules } => self.review(&update, &rules, host),
+            Request::Contradict { update, review, only, effort, from } => {
+                self.contradict(&update, &review, (only.as_ref(), effort), from, host);
+            }
             Request::Evaluate { token, update } => self.evaluate_beside(token, &update, host),
             Request::CompareSearches(update) => self.search_both_ways(&update, host),
             Request::RunControl(wanted) => self.run_control(&wanted, host),

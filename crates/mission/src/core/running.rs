@@ -4,9 +4,13 @@ use std::sync::Arc;
 
 use executive::Script;
 use link::{ProgramChance, Response, Update};
+use review::Review;
+use review::contradict::{Effort, Trial};
+use review::record::LineKey;
 use snapshot::{RobustnessSettings, Tally};
 
 use super::Core;
+use crate::contradicting::Trying;
 use crate::evaluated::Evaluated;
 use crate::execution;
 use crate::host::CoreHost;
@@ -25,7 +29,7 @@ impl Core {
             if let Some(run) = self.last.as_mut().and_then(|last| last.executions.find(&script, revision)) {
                 return Ok(run);
             }
-            evaluated.compiled.check_disturbances(&script)?;
+            evaluated.compiled.check_script(&script)?;
             let ran = self.run(&evaluated, &script).ok_or_else(|| NO_PLAN.to_owned())?;
             let ran = ran.map_err(|error| error.to_string())?;
             let (program, planned) = (&evaluated.compiled.program, &evaluated.planned);
@@ -87,6 +91,40 @@ impl Core {
         }
         self.sampler = Some(sampled);
         Ok(tally)
+    }
+
+    /// Tries the lines of a review, from where the last request ended.
+    pub(super) fn contradict(
+        &mut self,
+        update: &Update,
+        review: &Arc<Review>,
+        (only, effort): (Option<&LineKey>, Effort),
+        from: u64,
+        host: &mut dyn CoreHost,
+    ) {
+        let begun = host.now_millis();
+        let revision = update.revision;
+        let Some(evaluated) = self.evaluate(update, host) else { return };
+        let tried = evaluated.and_then(|evaluated| {
+            let wanted = (revision, only.cloned(), effort);
+            let known = self.trying.take().filter(|it| it.of == wanted && it.trial.progress()[0] == from);
+            let mut trying = if let Some(known) = known {
+                known
+            } else {
+                let trial = Trial::new(&evaluated.snapshot(), review, only, effort);
+                Trying { of: wanted, trial: trial.ok_or_else(|| NO_PLAN.to_owned())? }
+            };
+            while self.try_next(&evaluated, &mut trying.trial).map_err(|error| error.to_string())? {
+                if host.now_millis() - begun > SAMPLING_MILLIS || host.is_superseded() {
+                    break;
+                }
+            }
+            let (progress, tried) = (trying.trial.progress(), trying.trial.tried().cloned().collect());
+            self.trying = Some(trying);
+            Ok((progress, tried))
+        });
+        let (progress, tried) = tried.map_or_else(|reason| ([0; 2], Err(reason)), |(at, it)| (at, Ok(it)));
+        host.answer(Response::Contradicted { revision, only: only.cloned(), progress, tried });
     }
 
     /// Runs a control program many times.

@@ -162,7 +162,7 @@ fn disturbances_of_what_the_mission_does_not_have_are_refused() {
     let answer = |json: &str| {
         let script: Script = serde_json::from_str(&format!("{{\"disturbances\": [{json}]}}"))
             .map_err(|error| error.to_string())?;
-        execution::check_disturbances(&network, &program, &programs, &script.disturbances)
+        execution::check_script(&network, &program, &programs, &script)
     };
     let state = |variable: &str, value: &str, at: &str| {
         answer(&format!(

@@ -104,6 +104,10 @@ fn bar(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                     commands.send(Command::Execution(command));
                 }
             }
+            if context.state.execution.is_replay() {
+                let text = "replays given times or durations; Start over ends that";
+                ui.label(RichText::new(text).small().color(context.tokens.text_muted));
+            }
             if context.state.execution.is_working() {
                 ui.label(RichText::new("working the run out…").small().color(context.tokens.text_muted));
             }

@@ -9,7 +9,7 @@ use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 
 use super::people::People;
-use super::{List, row};
+use super::{List, contradict, row};
 
 /// Shows a line of any section.
 pub(super) fn line(
@@ -40,6 +40,7 @@ pub(super) fn line(
             commands.send(Command::Seek(violation.time));
         }
     }
+    contradict::of_line(ui, list, section, line, commands);
     if line.status == Status::Attention && !list.is_stale {
         let known = list.acknowledged.get(&LineKey::new(section, line)).copied();
         ui.push_id((section.title(), index), |ui| {

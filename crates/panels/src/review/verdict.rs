@@ -13,7 +13,7 @@ use workbench::state::search::SearchCommand;
 use workbench::state::window::WindowCommand;
 
 use super::people::{People, who};
-use super::status_look;
+use super::{contradict, status_look};
 use crate::Context;
 
 /// Characters of the hash that are shown.
@@ -88,6 +88,9 @@ pub(super) fn show(
         people.identity(ui, context);
         ui.add_space(space::S);
         buttons(ui, context, shown, commands);
+        if let Some((review, false)) = shown {
+            contradict::all(ui, context, review, commands);
+        }
     });
 }
 

@@ -1,280 +1,242 @@
-//! Looks for counterexamples of the lines of a review that have passed (SPEC 16.1): schedules of the plan, and runs of it, in
-//! which something is otherwise than a line says.
+//! Looks for counterexamples of the lines of a review that have passed (SPEC 16.1): schedules of the plan, and undisturbed
+//! runs of it, in which something is otherwise than a line says.
 //!
 //! Nothing is proven by a line that survives; it says how it was tried. Lines that are neither about schedules nor about
 //! runs are not tried, and said to be so.
 
+mod chance;
 mod instant;
+mod promise;
+mod runs;
 mod schedules;
 
-use exact::{Bound, Rational, Time};
-use executive::{Ending, Entry, Happening};
-use rmpl::rule::Rule;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use exact::Time;
+use executive::{Ending, Entry, Script};
+use rmpl::program::Program;
+use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 use snapshot::Snapshot;
-use tpn::{Levels, Network, NodeId, Plan};
+use tpn::plan_json::node_name;
+use tpn::{Network, NodeId, Plan};
 
 use self::instant::Scheduled;
-use self::schedules::Schedules;
-use super::flight_rule;
-use super::{Outcome, Review, Section, Status, TimeRange};
+use self::promise::Promise;
+use self::runs::Runs;
+use self::schedules::{Made, Schedules};
+use super::record::LineKey;
+use super::{Review, Section, Status};
 
 /// A line that has passed, how it was tried, and the counterexample if one was found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tried {
-    pub section: Section,
-    pub text: String,
-    /// How many schedules and runs were held against it; neither if it cannot be tried that way.
-    pub schedules: usize,
-    pub runs: usize,
+    pub line: LineKey,
+    /// How many different schedules were held against it, and how many runs; neither if it cannot be tried that way.
+    pub schedules: u64,
+    pub runs: u64,
     /// What contradicts it, if something was found.
     pub counterexample: Option<Counterexample>,
 }
 
 /// What contradicts a line.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Counterexample {
     /// In one sentence.
     pub text: String,
-    /// The times of events, by name, of a schedule; none if it is a run.
-    pub schedule: Vec<(String, Time)>,
-    /// The seed of the run.
-    pub seed: Option<u64>,
+    /// The run that shows it: of a schedule one that is executed by it, otherwise the run that was found.
+    #[serde(with = "snapshot::json_text")]
+    pub script: Script,
 }
 
-/// What a line promises that can be looked at.
-enum Promise {
-    /// A schedule keeps all that the independent checker asks for.
-    Valid,
-    /// The second event is so much later than the first.
-    Range([NodeId; 2], TimeRange),
-    /// A level, or what is in use, stays between these.
-    Levels { resource: String, low: Rational, high: Rational },
-    /// A rule of the mission holds.
-    Rule(Box<Rule>),
-    /// An activity takes so long.
-    Lasts { activity: String, range: TimeRange },
-    /// Runs come to the end by this plan.
-    Runs,
-    /// Nothing that is looked at here.
-    Nothing,
+/// How a line came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    Survived,
+    Contradicted,
+    NotTried,
+}
+
+/// How much is tried at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Effort {
+    /// Schedules of the plan: the earliest, the latest, and others by chance.
+    pub schedules: u64,
+    /// Undisturbed runs: nature's durations at their least, at their greatest, and otherwise.
+    pub runs: u64,
+    /// Chooses which.
+    pub seed: u64,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { schedules: 200, runs: 20, seed: 0 }
+    }
+}
+
+impl Tried {
+    /// How it came out.
+    pub const fn verdict(&self) -> Verdict {
+        match (&self.counterexample, self.schedules, self.runs) {
+            (Some(_), ..) => Verdict::Contradicted,
+            (None, 0, 0) => Verdict::NotTried,
+            (None, ..) => Verdict::Survived,
+        }
+    }
+
+    /// How it was tried: `200 schedules and 20 runs`; empty if it was not.
+    pub fn how(&self) -> String {
+        let counted = |count: u64, one: &str, several: &str| match count {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            count => Some(format!("{count} {several}")),
+        };
+        let parts = [counted(self.schedules, "schedule", "schedules"), counted(self.runs, "run", "runs")];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(" and ")
+    }
+
+    /// How it came out and how it was tried, in one sentence without an end.
+    pub fn sentence(&self) -> String {
+        match (self.verdict(), &self.counterexample) {
+            (Verdict::Contradicted, Some(found)) if found.script.schedule.is_empty() => {
+                format!("contradicted by a run: {}", found.text)
+            }
+            (Verdict::Contradicted, Some(found)) => format!("contradicted by a schedule: {}", found.text),
+            (Verdict::Survived, _) => format!("survived {}", self.how()),
+            _ => "not tried: neither a schedule nor a run can decide it".to_owned(),
+        }
+    }
 }
 
 /// The lines of a review under trial.
-pub struct Trial<'a> {
-    snapshot: &'a Snapshot,
-    network: &'a Network,
-    plan: &'a Plan,
+pub struct Trial {
+    program: Arc<Program>,
+    network: Arc<Network>,
+    plan: Plan,
     lines: Vec<(Promise, Tried)>,
+    effort: Effort,
+    schedules: Option<Schedules>,
+    /// How many schedules were made, those that were made before included.
+    num_schedules: u64,
+    runs: Runs,
+    num_runs: u64,
 }
 
-impl<'a> Trial<'a> {
-    /// Of all lines that have passed; `None` without a plan.
-    pub fn new(snapshot: &'a Snapshot, review: &Review) -> Option<Self> {
-        let (network, plan) = (snapshot.network.as_deref()?, snapshot.plan()?);
+impl Trial {
+    /// Of all lines that have passed, or of one of them; `None` without a plan.
+    pub fn new(snapshot: &Snapshot, review: &Review, only: Option<&LineKey>, effort: Effort) -> Option<Self> {
+        let (network, plan) = (Arc::clone(snapshot.network.as_ref()?), snapshot.plan()?.clone());
         let mut lines = Vec::new();
         for section in Section::ALL {
             for (index, line) in review.lines(section).into_iter().enumerate() {
-                if line.status != Status::Passed {
+                let key = LineKey::new(section, line);
+                if line.status != Status::Passed || only.is_some_and(|only| *only != key) {
                     continue;
                 }
-                let text = line.text.clone();
-                let tried = Tried { section, text, schedules: 0, runs: 0, counterexample: None };
-                lines.push((promise(snapshot, network, plan, review, section, index), tried));
+                let promise = Promise::of_line(snapshot, (&network, &plan), review, section, index);
+                lines.push((promise, Tried { line: key, schedules: 0, runs: 0, counterexample: None }));
             }
         }
-        Some(Self { snapshot, network, plan, lines })
+        let has_drives = !snapshot.traverses.is_empty();
+        Some(Self {
+            program: Arc::clone(&snapshot.program),
+            schedules: Schedules::new(&network, &plan, effort.seed),
+            runs: Runs::new(&network, &plan, has_drives, effort.seed),
+            network,
+            plan,
+            lines,
+            effort,
+            num_schedules: 0,
+            num_runs: 0,
+        })
     }
 
-    /// Holds so many schedules against the lines, or fewer if `stop` says so; seeds choose which.
-    pub fn try_schedules(&mut self, count: usize, seed: u64, stop: &mut dyn FnMut() -> bool) {
-        let Some(mut schedules) = Schedules::new(self.network, self.plan, seed) else { return };
-        for _ in 0..count {
-            if stop() {
-                return;
+    /// How many schedules and runs have been made, and how many are to be made.
+    pub const fn progress(&self) -> [u64; 2] {
+        let Effort { schedules, runs, .. } = self.effort;
+        [self.num_schedules + self.num_runs, schedules + runs]
+    }
+
+    /// Holds one more schedule against the lines that stand; returns whether there was one to try.
+    pub fn try_schedule(&mut self) -> bool {
+        let is_wanted = self.num_schedules < self.effort.schedules
+            && self
+                .lines
+                .iter()
+                .any(|(promise, it)| it.counterexample.is_none() && promise.is_of_schedules());
+        let made = self.schedules.as_mut().filter(|_| is_wanted).map(Schedules::make);
+        let times = match made {
+            Some(Made::New(times)) => times,
+            Some(Made::Known) => {
+                self.num_schedules += 1;
+                return true;
             }
-            let Some(times) = schedules.next() else { return };
-            let scheduled = Scheduled {
-                program: &self.snapshot.program,
-                network: self.network,
-                plan: self.plan,
-                times: &times,
-            };
-            for (promise, tried) in &mut self.lines {
-                if tried.counterexample.is_some() {
-                    continue;
-                }
-                let Some(found) = promise.broken_by_schedule(scheduled) else { continue };
-                tried.schedules += 1;
-                tried.counterexample = found.map(|text| Counterexample {
-                    text,
-                    schedule: named_times(self.network, self.plan, &times),
-                    seed: None,
-                });
+            Some(Made::Overflow) | None => {
+                self.num_schedules = self.effort.schedules;
+                return false;
             }
+        };
+        self.num_schedules += 1;
+        let scheduled =
+            Scheduled { program: &self.program, network: &self.network, plan: &self.plan, times: &times };
+        for (promise, tried) in &mut self.lines {
+            if tried.counterexample.is_some() {
+                continue;
+            }
+            let Some(found) = promise.broken_by_schedule(scheduled) else { continue };
+            tried.schedules += 1;
+            tried.counterexample = found.map(|text| Counterexample {
+                text,
+                script: Script {
+                    schedule: named_times(&self.network, &self.plan, &times),
+                    ..Script::default()
+                },
+            });
         }
+        true
     }
 
-    /// Holds an undisturbed run of the plan against the lines; `seed` made it.
-    pub fn try_run(&mut self, log: &[Entry], ending: Ending, seed: u64) {
+    /// The next run to make; `None` when there is none, or no line stands that runs say something of.
+    pub fn next_run(&mut self) -> Option<Script> {
+        let is_wanted = self.num_runs < self.effort.runs
+            && self.lines.iter().any(|(promise, it)| it.counterexample.is_none() && promise.is_of_runs());
+        let script = if is_wanted { self.runs.next() } else { None };
+        self.num_runs = if script.is_some() { self.num_runs + 1 } else { self.effort.runs };
+        script
+    }
+
+    /// Holds an undisturbed run of the plan against the lines that stand; `script` made it.
+    pub fn try_run(&mut self, script: &Script, log: &[Entry], ending: Ending) {
         for (promise, tried) in &mut self.lines {
             if tried.counterexample.is_some() {
                 continue;
             }
             let Some(found) = promise.broken_by_run(log, ending) else { continue };
             tried.runs += 1;
-            tried.counterexample =
-                found.map(|text| Counterexample { text, schedule: Vec::new(), seed: Some(seed) });
+            tried.counterexample = found.map(|text| Counterexample { text, script: script.clone() });
         }
     }
 
     /// The lines with how they were tried, in the order of the review.
-    pub fn into_tried(self) -> Vec<Tried> {
-        self.lines.into_iter().map(|(_, tried)| tried).collect()
+    pub fn tried(&self) -> impl Iterator<Item = &Tried> {
+        self.lines.iter().map(|(_, tried)| tried)
     }
 }
 
-/// What a line of a review promises.
-fn promise(
-    snapshot: &Snapshot,
-    network: &Network,
-    plan: &Plan,
-    review: &Review,
-    section: Section,
-    index: usize,
-) -> Promise {
-    let found = match section {
-        Section::Plan => {
-            let text = review.plan[index].text.as_str();
-            if text.starts_with("the independent checker") {
-                Some(Promise::Valid)
-            } else if text.contains("(dynamically controllable)") || text.contains("(strongly controllable)")
-            {
-                Some(Promise::Runs)
-            } else {
-                None
-            }
+/// The times of the events that have names, and of nodes without events.
+fn named_times(network: &Network, plan: &Plan, times: &[Option<Time>]) -> BTreeMap<SmolStr, Time> {
+    let mut named = BTreeMap::new();
+    for (index, (node, time)) in network.nodes.iter().zip(times).enumerate() {
+        let Some(time) = *time else { continue };
+        let events = node.events.iter().filter(|&&event| plan.has_event(network, event));
+        let mut names: Vec<String> = events.map(|&event| network.event_name(event)).collect();
+        if names.is_empty() {
+            names.push(node_name(network, NodeId::from_index(index)));
         }
-        Section::CausalLinks => {
-            let of = &review.causal_links[index];
-            let is_it = |link: &&tpn::CausalLink| {
-                network.label_name(link.ask) == of.ask && network.label_name(link.tell) == of.tell
-            };
-            // What lasts has its margin up to the next change, which has a line of its own.
-            plan.causal_links.iter().find(is_it).map(|link| {
-                let (asked, told) = (network.interval(link.ask), network.interval(link.tell));
-                if of.is_lasting {
-                    Promise::Range([network.ready(link.tell), asked.0], of.lead)
-                } else {
-                    Promise::Range([asked.1, told.1], of.margin)
-                }
-            })
-        }
-        Section::Conflicts => {
-            let of = &review.conflicts[index];
-            <[NodeId; 2]>::try_from(of.line.nodes.as_slice()).ok().map(|nodes| Promise::Range(nodes, of.gap))
-        }
-        Section::Resources => {
-            let of = &review.resources[index];
-            let (low, high) = match of.levels {
-                Levels::Range { low, high } => (low, high),
-                Levels::Peak(peak) => (Rational::ZERO, peak),
-            };
-            Some(Promise::Levels { resource: of.name.clone(), low, high })
-        }
-        Section::Traverses => {
-            let of = &review.traverses[index];
-            Some(Promise::Lasts { activity: of.name.clone(), range: of.duration })
-        }
-        Section::MissionRules => review.rules.rules.get(index).and_then(|rule| {
-            let holds = review.findings.iter().any(|it| it.rule == rule.rule && it.outcome == Outcome::Holds);
-            let read = flight_rule::read(&snapshot.program, network, &rule.rule).ok().filter(|_| holds)?;
-            Some(Promise::Rule(Box::new(read)))
-        }),
-        _ => None,
-    };
-    found.unwrap_or(Promise::Nothing)
-}
-
-impl Promise {
-    /// What contradicts it in a schedule, if something does; `None` if schedules say nothing of it.
-    #[expect(clippy::option_option, reason = "the outer one is what schedules say nothing of")]
-    fn broken_by_schedule(&self, of: Scheduled<'_>) -> Option<Option<String>> {
-        match self {
-            Self::Valid => {
-                let verdict = verify::check_schedule(of.network, of.plan, of.times);
-                Some(verdict.violations.first().map(|it| it.message.clone()))
-            }
-            Self::Range([from, to], range) => {
-                let apart = of.times[to.index()]?.checked_sub(of.times[from.index()]?)?;
-                let is_in = apart >= range.least && Bound::Finite(apart) <= range.greatest;
-                Some((!is_in).then(|| format!("it is {} apart, not {range}", apart.readable())))
-            }
-            Self::Levels { resource, low, high } => {
-                let broken = of.levels(resource).into_iter().find(|(_, level)| level < low || level > high);
-                Some(broken.map(|(at, level)| format!("at {} it is {}", at.readable(), level.readable())))
-            }
-            Self::Rule(rule) => {
-                let breach = of.first_breach(rule);
-                Some(breach.map(|at| format!("it is not known to hold at {}", at.readable())))
-            }
-            Self::Lasts { .. } | Self::Runs | Self::Nothing => None,
-        }
+        named.extend(names.into_iter().map(|name| (SmolStr::from(name), time)));
     }
-
-    /// What contradicts it in an undisturbed run, if something does; `None` if runs say nothing of it.
-    #[expect(clippy::option_option, reason = "the outer one is what runs say nothing of")]
-    fn broken_by_run(&self, log: &[Entry], ending: Ending) -> Option<Option<String>> {
-        match self {
-            Self::Runs => {
-                let violation = log.iter().find_map(|entry| match &entry.happening {
-                    Happening::Violation { reason, .. } => {
-                        Some(format!("at {}: {reason}", entry.time.readable()))
-                    }
-                    _ => None,
-                });
-                let unfinished =
-                    (ending != Ending::Finished).then(|| "the run did not reach the end".to_owned());
-                Some(violation.or(unfinished))
-            }
-            Self::Levels { resource, low, high } => {
-                let broken = log.iter().find_map(|entry| match &entry.happening {
-                    Happening::Level { resource: of, level, .. } if of.as_str() == resource => (level < low
-                        || level > high)
-                        .then(|| format!("at {} it is {}", entry.time.readable(), level.readable())),
-                    _ => None,
-                });
-                Some(broken)
-            }
-            Self::Lasts { activity, range } => {
-                let came = |end: &str| {
-                    let event = format!("{activity}.{end}");
-                    let is_it = |entry: &&Entry| matches!(&entry.happening, Happening::Executed { name } if *name == event);
-                    log.iter().find(is_it).map(|entry| entry.time)
-                };
-                // What was never started says nothing.
-                let started = came("start")?;
-                let Some(ended) = came("end") else {
-                    return Some(Some("it did not come to its end".to_owned()));
-                };
-                let lasted = ended.checked_sub(started)?;
-                let is_in = lasted >= range.least && Bound::Finite(lasted) <= range.greatest;
-                Some((!is_in).then(|| format!("it took {}, not {range}", lasted.readable())))
-            }
-            Self::Valid | Self::Range(..) | Self::Rule(_) | Self::Nothing => None,
-        }
-    }
-}
-
-/// The times of the events that have names, in order.
-fn named_times(network: &Network, plan: &Plan, times: &[Option<Time>]) -> Vec<(String, Time)> {
-    let nodes = network.nodes.iter().zip(times).filter_map(|(node, time)| Some((node, (*time)?)));
-    let mut named: Vec<(String, Time)> = nodes
-        .flat_map(|(node, time)| {
-            let events = node.events.iter().filter(move |&&event| plan.has_event(network, event));
-            events.map(move |&event| (network.event_name(event), time))
-        })
-        .collect();
-    named.sort_by(|left, right| (left.1, &left.0).cmp(&(right.1, &right.0)));
     named
 }
 

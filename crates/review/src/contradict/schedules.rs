@@ -1,10 +1,14 @@
 //! Schedules of a plan to try its lines with: the earliest and the latest one, and those in which some events are at the ends
 //! of their windows, or anywhere in them.
 
+use std::collections::BTreeSet;
+
 use exact::Time;
 use executive::plan_network::{ADDED, PlanNetwork};
 use stn::INFINITE;
 use tpn::{Network, Plan};
+
+use super::chance::Chance;
 
 /// Makes one schedule after the other.
 pub(super) struct Schedules {
@@ -12,6 +16,18 @@ pub(super) struct Schedules {
     num_nodes: usize,
     chance: Chance,
     made: usize,
+    /// The ticks of all that were made.
+    known: BTreeSet<Vec<i64>>,
+}
+
+/// A schedule, if it could be made.
+pub(super) enum Made {
+    /// The time of each node that the plan selects.
+    New(Vec<Option<Time>>),
+    /// One that was made before.
+    Known,
+    /// Times do not fit.
+    Overflow,
 }
 
 /// Events that one schedule fixes at most.
@@ -22,11 +38,24 @@ impl Schedules {
     pub(super) fn new(network: &Network, plan: &Plan, seed: u64) -> Option<Self> {
         let num_nodes = network.nodes.len();
         let network = PlanNetwork::new(network, plan).ok()?;
-        Some(Self { network, num_nodes, chance: Chance(seed), made: 0 })
+        Some(Self { network, num_nodes, chance: Chance(seed), made: 0, known: BTreeSet::new() })
     }
 
-    /// The time of each node that the plan selects; `None` where times do not fit.
-    pub(super) fn next(&mut self) -> Option<Vec<Option<Time>>> {
+    /// Makes the next one.
+    pub(super) fn make(&mut self) -> Made {
+        let Some(ticks) = self.next_ticks() else { return Made::Overflow };
+        if self.known.contains(&ticks) {
+            return Made::Known;
+        }
+        let mut times = vec![None; self.num_nodes];
+        for point in self.network.all_points() {
+            times[self.network.node(point).index()] = Some(self.network.time(ticks[point.index()]));
+        }
+        self.known.insert(ticks);
+        Made::New(times)
+    }
+
+    fn next_ticks(&mut self) -> Option<Vec<i64>> {
         let before = self.network.stn.checkpoint();
         let number = self.made;
         self.made += 1;
@@ -38,12 +67,7 @@ impl Schedules {
         let (earliest, latest) = self.bounds()?;
         self.network.stn.rollback(before);
         let has_latest = latest.iter().all(|&ticks| ticks != INFINITE);
-        let ticks = if number % 2 == 1 && has_latest { latest } else { earliest };
-        let mut times = vec![None; self.num_nodes];
-        for point in self.network.all_points() {
-            times[self.network.node(point).index()] = Some(self.network.time(ticks[point.index()]));
-        }
-        Some(times)
+        Some(if number % 2 == 1 && has_latest { latest } else { earliest })
     }
 
     /// The earliest and the latest ticks of each point.
@@ -77,19 +101,5 @@ impl Schedules {
         };
         let (origin, point) = (self.network.origin(), self.network.all_points().nth(at)?);
         self.network.stn.constrain(origin, point, ticks, Some(ticks), ADDED).ok()
-    }
-}
-
-/// Numbers that look like chance (`SplitMix64`, Steele, Lea and Flood 2014).
-struct Chance(u64);
-
-impl Chance {
-    /// Below `count`, which is not 0.
-    fn below(&mut self, count: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (mixed ^ (mixed >> 31)) % count
     }
 }

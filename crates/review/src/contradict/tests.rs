@@ -1,13 +1,19 @@
 //! Lines that promise too much are contradicted, and those of the examples are not.
 
 use exact::{Bound, Rational, Time};
+use executive::{Ending, Happening, Script};
+use mission::{Core, Evaluated, Manner};
 use snapshot::Goal;
+use test_core::Answers;
 
 use super::super::tests::{MISSION, SCENARIO, snapshot};
 use super::super::{FlightRules, MissionRule, Outcome, Review, Section, review};
-use super::{Trial, Tried};
+use super::schedules::{Made, Schedules};
+use super::{Effort, Trial, Tried, Verdict, named_times};
 
-/// The lines of a mission as they were tried, after `change` has changed its review.
+const SCHEDULES: Effort = Effort { schedules: 100, runs: 0, seed: 1 };
+
+/// The lines of a mission as schedules tried them, after `change` has changed its review.
 fn tried(source: &str, rules: &[&str], change: impl FnOnce(&mut Review)) -> Vec<Tried> {
     let snapshot = snapshot(source);
     let mut reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
@@ -19,14 +25,48 @@ fn tried(source: &str, rules: &[&str], change: impl FnOnce(&mut Review)) -> Vec<
     let rules = FlightRules { rules: named.collect(), ..FlightRules::default() };
     reviewed.hold_against(&snapshot, &rules, None, &mut || false);
     change(&mut reviewed);
-    let mut trial = Trial::new(&snapshot, &reviewed).expect("a plan");
-    trial.try_schedules(100, 1, &mut || false);
-    trial.into_tried()
+    let mut trial = Trial::new(&snapshot, &reviewed, None, SCHEDULES).expect("a plan");
+    while trial.try_schedule() {}
+    trial.tried().cloned().collect()
+}
+
+/// A mission, planned.
+fn evaluated(core: &mut Core, source: &str) -> Evaluated {
+    let mut host = Answers::default();
+    let compiled = core.compile(&link::Update::new(1, source), &host);
+    let ground = core.ground(&compiled.program.world).expect("its ground is known");
+    core.plan(compiled, ground, Manner::default(), &mut host).expect("it has no errors")
+}
+
+/// The lines of a mission as schedules and runs tried them, after `change` has changed its review; and how they are run.
+fn run(source: &str, change: impl FnOnce(&mut Review)) -> (Vec<Tried>, Core, Evaluated) {
+    let mut core = Core::default();
+    let evaluated = evaluated(&mut core, source);
+    let snapshot = evaluated.snapshot();
+    let mut reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
+    change(&mut reviewed);
+    let effort = Effort { schedules: 60, runs: 8, seed: 1 };
+    let mut trial = Trial::new(&snapshot, &reviewed, None, effort).expect("a plan");
+    // The core knows another build of this crate, so that its own loop cannot be used.
+    while trial.try_schedule() {}
+    while let Some(script) = trial.next_run() {
+        let (log, ending) = replayed(&mut core, &evaluated, &script);
+        trial.try_run(&script, &log, ending);
+    }
+    assert_eq!(trial.progress()[0], trial.progress()[1]);
+    (trial.tried().cloned().collect(), core, evaluated)
+}
+
+/// What happens in the run of a script.
+fn replayed(core: &mut Core, evaluated: &Evaluated, script: &Script) -> (Vec<executive::Entry>, Ending) {
+    evaluated.compiled.check_script(script).expect("it is about this mission");
+    let ran = core.run(evaluated, script).expect("a plan").expect("its times fit");
+    (ran.outcome.log, ran.outcome.ending)
 }
 
 /// The lines of a section that were contradicted, and those that survived.
 fn outcomes(tried: &[Tried], section: Section) -> [usize; 2] {
-    let of = tried.iter().filter(|it| it.section == section && it.schedules > 0);
+    let of = tried.iter().filter(|it| it.line.section == section && it.schedules > 0);
     let (contradicted, survived): (Vec<&Tried>, Vec<&Tried>) = of.partition(|it| it.counterexample.is_some());
     [contradicted.len(), survived.len()]
 }
@@ -65,7 +105,7 @@ fn a_line_that_promises_too_much_is_contradicted() {
     });
     assert_eq!(outcomes(&rule, Section::MissionRules), [1, 0]);
     let found = rule.iter().find_map(|it| it.counterexample.as_ref()).expect("a counterexample");
-    let time = |name: &str| found.schedule.iter().find(|(it, _)| it == name).map(|(_, time)| *time);
+    let time = |name: &str| found.script.schedule.get(name).copied();
     let both = [time("Drive#1.start"), time("Drive#2.start")].into_iter().max().flatten();
     assert_eq!(
         Some(found.text.clone()),
@@ -88,8 +128,159 @@ fn no_schedule_contradicts_what_the_reviews_of_examples_have_passed() {
     ];
     for (source, rules) in examples {
         let found = tried(source, rules, |_| {});
-        assert!(found.iter().any(|it| it.schedules == 100), "{found:?}");
+        assert!(found.iter().any(|it| it.schedules > 1), "{found:?}");
         let contradicted: Vec<&Tried> = found.iter().filter(|it| it.counterexample.is_some()).collect();
         assert!(contradicted.is_empty(), "{contradicted:?}");
     }
+}
+
+/// Nature chooses how long Drill takes, and the battery is charged meanwhile.
+const NATURE: &str = "resource Battery 0..100 = 50; state Arm : {IN, OUT} = IN;
+primitive Drill() contingent [3,8] consumes Battery 20; primitive Extend()[1,2] sets Arm=OUT;
+primitive Charge()[2,4] produces Battery 30; location A (0, 0); vehicle Rover : ATRV at A;
+scenario S[0,40] = { { Extend(); Drill(); delay }, { delay; Charge(); delay } }";
+
+#[test]
+fn a_counterexample_is_a_run_that_replays() {
+    // A level that only some schedules leave.
+    let (tried, mut core, evaluated) = run(NATURE, |review| {
+        review.resources[0].levels =
+            tpn::Levels::Range { low: Rational::from_integer(50), high: Rational::from_integer(100) };
+    });
+    let fell = |section: Section| tried.iter().filter(move |it| it.line.section == section);
+    let found = fell(Section::Resources).find_map(|it| it.counterexample.clone()).expect("a counterexample");
+    let (log, _) = replayed(&mut core, &evaluated, &found.script);
+    let times: Vec<(&str, Time)> = log
+        .iter()
+        .filter_map(|entry| match &entry.happening {
+            Happening::Executed { name } => Some((name.as_str(), entry.time)),
+            _ => None,
+        })
+        .collect();
+    let is_violated = log.iter().any(|entry| matches!(entry.happening, Happening::Violation { .. }));
+    assert!(!found.script.schedule.is_empty() && !is_violated, "{found:?} {log:?}");
+    for (name, time) in &times {
+        assert_eq!(found.script.schedule.get(*name), Some(time), "{name}: {found:?}");
+    }
+    let is_low = |entry: &executive::Entry| matches!(&entry.happening, Happening::Level { level, .. } if *level < Rational::from_integer(50));
+    assert!(log.iter().any(is_low), "{log:?}");
+    // Its JSON is a script, too.
+    let text = serde_json::to_string(&found.script).expect("JSON");
+    assert_eq!(serde_json::from_str::<Script>(&text).expect("a script"), found.script);
+}
+
+#[test]
+fn every_schedule_is_executed_at_its_times() {
+    for source in [NATURE, OPEN, include_str!("../../../../assets/missions/arm.rmpl")] {
+        let mut core = Core::default();
+        let evaluated = evaluated(&mut core, source);
+        let network = std::sync::Arc::clone(&evaluated.planned.network);
+        let plan = evaluated.planned.planning.outcome.plans.first().expect("a plan").clone();
+        let mut schedules = Schedules::new(&network, &plan, 3).expect("its times fit");
+        let mut executed = 0;
+        for _ in 0..15 {
+            let Made::New(times) = schedules.make() else { continue };
+            let script = Script { schedule: named_times(&network, &plan, &times), ..Script::default() };
+            let (log, ending) = replayed(&mut core, &evaluated, &script);
+            assert_eq!(ending, Ending::Finished, "{script:?} {log:?}");
+            for entry in &log {
+                assert!(!matches!(entry.happening, Happening::Violation { .. }), "{script:?} {log:?}");
+                if let Happening::Executed { name } = &entry.happening {
+                    assert_eq!(script.schedule.get(name), Some(&entry.time), "{name}: {script:?}");
+                    executed += 1;
+                }
+            }
+        }
+        assert!(executed > 50, "{executed} {source}");
+    }
+}
+
+#[test]
+fn nature_is_tried_at_both_ends_of_its_ranges_and_against_the_plan() {
+    let (tried, ..) = run(NATURE, |_| {});
+    assert!(tried.iter().all(|it| it.counterexample.is_none()), "{tried:?}");
+    let runs = tried.iter().find(|it| it.line.text.contains("dynamically controllable"));
+    assert_eq!(runs.map(|it| (it.schedules, it.runs)), Some((0, 8)), "{tried:?}");
+    for section in [Section::States, Section::Resources] {
+        let all = tried.iter().filter(|it| it.line.section == section);
+        assert!(
+            all.clone().count() > 0 && all.clone().all(|it| it.verdict() == Verdict::Survived),
+            "{tried:?}"
+        );
+    }
+    // A duration that nature has beyond the range of a line.
+    let mut core = Core::default();
+    let evaluated = evaluated(&mut core, NATURE);
+    let script = |drill: i64| Script {
+        nature: [("Drill#1".into(), Time::from(drill))].into(),
+        run_seed: Some(7),
+        ..Script::default()
+    };
+    for drill in [3, 8] {
+        let (log, ending) = replayed(&mut core, &evaluated, &script(drill));
+        let came = |event: &str| {
+            let is_it = |it: &&executive::Entry| matches!(&it.happening, Happening::Executed { name } if name == event);
+            log.iter().find(is_it).map(|it| it.time).expect("it happens")
+        };
+        let lasted = came("Drill#1.end").checked_sub(came("Drill#1.start"));
+        assert_eq!((lasted, ending), (Some(Time::from(drill)), Ending::Finished));
+    }
+    let unknown = Script { nature: [("Dig#1".into(), Time::ONE)].into(), ..Script::default() };
+    assert!(evaluated.compiled.check_script(&unknown).is_err());
+    let unknown = Script { schedule: [("Dig#1.start".into(), Time::ONE)].into(), ..Script::default() };
+    assert!(evaluated.compiled.check_script(&unknown).is_err());
+}
+
+#[test]
+fn overlaps_orders_and_choices_are_tried() {
+    let source = "location A (0, 0); vehicle Rover : ATRV at A; state Arm : {IN, OUT} = IN;
+primitive Extend()[1,2] sets Arm=OUT; primitive Retract()[1,2] sets Arm=IN; primitive Look()[1,3];
+scenario S[0,40] = { delay; Extend(); delay; Retract(); choose { Look(), delay[9,9] } }";
+    let (tried, ..) = run(source, |_| {});
+    for section in [Section::Overlaps, Section::States, Section::Choices] {
+        let mut all = tried.iter().filter(|it| it.line.section == section).peekable();
+        assert!(
+            all.peek().is_some() && all.all(|it| it.verdict() == Verdict::Survived),
+            "{section:?} {tried:?}"
+        );
+    }
+    // What is taken for kept apart and is not.
+    let source =
+        "location A (0, 0); vehicle Rover : ATRV at A; primitive Drill()[3,5]; primitive Brush()[2,4];
+scenario S[0,20] = { Drill(), { delay; Brush() } }";
+    let (tried, mut core, evaluated) = run(source, |review| {
+        for line in &mut review.overlaps {
+            line.status = super::super::Status::Passed;
+            line.names = vec!["Rover".to_owned()];
+        }
+    });
+    let fell = tried.iter().find(|it| it.line.section == Section::Overlaps).expect("a line");
+    let found = fell.counterexample.as_ref().expect("the two overlap in some schedule");
+    assert!(found.text.contains("are under way"), "{found:?}");
+    let (log, ending) = replayed(&mut core, &evaluated, &found.script);
+    assert!(ending == Ending::Finished && !log.is_empty());
+}
+
+#[test]
+fn one_line_alone_is_tried_and_few_schedules_are_not_counted_twice() {
+    let source = "primitive Walk()[5,5]; scenario S[0,9] = { Walk() }";
+    let snapshot = snapshot(source);
+    let reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
+    let all = Trial::new(&snapshot, &reviewed, None, SCHEDULES).expect("a plan");
+    let line = all.tried().find(|it| it.line.section == Section::Plan).expect("a line").line.clone();
+    let mut trial = Trial::new(&snapshot, &reviewed, Some(&line), SCHEDULES).expect("a plan");
+    while trial.try_schedule() {}
+    let tried: Vec<&Tried> = trial.tried().collect();
+    assert_eq!(tried.len(), 1);
+    // Walk starts at 0; only the end of the scenario moves.
+    let [only] = tried.as_slice() else { panic!("one line") };
+    assert!((1..=100).contains(&only.schedules), "{only:?}");
+    let fixed = "primitive Walk()[5,5]; scenario S[5,5] = { Walk() }";
+    let [tried] = &tried_by(fixed)[..1] else { panic!("a line") };
+    assert_eq!(tried.schedules, 1, "there is one schedule");
+    assert_eq!(tried.sentence(), "survived 1 schedule");
+}
+
+fn tried_by(source: &str) -> Vec<Tried> {
+    tried(source, &[], |_| {})
 }

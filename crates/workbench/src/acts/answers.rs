@@ -102,6 +102,10 @@ impl AppState {
                 let ended = self.chance.take(answer, update, &mut self.window);
                 self.keep_ended_runs(ended);
             }
+            Response::Contradicted { .. } => {
+                let update = self.update_with_plan();
+                self.contradict.take(answer, update, self.frame.now_secs, &mut self.window);
+            }
             Response::ProgramSampled { .. } => {
                 self.automaton.take_sample(answer, &self.document, &mut self.window);
             }

@@ -23,6 +23,7 @@ use crate::limits::{MAX_TEXT_BYTES, too_large};
 use crate::panel_kind::PanelKind;
 use crate::state::AppState;
 use crate::state::chance::ChanceCommand;
+use crate::state::contradict::ContradictCommand;
 use crate::state::execution::ExecutionCommand;
 use crate::state::pins::PinCommand;
 use crate::state::playback;
@@ -95,6 +96,7 @@ impl AppState {
                 self.apply_to_program_chance(ProgramChanceCommand::Stop);
             }
             Command::Chance(command) => self.apply_to_chance(command),
+            Command::Contradict(command) => self.apply_to_contradict(command),
             Command::ProgramChance(command) => self.apply_to_program_chance(command),
             Command::Search(command) => self.apply_to_search(command),
 
@@ -172,6 +174,27 @@ impl AppState {
         self.keep_ended_runs(ended);
     }
 
+    fn apply_to_contradict(&mut self, command: ContradictCommand) {
+        let review = self.review.current().cloned();
+        match command {
+            ContradictCommand::Stop => self.contradict.give_up(),
+            ContradictCommand::Start(only) => match self.update_with_plan().zip(review) {
+                Some((update, review)) => {
+                    let now_secs = self.frame.now_secs;
+                    self.contradict.start(update, review, only, now_secs, &mut self.window);
+                }
+                None => self.window.failed("The present text has not been reviewed"),
+            },
+            ContradictCommand::Replay(line) => {
+                let script = review.and_then(|review| self.contradict.script(&review, &line));
+                if let Some(script) = script {
+                    self.show_workspace(Workspace::Execute);
+                    self.apply_to_run(ExecutionCommand::Replay(Box::new(script)));
+                }
+            }
+        }
+    }
+
     /// Holds the reviews against runs that have ended, and keeps these with the mission.
     fn keep_ended_runs(&mut self, content: Option<String>) {
         if let Some(content) = content {
@@ -245,6 +268,7 @@ impl AppState {
         self.compare.give_up();
         self.automaton.give_up();
         self.chance.give_up();
+        self.contradict.give_up();
         self.execution.give_up();
         if let Some(revision) = revision {
             self.snapshots.give_up(revision);

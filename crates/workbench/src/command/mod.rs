@@ -10,6 +10,7 @@ use crate::library::LibraryCommand;
 use crate::state::automaton::AutomatonCommand;
 use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
+use crate::state::contradict::ContradictCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::editor::EditorCommand;
 use crate::state::execution::ExecutionCommand;
@@ -93,6 +94,8 @@ pub enum Command {
     Execution(ExecutionCommand),
     /// Something that concerns many runs of a mission with chance.
     Chance(ChanceCommand),
+    /// Something that concerns counterexamples of what the review has passed.
+    Contradict(ContradictCommand),
     /// Something that concerns many runs of a control program with chance.
     ProgramChance(ProgramChanceCommand),
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
 use executive::{Actor, Course, Disturbance, Ending, Entry, Happening};
+use review::contradict::{Tried, Verdict};
 use serde::Serialize;
 use serde_json::{Value, json};
 use snapshot::Snapshot;
@@ -64,6 +65,30 @@ pub struct Robustness {
     pub interval: [f64; 2],
     /// The events that broke plans, the worst first.
     pub worst: Vec<String>,
+}
+
+/// How the passed lines of the present review were tried.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Contradiction {
+    pub is_running: bool,
+    /// How many schedules and runs have been tried, and how many are to be; `null` unless some are being tried.
+    #[cfg_attr(test, ts(type = "[number, number] | null"))]
+    pub progress: Option<[u64; 2]>,
+    pub items: Vec<TriedItem>,
+}
+
+/// How one line was tried.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct TriedItem {
+    /// The line.
+    pub text: String,
+    #[cfg_attr(test, ts(type = "\"survived\" | \"contradicted\" | \"not-tried\""))]
+    pub status: Verdict,
+    /// How it came out, in one sentence.
+    pub outcome: String,
 }
 
 /// Events pinned to times on the timeline, and the windows that they leave to all events.
@@ -188,6 +213,22 @@ pub(super) fn robustness(state: &AppState) -> Option<Robustness> {
         probability: tally.probability(),
         interval: [low, high],
         worst: tally.worst_events().into_iter().map(|(name, _)| name.to_string()).collect(),
+    })
+}
+
+pub(super) fn contradiction(state: &AppState) -> Option<Contradiction> {
+    let review = state.review.current()?;
+    let progress = state.contradict.progress();
+    let item = |tried: &Tried| TriedItem {
+        text: tried.line.text.clone(),
+        status: tried.verdict(),
+        outcome: tried.sentence(),
+    };
+    let items: Vec<TriedItem> = state.contradict.of_review(review).map(item).collect();
+    (progress.is_some() || !items.is_empty()).then_some(Contradiction {
+        is_running: progress.is_some(),
+        progress,
+        items,
     })
 }
 

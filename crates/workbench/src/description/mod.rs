@@ -33,7 +33,7 @@ use ts_rs::TS;
 use crate::state::AppState;
 use crate::state::snapshots::Status;
 
-pub use self::execution::{Execution, Pinned, Robustness};
+pub use self::execution::{Contradiction, Execution, Pinned, Robustness};
 pub use self::lesson::{Lessons, Manual};
 pub use self::library::Library;
 pub use self::program::{PlantState, ProgramRun};
@@ -110,6 +110,8 @@ pub struct State {
     pub execution: Option<Execution>,
     /// What many runs with chance came to; `null` until runs were made.
     pub robustness: Option<Robustness>,
+    /// How the passed lines of the review were tried; `null` until some were.
+    pub contradiction: Option<Contradiction>,
     #[cfg_attr(test, ts(type = "{ kind: string; name: string | null; id: unknown } | null"))]
     pub selection: Value,
     pub caret: Caret,
@@ -315,6 +317,7 @@ impl State {
             pinned: shown.and_then(|shown| execution::pinned(state, shown)),
             execution: execution::execution(state),
             robustness: execution::robustness(state),
+            contradiction: execution::contradiction(state),
             selection: state.selection.to_json(network),
             caret: Caret { anchor: caret.anchor, head: caret.head },
             can_undo: state.document.can_undo(),

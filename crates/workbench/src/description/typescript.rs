@@ -201,6 +201,8 @@ fn interface() -> String {
     declare::<execution::Execution>(&mut out);
     declare::<execution::Deadline>(&mut out);
     declare::<execution::Robustness>(&mut out);
+    declare::<execution::Contradiction>(&mut out);
+    declare::<execution::TriedItem>(&mut out);
     declare::<execution::Pinned>(&mut out);
     declare::<execution::NatureRun>(&mut out);
     declare::<execution::Act>(&mut out);

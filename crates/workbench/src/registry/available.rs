@@ -12,6 +12,7 @@ pub(super) fn while_working(state: &AppState) -> Availability {
         || state.is_improving()
         || state.review.is_running()
         || state.chance.is_running()
+        || state.contradict.progress().is_some()
         || state.execution.is_working()
         || state.automaton.chance.is_running();
     if is_working { Ok(()) } else { Err("nothing is being worked out") }
@@ -30,6 +31,17 @@ pub(super) fn with_network(state: &AppState) -> Availability {
 pub(super) fn with_plan(state: &AppState) -> Availability {
     let has_plan = state.shown().is_some_and(|shown| shown.plan().is_some());
     if has_plan { Ok(()) } else { Err("there is no plan") }
+}
+
+/// Whether the present text has been reviewed, and has a plan.
+pub(super) fn with_review(state: &AppState) -> Availability {
+    with_plan(state)?;
+    if state.review.current().is_some() { Ok(()) } else { Err("the present text has not been reviewed") }
+}
+
+/// Whether counterexamples are being looked for.
+pub(super) fn with_trial(state: &AppState) -> Availability {
+    if state.contradict.progress().is_some() { Ok(()) } else { Err("nothing is being contradicted") }
 }
 
 pub(super) fn with_program(state: &AppState) -> Availability {

@@ -5,13 +5,17 @@ use review::{FlightRules, Section};
 use serde_json::Value;
 
 use super::arguments::text_argument;
-use super::available::{with_approval, with_mission, with_natures_choice, with_pins, with_plan, with_record};
+use super::available::{
+    with_approval, with_mission, with_natures_choice, with_pins, with_plan, with_record, with_review,
+    with_trial,
+};
 use super::spec::{called, plain, when};
 use crate::command::Command;
 use crate::dialog::Dialog;
 use crate::registry::spec::{CommandSpec, Group, Scope};
 use crate::state::AppState;
 use crate::state::compare::CompareCommand;
+use crate::state::contradict::ContradictCommand;
 use crate::state::documents::ScheduleForm;
 use crate::state::pins::PinCommand;
 use crate::state::pins::event_by_name;
@@ -26,6 +30,29 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }),
         with_mission,
     ),
+    when(
+        plain(
+            "review.contradict",
+            "Contradict all passed items",
+            Group::Review,
+            &[],
+            Scope::Everywhere,
+            |_| Command::Contradict(ContradictCommand::Start(None)),
+        ),
+        with_review,
+    ),
+    when(
+        plain("review.stopContradict", "Stop contradicting", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::Contradict(ContradictCommand::Stop)
+        }),
+        with_trial,
+    ),
+    called("review.contradictItem", "Contradict a passed item", Group::Review, |state, arguments| {
+        Ok(Command::Contradict(ContradictCommand::Start(Some(item(state, arguments)?))))
+    }),
+    called("review.replay", "Replay a counterexample", Group::Review, |state, arguments| {
+        Ok(Command::Contradict(ContradictCommand::Replay(item(state, arguments)?)))
+    }),
     when(
         plain("file.report", "Write the report", Group::Review, &[], Scope::Everywhere, |_| {
             Command::WriteReport
@@ -103,16 +130,8 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Ok(Command::Review(ReviewCommand::Approve { by, text: words(arguments) }))
     }),
     called("review.acknowledge", "Acknowledge a line", Group::Review, |state, arguments| {
-        let review = state.review.current().ok_or("the present text has not been reviewed")?;
-        let mut lines = Section::ALL
-            .iter()
-            .flat_map(|&section| review.lines(section).into_iter().map(move |line| (section, line)));
-        let index =
-            arguments.get("item").and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
-        let (section, line) = index
-            .and_then(|index| lines.nth(index))
-            .ok_or("\"item\" is the number of a line of the review")?;
-        said(state, arguments, Act::Acknowledge { line: LineKey::new(section, line), text: words(arguments) })
+        let line = item(state, arguments)?;
+        said(state, arguments, Act::Acknowledge { line, text: words(arguments) })
     }),
     called("review.resolve", "Resolve a comment", Group::Review, |state, arguments| {
         said(state, arguments, Act::Resolve { of: entry(arguments)?, text: words(arguments) })
@@ -192,6 +211,18 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
 fn person(arguments: &Value, name: &str) -> Result<Person, String> {
     let role = arguments.get("role").and_then(Value::as_str).unwrap_or_default();
     Ok(Person { name: text_argument(arguments, name)?.to_owned(), role: role.to_owned() })
+}
+
+/// The line of the present review that it is about, by its number.
+fn item(state: &AppState, arguments: &Value) -> Result<LineKey, String> {
+    let review = state.review.current().ok_or("the present text has not been reviewed")?;
+    let mut lines = Section::ALL
+        .iter()
+        .flat_map(|&section| review.lines(section).into_iter().map(move |line| (section, line)));
+    let index = arguments.get("item").and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
+    let (section, line) =
+        index.and_then(|index| lines.nth(index)).ok_or("\"item\" is the number of a line of the review")?;
+    Ok(LineKey::new(section, line))
 }
 
 /// What is said with it, if anything.

@@ -6,6 +6,7 @@
 pub mod automaton;
 pub mod chance;
 pub mod compare;
+pub mod contradict;
 pub mod derived;
 pub mod documents;
 pub(crate) mod editing;
@@ -101,6 +102,8 @@ pub struct AppState {
     pub execution: Part<execution::ExecutionState>,
     /// Many runs of it with chance.
     pub chance: Part<chance::ChanceState>,
+    /// Counterexamples of what its review has passed.
+    pub contradict: Part<contradict::ContradictState>,
     /// The time shown, and whether it runs.
     pub playback: Part<Playback>,
     /// Events that are pinned to times, to see what that leaves of the plan.
@@ -188,6 +191,7 @@ impl AppState {
             terrain: Part::default(),
             execution: Part::default(),
             chance: Part::default(),
+            contradict: Part::default(),
             playback: Part::default(),
             pins: Part::default(),
             settings: Part::default(),

@@ -8,6 +8,7 @@ use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent};
 use workbench::outside::Remote as _;
 use workbench::state::editor::EditorCommand;
+use workbench::state::execution::ExecutionCommand;
 use workbench::state::no_plan::NO_PLAN;
 use workbench::state::review::ReviewCommand;
 use workbench::state::search::SearchCommand;
@@ -188,6 +189,52 @@ fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
     app.run(Command::WriteReport);
     let page = app.world.saved_text();
     assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
+}
+
+#[test]
+fn passed_lines_are_contradicted_a_few_tries_at_a_time_and_what_is_found_replays() {
+    let mut app = test_support::start();
+    app.run(Command::SetSource(
+        "primitive Walk()[5,9]; primitive Rest()[1,2]; scenario S[0,30] = { Walk(); delay; Rest() }"
+            .to_owned(),
+    ));
+    app.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(app.json()["contradiction"], json!(null));
+    app.dispatch("review.contradict", &json!(null));
+    for _ in 0..300 {
+        app.settle();
+    }
+    let found = app.json()["contradiction"].clone();
+    assert_eq!(found["isRunning"], false, "{found}");
+    let items = found["items"].as_array().expect("a list").clone();
+    let passed = app.json()["review"]["items"].as_array().expect("a list").clone();
+    let passed = passed.iter().filter(|it| it["status"] == "passed").count();
+    assert_eq!(items.len(), passed, "{found}");
+    let survived = items.iter().find(|it| it["status"] == "survived").expect("a line that schedules try");
+    assert!(survived["outcome"].as_str().is_some_and(|it| it.starts_with("survived ")), "{survived}");
+    // Of another text nothing is known, and undoing finds it again.
+    let source = app.session.source();
+    app.run(Command::SetSource(source.replace("[5,9]", "[5,8]")));
+    app.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(app.json()["contradiction"], json!(null));
+    app.dispatch("edit.undo", &json!(null));
+    assert_eq!(app.json()["contradiction"], found);
+    // A schedule is replayed in Execute.
+    let script = executive::Script {
+        schedule: [("Rest#1.start".into(), exact::Time::from(20))].into(),
+        ..executive::Script::default()
+    };
+    app.dispatch("view.workspace", &json!({ "name": "execute" }));
+    app.run(Command::Execution(ExecutionCommand::Replay(Box::new(script.clone()))));
+    let state = app.session.state();
+    assert!(state.execution.is_replay());
+    let run = state.execution.run().expect("it is executed");
+    assert_eq!(run.script, script);
+    let is_late = |entry: &executive::Entry| {
+        matches!(&entry.happening, executive::Happening::Executed { name } if name == "Rest#1.start")
+            && entry.time == exact::Time::from(20)
+    };
+    assert!(run.log.iter().any(is_late), "{:?}", run.log);
 }
 
 #[test]

@@ -123,7 +123,7 @@ fn disturbances(input: &[u8]) -> Outcome {
         Ok(script) => script,
         Err(reason) => return refused(&reason.to_string()),
     };
-    let checked = mission::execution::check_disturbances(network, program, &PROGRAMS, &script.disturbances);
+    let checked = mission::execution::check_script(network, program, &PROGRAMS, &script);
     let written = serde_json::to_string(&script).expect("it is written");
     assert_eq!(serde_json::from_str::<Script>(&written).ok(), Some(script), "what is written can be read");
     read(&format!("{checked:?}"))

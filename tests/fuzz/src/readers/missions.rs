@@ -208,7 +208,7 @@ fn is_beyond(violation: &Violation) -> bool {
 /// Executes the plan that the core keeps, once as a script says and a few times by chance.
 fn executed(core: &mut Core, update: Update, random: &mut Random) -> String {
     let mut led = String::new();
-    let script = Script { disturbances: Vec::new(), adversary: random.below(2) == 0 };
+    let script = Script { adversary: random.below(2) == 0, ..Script::default() };
     let settings =
         RobustnessSettings { runs: 3, seed: random.below(1000) as u64, uncertainty: Uncertainty::default() };
     for request in

@@ -77,6 +77,8 @@ pub enum ExecutionCommand {
     Oppose(bool),
     /// Everything goes as planned, from the start.
     Reset,
+    /// Everything goes as in another run, from the start.
+    Replay(Box<Script>),
     /// Saves the run as a file.
     Save,
     /// Opens the file of a run, to replay it.
@@ -117,6 +119,12 @@ impl ExecutionState {
     /// Whether nature chooses so as to break the plan.
     pub const fn is_opposed(&self) -> bool {
         self.script.adversary
+    }
+
+    /// Whether the run is a given one, such as a counterexample: its schedule, or what nature chooses in it, is given.
+    pub fn is_replay(&self) -> bool {
+        let Script { run_seed, nature, schedule, .. } = &self.script;
+        run_seed.is_some() || !nature.is_empty() || !schedule.is_empty()
     }
 
     /// Whether a newer run than the one shown is being worked out.
@@ -242,15 +250,18 @@ impl ExecutionState {
                 }
             }
             ExecutionCommand::Oppose(is_opposed) => self.script.adversary = is_opposed,
-            ExecutionCommand::Reset => {
-                self.script = Script::default();
-                self.expected = None;
-                playback.is_playing = false;
-                playback.seek(0.0);
-            }
+            ExecutionCommand::Reset => self.restart(Script::default(), playback),
+            ExecutionCommand::Replay(script) => self.restart(*script, playback),
             ExecutionCommand::Save => self.save(mission, seed, window),
             ExecutionCommand::Open => window.ask(Effect::OpenFile(FileKind::Json)),
         }
+    }
+
+    fn restart(&mut self, script: Script, playback: &mut Playback) {
+        self.script = script;
+        self.expected = None;
+        playback.is_playing = false;
+        playback.seek(0.0);
     }
 
     fn disturb(&mut self, disturbance: Disturbance) {
@@ -273,14 +284,16 @@ impl ExecutionState {
 
     fn save(&self, mission: &str, seed: u64, window: &mut Window) {
         let Some(run) = &self.run else { return };
-        let document = json!({
+        let mut document = json!({
             "format": "enroute-simulate/1",
             "mission": mission,
             "seed": seed,
             "status": run.ending,
-            "disturbances": run.script.disturbances,
             "log": run.log,
         });
+        if let (Some(document), Value::Object(script)) = (document.as_object_mut(), json!(run.script)) {
+            document.extend(script);
+        }
         let bytes = serde_json::to_vec_pretty(&document).unwrap_or_default();
         window.save_file(format!("{mission}-run.json"), bytes);
     }

@@ -1,0 +1,327 @@
+//! What a line of a review promises, and what of a schedule or of a run is otherwise.
+
+use exact::{Bound, Rational, Time};
+use executive::{Ending, Entry, Happening};
+use rmpl::program::LabelMode;
+use rmpl::rule::Rule;
+use smol_str::SmolStr;
+use snapshot::Snapshot;
+use tpn::{LabelId, Levels, Network, NodeId, OccurrenceId, Plan};
+
+use super::instant::Scheduled;
+use crate::overlaps::{occupied, owners};
+use crate::{Outcome, Review, Section, TimeRange, flight_rule};
+
+/// What a line promises that can be looked at.
+pub(super) enum Promise {
+    /// A schedule keeps all that the independent checker asks for.
+    Valid,
+    /// The second event is so much later than the first; with the names of both.
+    Range([NodeId; 2], [Vec<String>; 2], TimeRange),
+    /// A level, or what is in use, stays between these.
+    Levels { resource: String, low: Rational, high: Rational },
+    /// A rule of the mission holds.
+    Rule(Box<Rule>),
+    /// An activity takes so long.
+    Lasts { activity: String, range: TimeRange },
+    /// Runs come to the end by this plan.
+    Runs,
+    /// Runs take no other alternative of a decision.
+    Chosen { decision: String },
+    /// What changes a variable comes in this order: the nodes, and by whom.
+    InOrder { variable: SmolStr, nodes: Vec<NodeId>, by: Vec<String> },
+    /// No two of these are under way at a time.
+    Apart(Vec<Performed>),
+    /// Nothing that is looked at here.
+    Nothing,
+}
+
+/// An activity of one vehicle.
+pub(super) struct Performed {
+    name: SmolStr,
+    start: NodeId,
+    end: NodeId,
+    /// Whether it takes some resource whole: two that do are declared to go together.
+    is_occupying: bool,
+}
+
+impl Promise {
+    /// What a line of a review promises.
+    pub(super) fn of_line(
+        snapshot: &Snapshot,
+        (network, plan): (&Network, &Plan),
+        review: &Review,
+        section: Section,
+        index: usize,
+    ) -> Self {
+        let range = |nodes: [NodeId; 2], range: TimeRange| {
+            Self::Range(nodes, nodes.map(|node| names(network, plan, node)), range)
+        };
+        let found = match section {
+            Section::Plan => {
+                let text = review.plan[index].text.as_str();
+                if text.starts_with("the independent checker") || text == "there is a plan" {
+                    Some(Self::Valid)
+                } else if text.contains("(dynamically controllable)")
+                    || text.contains("(strongly controllable)")
+                {
+                    Some(Self::Runs)
+                } else {
+                    None
+                }
+            }
+            Section::Choices => Some(Self::Chosen { decision: review.choices[index].name.clone() }),
+            Section::CausalLinks => {
+                let of = &review.causal_links[index];
+                let is_it = |link: &&tpn::CausalLink| {
+                    network.label_name(link.ask) == of.ask && network.label_name(link.tell) == of.tell
+                };
+                // What lasts has its margin up to the next change, which has a line of its own.
+                plan.causal_links.iter().find(is_it).map(|link| {
+                    let (asked, told) = (network.interval(link.ask), network.interval(link.tell));
+                    if of.is_lasting {
+                        range([network.ready(link.tell), asked.0], of.lead)
+                    } else {
+                        range([asked.1, told.1], of.margin)
+                    }
+                })
+            }
+            Section::Conflicts => {
+                let of = &review.conflicts[index];
+                <[NodeId; 2]>::try_from(of.line.nodes.as_slice()).ok().map(|nodes| range(nodes, of.gap))
+            }
+            Section::States => Self::of_state(network, plan, &review.states[index]),
+            Section::Resources => {
+                let of = &review.resources[index];
+                let (low, high) = match of.levels {
+                    Levels::Range { low, high } => (low, high),
+                    Levels::Peak(peak) => (Rational::ZERO, peak),
+                };
+                Some(Self::Levels { resource: of.name.clone(), low, high })
+            }
+            Section::Overlaps => {
+                let vehicle = review.overlaps[index].names.first();
+                vehicle.map(|vehicle| Self::Apart(performed(snapshot, network, plan, vehicle)))
+            }
+            Section::Traverses => {
+                let of = &review.traverses[index];
+                Some(Self::Lasts { activity: of.name.clone(), range: of.duration })
+            }
+            Section::MissionRules => review.rules.rules.get(index).and_then(|rule| {
+                let holds =
+                    review.findings.iter().any(|it| it.rule == rule.rule && it.outcome == Outcome::Holds);
+                let read =
+                    flight_rule::read(&snapshot.program, network, &rule.rule).ok().filter(|_| holds)?;
+                Some(Self::Rule(Box::new(read)))
+            }),
+            Section::Durations
+            | Section::Events
+            | Section::SeparationViolations
+            | Section::Robustness
+            | Section::Warnings => None,
+        };
+        found.unwrap_or(Self::Nothing)
+    }
+
+    /// What a line about a state, or about the movements of a vehicle, promises: its changes are the plan's, in its order. A
+    /// line without any is about all requirements.
+    fn of_state(network: &Network, plan: &Plan, line: &crate::Line) -> Option<Self> {
+        if line.nodes.is_empty() {
+            return Some(Self::Valid);
+        }
+        let told = |variable: usize| {
+            let labels = network.labels.iter().enumerate().filter(move |(_, label)| {
+                label.literal.variable.index() == variable
+                    && label.mode == LabelMode::Tell
+                    && plan.selected_arcs.get(label.arc.index()) == Some(&true)
+            });
+            labels.map(|(at, label)| (network.ready(LabelId::from_index(at)), label.owner))
+        };
+        let is_its = |&variable: &usize| {
+            let is_told = |node: &NodeId| told(variable).any(|(ready, _)| ready == *node);
+            let owners = told(variable).filter_map(|(_, owner)| owner);
+            let mut by: Vec<&str> = owners.map(|id| network.occurrences[id.index()].name.as_str()).collect();
+            let mut named: Vec<&str> = line.names.iter().map(String::as_str).collect();
+            by.sort_unstable();
+            named.sort_unstable();
+            network.variables[variable].is_lasting && by == named && line.nodes.iter().all(is_told)
+        };
+        let variable = (0..network.variables.len()).find(is_its)?;
+        let name = network.variables[variable].name.clone();
+        Some(Self::InOrder { variable: name, nodes: line.nodes.clone(), by: line.names.clone() })
+    }
+
+    /// Whether a schedule says something of it.
+    pub(super) const fn is_of_schedules(&self) -> bool {
+        !matches!(self, Self::Lasts { .. } | Self::Runs | Self::Chosen { .. } | Self::Nothing)
+    }
+
+    /// Whether a run says something of it.
+    pub(super) const fn is_of_runs(&self) -> bool {
+        !matches!(self, Self::Valid | Self::Rule(_) | Self::Nothing)
+    }
+
+    /// What contradicts it in a schedule, if something does; `None` if the schedule says nothing of it.
+    #[expect(clippy::option_option, reason = "the outer one is what schedules say nothing of")]
+    pub(super) fn broken_by_schedule(&self, of: Scheduled<'_>) -> Option<Option<String>> {
+        match self {
+            Self::Valid => {
+                let verdict = verify::check_schedule(of.network, of.plan, of.times);
+                Some(verdict.violations.first().map(|it| it.message.clone()))
+            }
+            Self::Range([from, to], _, range) => {
+                outside(of.times[from.index()]?, of.times[to.index()]?, *range)
+            }
+            Self::Levels { resource, low, high } => {
+                let broken = of.levels(resource).into_iter().find(|(_, level)| level < low || level > high);
+                Some(broken.map(|(at, level)| format!("at {} it is {}", at.readable(), level.readable())))
+            }
+            Self::Rule(rule) => {
+                let breach = of.first_breach(rule);
+                Some(breach.map(|at| format!("it is not known to hold at {}", at.readable())))
+            }
+            Self::InOrder { nodes, .. } => {
+                let times: Vec<Time> = nodes.iter().filter_map(|node| of.times[node.index()]).collect();
+                let late = times.windows(2).find(|pair| pair[0] > pair[1]);
+                Some(late.map(|pair| {
+                    let [first, then] = [pair[0], pair[1]].map(Time::readable);
+                    format!("what comes first is over at {first}, and what follows at {then}")
+                }))
+            }
+            Self::Apart(all) => {
+                let time = |node: NodeId| of.times.get(node.index()).copied().flatten();
+                Some(overlap(all, |it| Some([time(it.start)?, time(it.end)?])))
+            }
+            Self::Lasts { .. } | Self::Runs | Self::Chosen { .. } | Self::Nothing => None,
+        }
+    }
+
+    /// What contradicts it in an undisturbed run, if something does; `None` if the run says nothing of it.
+    #[expect(clippy::option_option, reason = "the outer one is what runs say nothing of")]
+    pub(super) fn broken_by_run(&self, log: &[Entry], ending: Ending) -> Option<Option<String>> {
+        let came = |event: &str| {
+            let is_it =
+                |entry: &&Entry| matches!(&entry.happening, Happening::Executed { name } if name == event);
+            log.iter().find(is_it).map(|entry| entry.time)
+        };
+        match self {
+            Self::Runs => {
+                let violation = log.iter().find_map(|entry| match &entry.happening {
+                    Happening::Violation { reason, .. } => {
+                        Some(format!("at {}: {reason}", entry.time.readable()))
+                    }
+                    _ => None,
+                });
+                let unfinished =
+                    (ending != Ending::Finished).then(|| "the run did not reach the end".to_owned());
+                Some(violation.or(unfinished))
+            }
+            Self::Chosen { decision } => {
+                let taken = format!("{decision} takes ");
+                let other = log.iter().find_map(|entry| match &entry.happening {
+                    Happening::Replanned { changes } => {
+                        let change = changes.iter().find(|it| it.starts_with(&taken))?;
+                        Some(format!("at {}: {change}", entry.time.readable()))
+                    }
+                    _ => None,
+                });
+                Some(other)
+            }
+            Self::Range(_, names, range) => {
+                let time = |names: &Vec<String>| names.iter().find_map(|name| came(name));
+                outside(time(&names[0])?, time(&names[1])?, *range)
+            }
+            Self::Levels { resource, low, high } => {
+                let broken = log.iter().find_map(|entry| match &entry.happening {
+                    Happening::Level { resource: of, level, .. } if of.as_str() == resource => (level < low
+                        || level > high)
+                        .then(|| format!("at {} it is {}", entry.time.readable(), level.readable())),
+                    _ => None,
+                });
+                Some(broken)
+            }
+            Self::Lasts { activity, range } => {
+                // What was never started says nothing.
+                let started = came(&format!("{activity}.start"))?;
+                let Some(ended) = came(&format!("{activity}.end")) else {
+                    return Some(Some("it did not come to its end".to_owned()));
+                };
+                let lasted = ended.checked_sub(started)?;
+                let is_in = lasted >= range.least && Bound::Finite(lasted) <= range.greatest;
+                Some((!is_in).then(|| format!("it took {}, not {range}", lasted.readable())))
+            }
+            Self::InOrder { variable, by, .. } => Some(out_of_order(log, variable, by)),
+            Self::Apart(all) => {
+                let end = log.last().map_or(Time::ZERO, |entry| entry.time);
+                let ended = |it: &Performed| came(&format!("{}.end", it.name)).unwrap_or(end);
+                Some(overlap(all, |it| Some([came(&format!("{}.start", it.name))?, ended(it)])))
+            }
+            Self::Valid | Self::Rule(_) | Self::Nothing => None,
+        }
+    }
+}
+
+/// That one time is not so much later than another.
+#[expect(clippy::option_option, reason = "the outer one is a distance that does not fit")]
+fn outside(from: Time, to: Time, range: TimeRange) -> Option<Option<String>> {
+    let apart = to.checked_sub(from)?;
+    let is_in = apart >= range.least && Bound::Finite(apart) <= range.greatest;
+    Some((!is_in).then(|| format!("it is {} apart, not {range}", apart.readable())))
+}
+
+/// The names of what happens at a node.
+fn names(network: &Network, plan: &Plan, node: NodeId) -> Vec<String> {
+    let events = network.nodes[node.index()].events.iter();
+    events.filter(|&&event| plan.has_event(network, event)).map(|&event| network.event_name(event)).collect()
+}
+
+/// What of a run changes a variable otherwise than in this order.
+fn out_of_order(log: &[Entry], variable: &SmolStr, order: &[String]) -> Option<String> {
+    let mut next = 0;
+    for entry in log {
+        let Happening::State { variable: of, value: Some(value), by } = &entry.happening else { continue };
+        if of != variable {
+            continue;
+        }
+        // What holds from the start on is changed by nobody, and comes first.
+        let Some(by) = by else {
+            if next > 0 {
+                return Some(format!("at {} the world makes it {value}", entry.time.readable()));
+            }
+            continue;
+        };
+        match order.iter().position(|name| name == by.as_str()) {
+            Some(at) if at >= next => next = at,
+            Some(_) => return Some(format!("at {} {by} comes late", entry.time.readable())),
+            None => return Some(format!("at {} {by} makes it {value}", entry.time.readable())),
+        }
+    }
+    None
+}
+
+/// The activities of a vehicle that the plan selects.
+fn performed(snapshot: &Snapshot, network: &Network, plan: &Plan, vehicle: &str) -> Vec<Performed> {
+    let occupied = occupied(network);
+    let own = owners(snapshot, network, plan);
+    let own = own.into_iter().filter(|(_, vehicles)| vehicles.contains(vehicle));
+    let performed = |id: OccurrenceId| {
+        let of = &network.occurrences[id.index()];
+        let is_occupying = occupied.contains(&id);
+        Performed { name: of.name.clone(), start: of.start, end: of.end, is_occupying }
+    };
+    own.map(|(id, _)| performed(id)).collect()
+}
+
+/// Two activities that are under way at a time, and are not declared to go together.
+fn overlap(all: &[Performed], times: impl Fn(&Performed) -> Option<[Time; 2]>) -> Option<String> {
+    let mut known: Vec<(&Performed, [Time; 2])> =
+        all.iter().filter_map(|it| Some((it, times(it)?))).filter(|(_, [start, end])| start < end).collect();
+    known.sort_by_key(|&(_, [start, _])| start);
+    let mut pairs =
+        known.iter().enumerate().flat_map(|(at, one)| known[at + 1..].iter().map(move |other| (one, other)));
+    pairs.find_map(|((one, [_, end]), (other, [start, _]))| {
+        let is_declared = one.is_occupying && other.is_occupying;
+        (start < end && !is_declared)
+            .then(|| format!("at {} {} and {} are under way", start.readable(), one.name, other.name))
+    })
+}
