@@ -23,6 +23,25 @@ pub(super) struct DemandLines<'input> {
     pub(super) status: Status,
 }
 
+/// Changes of a variable in the order of a plan, those together that may come in any order: they give it the same value.
+pub(super) fn in_any_order(network: &Network, changes: &[LabelId]) -> Vec<Vec<LabelId>> {
+    let mut groups: Vec<Vec<LabelId>> = Vec::new();
+    for &label in changes {
+        let is_first = network.labels[label.index()].extent == Extent::Initial;
+        match groups.last_mut() {
+            Some(group) if !is_first && group.iter().all(|&known| is_unordered(network, known, label)) => {
+                group.push(label);
+            }
+            _ => groups.push(vec![label]),
+        }
+    }
+    groups
+}
+
+fn is_unordered(network: &Network, known: LabelId, label: LabelId) -> bool {
+    network.labels[known.index()].extent != Extent::Initial && !network.conflict(known, label)
+}
+
 /// Whatever the checker examines has passed only where it finds the plan valid.
 pub(super) fn status_by_checker(planning: &Planning) -> Status {
     match &planning.verdict {
@@ -118,9 +137,12 @@ impl DemandLines<'_> {
         let earliest = |node: NodeId| {
             self.plan.windows.get(node.index()).copied().flatten().map(|window| window.earliest)
         };
+        let order = self.plan.state_order.iter().find(|order| order.variable.index() == variable);
+        let place = |label: LabelId| order.and_then(|it| it.producers.iter().position(|it| *it == label));
         changes.sort_by_key(|&label| {
             let is_first = self.network.labels[label.index()].extent == Extent::Initial;
-            (!is_first, earliest(self.network.interval(label).0), earliest(self.network.ready(label)))
+            let place = place(label).unwrap_or(usize::MAX);
+            (!is_first, place, earliest(self.network.interval(label).0), earliest(self.network.ready(label)))
         });
         changes
     }
@@ -137,13 +159,16 @@ impl DemandLines<'_> {
             let value = text.strip_prefix(name).and_then(|rest| rest.strip_prefix('='));
             value.unwrap_or(text).to_owned()
         };
-        let steps: Vec<String> = changes
-            .iter()
-            .map(|&label| match self.owner(label) {
-                Some(owner) => format!("{} ({owner})", value(label)),
-                None => value(label),
-            })
-            .collect();
+        let step = |labels: &Vec<LabelId>| {
+            let owners: Vec<&str> = labels.iter().filter_map(|&label| self.owner(label)).collect();
+            let value = labels.first().map_or_else(String::new, |&label| value(label));
+            match owners.as_slice() {
+                [] => value,
+                [owner] => format!("{value} ({owner})"),
+                several => format!("{value} ({}, in any order)", several.join(" and ")),
+            }
+        };
+        let steps: Vec<String> = in_any_order(self.network, changes).iter().map(step).collect();
         let text = match steps.as_slice() {
             [] => return None,
             [only] => format!("{name} stays {only}"),

@@ -9,6 +9,7 @@ use snapshot::Snapshot;
 use tpn::{LabelId, Levels, Network, NodeId, OccurrenceId, Plan};
 
 use super::instant::Scheduled;
+use crate::demand_lines::in_any_order;
 use crate::overlaps::{occupied, owners};
 use crate::{Outcome, Review, Section, TimeRange, flight_rule};
 
@@ -28,8 +29,8 @@ pub(super) enum Promise {
     Runs,
     /// Runs take no other alternative of a decision.
     Chosen { decision: String },
-    /// What changes a variable comes in this order: the nodes, and by whom.
-    InOrder { variable: SmolStr, nodes: Vec<NodeId>, by: Vec<String> },
+    /// What changes a variable comes in the order of these ranks: the nodes, and by whom.
+    InOrder { variable: SmolStr, nodes: Vec<(usize, NodeId)>, by: Vec<(usize, String)> },
     /// No two of these are under way at a time.
     Apart(Vec<Performed>),
     /// Nothing that is looked at here.
@@ -147,8 +148,16 @@ impl Promise {
             network.variables[variable].is_lasting && by == named && line.nodes.iter().all(is_told)
         };
         let variable = (0..network.variables.len()).find(is_its)?;
-        let name = network.variables[variable].name.clone();
-        Some(Self::InOrder { variable: name, nodes: line.nodes.clone(), by: line.names.clone() })
+        let order = plan.state_order.iter().find(|order| order.variable.index() == variable)?;
+        let (mut nodes, mut by) = (Vec::new(), Vec::new());
+        for (rank, group) in in_any_order(network, &order.producers).into_iter().enumerate() {
+            for label in group {
+                nodes.push((rank, network.ready(label)));
+                let owner = network.labels[label.index()].owner;
+                by.extend(owner.map(|id| (rank, network.occurrences[id.index()].name.to_string())));
+            }
+        }
+        Some(Self::InOrder { variable: network.variables[variable].name.clone(), nodes, by })
     }
 
     /// Whether a schedule says something of it.
@@ -181,10 +190,15 @@ impl Promise {
                 Some(breach.map(|at| format!("it is not known to hold at {}", at.readable())))
             }
             Self::InOrder { nodes, .. } => {
-                let times: Vec<Time> = nodes.iter().filter_map(|node| of.times[node.index()]).collect();
-                let late = times.windows(2).find(|pair| pair[0] > pair[1]);
+                let known = nodes.iter().filter_map(|&(rank, node)| Some((rank, of.times[node.index()]?)));
+                let times: Vec<(usize, Time)> = known.collect();
+                let late = times.iter().enumerate().find_map(|(at, &(rank, then))| {
+                    let before = times[..at].iter().filter(|(earlier, _)| *earlier < rank);
+                    let last = before.map(|&(_, time)| time).max()?;
+                    (last > then).then_some([last, then])
+                });
                 Some(late.map(|pair| {
-                    let [first, then] = [pair[0], pair[1]].map(Time::readable);
+                    let [first, then] = pair.map(Time::readable);
                     format!("what comes first is over at {first}, and what follows at {then}")
                 }))
             }
@@ -276,22 +290,17 @@ fn names(network: &Network, plan: &Plan, node: NodeId) -> Vec<String> {
 }
 
 /// What of a run changes a variable otherwise than in this order.
-fn out_of_order(log: &[Entry], variable: &SmolStr, order: &[String]) -> Option<String> {
+fn out_of_order(log: &[Entry], variable: &SmolStr, order: &[(usize, String)]) -> Option<String> {
     let mut next = 0;
     for entry in log {
         let Happening::State { variable: of, value: Some(value), by } = &entry.happening else { continue };
         if of != variable {
             continue;
         }
-        // What holds from the start on is changed by nobody, and comes first.
-        let Some(by) = by else {
-            if next > 0 {
-                return Some(format!("at {} the world makes it {value}", entry.time.readable()));
-            }
-            continue;
-        };
-        match order.iter().position(|name| name == by.as_str()) {
-            Some(at) if at >= next => next = at,
+        // What holds from the start on, or is read from the plant, is changed by nobody.
+        let Some(by) = by else { continue };
+        match order.iter().find(|(_, name)| name == by.as_str()) {
+            Some(&(rank, _)) if rank >= next => next = rank,
             Some(_) => return Some(format!("at {} {by} comes late", entry.time.readable())),
             None => return Some(format!("at {} {by} makes it {value}", entry.time.readable())),
         }

@@ -284,3 +284,16 @@ fn one_line_alone_is_tried_and_few_schedules_are_not_counted_twice() {
 fn tried_by(source: &str) -> Vec<Tried> {
     tried(source, &[], |_| {})
 }
+
+#[test]
+fn changes_to_one_value_are_told_in_any_order() {
+    let source = "state X : {A, B} = A; primitive P()[1,2] sets X=B;
+scenario S[0,30] = { { delay[0,9]; X=A [1,2] }, { delay[0,9]; X=A [1,2] }, { delay[15,20]; P() } }";
+    let (tried, ..) = run(source, |_| {});
+    let line = tried.iter().find(|it| it.line.text.starts_with("X is A, then A")).expect("a line");
+    assert_eq!(
+        line.line.text, "X is A, then A (Tell(X=A)#1 and Tell(X=A)#2, in any order), then B (P#1)",
+        "their order is not the plan's to keep"
+    );
+    assert_eq!(line.verdict(), Verdict::Survived, "{line:?}");
+}
