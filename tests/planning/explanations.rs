@@ -32,7 +32,7 @@ const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learne
 type Has = fn(&Network) -> bool;
 
 /// Words that are about something, and whether a mission has that.
-const TELLING: [(&str, Has); 9] = [
+const TELLING: [(&str, Has); 10] = [
     ("Ask asserts causal link required requires", |it| it.labels.iter().any(|it| it.mode == LabelMode::Ask)),
     ("Set Tell hold holds set", |it| !it.labels.is_empty()),
     ("apart way", |it| has_conflict(it, |_| true)),
@@ -42,6 +42,7 @@ const TELLING: [(&str, Has); 9] = [
     ("controllable nature took", |it| (0..it.arcs.len()).any(|arc| it.is_uncertain(ArcId::from_index(arc)))),
     ("best better far less", |it| !it.objective.is_empty()),
     ("alternative", |it| !it.decisions.is_empty()),
+    ("because ground line near", |it| !it.sights.is_empty()),
 ];
 
 /// Whether two conditions, of those that count, exclude each other.

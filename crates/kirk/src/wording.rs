@@ -299,7 +299,7 @@ impl Told<'_> {
             .filter(|label| label.mode == LabelMode::Ask)
             .flat_map(|ask| self.network.unseen(ask, labels.iter().copied()))
             .collect();
-        let reason = if unseen.is_empty() { String::new() } else { format!(", for {}", joined(&unseen)) };
+        let reason = if unseen.is_empty() { String::new() } else { format!(", because {}", joined(&unseen)) };
         let kept_apart = format!("{} cannot be kept apart{reason}", joined(&names));
         match self.bounds().or_else(|| self.room()) {
             Some(bounds) => format!("{kept_apart}: {bounds}"),

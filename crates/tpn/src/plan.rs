@@ -227,7 +227,7 @@ pub struct DistinctPlans {
 }
 
 impl DistinctPlans {
-    /// The plans.
+    /// Each plan once.
     pub fn plans(&self) -> &[Plan] {
         &self.plans
     }

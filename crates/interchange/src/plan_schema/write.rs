@@ -138,7 +138,14 @@ impl Writer<'_> {
             .map(|&label| {
                 let label = &self.network.labels[label.index()];
                 let mode = if label.mode == LabelMode::Ask { "Ask" } else { "Tell" };
-                let mut condition = json!({"type": mode, "literal": label.text});
+                // What is in sight is known on the mission's ground only: the places are named instead.
+                let literal = match label.text.trim_start_matches("not(").split_once(" in visible(") {
+                    Some((place, _)) => {
+                        format!("{place} in {{{}}}", self.network.value_names(&label.literal).join(", "))
+                    }
+                    None => label.text.to_string(),
+                };
+                let mut condition = json!({"type": mode, "literal": literal});
                 if label.extent != Extent::Whole {
                     condition["extent"] = json!(label.extent);
                 }

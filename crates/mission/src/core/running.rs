@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use executive::Script;
+use executive::{PlanError, Script};
 use link::{ProgramChance, Response, Update};
 use review::Review;
 use review::contradict::{Effort, Trial};
@@ -91,6 +91,18 @@ impl Core {
         }
         self.sampler = Some(sampled);
         Ok(tally)
+    }
+
+    /// Holds one more schedule or run of the plan against the lines that stand; returns whether there was one to try.
+    pub fn try_next(&mut self, evaluated: &Evaluated, trial: &mut Trial) -> Result<bool, PlanError> {
+        if trial.try_schedule() {
+            return Ok(true);
+        }
+        let Some(script) = trial.next_run() else { return Ok(false) };
+        let Some(ran) = self.run(evaluated, &script) else { return Ok(false) };
+        let outcome = ran?.outcome;
+        trial.try_run(&script, &outcome.log, outcome.ending);
+        Ok(true)
     }
 
     /// Tries the lines of a review, from where the last request ended.

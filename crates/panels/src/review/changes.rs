@@ -157,7 +157,7 @@ fn list(ui: &mut Ui, context: &Context<'_>, title: &str, lines: &[String]) {
     }
     ui.label(strong(title).color(context.tokens.text));
     for line in lines.iter().take(MOST) {
-        ui.label(RichText::new(super::lines::sentence(line)).color(context.tokens.text));
+        ui.label(RichText::new(super::capital::sentence(line)).color(context.tokens.text));
     }
     if lines.len() > MOST {
         row::quiet_word(ui, &format!("and {} more: the report has them all", lines.len() - MOST));

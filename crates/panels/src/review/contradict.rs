@@ -3,13 +3,12 @@
 use egui::{Button, ProgressBar, RichText, Ui};
 use review::contradict::Verdict;
 use review::record::LineKey;
-use review::{Line, Review, Section, Status};
+use review::{Line, Review, Section};
 use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::contradict::ContradictCommand;
 
-use super::lines::sentence;
-use super::{List, row};
+use super::capital::sentence;
 use crate::Context;
 
 /// Characters of a line that are in the names of its buttons.
@@ -18,41 +17,35 @@ const NAME_LENGTH: usize = 60;
 /// Under a line that has passed: the button that looks for a counterexample, and what was found before.
 pub(super) fn of_line(
     ui: &mut Ui,
-    list: &List<'_>,
-    section: Section,
-    line: &Line,
+    context: &Context<'_>,
+    review: &Review,
+    (section, line): (Section, &Line),
     commands: &mut CommandSender,
 ) {
-    if line.status != Status::Passed || list.is_stale {
-        return;
-    }
-    let tokens = list.context.tokens;
-    let state = &list.context.state.contradict;
+    let tokens = context.tokens;
+    let state = &context.state.contradict;
     let key = LineKey::new(section, line);
-    let tried = state.of_line(list.review, &key);
+    let tried = state.of_line(review, &key);
     let name: String = line.text.chars().take(NAME_LENGTH).collect();
-    ui.horizontal_wrapped(|ui| {
-        ui.add_space(row::INDENT);
-        let text = RichText::new("Contradict").small().color(tokens.text_muted);
-        let button = ui.add_enabled(state.progress().is_none(), Button::new(text).frame(false));
-        let button = button.on_hover_text("Look for a counterexample in schedules and runs");
-        if button.accessible_name(format!("Contradict: {name}")).clicked() {
-            commands.send(Command::Contradict(ContradictCommand::Start(Some(key.clone()))));
+    let text = RichText::new("Contradict").small().color(tokens.text_muted);
+    let button = ui.add_enabled(state.progress().is_none(), Button::new(text).frame(false));
+    let button = button.on_hover_text("Look for a counterexample in schedules and runs");
+    if button.accessible_name(format!("Contradict: {name}")).clicked() {
+        commands.send(Command::Contradict(ContradictCommand::Start(Some(key.clone()))));
+    }
+    let Some(tried) = tried else { return };
+    let color = match tried.verdict() {
+        Verdict::Contradicted => tokens.error,
+        Verdict::Survived => tokens.good,
+        Verdict::NotTried => tokens.text_muted,
+    };
+    ui.label(RichText::new(sentence(&tried.sentence())).small().color(color));
+    if tried.counterexample.is_some() {
+        let replay = ui.button("Replay").on_hover_text("Open the counterexample in Execute");
+        if replay.accessible_name(format!("Replay: {name}")).clicked() {
+            commands.send(Command::Contradict(ContradictCommand::Replay(key)));
         }
-        let Some(tried) = tried else { return };
-        let color = match tried.verdict() {
-            Verdict::Contradicted => tokens.error,
-            Verdict::Survived => tokens.good,
-            Verdict::NotTried => tokens.text_muted,
-        };
-        ui.label(RichText::new(sentence(&tried.sentence())).small().color(color));
-        if tried.counterexample.is_some() {
-            let replay = ui.button("Replay").on_hover_text("Open the counterexample in Execute");
-            if replay.accessible_name(format!("Replay: {name}")).clicked() {
-                commands.send(Command::Contradict(ContradictCommand::Replay(key)));
-            }
-        }
-    });
+    }
 }
 
 /// In the head of the review: the button that tries all lines, and how far that is.

@@ -101,7 +101,7 @@ fn show_entry(
             }
         });
         let words = match &entry.act {
-            Act::Acknowledge { line, text } => format!("{}: {text}", super::lines::sentence(&line.text)),
+            Act::Acknowledge { line, text } => format!("{}: {text}", super::capital::sentence(&line.text)),
             act => act.text().to_owned(),
         };
         if !words.is_empty() {
@@ -128,7 +128,7 @@ fn warning(
             icon::label(ui, Icon::Warning, tokens.error);
             ui.label(strong(title).color(tokens.error));
         });
-        ui.label(RichText::new(super::lines::sentence(text)).color(tokens.text));
+        ui.label(RichText::new(super::capital::sentence(text)).color(tokens.text));
         if ui.button(label).clicked() {
             commands.send(Command::Review(save));
         }

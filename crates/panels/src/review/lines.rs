@@ -8,6 +8,7 @@ use tpn::{CausalLink, DecisionId, LabelId, Ordering};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 
+use super::capital::sentence;
 use super::people::People;
 use super::{List, contradict, row};
 
@@ -40,7 +41,12 @@ pub(super) fn line(
             commands.send(Command::Seek(violation.time));
         }
     }
-    contradict::of_line(ui, list, section, line, commands);
+    if line.status == Status::Passed && !list.is_stale {
+        ui.horizontal_wrapped(|ui| {
+            ui.add_space(row::INDENT);
+            contradict::of_line(ui, list.context, list.review, (section, line), commands);
+        });
+    }
     if line.status == Status::Attention && !list.is_stale {
         let known = list.acknowledged.get(&LineKey::new(section, line)).copied();
         ui.push_id((section.title(), index), |ui| {
@@ -134,15 +140,4 @@ fn key(section: Section, line: &Line) -> String {
 fn decision(name: &str) -> Option<DecisionId> {
     let number: u32 = name.strip_prefix('D')?.parse().ok()?;
     number.checked_sub(1).map(DecisionId)
-}
-
-/// A text with a capital at its start, unless it starts with a name.
-pub(super) fn sentence(text: &str) -> String {
-    let first_word = text.split(' ').next().unwrap_or_default();
-    let is_plain = first_word.chars().all(|c| c.is_ascii_lowercase() || c == ':');
-    let mut characters = text.chars();
-    match characters.next() {
-        Some(first) if is_plain => first.to_uppercase().chain(characters).collect(),
-        _ => text.to_owned(),
-    }
 }

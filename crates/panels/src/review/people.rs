@@ -355,7 +355,7 @@ impl People {
                     Err(_) if !self.has_name() => {
                         row::quiet_word(ui, "Enter your name at the top to approve.");
                     }
-                    Err(reason) => row::quiet_word(ui, &super::lines::sentence(&format!("{reason}."))),
+                    Err(reason) => row::quiet_word(ui, &super::capital::sentence(&format!("{reason}."))),
                     Ok(()) => {}
                 }
             });

@@ -6,10 +6,10 @@ use std::rc::Rc;
 use rmpl::Diagnostic;
 use rmpl::program::{ActivityDecl, PrimitiveDecl, Program};
 
-use super::Ground;
 use super::build::{Builder, Root};
 use super::constants::Constants;
 use super::constraint::Named;
+use super::ground::Ground;
 use super::names::Vocabulary;
 use crate::network::{ArcId, ArcKind, BlockId, Network, NodeId, OccurrenceId, ResourceId};
 

@@ -13,6 +13,7 @@ mod constraint;
 mod exogenous;
 mod expand;
 mod expander;
+mod ground;
 mod names;
 mod resource;
 mod scope;
@@ -28,8 +29,8 @@ use rmpl::{Code, Diagnostic, Severity, Span, listed};
 use smol_str::SmolStr;
 
 use crate::network::Network;
-use crate::sight::Hidden;
 pub use exogenous::assumed;
+pub use ground::{Ground, Level};
 
 use constants::Constants;
 use expander::{Declared, Expander};
@@ -73,22 +74,6 @@ impl Top {
 /// ```
 pub fn compile(program: &Program, top: &Top) -> (Option<Network>, Vec<Diagnostic>) {
     compile_on(program, top, &Level)
-}
-
-/// The ground of a mission, which decides what vehicles see (SPEC 10.5).
-pub trait Ground {
-    /// The places from which a vehicle does not see a location.
-    fn hidden(&self, vehicle: &str, location: &str) -> Vec<Hidden>;
-}
-
-/// Ground without heights: everything is in sight.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Level;
-
-impl Ground for Level {
-    fn hidden(&self, _vehicle: &str, _location: &str) -> Vec<Hidden> {
-        Vec::new()
-    }
 }
 
 /// [`compile`] for a mission on `ground`.

@@ -7,7 +7,7 @@ use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind}
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
-use super::Ground;
+use super::ground::Ground;
 use super::scope::argument_text;
 use crate::network::{Literal, ValueId, ValueSet, Variable, VariableId};
 use crate::sight::{Hidden, Sight, sight_text};
