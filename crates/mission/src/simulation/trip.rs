@@ -33,6 +33,8 @@ const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
 /// Steps of simulation that one drive takes at most, so that none goes on without end.
 const MAX_STEPS: u32 = 500_000;
+/// A follower that cannot go on looks for a way to its own path so many metres ahead, or else to its end.
+const REJOINING_M: [f64; 3] = [8.0, 15.0, 30.0];
 /// It stays where it is, when it is this near to the end of its way, in metres, and something stands no farther beside that
 /// than it needs itself and so much more.
 const STAYS_WITHIN_M: f64 = 4.0;
@@ -330,18 +332,21 @@ impl<'a> Trip<'a> {
         let remaining_m = driver.length_m() - driver.progress_m();
         let (path, ends_m) = (driver.path().clone(), &self.leg_ends_m);
         let total_m = ends_m.last().copied().unwrap_or(0.0);
-        // The end of the leg under way, or for a follower of its whole way.
+        let reach_m = model.circumradius_m + model.margin_m + BESIDE_M;
+        let is_taken = |place: Point2<f64>| driver.seen_m().any(|point| distance(&point, &place) <= reach_m);
+        // The end of the leg under way, or for a follower a place on its way not far ahead, so that it stays with the others.
         let rest_m = match vehicle {
             0 => ends_m.iter().map(|end_m| total_m - end_m).find(|rest_m| *rest_m < remaining_m - 1.0),
-            _ => None,
+            _ => REJOINING_M.map(|ahead_m| remaining_m - ahead_m).into_iter().find(|rest_m| {
+                let place = path.point_at(path.length_m() - rest_m);
+                *rest_m > 1.0 && place.is_some_and(|(place, _)| !is_taken(place))
+            }),
         };
         let rest_m = rest_m.unwrap_or(0.0);
         let after = rest_of(&path, path.length_m() - rest_m);
         let Some(&goal_m) = after.first() else { return Err(stuck) };
         // Where something that the map does not show leaves no room at the end of its way, it stays beside that.
-        let reach_m = model.circumradius_m + model.margin_m + BESIDE_M;
-        let is_taken = driver.seen_m().any(|point| distance(&point, &goal_m) <= reach_m);
-        if rest_m <= 0.0 && is_taken && distance(&here, &goal_m) <= STAYS_WITHIN_M {
+        if rest_m <= 0.0 && is_taken(goal_m) && distance(&here, &goal_m) <= STAYS_WITHIN_M {
             self.convoy.stay(vehicle);
             return Ok(());
         }
