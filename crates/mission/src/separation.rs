@@ -225,10 +225,8 @@ fn meeting(gaps: &Gaps, vehicles: [u32; 2], parts: [&Part; 2], safety_m: f64) ->
         }
     });
     near.sort_by(|(one, _), (other, _)| one.distance_m.total_cmp(&other.distance_m));
-    let (pieces, (times, time)) = near
-        .iter()
-        .take(MAX_SCHEDULES)
-        .find_map(|(pieces, [one, other])| Some((pieces, gaps.meeting(one, other)?)))?;
+    let (pieces, (times, time)) =
+        near.iter().find_map(|(pieces, [one, other])| Some((pieces, gaps.meeting(one, other)?)))?;
     let place = |part: &&Part| {
         let at = |event: NodeId| times.get(&event).copied().unwrap_or_default();
         let occurrence = part.movement?;
@@ -255,9 +253,6 @@ fn meeting(gaps: &Gaps, vehicles: [u32; 2], parts: [&Part; 2], safety_m: f64) ->
     let (movements, orders) = (parts.map(|part| part.movement), Vec::new());
     Some(Meeting { vehicles, movements, places_m, orders, violation })
 }
-
-/// Schedules that are looked for in one meeting, nearest places first.
-const MAX_SCHEDULES: usize = 200;
 
 /// The orders of two traverses that may keep two vehicles apart. Of two that drive, the one that is before the other in the
 /// text's order goes first; a vehicle that stands in the way drives on before, or comes there after.

@@ -97,15 +97,16 @@ impl Gaps {
                 corners.push((times, room));
             }
         }
-        let only = |side: usize| corners.iter().find(move |(_, room)| room[side] >= 0.0);
-        let ((early, [a, b]), (late, [c, d])) = (only(0)?, only(1)?);
-        // Between the two, where both have as much room.
-        let part = (a - b) / ((a - b) - (c - d));
-        let mixed =
-            early.iter().map(|(&event, &time)| (event, time + (late[&event] - time) * part)).collect();
-        let times: Times = mixed;
-        let is_at_once = leaves(one, &times) - arrives(other, &times) >= -TOLERANCE;
-        is_at_once.then(|| at_once(one, other, times))
+        // Between two corners, one on each side, where both have as much room: the most of it is on some edge.
+        let with_room = |side: usize| corners.iter().filter(move |(_, room)| room[side] >= 0.0);
+        let mixed = with_room(0).flat_map(|early| with_room(1).map(move |late| (early, late)));
+        let most = mixed.map(|((early, [a, b]), (late, [c, d]))| {
+            let part = (a - b) / ((a - b) - (c - d));
+            (a + (c - a) * part, part, early, late)
+        });
+        let (room, part, early, late) = most.max_by(|one, other| one.0.total_cmp(&other.0))?;
+        let between = |(&event, &time): (&NodeId, &f64)| (event, time + (late[&event] - time) * part);
+        (room >= -TOLERANCE).then(|| at_once(one, other, early.iter().map(between).collect()))
     }
 
     /// The schedule in which each event comes as early or as late as those before it in `order` leave it.
@@ -149,4 +150,83 @@ fn orders(events: &[NodeId]) -> Vec<Vec<NodeId>> {
         })
     };
     orders(rest).into_iter().flat_map(with_first).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use terrain::Random;
+
+    use super::*;
+
+    /// Bounds on some events that leave room around one schedule, and follow from each other.
+    fn gaps(random: &mut Random, events: usize) -> Gaps {
+        let own: Vec<f64> = (0..events).map(|_| random.range(0.0, 10.0).round()).collect();
+        let mut least = vec![vec![0.0; events]; events];
+        for (one, row) in least.iter_mut().enumerate() {
+            for (other, least) in row.iter_mut().enumerate().filter(|(other, _)| *other != one) {
+                *least = own[other] - own[one] - random.range(0.0, 6.0).round();
+            }
+        }
+        for middle in 0..events {
+            for one in 0..events {
+                for other in 0..events {
+                    let by_way = least[one][middle] + least[middle][other];
+                    least[one][other] = least[one][other].max(by_way);
+                }
+            }
+        }
+        let node = NodeId::from_index;
+        let pairs = (0..events).flat_map(|one| (0..events).map(move |other| (one, other)));
+        let least = pairs.map(|(one, other)| ((node(one), node(other)), least[one][other])).collect();
+        Gaps { start: node(0), least }
+    }
+
+    /// A schedule by chance: each event at some time that those before it leave it.
+    fn schedule(gaps: &Gaps, random: &mut Random, events: usize) -> Times {
+        let mut order: Vec<NodeId> = (1..events).map(NodeId::from_index).collect();
+        for at in (1..order.len()).rev() {
+            order.swap(at, random.below(at as u32 + 1) as usize);
+        }
+        let mut times = Times::from([(gaps.start, 0.0)]);
+        for event in order {
+            let earliest = times.iter().map(|(&before, time)| time + gaps.least(before, event));
+            let latest = times.iter().map(|(&before, time)| time - gaps.least(event, before));
+            let range = [earliest.fold(f64::NEG_INFINITY, f64::max), latest.fold(f64::INFINITY, f64::min)];
+            times.insert(event, range[0] + (range[1] - range[0]) * random.range(0.0, 1.0));
+        }
+        times
+    }
+
+    #[test]
+    fn stretches_that_are_at_once_in_some_schedule_are_found_and_no_others() {
+        let mut random = Random::from_seed(1);
+        let (mut found, mut proven) = (0, 0);
+        for _ in 0..400 {
+            let gaps = gaps(&mut random, 5);
+            let mut stretch = |[from, end]: [usize; 2]| {
+                let [from, end] = [from, end].map(NodeId::from_index);
+                let share = random.range(0.0, 1.0);
+                Stretch { from, after: random.range(0.0, 3.0), until: [from, end], share }
+            };
+            let (one, other) = (stretch([1, 2]), stretch([3, 4]));
+            let is_at_once = |times: &Times| {
+                leaves(&one, times) - arrives(&other, times) > 1e-9
+                    && leaves(&other, times) - arrives(&one, times) > 1e-9
+            };
+            let some = (0..300).map(|_| schedule(&gaps, &mut random, 5)).find(|times| is_at_once(times));
+            if let Some((times, _)) = gaps.meeting(&one, &other) {
+                let is_kept = |(&(first, then), least): (&(NodeId, NodeId), &f64)| {
+                    times[&then] - times[&first] >= least - 1e-6
+                };
+                assert!(gaps.least.iter().all(is_kept), "{times:?}");
+                assert!(leaves(&one, &times) - arrives(&other, &times) >= -1e-5, "{times:?}");
+                assert!(leaves(&other, &times) - arrives(&one, &times) >= -1e-5, "{times:?}");
+                found += 1;
+            } else {
+                assert_eq!(some, None, "{one:?} {other:?} {:?}", gaps.least);
+                proven += 1;
+            }
+        }
+        assert!(found > 50 && proven > 50, "{found} found, {proven} proven to be apart");
+    }
 }
