@@ -37,7 +37,7 @@ pub(crate) fn kept_apart(
     mut planned: Planned,
     plan_again: &mut dyn FnMut(&Problem<'_>) -> Planned,
 ) -> Planned {
-    let best = planned.planning.outcome.plans.first().cloned().map(|plan| (plan, planned.counted_m));
+    let best = best_plan(&planned).map(|(plan, counted_m)| (plan.clone(), counted_m));
     let mut network = Arc::clone(problem.network);
     let mut tried: BTreeSet<(OccurrenceId, OccurrenceId)> = BTreeSet::new();
     let options = Options { explain: false, relax: false, ..problem.options };
@@ -64,6 +64,11 @@ pub(crate) fn kept_apart(
     planned
 }
 
+/// The first plan, with the metres that are counted for it.
+fn best_plan(planned: &Planned) -> Option<(&Plan, f64)> {
+    Some((planned.planning.outcome.plans.first()?, planned.counted_m))
+}
+
 /// How many pairs meet in the earliest schedule.
 fn num_in_earliest(planned: &Planned) -> usize {
     planned.meetings.iter().filter(|meeting| meeting.violation.schedule.is_empty()).count()
@@ -78,32 +83,35 @@ fn max_in_vain(planned: &Planned) -> usize {
 fn is_better(network: &Network, planned: &Planned, other: &Planned) -> bool {
     let (before, after) = (num_in_earliest(planned), num_in_earliest(other));
     let is_fewer = other.meetings.len() + after < planned.meetings.len() + before;
-    is_fewer && (after < before || !is_worse(network, planned, other))
+    let is_worse = || {
+        let plans = best_plan(planned).zip(best_plan(other));
+        plans.is_some_and(|(first, second)| lost(network, first, second).is_some())
+    };
+    is_fewer && (after < before || !is_worse())
 }
 
-/// Whether another plan is worse in the first goal of the objective in which the two differ.
-fn is_worse(network: &Network, planned: &Planned, other: &Planned) -> bool {
-    let values = |of: &Planned| worth::goal_values(network, of.planning.outcome.plans.first()?, of.counted_m);
-    let (Some(before), Some(after)) = (values(planned), values(other)) else { return false };
-    let mut goals = network.objective.iter().zip(before.iter().zip(&after));
-    let differs = goals.find(|(_, (before, after))| before != after);
-    differs.is_some_and(|(goal, (before, after))| (before > after) == goal.is_maximized)
+/// What the first goal of the objective in which two plans differ had with the first of them, if the second is worse in it.
+/// Both come with the metres that are counted for them.
+fn lost(
+    network: &Network,
+    (first, first_m): (&Plan, f64),
+    (second, second_m): (&Plan, f64),
+) -> Option<Rational> {
+    let before = worth::goal_values(network, first, first_m)?;
+    let after = worth::goal_values(network, second, second_m)?;
+    let mut goals = network.objective.iter().zip(before.into_iter().zip(after));
+    let (goal, (before, after)) = goals.find(|(_, (before, after))| before != after)?;
+    ((before > after) == goal.is_maximized).then_some(before)
 }
 
 /// Where keeping apart made an optimal plan worse, nothing is proven but that none is better than it was without.
-fn admit_worse(network: &Network, (best, counted_m): (&Plan, f64), planned: &mut Planned) {
+fn admit_worse(network: &Network, best: (&Plan, f64), planned: &mut Planned) {
     let own_m = planned.counted_m;
     let planning = Arc::make_mut(&mut planned.planning);
     let Some(plan) = planning.outcome.plans.first_mut() else { return };
-    let values = |plan: &Plan, driven_m: f64| worth::goal_values(network, plan, driven_m);
-    let (Some(before), Some(after)) = (values(best, counted_m), values(plan, own_m)) else { return };
-    let mut goals = network.objective.iter().zip(before.iter().zip(&after));
-    let differs = goals.find(|(_, (before, after))| before != after);
-    if let Some((goal, (before, after))) = differs
-        && (before > after) == goal.is_maximized
-    {
+    if let Some(before) = lost(network, best, (plan, own_m)) {
         plan.quality.is_optimal = Some(false);
-        planning.outcome.bound = Some(*before);
+        planning.outcome.bound = Some(before);
     }
 }
 

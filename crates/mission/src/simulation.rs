@@ -83,8 +83,12 @@ impl Courses {
 
 /// What all durations of drives are multiples of, in mission units.
 pub(crate) fn granularity(program: &Program) -> Time {
-    let parts = program.options.time_unit.seconds() * i64::from(TICKS_PER_SECOND);
-    Time::ONE.checked_div(parts).unwrap_or_default()
+    Time::ONE.checked_div(i64::from(ticks_per_unit(program))).unwrap_or_default()
+}
+
+/// How many of [`granularity`] a mission unit has.
+fn ticks_per_unit(program: &Program) -> u32 {
+    u32::try_from(program.options.time_unit.seconds()).unwrap_or(1).saturating_mul(TICKS_PER_SECOND)
 }
 
 /// Drives traverses when the executive starts them.
@@ -173,16 +177,9 @@ impl<'run> Driving<'run> {
         let name =
             |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
         let &leader = course.drive.vehicles.first()?;
-        let is_other = |&(vehicle, _): &(u32, Point2<f64>)| {
-            !course.drive.vehicles.contains(&vehicle)
-                && vehicle::flies(world, vehicle) == vehicle::flies(world, leader)
-        };
-        let others = self.standing_m().filter(is_other);
-        let nearest = others.min_by(|(_, one), (_, other)| {
-            distance(one, &location_m).total_cmp(&distance(other, &location_m))
-        });
-        let there = nearest.filter(|(_, place)| distance(place, &location_m) < short_m);
-        let why = there.map_or_else(String::new, |(other, _)| format!(", where {} stands", name(other)));
+        let there =
+            standing::nearest_other(world, &course.drive.vehicles, (location_m, short_m), self.standing_m());
+        let why = there.map_or_else(String::new, |other| format!(", where {} stands", name(other)));
         Some(format!("{} stops {short_m:.2} m short of {}{why}", name(leader), location.name.text))
     }
 

@@ -56,6 +56,11 @@ impl Member {
         self.driver.progress_m() < self.passes_until_m
     }
 
+    /// From now on it goes around the others, for so many metres.
+    fn pass_for(&mut self, metres: f64) {
+        self.passes_until_m = self.driver.progress_m() + metres;
+    }
+
     /// Whether it is this near to the end of its path.
     fn is_within(&self, reach_m: f64) -> bool {
         let place = self.driver.state().position_m;
@@ -99,7 +104,7 @@ const WAITING_SPACINGS: f64 = 3.0;
 const WAITING_SHARE: f64 = 0.5;
 /// Who has come no farther together, though the leader's pace was so many metres meanwhile, has stalled.
 const STALL_M: f64 = 4.0;
-/// A vehicle stands while another one goes around it that is no farther from it than so many metres.
+/// A vehicle waits while another one within so many metres drives around it.
 const PASSING_M: f64 = 0.6;
 /// Coming farther means so many metres less to go for all together.
 const STALL_WAY_M: f64 = 0.5;
@@ -133,7 +138,7 @@ impl Convoy {
         self.time_s
     }
 
-    /// Seconds from the last decision to the one before it; at first, to the next one.
+    /// Seconds between the last two decisions; before there are two, seconds to the next one.
     pub const fn step_s(&self) -> f64 {
         self.step_s
     }
@@ -281,11 +286,11 @@ impl Convoy {
         let going: Vec<usize> = (0..count).filter(is_first_of_ring).collect();
         for vehicle in going {
             let member = &mut self.members[vehicle];
-            member.passes_until_m = member.driver.progress_m() + self.spacing_m;
+            member.pass_for(self.spacing_m);
         }
     }
 
-    /// Where all wait for each other in a way that is no ring, one after the other goes around the others.
+    /// If all wait and there is no ring, they take turns: one vehicle after the other drives around the others.
     fn end_stall(&mut self, pace_mps: f64, most_mps: &[f64]) {
         let remaining_m = self.members.iter().map(Member::remaining_m).sum();
         // Who waits for one that cannot drive waits for as long as that takes.
@@ -306,7 +311,7 @@ impl Convoy {
                 member.passes_until_m = 0.0;
             }
             let member = &mut self.members[vehicle];
-            member.passes_until_m = member.driver.progress_m() + self.spacing_m;
+            member.pass_for(self.spacing_m);
         }
         self.stall.commanded_m = 0.0;
         self.stall.count += 1;

@@ -6,8 +6,8 @@ use exact::{Bound, Time};
 use motion::DriveLimits;
 use rmpl::Span;
 use rmpl::program::{Change, LabelMode};
-use snapshot::vehicle::{self, is_way, moving};
-use snapshot::{Planning, Snapshot, joined};
+use snapshot::vehicle::{is_way, moving};
+use snapshot::{Planning, Snapshot, joined, standing};
 use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceKind, Plan};
 
 use super::alternatives::{Alternative, Examiner};
@@ -50,7 +50,7 @@ impl<'input> PlanLines<'input> {
             plan: self.plan,
             places: self.places,
             traverses: &self.snapshot.traverses,
-            has_map: self.snapshot.map.is_some(),
+            has_map: self.snapshot.program.world.terrain.is_some(),
             status: self.checked,
         }
     }
@@ -431,7 +431,12 @@ impl<'input> PlanLines<'input> {
         let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
         let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
         let followers = traverse.vehicles.len().saturating_sub(1);
-        motion::driven_within_s(least * unit_s, speed_mps, followers, self.snapshot.map.is_some())
+        motion::driven_within_s(
+            least * unit_s,
+            speed_mps,
+            followers,
+            self.snapshot.program.world.terrain.is_some(),
+        )
     }
 
     /// Vehicles that do not reach the location that they are then said to be at, because others stand there (SPEC 10.3).
@@ -453,15 +458,10 @@ impl<'input> PlanLines<'input> {
         let name = |vehicle: u32| Some(world.vehicles.get(vehicle as usize)?.name.text.as_str());
         let &leader = traverse.vehicles.first()?;
         let time = self.plan.windows.get(occurrence.end.index()).copied().flatten()?.earliest.to_f64();
-        let away = |motion: &snapshot::VehicleMotion| {
-            let is_other = !traverse.vehicles.contains(&motion.vehicle)
-                && vehicle::flies(world, motion.vehicle) == vehicle::flies(world, leader);
-            let (place_m, _) = motion.at(time).filter(|_| is_other)?;
-            Some((nalgebra::distance(&place_m, &location_m), motion.vehicle))
-        };
-        let nearest = self.snapshot.motions.iter().filter_map(away);
-        let nearest = nearest.min_by(|one, other| one.0.total_cmp(&other.0)).filter(|it| it.0 < short_m);
-        let other = nearest.and_then(|(_, vehicle)| name(vehicle));
+        let place = |motion: &snapshot::VehicleMotion| Some((motion.vehicle, motion.at(time)?.0));
+        let places = self.snapshot.motions.iter().filter_map(place);
+        let there = standing::nearest_other(world, &traverse.vehicles, (location_m, short_m), places);
+        let other = there.and_then(name);
         let why = other.map_or_else(String::new, |other| format!(", where {other} stands"));
         let (leader, place) = (name(leader)?, &location.name.text);
         let text = format!(

@@ -256,6 +256,30 @@ pub(super) fn refused() -> verify::Verdict {
     verify::Verdict { valid: false, violations: Vec::new() }
 }
 
+/// A drive of 36 m that takes 1 for each meter of a battery with so much.
+fn driving(terrain: &str, level: i64) -> crate::Line {
+    let review = reviewed(&format!(
+        "{terrain} location A (30, 60); location B (66, 60); vehicle R : ATRV-Jr at A; resource Battery 0..200 = {level};
+        primitive Drive(to)[5,60] moves R speed (0.01, 0.5) consumes Battery 1 per metre; scenario S[0,100] = {{ Drive(B) }}"
+    ));
+    review.resources[0].line.clone()
+}
+
+#[test]
+fn a_reservoir_without_room_for_detours_needs_attention_where_the_map_may_leave_out_rocks() {
+    let terrain = "terrain \"tai-plain\" cell 0.6 origin (0, 0);";
+    let tight = driving(terrain, 45);
+    assert_eq!(tight.status, Status::Attention, "{tight:?}");
+    assert!(
+        tight.text.ends_with("drives around rocks that the map does not show may take 10 more"),
+        "{tight:?}"
+    );
+    for (terrain, level) in [(terrain, 60), ("", 45)] {
+        let enough = driving(terrain, level);
+        assert_eq!(enough.status, Status::Passed, "{enough:?}");
+    }
+}
+
 #[test]
 fn nothing_about_states_and_resources_has_passed_on_the_planner_s_word() {
     for (verdict, status) in [(None, Status::Attention), (Some(refused()), Status::Failed)] {

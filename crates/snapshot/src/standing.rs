@@ -4,8 +4,8 @@
 //! Vehicles that start together and are moved together by one traverse keep formation and count as one here. Those that fly
 //! are above those that drive, and neither makes the other go aside.
 
-use nalgebra::{Point2, Vector2};
-use rmpl::program::Program;
+use nalgebra::{Point2, Vector2, distance};
+use rmpl::program::{Program, World};
 
 use crate::vehicle;
 
@@ -91,6 +91,22 @@ pub fn own_starts_m(program: &Program) -> Vec<Option<Point2<f64>>> {
         |one: usize, other: usize| one != other && place(one) == place(other) && flies(one) == flies(other);
     let is_alone = |vehicle: usize| !all.clone().any(|other| shares(vehicle, other));
     all.clone().map(|vehicle| start_m(program, vehicle).filter(|_| is_alone(vehicle))).collect()
+}
+
+/// The vehicle that is nearest to a place and nearer than so many metres, of those with `places` that are none of `vehicles` and,
+/// as the first of these does, drive or fly.
+pub fn nearest_other(
+    world: &World,
+    vehicles: &[u32],
+    (place_m, within_m): (Point2<f64>, f64),
+    places: impl Iterator<Item = (u32, Point2<f64>)>,
+) -> Option<u32> {
+    let flies = vehicle::flies(world, *vehicles.first()?);
+    let others =
+        places.filter(|(vehicle, _)| !vehicles.contains(vehicle) && vehicle::flies(world, *vehicle) == flies);
+    let away = others.map(|(vehicle, other_m)| (distance(&other_m, &place_m), vehicle));
+    let nearest = away.min_by(|one, other| one.0.total_cmp(&other.0));
+    nearest.filter(|(away_m, _)| *away_m < within_m).map(|(_, vehicle)| vehicle)
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use snapshot::vehicle::{flies, radius_m};
 use snapshot::{SimulatedDrive, standing};
 use tpn::Network;
 
-use super::TICKS_PER_SECOND;
+use super::ticks_per_unit;
 
 /// The first contact of any two vehicles in what was driven. A vehicle that does not drive stands where it is.
 pub(super) fn first_contact(
@@ -42,7 +42,7 @@ pub(super) fn first_contact(
         is_in_it && drive.start.to_f64() <= touch.time_s
     })?;
     let place = nalgebra::center(&touch.positions_m[0], &touch.positions_m[1]);
-    let at = Time::from_f64_nearest(touch.time_s, unit_parts(program))?;
+    let at = Time::from_f64_nearest(touch.time_s, ticks_per_unit(program))?;
     let reason = format!(
         "{} and {} touch near ({:.1}, {:.1}) at {:.2}: their centers are {:.2} m apart, and their bodies reach that far",
         name(pair[0]),
@@ -53,11 +53,6 @@ pub(super) fn first_contact(
         touch.distance_m
     );
     Some(Contact { at, name: network.occurrences.get(under_way.occurrence.index())?.name.clone(), reason })
-}
-
-/// Parts of a mission unit that times of runs are multiples of.
-fn unit_parts(program: &Program) -> u32 {
-    u32::try_from(program.options.time_unit.seconds()).unwrap_or(1).saturating_mul(TICKS_PER_SECOND)
 }
 
 /// Where each vehicle is over time, in mission units.

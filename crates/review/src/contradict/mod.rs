@@ -4,7 +4,6 @@
 //! Nothing is proven by a line that survives; it says how it was tried. Lines that are neither about schedules nor about
 //! runs are not tried, and said to be so.
 
-mod chance;
 mod instant;
 mod promise;
 mod runs;

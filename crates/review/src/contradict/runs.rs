@@ -3,11 +3,10 @@
 use exact::Time;
 use executive::Script;
 use executive::world::{abort_name, natures_ranges};
+use plant::Random;
 use rmpl::program::Controllability;
 use smol_str::SmolStr;
 use tpn::{Network, Plan};
-
-use super::chance::Chance;
 
 /// Makes the script of one run after the other.
 pub(super) struct Runs {
@@ -15,7 +14,7 @@ pub(super) struct Runs {
     natures: Vec<(SmolStr, [Time; 2])>,
     /// Whether runs of other seeds differ although nature chooses nothing.
     has_drives: bool,
-    chance: Chance,
+    chance: Random,
     seed: u64,
     made: u64,
 }
@@ -31,7 +30,7 @@ impl Runs {
         let aborts = network.occurrences.iter().filter(is_selected);
         let aborts = aborts.filter_map(|it| Some((abort_name(it), it.aborts?)));
         let natures = durations.chain(aborts).collect();
-        Self { natures, has_drives, chance: Chance(!seed), seed, made: 0 }
+        Self { natures, has_drives, chance: Random::new(!seed), seed, made: 0 }
     }
 
     /// The next one; `None` if it would be no other run than those before.

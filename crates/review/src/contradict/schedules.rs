@@ -5,16 +5,15 @@ use std::collections::BTreeSet;
 
 use exact::Time;
 use executive::plan_network::{ADDED, PlanNetwork};
+use plant::Random;
 use stn::INFINITE;
 use tpn::{Network, Plan};
-
-use super::chance::Chance;
 
 /// Makes one schedule after the other.
 pub(super) struct Schedules {
     network: PlanNetwork,
     num_nodes: usize,
-    chance: Chance,
+    chance: Random,
     made: usize,
     /// The ticks of all that were made.
     known: BTreeSet<Vec<i64>>,
@@ -38,7 +37,7 @@ impl Schedules {
     pub(super) fn new(network: &Network, plan: &Plan, seed: u64) -> Option<Self> {
         let num_nodes = network.nodes.len();
         let network = PlanNetwork::new(network, plan).ok()?;
-        Some(Self { network, num_nodes, chance: Chance(seed), made: 0, known: BTreeSet::new() })
+        Some(Self { network, num_nodes, chance: Random::new(seed), made: 0, known: BTreeSet::new() })
     }
 
     /// Makes the next one.
