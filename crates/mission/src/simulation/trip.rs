@@ -335,18 +335,23 @@ impl<'a> Trip<'a> {
         let reach_m = model.circumradius_m + model.margin_m + BESIDE_M;
         let is_taken = |place: Point2<f64>| driver.seen_m().any(|point| distance(&point, &place) <= reach_m);
         // The end of the leg under way, or for a follower a place on its way not far ahead, so that it stays with the others.
-        let rest_m = match vehicle {
-            0 => ends_m.iter().map(|end_m| total_m - end_m).find(|rest_m| *rest_m < remaining_m - 1.0),
-            _ => REJOINING_M.map(|ahead_m| remaining_m - ahead_m).into_iter().find(|rest_m| {
-                let place = path.point_at(path.length_m() - rest_m);
-                *rest_m > 1.0 && place.is_some_and(|(place, _)| !is_taken(place))
-            }),
+        let mut rests_m: Vec<f64> = match vehicle {
+            0 => ends_m
+                .iter()
+                .map(|end_m| total_m - end_m)
+                .filter(|it| *it < remaining_m - 1.0)
+                .take(1)
+                .collect(),
+            _ => {
+                REJOINING_M.map(|ahead_m| remaining_m - ahead_m).into_iter().filter(|it| *it > 1.0).collect()
+            }
         };
-        let rest_m = rest_m.unwrap_or(0.0);
-        let after = rest_of(&path, path.length_m() - rest_m);
-        let Some(&goal_m) = after.first() else { return Err(stuck) };
+        if vehicle > 0 || rests_m.is_empty() {
+            rests_m.push(0.0);
+        }
+        let Some(&end_m) = path.points_m.last() else { return Err(stuck) };
         // Where something that the map does not show leaves no room at the end of its way, it stays beside that.
-        if rest_m <= 0.0 && is_taken(goal_m) && distance(&here, &goal_m) <= STAYS_WITHIN_M {
+        if rests_m == [0.0] && is_taken(end_m) && distance(&here, &end_m) <= STAYS_WITHIN_M {
             self.convoy.stay(vehicle);
             return Ok(());
         }
@@ -356,11 +361,17 @@ impl<'a> Trip<'a> {
             shared.mark(&Obstacle::Circle { center_m, radius_m: 0.0 }, CellState::Obstacle);
         }
         let rooms_m = [0.3, model.margin_m, 0.0];
-        let found = [shared, occupancy].into_iter().find_map(|occupancy| {
-            let space = ConfigurationSpace::new(occupancy, model.circumradius_m);
-            way_between(&space, rooms_m, here, goal_m, model, self.reroutes)
+        let spaces = [shared, occupancy].map(|it| ConfigurationSpace::new(it, model.circumradius_m));
+        let found = rests_m.into_iter().find_map(|rest_m| {
+            let after = rest_of(&path, path.length_m() - rest_m);
+            let &goal_m =
+                after.first().filter(|place| rest_m <= 0.0 || vehicle == 0 || !is_taken(**place))?;
+            let seed = self.reroutes;
+            let mut ways =
+                spaces.iter().filter_map(|space| way_between(space, rooms_m, here, goal_m, model, seed));
+            Some((ways.next()?, after))
         });
-        let Some(mut way) = found else { return Err(stuck) };
+        let Some((mut way, after)) = found else { return Err(stuck) };
         let length_m = way.length_m();
         way.points_m.extend(after.into_iter().skip(1));
         let name = self.names[vehicle];
