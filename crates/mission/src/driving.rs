@@ -37,12 +37,16 @@ const FOLLOWER_STEP_M: f64 = 0.4;
 /// A place is left out where driving evenly past it comes this near to it, in metres.
 pub(crate) const EVEN_M: f64 = 0.02;
 
-/// The motions of all vehicles that move, in the order of the vehicles.
-pub fn motions(drives: &[Drive]) -> Vec<VehicleMotion> {
+/// The ways of the vehicles of each drive, the leader's first: a formation goes on from where the drive before it stopped.
+pub(crate) fn all_tracks(drives: &[Drive]) -> Vec<Vec<Vec<Place>>> {
+    drives.iter().enumerate().map(|(index, drive)| tracks(drive, &drives[..index])).collect()
+}
+
+/// The motions of all vehicles that move, in the order of the vehicles, by [`all_tracks`] of the drives.
+pub(crate) fn motions(drives: &[Drive], all_tracks: &[Vec<Vec<Place>>]) -> Vec<VehicleMotion> {
     let mut motions: Vec<VehicleMotion> = Vec::new();
-    for (index, drive) in drives.iter().enumerate() {
-        let before = &drives[..index];
-        for (vehicle, track) in drive.vehicles.iter().zip(tracks(drive, before)) {
+    for (drive, tracks) in drives.iter().zip(all_tracks) {
+        for (vehicle, track) in drive.vehicles.iter().zip(tracks) {
             let at = motions.iter().position(|motion| motion.vehicle == *vehicle).unwrap_or_else(|| {
                 motions.push(VehicleMotion { vehicle: *vehicle, keyframes: Vec::new() });
                 motions.len() - 1
@@ -53,7 +57,7 @@ pub fn motions(drives: &[Drive]) -> Vec<VehicleMotion> {
                 track.first().is_some_and(|first| distance(&last.position_m, &first.position_m) > EVEN_M)
             });
             let from = joins.map(|last| last.position_m);
-            frames.extend(keyframes(&track, from, drive.start, drive.end));
+            frames.extend(keyframes(track, from, drive.start, drive.end));
         }
     }
     motions.sort_by_key(|motion| motion.vehicle);
@@ -78,7 +82,7 @@ pub(crate) fn tracks_m(drive: &Drive) -> Vec<Path> {
 }
 
 /// The ways of the vehicles of a drive, the leader's first; `before` are the drives that came before it.
-pub(crate) fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
+fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
     let (path, driven_m) = prolonged_back(drive, before);
     let length_m = drive.path.length_m();
     let share = |way_m: f64| if length_m > 0.0 { way_m / length_m } else { 1.0 };
@@ -225,13 +229,17 @@ mod tests {
         }
     }
 
+    fn motions_of(drives: &[Drive]) -> Vec<VehicleMotion> {
+        motions(drives, &all_tracks(drives))
+    }
+
     fn first() -> Drive {
         drive([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]].map(Point2::from).to_vec(), [10, 30])
     }
 
     #[test]
     fn a_leader_drives_its_path_at_constant_speed() {
-        let motions = motions(&[first()]);
+        let motions = motions_of(&[first()]);
         assert_eq!(motions[0].at(5.0).map(|(place, _)| place), Some(Point2::new(0.0, 0.0)));
         assert_eq!(motions[0].at(15.0).map(|(place, _)| place), Some(Point2::new(5.0, 0.0)));
         assert_eq!(motions[0].at(20.0).map(|(place, _)| place), Some(Point2::new(10.0, 0.0)));
@@ -241,7 +249,7 @@ mod tests {
     #[test]
     fn a_follower_never_comes_nearer_than_its_spacing_and_goes_on_from_where_it_stopped() {
         let second = drive([[10.0, 10.0], [0.0, 10.0]].map(Point2::from).to_vec(), [40, 50]);
-        let motions = motions(&[first(), second]);
+        let motions = motions_of(&[first(), second]);
         let place = |vehicle: usize, time: f64| motions[vehicle].at(time).expect("it moves").0;
         for tenth in 0..600 {
             let time = f64::from(tenth) / 10.0;

@@ -695,9 +695,11 @@ pub(crate) fn conclude(
         plan.quality.length_m = traverses.iter().fold(0.0, |sum, traverse| sum + traverse.length_m);
     }
     let verdict = outcome.plans.first().map(|plan| verify::check_plan(&network, plan));
-    let motions = with_parked(driving::motions(&drives), problem);
+    let tracks = driving::all_tracks(&drives);
+    let motions = with_parked(driving::motions(&drives, &tracks), problem);
     let plan = outcome.plans.first();
-    let meetings = plan.map(|plan| separation::meetings(&drives, &motions, problem.program, &network, plan));
+    let meetings =
+        plan.map(|plan| separation::meetings((&drives, tracks), &motions, problem.program, &network, plan));
     let meetings = meetings.unwrap_or_default();
     let separation_violations = separation::violations(&meetings);
     warnings.extend(separation::warnings(&separation_violations, &drives, &network, problem.program));
@@ -766,7 +768,7 @@ pub fn motions_of(
             drive(&program.world, network, plan, route, snapshot::joined(&traverse.legs), space)
         })
         .collect();
-    driving::motions(&drives)
+    driving::motions(&drives, &driving::all_tracks(&drives))
 }
 
 /// Room between the centres of vehicles that drive together, in metres.

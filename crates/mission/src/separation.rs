@@ -33,7 +33,7 @@ pub struct Meeting {
 const PIECE_M: f64 = 0.5;
 /// A driver may be this far ahead of or behind an even pace, in metres: it turns before it sets out.
 const PACE_M: f64 = 1.0;
-/// Formations keep their spacing up to rounding, and less is no violation, in metres.
+/// Formations keep their spacing but for rounding. Vehicles that are nearer by less than this are not too near, in metres.
 const ROUNDING_M: f64 = 0.05;
 /// Places that a vehicle passes are told apart from this distance on, in metres.
 const APART_M: f64 = 0.25;
@@ -75,16 +75,16 @@ impl Part {
 
 /// All pairs of vehicles that do not drive together and can come nearer than the sum of their radii and [`GAP_M`] in some
 /// schedule of the plan, once for each pair of what they drive. A vehicle that has not begun to move or has stopped stands
-/// where it is.
+/// where it is. `tracks` are those of [`driving::all_tracks`].
 pub(crate) fn meetings(
-    drives: &[Drive],
+    (drives, tracks): (&[Drive], Vec<Vec<Vec<Place>>>),
     motions: &[VehicleMotion],
     program: &Program,
     network: &Network,
     plan: &Plan,
 ) -> Vec<Meeting> {
     let world = &program.world;
-    let parts = parts(drives, motions, program, network);
+    let parts = parts((drives, tracks), motions, program, network);
     let events: Vec<NodeId> = parts.values().flatten().flat_map(|it| [it.from, it.until[1]]).collect();
     let Some(gaps) = (parts.len() > 1).then(|| Gaps::new(network, plan, &events)).flatten() else {
         return Vec::new();
@@ -163,7 +163,7 @@ pub(crate) fn warnings(
 
 /// What each vehicle does from the start of the plan to its end, in order.
 fn parts(
-    drives: &[Drive],
+    (drives, tracks): (&[Drive], Vec<Vec<Vec<Place>>>),
     motions: &[VehicleMotion],
     program: &Program,
     network: &Network,
@@ -171,10 +171,10 @@ fn parts(
     let mut parts: BTreeMap<u32, Vec<Part>> = BTreeMap::new();
     let mut stands: BTreeMap<u32, (NodeId, Point2<f64>)> = BTreeMap::new();
     let starts = standing::own_starts_m(program);
-    for (index, drive) in drives.iter().enumerate() {
+    for (drive, tracks) in drives.iter().zip(tracks) {
         let of = &network.occurrences[drive.occurrence.index()];
         let least = least_duration(network, drive.occurrence);
-        for (&vehicle, mut track) in drive.vehicles.iter().zip(driving::tracks(drive, &drives[..index])) {
+        for (&vehicle, mut track) in drive.vehicles.iter().zip(tracks) {
             let Some(first) = track.first().map(|place| place.position_m) else { continue };
             let (since, stands_m) = stands.get(&vehicle).copied().unwrap_or_else(|| {
                 let own = starts.get(vehicle as usize).copied().flatten();
