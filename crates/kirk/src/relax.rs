@@ -123,7 +123,7 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
 
 /// What planning makes of a value.
 enum Trying {
-    /// There is a plan with it, and with this value, which is no further from the old one.
+    /// There is a plan with it, and with this value, which is at most as far from the old one.
     Plans(i64),
     Fails,
     /// It takes too long to find out.

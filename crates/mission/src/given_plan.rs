@@ -10,7 +10,8 @@ use crate::listing;
 use crate::planning::{self, Planned, Problem};
 use crate::traverse::{self, Paths};
 
-/// What `planned` would be if planning had found the plan that `read` reads; why it is no plan of the mission.
+/// Returns what `planned` would be if planning had found the plan that `read` reads. Fails with the reason if it is not a plan
+/// of the mission.
 pub(crate) fn planned(
     problem: &Problem<'_>,
     planned: &Planned,

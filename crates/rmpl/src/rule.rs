@@ -347,8 +347,7 @@ impl Reader<'_> {
         } else {
             let message =
                 format!("nothing in the mission requires `{variable} in visible({})`", location.text);
-            let hint =
-                "a rule may ask what the mission asks somewhere: only that is worked out over the terrain";
+            let hint = "a rule can use a condition on what is in sight only if the mission uses the same one: no other is computed";
             self.diagnostics.push(Diagnostic::error(undefined::CODE, span, message).with_hint(hint));
         }
         None

@@ -91,7 +91,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(exit(NO));
     };
     let begun = Instant::now();
-    // What is too long for a duration is no limit.
+    // A budget that is too long for a duration limits nothing.
     let budget = Duration::try_from_secs_f64(args.budget.max(0.0)).unwrap_or(Duration::MAX);
     while begun.elapsed() < budget && mission.core.try_next(&evaluated, &mut trial)? {}
     let tried: Vec<&Tried> = trial.tried().collect();

@@ -139,9 +139,10 @@ impl Writer<'_> {
                 let label = &self.network.labels[label.index()];
                 let mode = if label.mode == LabelMode::Ask { "Ask" } else { "Tell" };
                 // What is in sight is known on the mission's ground only: the places are named instead.
-                let literal = match label.text.trim_start_matches("not(").split_once(" in visible(") {
-                    Some((place, _)) => {
-                        format!("{place} in {{{}}}", self.network.value_names(&label.literal).join(", "))
+                let literal = match self.network.sight(label) {
+                    Some(sight) => {
+                        let places = self.network.value_names(&label.literal).join(", ");
+                        format!("{} in {{{places}}}", self.network.variables[sight.variable.index()].name)
                     }
                     None => label.text.to_string(),
                 };

@@ -8,7 +8,7 @@ use crate::ids::CycleId;
 /// What something that the solver was told comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Premise {
-    /// The way the program is built, which is no part of any reason.
+    /// The structure of the program, which no reason contains.
     #[default]
     Structure,
     Member(Member),

@@ -118,6 +118,21 @@ fn a_network_that_was_written_is_read_with_its_sights() {
     assert_eq!(literals(&read), literals(compiled));
 }
 
+/// Other programs do not know the ground: what they read names the places.
+#[test]
+fn a_plan_for_other_programs_names_the_places() {
+    for scenario in ["delay; Relay(R1, BASE)", "ask not R1.at in visible(BASE) [1,1]"] {
+        let evaluated = planned(scenario);
+        let compiled = evaluated.compiled.network().expect("a network");
+        let label =
+            compiled.labels.iter().find(|label| compiled.sight(label).is_some()).expect("a condition");
+        let document = interchange::plan_schema::write(compiled).to_string();
+        let written = format!("R1.at in {{{}}}", compiled.value_names(&label.literal).join(", "));
+        assert!(document.contains(&written), "{written}: {document}");
+        interchange::Source::read(&document).expect("it reads");
+    }
+}
+
 #[test]
 fn another_map_gives_other_places() {
     let mut core = Core::default();

@@ -44,7 +44,7 @@ impl Checker<'_> {
         self.support(literal, variable, value);
     }
 
-    /// Whether `in visible(…)` stands behind the place of a vehicle and requires something of it, as it can only do.
+    /// Whether `in visible(…)` follows the place of a vehicle and is a requirement, which is all that it can be.
     fn is_place_asked(&mut self, literal: &Literal) -> bool {
         let is_told = literal.mode == LabelMode::Tell && literal.origin == Origin::Written;
         let name = self.text(literal.variable);
