@@ -98,21 +98,14 @@ impl Grounds {
         (Some((key, map)), Vec::new())
     }
 
-    /// The free space of vehicles of `model` among the mission's obstacles.
-    pub fn space(&mut self, key: &MapKey, map: &Terrain, world: &World, model: &VehicleModel) -> FreeSpace {
-        self.space_around(key, map, world, model, &[])
-    }
-
-    /// The free space of vehicles of `model` among the mission's obstacles and outside `keep_outs`.
-    pub fn space_around(
+    /// The free space of vehicles of `model` among `obstacles`.
+    pub fn space(
         &mut self,
         key: &MapKey,
         map: &Terrain,
-        world: &World,
         model: &VehicleModel,
-        keep_outs: &[ObstacleShape],
+        obstacles: Vec<ObstacleShape>,
     ) -> FreeSpace {
-        let obstacles = world.obstacles.iter().map(|it| &it.shape).chain(keep_outs).cloned().collect();
         let wanted = SpaceKey { map: key.clone(), model: SmolStr::new(model.name), obstacles };
         if let Some(at) = self.spaces.iter().position(|(known, _)| *known == wanted) {
             let found = self.spaces.remove(at);

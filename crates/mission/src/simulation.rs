@@ -133,9 +133,8 @@ impl<'run> Driving<'run> {
         courses: &'run RefCell<Courses>,
         seed: u64,
     ) -> Self {
-        let declared = &problem.program.world.obstacles;
-        let obstacles: Vec<Obstacle> =
-            declared.iter().map(|it| snapshot::ground::obstacle(&it.shape)).collect();
+        let solid = problem.program.world.obstacles.iter().filter(|it| it.is_solid());
+        let obstacles: Vec<Obstacle> = solid.map(|it| snapshot::ground::obstacle(&it.shape)).collect();
         let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
         let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
         let seen = SeenMap::default();

@@ -10,9 +10,10 @@ use executive::facts::StandingPlace;
 use motion::{DriveLimits, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::Point2;
 use rmpl::Span;
-use rmpl::program::{Per, Program, World};
+use rmpl::program::{ObstacleShape, Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
+use snapshot::ground::closed_to;
 use snapshot::standing;
 use snapshot::vehicle::{Moving, moving};
 use terrain::ConfigurationSpace;
@@ -30,6 +31,8 @@ pub struct Route {
     pub model: &'static VehicleModel,
     /// Least and greatest speed in metres per second. At a least speed of 0 the vehicle may stop on its way.
     pub speed_mps: (Rational, Rational),
+    /// What its vehicles may not enter.
+    pub obstacles: Vec<ObstacleShape>,
     /// What the vehicles can do, all of them together, where that bounds how long the way takes.
     pub limits: Option<DriveLimits>,
     /// The location where the leader is before, if it is at one.
@@ -192,7 +195,9 @@ fn route(
     let from = positions[leader].as_ref().map(|before| before.name.clone());
     let limits =
         models().map(DriveLimits::of).reduce(DriveLimits::of_both).filter(|_| moving.moves.is_kinodynamic);
-    Some(Route { occurrence: id, vehicles, model, speed_mps, limits, from, waypoints })
+    let activity = &network.occurrences[id.index()].activity;
+    let obstacles = closed_to(world, &vehicles, activity).map(|it| it.shape.clone()).collect();
+    Some(Route { occurrence: id, vehicles, model, speed_mps, obstacles, limits, from, waypoints })
 }
 
 /// The route of a traverse whose leader is at `place` before; `None` if it is no traverse, or no such place is known.

@@ -86,7 +86,8 @@ fn items<'a>(program: &'a Program, tokens: &Tokens) -> Vec<Item<'a>> {
         add("location", &it.name, format!("({x}, {y})"), it.span, syntax.place);
     }
     for it in &program.world.obstacles {
-        add("obstacle", &it.name, String::new(), it.span, syntax.place);
+        let kind = if it.is_solid() { "obstacle" } else { "keep-out area" };
+        add(kind, &it.name, String::new(), it.span, syntax.place);
     }
     for it in &program.world.vehicles {
         let detail = format!("{} at {}", it.model.text, it.start.text);

@@ -2,7 +2,7 @@
 
 use interchange::geojson::{FRAME, Projection};
 use nalgebra::Point2;
-use rmpl::program::ObstacleShape;
+use rmpl::program::{ObstacleKind, ObstacleShape};
 use serde_json::{Value, json};
 use snapshot::Snapshot;
 
@@ -34,7 +34,14 @@ pub fn geojson(snapshot: &Snapshot, projection: &Projection) -> Value {
     }
     for obstacle in &world.obstacles {
         let ring: Vec<Value> = ring(&obstacle.shape).into_iter().map(position).collect();
-        let properties = json!({ "kind": "obstacle", "name": obstacle.name.text });
+        let properties = match &obstacle.kind {
+            ObstacleKind::Solid => json!({ "kind": "obstacle", "name": obstacle.name.text }),
+            ObstacleKind::KeepOut { closed_to } => json!({
+                "kind": "keepout",
+                "name": obstacle.name.text,
+                "closed_to": closed_to.iter().map(|it| it.text.as_str()).collect::<Vec<_>>(),
+            }),
+        };
         features.push(feature(properties, "Polygon", json!([ring])));
     }
     for traverse in snapshot.traverses.iter() {

@@ -674,6 +674,13 @@ pub struct World {
     pub vehicles: Vec<VehicleDecl>,
 }
 
+impl ObstacleDecl {
+    /// Whether it is a body that vehicles would touch.
+    pub const fn is_solid(&self) -> bool {
+        matches!(self.kind, ObstacleKind::Solid)
+    }
+}
+
 /// `terrain "asset" cell 0.6 origin (0, 0);`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TerrainDecl {
@@ -701,15 +708,28 @@ pub struct LocationDecl {
     pub span: Span,
 }
 
-/// `obstacle NAME circle (x, y, r);` or `obstacle NAME polygon (x, y, …);`
+/// `obstacle NAME circle (x, y, r);`, `obstacle NAME polygon (x, y, …);`, or the same of a `keepout`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObstacleDecl {
     pub name: Name,
+    pub kind: ObstacleKind,
     pub shape: ObstacleShape,
     /// The numbers inside the parentheses, for edits.
     pub numbers_span: Span,
     /// The whole declaration.
     pub span: Span,
+}
+
+/// What keeps vehicles out of an area.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ObstacleKind {
+    /// A body that vehicles would touch.
+    Solid,
+    /// A rule: nothing stands there.
+    KeepOut {
+        /// The vehicles, vehicle models, and activities that the rule holds for; all of them if it names none.
+        closed_to: Vec<Name>,
+    },
 }
 
 /// The shape of an obstacle, in metres.

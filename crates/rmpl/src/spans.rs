@@ -8,9 +8,9 @@ use crate::edits::Shift;
 use crate::program::{
     ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ConstrainDecl,
     ControlDecl, Effect, EventName, Expr, ExprKind, GoalDecl, HeaderBound, HeaderBounds, ImportDecl,
-    LocationDecl, Moves, Name, ObjectiveDecl, ObstacleDecl, PrimitiveDecl, Program, Requirement,
-    ResourceDecl, ResourceUse, Runs, ScenarioDecl, Statement, StatementKind, Supply, TerrainDecl,
-    VariableDecl, VehicleDecl, World,
+    LocationDecl, Moves, Name, ObjectiveDecl, ObstacleDecl, ObstacleKind, PrimitiveDecl, Program,
+    Requirement, ResourceDecl, ResourceUse, Runs, ScenarioDecl, Statement, StatementKind, Supply,
+    TerrainDecl, VariableDecl, VehicleDecl, World,
 };
 use crate::span::Span;
 
@@ -104,7 +104,7 @@ spans! {
     World { terrain, locations, obstacles, vehicles }
     TerrainDecl { asset_span, span }
     LocationDecl { name, numbers_span, span }
-    ObstacleDecl { name, numbers_span, span }
+    ObstacleDecl { name, kind, numbers_span, span }
     VehicleDecl { name, model, start, span }
     Diagnostic { span, fixes }
     Fix { edits }
@@ -120,6 +120,15 @@ impl Spans for Supply {
                 greatest.visit_spans(visit);
                 level.visit_spans(visit);
             }
+        }
+    }
+}
+
+impl Spans for ObstacleKind {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        match self {
+            Self::Solid => {}
+            Self::KeepOut { closed_to } => closed_to.visit_spans(visit),
         }
     }
 }

@@ -78,7 +78,7 @@ impl Occupancy {
         Self { frame, states: occupied.iter().map(state).collect() }
     }
 
-    /// What the map and the declared obstacles leave to a vehicle.
+    /// What the map and `obstacles`, which are closed to the vehicle, leave to it.
     pub fn of_terrain(terrain: &Terrain, obstacles: &[Obstacle], traversability: &Traversability) -> Self {
         let frame = *terrain.frame();
         let mut grid = Self::free(frame);
@@ -100,9 +100,9 @@ impl Occupancy {
                     grid.mark(&disc, CellState::Rock);
                 }
             }
-            for obstacle in obstacles {
-                grid.mark(obstacle, CellState::Obstacle);
-            }
+        }
+        for obstacle in obstacles {
+            grid.mark(obstacle, CellState::Obstacle);
         }
         grid
     }

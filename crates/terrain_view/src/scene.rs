@@ -7,6 +7,7 @@ use snapshot::Snapshot;
 use workbench::state::Selection;
 use workbench::state::growth::Growth;
 
+use crate::dash::{DASHES, dashed};
 use crate::driving;
 use crate::ground::Ground;
 use crate::shapes::{Shapes, circle_outline};
@@ -235,7 +236,17 @@ fn obstacles(shapes: &mut Shapes, world: &World, input: &SceneInput<'_>) {
             (_, true) => (palette.light, 2.5),
             _ => (faded(palette.light, 0.75), 1.4),
         };
-        shapes.fence(input.ground, &outline(&obstacle.shape), FENCE_M, palette.fence, rim);
+        let outline = outline(&obstacle.shape);
+        if obstacle.is_solid() {
+            shapes.fence(input.ground, &outline, FENCE_M, palette.fence, rim);
+            continue;
+        }
+        // Nothing stands there: the rim lies on the ground, in dashes.
+        let closed: Vec<Vec2> = outline.iter().chain(outline.first()).copied().collect();
+        for dash in dashed(&closed, DASHES[1], input.options.vehicle_scale) {
+            shapes.draped_line(input.ground, dash, rim.1 + 2.0, palette.under);
+            shapes.draped_line(input.ground, dash, rim.1, rim.0);
+        }
     }
 }
 

@@ -7,6 +7,7 @@ use link::path_growth::MAX_SAMPLES;
 use link::{GrowthStanding, PathGrowth, WantedPlanner};
 use motion::{PlannerKind, Query, Settings, TracedSearch};
 use snapshot::ContentKey;
+use snapshot::ground::closed_to;
 use terrain::ConfigurationSpace;
 
 use super::Core;
@@ -68,10 +69,13 @@ impl Core {
         let leg = traverse.legs.get(wanted.leg as usize)?;
         let query = Query { start_m: *leg.points_m.first()?, goal_m: *leg.points_m.last()? };
         let world = &evaluated.compiled.program.world;
-        let vehicle = world.vehicles.get(*traverse.vehicles.first()? as usize)?;
+        let vehicles: Vec<usize> = traverse.vehicles.iter().map(|&it| it as usize).collect();
+        let vehicle = world.vehicles.get(*vehicles.first()?)?;
         let model = motion::vehicle_model(&vehicle.model.text)?;
         let (key, map) = evaluated.ground.as_ref()?;
-        let space = self.grounds.space(key, map, world, model).exact;
+        let activity = &network.occurrences.get(traverse.occurrence.index())?.activity;
+        let obstacles = closed_to(world, &vehicles, activity).map(|it| it.shape.clone()).collect();
+        let space = self.grounds.space(key, map, model, obstacles).exact;
         let settings = Settings {
             seed: wanted.update.seed,
             max_samples: MAX_SAMPLES,

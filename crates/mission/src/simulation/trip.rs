@@ -1,5 +1,6 @@
 //! One traverse as it is driven, from its start until its last vehicle is there or none can go on.
 
+use snapshot::ground::closed_to;
 use snapshot::vehicle;
 use std::collections::BTreeMap;
 
@@ -163,6 +164,11 @@ impl<'a> Trip<'a> {
         }
         coming.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut fine = if is_flight { FineWorld::default() } else { driving.world.clone() };
+        // Nothing stands in an area that is closed to them, but their drivers stay out of it all the same.
+        let activity = &network.occurrences[drive.occurrence.index()].activity;
+        for closed in closed_to(world, &course.route.vehicles, activity).filter(|it| !it.is_solid()) {
+            fine.add(&snapshot::ground::obstacle(&closed.shape));
+        }
         let (mut others, mut standing) = (Vec::new(), Vec::new());
         for (vehicle, place) in driving.standing_m() {
             if drive.vehicles.contains(&vehicle) || flies(vehicle) != is_flight {

@@ -488,3 +488,54 @@ fn a_mission_on_an_imported_map_of_phobos_keeps_to_ground_that_can_be_driven() {
     }
     assert!(answer.planned.traverses[0].leg_figures[0].length_m >= distance(&from, &to));
 }
+
+/// Two rovers and a blimp on a plain. The direct way to the site leads through an area.
+fn beside_an_area(closed_to: &str) -> String {
+    format!(
+        "location A (0, 0); location B (0, 20); location C (0, 40); location SITE (100, 20);
+         location NEAR (100, 0); location FAR (100, 40);
+         vehicle R1 : ATRV at A; vehicle R2 : ATRV-Jr at B; vehicle Flyer : Blimp at C;
+         keepout Area polygon (40, -30, 60, -30, 60, 70, 40, 70){closed_to};
+         primitive Drive(r, to)[0,100] moves r speed (0.1, 0.5);
+         primitive Haul(to)[0,100] moves R2 speed (0.1, 0.5);
+         primitive Fly(to)[0,100] moves Flyer speed (0.1, 0.5);
+         scenario S[0,300] = {{ Drive(R1, NEAR), {{ Drive(R2, SITE); Haul(B) }}, Fly(FAR) }}"
+    )
+}
+
+/// Whether a point is in that area, or nearer to it than `radius_m`.
+fn is_in_the_area(point: Point2<f64>, radius_m: f64) -> bool {
+    (40.0 - radius_m..60.0 + radius_m).contains(&point.x)
+        && (-30.0 - radius_m..70.0 + radius_m).contains(&point.y)
+}
+
+#[test]
+fn keep_out_areas_are_closed_to_the_vehicles_models_and_activities_that_they_name() {
+    for (closed_to, expected) in [
+        ("", ["Drive#1", "Drive#2", "Haul#1", "Fly#1"].as_slice()),
+        (" for R1", &["Drive#1"]),
+        (" for ATRV-Jr, Flyer", &["Drive#2", "Haul#1", "Fly#1"]),
+        (" for Blimp", &["Fly#1"]),
+        (" for Haul", &["Haul#1"]),
+        (" for Drive", &["Drive#1", "Drive#2"]),
+    ] {
+        let answer = plan(&beside_an_area(closed_to), 1);
+        let mut stays_out = Vec::new();
+        for traverse in &answer.planned.traverses {
+            let occurrence = &answer.planned.network.occurrences[traverse.occurrence.index()];
+            let enters = traverse.legs.iter().any(|leg| {
+                let mut pairs = leg.points_m.windows(2);
+                pairs.any(|pair| {
+                    (0..=50).any(|at| is_in_the_area(pair[0].lerp(&pair[1], f64::from(at) / 50.0), 0.5))
+                })
+            });
+            if !enters {
+                stays_out.push(occurrence.name.as_str());
+            }
+        }
+        stays_out.sort_unstable();
+        let mut expected = expected.to_vec();
+        expected.sort_unstable();
+        assert_eq!(stays_out, expected, "closed to{closed_to}");
+    }
+}

@@ -251,3 +251,32 @@ fn a_rover_that_is_stopped_goes_on_by_the_other_path_from_where_it_is() {
     assert!(distance(&stopped, &start) < 0.01, "{stopped} and {start}");
     assert!(minutes(second.start) >= 200.0);
 }
+
+/// The rock lies where the driver passes the area, so that it would rather cross the area's edge.
+#[test]
+fn drivers_stay_out_of_areas_that_are_closed_to_them_and_cross_others() {
+    let mission = |closed_to: &str| {
+        format!(
+            "location A (0, 0); location SITE (60, 0);
+             vehicle R1 : ATRV at A;
+             keepout Area circle (30, 0, 10){closed_to};
+             primitive Drive(to)[0,100] moves R1 speed (0, 0.5);
+             scenario S[0,100] = {{ Drive(SITE) }}"
+        )
+    };
+    let nearest_m = |execution: &Execution| {
+        assert_eq!(execution.ending, Ending::Finished, "{:?}", execution.log.last());
+        let frames = execution.drives.iter().flat_map(|drive| &drive.vehicles).flat_map(|it| &it.frames);
+        let away_m = frames.map(|frame| distance(&frame.position_m, &Point2::new(30.0, 0.0)) - 10.0);
+        away_m.fold(f64::INFINITY, f64::min)
+    };
+    let planned = run(&mission(" for R1"), &[]);
+    assert!(nearest_m(&planned) > ATRV_M, "{}", nearest_m(&planned));
+    let frames = &planned.drives[0].vehicles[0].frames;
+    let beside =
+        frames.iter().min_by(|a, b| (a.position_m.x - 30.0).abs().total_cmp(&(b.position_m.x - 30.0).abs()));
+    let rock = obstacle(0, beside.expect("it drove").position_m, 0.6);
+    let around = run(&mission(" for Drive"), &[rock]);
+    assert!(nearest_m(&around) > ATRV_M, "{}", nearest_m(&around));
+    assert!(nearest_m(&run(&mission(" for Blimp"), &[])) < -9.0, "nothing stands there");
+}

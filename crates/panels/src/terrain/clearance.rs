@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use rmpl::program::ObstacleShape;
 use smol_str::SmolStr;
+use snapshot::ground::closed_to;
 use snapshot::{MapKey, Snapshot};
-use terrain::Terrain;
+use terrain::{Obstacle, Terrain};
 use workbench::state::Selection;
-use workbench::state::growth::obstacles;
 
 use super::card::selected_traverse;
 
@@ -32,10 +32,17 @@ impl Clearance {
         selection: &Selection,
     ) -> Option<Self> {
         let world = &snapshot.program.world;
-        let wanted = vehicle(snapshot, selection).and_then(|index| world.vehicles.get(index));
-        let name = wanted.map_or(motion::VEHICLE_MODELS[0].name, |vehicle| vehicle.model.text.as_str());
+        let wanted = vehicle(snapshot, selection);
+        let declared = wanted.and_then(|index| world.vehicles.get(index));
+        let name = declared.map_or(motion::VEHICLE_MODELS[0].name, |vehicle| vehicle.model.text.as_str());
         let model = motion::vehicle_model(name)?;
-        let shapes: Vec<ObstacleShape> = world.obstacles.iter().map(|it| it.shape.clone()).collect();
+        let occurrence = selected_traverse(snapshot, selection).map(|it| it.occurrence);
+        let network = snapshot.network.as_deref();
+        let driven = network.zip(occurrence).and_then(|(it, driven)| it.occurrences.get(driven.index()));
+        let activity = driven.map_or("", |it| it.activity.as_str());
+        let vehicles: Vec<usize> = wanted.into_iter().collect();
+        let closed = closed_to(world, &vehicles, activity);
+        let shapes: Vec<ObstacleShape> = closed.map(|it| it.shape.clone()).collect();
         if let Some(before) = before
             && before.map == *key
             && before.model == model.name
@@ -43,7 +50,8 @@ impl Clearance {
         {
             return Some(before);
         }
-        let space = model.configuration_space(map, &obstacles(world));
+        let obstacles: Vec<Obstacle> = shapes.iter().map(snapshot::ground::obstacle).collect();
+        let space = model.configuration_space(map, &obstacles);
         Some(Self {
             map: key.clone(),
             obstacles: shapes,

@@ -79,7 +79,7 @@ impl TerrainPanel {
         else {
             return;
         };
-        let obstacles = snapshot.program.world.obstacles.iter().filter(|_| view.obstacles);
+        let obstacles = snapshot.program.world.obstacles.iter().filter(|it| view.obstacles && it.is_solid());
         let key = DecalKey {
             map: shown.key.clone(),
             obstacles: obstacles.map(|it| it.shape.clone()).collect(),

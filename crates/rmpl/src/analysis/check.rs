@@ -6,6 +6,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::index::{DeclarationKey, Facts, Index, Namespace};
+use super::local::VEHICLE_MODELS;
 use super::names::{Names, Symbol};
 use super::structure;
 use super::summary::{Call, Definition, Summary, Use, UseKind};
@@ -283,6 +284,10 @@ impl<'a> Checker<'a> {
                 self.place(used);
                 return;
             }
+            UseKind::ClosedTo => {
+                self.closed_to(used);
+                return;
+            }
             UseKind::Resource(change) => {
                 self.resource(used, change);
                 return;
@@ -320,6 +325,20 @@ impl<'a> Checker<'a> {
             let diagnostic = if is_new { diagnostic.with_fix(declare()) } else { diagnostic };
             self.push(diagnostic);
         }
+    }
+
+    /// A keep-out area is closed to vehicles, vehicle models, and activities that move vehicles.
+    fn closed_to(&mut self, used: &Use) {
+        let name = self.text(used.name);
+        let facts = self.index.facts(used.name);
+        let moves = || self.index.definition(Namespace::Callable, used.name).is_some_and(|it| it.moves);
+        if VEHICLE_MODELS.contains(&name) || facts.definition(Namespace::Vehicle).is_some() || moves() {
+            return;
+        }
+        let is_activity = facts.definition(Namespace::Callable).is_some();
+        let nearest = self.nearest(used.name, Namespace::Vehicle).filter(|_| !is_activity);
+        let diagnostic = value::closed_to(name, used.span, is_activity, nearest.as_deref());
+        self.push(diagnostic);
     }
 
     fn resource(&mut self, used: &Use, change: Change) {

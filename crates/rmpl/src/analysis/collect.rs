@@ -14,8 +14,8 @@ use crate::control::component_modes;
 use crate::lower::{Item, OptionValue};
 use crate::program::{
     Argument, ArgumentValue, Bounds, Change, Condition, ControlDecl, Expr, ExprKind, HeaderBound,
-    HeaderBounds, LabelMode, Name, PrimitiveDecl, Statement, StatementKind, Supply, component_of_state,
-    state_of_component,
+    HeaderBounds, LabelMode, Name, ObstacleKind, PrimitiveDecl, Statement, StatementKind, Supply,
+    component_of_state, state_of_component,
 };
 use crate::span::Span;
 
@@ -139,7 +139,14 @@ impl Collector<'_> {
             Item::Control(decl) => self.components(decl),
             Item::Import(_) => {}
             Item::Location(decl) => self.define(Namespace::Location, &decl.name, 0, None, Vec::new()),
-            Item::Obstacle(decl) => self.define(Namespace::Obstacle, &decl.name, 0, None, Vec::new()),
+            Item::Obstacle(decl) => {
+                self.define(Namespace::Obstacle, &decl.name, 0, None, Vec::new());
+                if let ObstacleKind::KeepOut { closed_to } = &decl.kind {
+                    for name in closed_to {
+                        self.name_use(UseKind::ClosedTo, &name.text, name.span);
+                    }
+                }
+            }
             Item::Vehicle(decl) => {
                 self.define(Namespace::Vehicle, &decl.name, 0, None, Vec::new());
                 self.begins_with(&decl.start);

@@ -472,6 +472,8 @@ impl Index {
                 UseKind::Resource(_) => step(&mut facts.resources),
                 UseKind::Occurrence => step(&mut facts.constraints),
                 UseKind::Number | UseKind::HeaderBound => step(&mut facts.numbers),
+                // To close an area to something is not to use it.
+                UseKind::ClosedTo => {}
             }
         }
         for literal in &summary.literals {

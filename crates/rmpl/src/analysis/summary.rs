@@ -145,6 +145,8 @@ pub(crate) enum UseKind {
     Vehicle,
     /// The place of a vehicle, compared or set: a location.
     Place,
+    /// Whom a keep-out area is closed to: a vehicle, a vehicle model, or an activity that moves vehicles.
+    ClosedTo,
     /// A resource that something is done to.
     Resource(Change),
     /// An occurrence that a bound between events names.

@@ -82,6 +82,7 @@ fn is_mission_keyword(word: &str) -> bool {
             | "location"
             | "vehicle"
             | "obstacle"
+            | "keepout"
     )
 }
 

@@ -104,6 +104,21 @@ pub(crate) fn model(model: &Name, models: &[&str]) -> Diagnostic {
     })
 }
 
+pub(crate) fn closed_to(name: &str, span: Span, is_activity: bool, nearest: Option<&str>) -> Diagnostic {
+    let message = if is_activity {
+        format!("`{name}` moves no vehicle, so no area can be closed to it")
+    } else {
+        format!("no vehicle, vehicle model, or activity is called `{name}`")
+    };
+    let diagnostic = Diagnostic::error(CODE, span, message).with_hint(
+        "name vehicles, vehicle models, or activities with `moves`; without `for` the area is closed to all",
+    );
+    match nearest {
+        Some(nearest) => diagnostic.with_fix(replacement(format!("Change to `{nearest}`"), span, nearest)),
+        None => diagnostic,
+    }
+}
+
 pub(crate) fn not_positive(what: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("{what} must be greater than 0"))
 }

@@ -142,6 +142,7 @@ impl<'a> Collector<'a> {
                 self.define(names().nth(1), NameKind::Vehicle);
                 self.refer(names().nth(2), NameKind::Model);
             }
+            SyntaxKind::ClosedTo => names().skip(1).for_each(|name| self.closed_to(name)),
             SyntaxKind::At => self.refer(names().nth(1), NameKind::Location),
             SyntaxKind::Runs => self.refer(names().nth(1), NameKind::ControlProgram),
             SyntaxKind::Moves => {
@@ -203,6 +204,18 @@ impl<'a> Collector<'a> {
         }
         let initial = values(SyntaxKind::Initial).find(|token| token.kind == SyntaxKind::Name);
         self.refer(initial, kind());
+    }
+
+    /// A vehicle, a model, or an activity after `for` of a keep-out area.
+    fn closed_to(&mut self, name: SyntaxToken<'a>) {
+        let kind = if self.is_declared(Namespace::Vehicle, name.text) {
+            NameKind::Vehicle
+        } else if self.is_declared(Namespace::Callable, name.text) {
+            NameKind::Activity
+        } else {
+            NameKind::Model
+        };
+        self.refer(Some(name), kind);
     }
 
     fn vehicle(&mut self, name: Option<SyntaxToken<'_>>) {

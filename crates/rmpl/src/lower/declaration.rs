@@ -6,9 +6,11 @@ use smol_str::SmolStr;
 use super::bounds::{bounds_in, expression, header_bounds_in};
 use super::statement::signed;
 use super::{Lowering, OptionDecl, OptionValue, name_of, names};
+use crate::parser::KEEPOUT;
 use crate::program::{
     ActivityDecl, Bounds, ConstantDecl, ConstrainDecl, ControlDecl, EventName, ImportDecl, LocationDecl,
-    Moves, Name, ObstacleDecl, ObstacleShape, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
+    Moves, Name, ObstacleDecl, ObstacleKind, ObstacleShape, ScenarioDecl, TerrainDecl, VariableDecl,
+    VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -185,7 +187,13 @@ pub(super) fn obstacle(node: SyntaxNode<'_>) -> Option<ObstacleDecl> {
         },
         _ => return None,
     };
-    Some(ObstacleDecl { name, shape, numbers_span, span: node.span() })
+    let kind = if names(node).next()?.text == KEEPOUT {
+        let closed_to = node.child(SyntaxKind::ClosedTo).into_iter().flat_map(|it| names(it).skip(1));
+        ObstacleKind::KeepOut { closed_to: closed_to.collect() }
+    } else {
+        ObstacleKind::Solid
+    };
+    Some(ObstacleDecl { name, kind, shape, numbers_span, span: node.span() })
 }
 
 pub(super) fn vehicle(node: SyntaxNode<'_>) -> Option<VehicleDecl> {

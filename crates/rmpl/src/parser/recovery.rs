@@ -1,6 +1,6 @@
 //! Where the parser goes on after a mistake.
 
-use super::{CONTINGENT, Parser};
+use super::{CONTINGENT, KEEPOUT, Parser};
 use crate::syntax::SyntaxKind;
 
 /// How far a header is looked along, so that text without any sense is still read in linear time.
@@ -168,7 +168,7 @@ impl Parser<'_> {
         }
         match self.current_text() {
             "terrain" => self.peek() == SyntaxKind::String || self.at_definition_of_nothing(),
-            "location" | "obstacle" | "vehicle" => {
+            "location" | "obstacle" | KEEPOUT | "vehicle" => {
                 self.peek() == SyntaxKind::Name || self.at_definition_of_nothing()
             }
             _ => false,

@@ -5,6 +5,11 @@ use crate::diagnostics::syntax;
 use crate::span::Span;
 use crate::syntax::SyntaxKind;
 
+/// The word that begins the declaration of an area which vehicles may not enter.
+pub(crate) const KEEPOUT: &str = "keepout";
+/// What a keep-out area may be closed to.
+const CLOSED_TO: &str = "a vehicle, a vehicle model, or an activity that moves vehicles";
+
 impl Parser<'_> {
     pub(super) fn world_declaration(&mut self) {
         let node = self.open();
@@ -14,6 +19,7 @@ impl Parser<'_> {
             "terrain" => self.terrain(),
             "location" => self.location(),
             "obstacle" => self.obstacle(),
+            KEEPOUT => self.keepout(),
             _ => self.vehicle(),
         };
         self.end_declaration();
@@ -46,6 +52,27 @@ impl Parser<'_> {
 
     fn obstacle(&mut self) -> SyntaxKind {
         self.declared_name("the name of the obstacle");
+        self.shape();
+        SyntaxKind::ObstacleDecl
+    }
+
+    /// `keepout NAME circle (…) for R1, ATRV, Drive`
+    fn keepout(&mut self) -> SyntaxKind {
+        self.declared_name("the name of the keep-out area");
+        self.shape();
+        if self.at_word("for") {
+            let node = self.open();
+            self.bump();
+            self.declared_name(CLOSED_TO);
+            while self.eat(SyntaxKind::Comma) {
+                self.declared_name(CLOSED_TO);
+            }
+            self.close(node, SyntaxKind::ClosedTo);
+        }
+        SyntaxKind::ObstacleDecl
+    }
+
+    fn shape(&mut self) {
         if self.eat_word("circle") {
             self.coordinates("3 numbers: metres east and north of the centre, and the radius", |count| {
                 count == 3
@@ -61,7 +88,6 @@ impl Parser<'_> {
             }
             self.coordinates("numbers", |_| true);
         }
-        SyntaxKind::ObstacleDecl
     }
 
     fn vehicle(&mut self) -> SyntaxKind {

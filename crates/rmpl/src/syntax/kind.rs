@@ -112,8 +112,10 @@ pub enum SyntaxKind {
     TerrainDecl,
     /// `location NAME (…);`
     LocationDecl,
-    /// `obstacle NAME … ;`
+    /// `obstacle NAME … ;` or `keepout NAME … ;`
     ObstacleDecl,
+    /// `for R1, ATRV, Drive` of a keep-out area
+    ClosedTo,
     /// `const NAME = … ;`
     ConstantDecl,
     /// `state X : { … } = V;`

@@ -87,8 +87,8 @@ fn comments_and_single_blank_lines_are_kept() {
 #[test]
 fn the_world_is_laid_out_too() {
     check(
-        "terrain \"plain\" cell 0.5 origin( 0,-1 );location BASE( 40,-42 );obstacle Rock circle(1,2,3);vehicle R:ATRV at BASE;primitive D(a)[1,2] moves R speed(0.1,0.2);",
-        "terrain \"plain\" cell 0.5 origin (0, -1);\nlocation BASE (40, -42);\nobstacle Rock circle (1, 2, 3);\nvehicle R : ATRV at BASE;\nprimitive D(a)[1,2] moves R speed (0.1, 0.2);\n",
+        "terrain \"plain\" cell 0.5 origin( 0,-1 );location BASE( 40,-42 );obstacle Rock circle(1,2,3);keepout  Dish circle(1,2,3)for R,ATRV ;vehicle R:ATRV at BASE;primitive D(a)[1,2] moves R speed(0.1,0.2);",
+        "terrain \"plain\" cell 0.5 origin (0, -1);\nlocation BASE (40, -42);\nobstacle Rock circle (1, 2, 3);\nkeepout Dish circle (1, 2, 3) for R, ATRV;\nvehicle R : ATRV at BASE;\nprimitive D(a)[1,2] moves R speed (0.1, 0.2);\n",
     );
 }
 

@@ -1,7 +1,7 @@
 //! Places in the declarations that have no body, and in the clauses of primitives.
 
 use super::place::{Place, in_set, innermost, is_sight, value_of};
-use crate::parser::{CLAUSE_WORDS, CONTINGENT};
+use crate::parser::{CLAUSE_WORDS, CONTINGENT, KEEPOUT};
 use crate::program::{Measure, Per};
 use crate::syntax::{SyntaxKind, SyntaxToken};
 
@@ -38,7 +38,14 @@ pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>)
             Place::Bound
         }
         (SyntaxKind::Name, "constrain") if is_constant => in_constrain(context, last),
-        (SyntaxKind::Name, "obstacle") if names == 2 => Place::Shape,
+        (SyntaxKind::Name, "obstacle" | KEEPOUT) if names == 2 => Place::Shape,
+        (SyntaxKind::Name, KEEPOUT) => match (last.kind, last.text) {
+            (SyntaxKind::RightParen, _) => Place::Words(vec!["for"]),
+            (SyntaxKind::Name, "for") | (SyntaxKind::Comma, _) if innermost(context).is_none() => {
+                Place::ClosedTo
+            }
+            _ => Place::Nothing,
+        },
         (SyntaxKind::Name, "terrain") => match last.kind {
             SyntaxKind::String => Place::Words(vec!["cell", "origin"]),
             SyntaxKind::Number => Place::Words(vec!["origin"]),

@@ -11,7 +11,7 @@ use crate::editor::cursor::declaration_at_cursor;
 use crate::editor::name::{NameKind, names_in};
 use crate::editor::outline::{OutlineItem, OutlineKind, outline};
 use crate::parse::Parse;
-use crate::parser::CONTINGENT;
+use crate::parser::{CONTINGENT, KEEPOUT};
 
 pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
     let mut items = Vec::new();
@@ -97,6 +97,11 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             };
             items.extend(values.iter().map(|value| plain(value, CompletionKind::Option)));
         }
+        Place::ClosedTo => {
+            declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
+            items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
+            declared(parse, OutlineKind::Primitive, CompletionKind::Primitive, &mut items);
+        }
         Place::Shape => {
             items.push(keyword("circle", "circle ($0);"));
             items.push(keyword("polygon", "polygon ($0);"));
@@ -111,7 +116,7 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
     items
 }
 
-const DECLARATIONS: [(&str, &str); 14] = [
+const DECLARATIONS: [(&str, &str); 15] = [
     ("constrain", "constrain $1.start to $2.end [$3,$4];$0"),
     ("import", "import \"$1\";$0"),
     ("state", "state $1 : {$2} = $3;$0"),
@@ -125,6 +130,7 @@ const DECLARATIONS: [(&str, &str); 14] = [
     ("terrain", "terrain \"$1\";$0"),
     ("location", "location $1 ($2, $3);$0"),
     ("obstacle", "obstacle $1 circle ($2, $3, $4);$0"),
+    (KEEPOUT, "keepout $1 circle ($2, $3, $4);$0"),
     ("vehicle", "vehicle $1 : $2 at $3;$0"),
 ];
 

@@ -35,6 +35,8 @@ pub(super) enum Place {
     Option,
     OptionValue(String),
     Shape,
+    /// Whom a keep-out area is closed to.
+    ClosedTo,
     /// One of these words.
     Words(Vec<&'static str>),
     /// A new name, or nothing that is known.

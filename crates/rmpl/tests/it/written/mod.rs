@@ -44,11 +44,14 @@ impl Writer {
     }
 
     fn declaration(&mut self) {
-        match self.below(13) {
+        match self.below(14) {
             0 => self.all(&["var", "P", ":", "{", "OK", ",", "BAD", "}", ";"]),
             1 => self.all(&["primitive", "A", "(", "to", ")", "[", "1", ",", "2.5", "]", ";"]),
             2 => self.all(&["location", "SITE", "(", "1", ",", "-", "2", ")", ";"]),
             3 => self.all(&["option", "threat_gap", "=", "2", ";"]),
+            13 => {
+                self.all(&["keepout", "Area", "circle", "(", "1", ",", "2", ",", "3", ")", "for", "R", ";"]);
+            }
             4 => self.all(&["obstacle", "Rock", "circle", "(", "1", ",", "2", ",", "3", ")", ";"]),
             5 => self.all(&["state", "P", ":", "{", "OK", ",", "BAD", "}", "=", "OK", ";"]),
             6 => self.all(&["resource", "R", "0", "..", "9", "*", "x", "=", "(", "3", ")", ";"]),

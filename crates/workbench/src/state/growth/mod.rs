@@ -11,10 +11,8 @@ use std::sync::Arc;
 use link::request::Update;
 use link::{GrowthStanding, PathGrowth};
 use motion::{GrowthStep, PlannerKind};
-use rmpl::program::World;
 use smol_str::SmolStr;
 use snapshot::Snapshot;
-use terrain::Obstacle;
 use tpn::OccurrenceId;
 
 pub use search::{Counts, LastSample, Search, Standing};
@@ -363,11 +361,6 @@ impl Shown {
         let refuse = |search: Search| Search::refused(search.planner, reason.clone());
         Self { occurrence, searches: self.searches.into_iter().map(refuse).collect(), ..self }
     }
-}
-
-/// The obstacles of a world for path planning.
-pub fn obstacles(world: &World) -> Vec<Obstacle> {
-    world.obstacles.iter().map(|it| snapshot::ground::obstacle(&it.shape)).collect()
 }
 
 fn named_traverse<'a>(snapshot: &'a Snapshot, name: &str) -> Option<&'a snapshot::Traverse> {
