@@ -47,6 +47,9 @@ pub enum Happening {
         /// The event that broke it.
         name: SmolStr,
         reason: String,
+        /// Two vehicles touch.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        is_contact: bool,
     },
     /// A new plan was made from here.
     Replanned {

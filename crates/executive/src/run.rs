@@ -167,6 +167,8 @@ struct Violation {
     news: News,
     /// Whether no plan can mend it: an activity that was begun never ends.
     is_final: bool,
+    /// Whether two vehicles touch.
+    is_contact: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -224,8 +226,8 @@ impl Run<'_> {
                 }
             };
             let Some(violation) = violation else { continue };
-            let Violation { name, reason, news, is_final } = violation;
-            self.write(Happening::Violation { name, reason: reason.clone() });
+            let Violation { name, reason, news, is_final, is_contact } = violation;
+            self.write(Happening::Violation { name, reason: reason.clone(), is_contact });
             if is_final {
                 self.write(Happening::Stopped { reason });
                 return Ok(Ending::Stopped);
@@ -252,7 +254,7 @@ impl Run<'_> {
             return None;
         }
         let (name, reason, news) = (contact.name, contact.reason, News::None);
-        let violation = Some(Violation { name, reason, news, is_final: true });
+        let violation = Some(Violation { name, reason, news, is_final: true, is_contact: true });
         Some(Next { point: self.stage.made.origin(), time, violation })
     }
 
@@ -445,7 +447,11 @@ impl Run<'_> {
         let mut known = News::None;
         let violation = |time: Time, reason: String, news: News| {
             let name = self.stage.name(node).into();
-            Next { point, time, violation: Some(Violation { name, reason, news, is_final: false }) }
+            Next {
+                point,
+                time,
+                violation: Some(Violation { name, reason, news, is_final: false, is_contact: false }),
+            }
         };
         for decider in self.deciders(node) {
             let decided = self.decision(&decider, time).map_err(|_| self.too_large(node))?;
@@ -509,7 +515,11 @@ impl Run<'_> {
             _ => return Next { point, time, violation: None },
         };
         let name = self.stage.name(node).into();
-        Next { point, time, violation: Some(Violation { name, reason, news, is_final: false }) }
+        Next {
+            point,
+            time,
+            violation: Some(Violation { name, reason, news, is_final: false, is_contact: false }),
+        }
     }
 
     /// What nature does against the executive, given what that would do next.
@@ -630,7 +640,7 @@ impl Run<'_> {
                 let (name, other) = (self.stage.name(node), self.stage.name(self.stage.made.node(other)));
                 let reason = format!("{name} came at {}, and {other} had to come before", shown(self.now));
                 let (name, news, is_final) = (name.into(), News::None, false);
-                return Ok(Some(Violation { name, reason, news, is_final }));
+                return Ok(Some(Violation { name, reason, news, is_final, is_contact: false }));
             }
             Err(SettleError::NotYet(other)) => {
                 self.wait_for(point, other);
@@ -641,7 +651,7 @@ impl Run<'_> {
                 let name = self.stage.name(node);
                 let reason = format!("{name} could not come at {}", shown(self.now));
                 let (name, news) = (name.into(), News::None);
-                return Ok(Some(Violation { name, reason, news, is_final: false }));
+                return Ok(Some(Violation { name, reason, news, is_final: false, is_contact: false }));
             }
         }
         self.stage.times[node.index()] = Some(self.now);

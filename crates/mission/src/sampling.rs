@@ -207,7 +207,7 @@ const fn run_seed(seed: u64, number: u64) -> u64 {
 
 fn count_breaks(outcome: &RunOutcome, number: u64, tally: &mut Tally) {
     for (index, entry) in outcome.log.iter().enumerate() {
-        let Happening::Violation { name, reason } = &entry.happening else { continue };
+        let Happening::Violation { name, reason, .. } = &entry.happening else { continue };
         let next = outcome.log.get(index + 1);
         let is_stop = matches!(next, Some(Entry { happening: Happening::Stopped { .. }, .. }));
         let breaks = tally.breaks.entry(name.clone()).or_insert_with(|| Breaks {

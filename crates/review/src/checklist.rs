@@ -353,6 +353,14 @@ impl Review {
         worst.unwrap_or(if is_passed { Status::Passed } else { Status::Information })
     }
 
+    /// What a section without lines says, as the line that has passed.
+    pub fn settled(&self, section: Section) -> Option<Line> {
+        let is_settled = self.is_planned()
+            && self.lines(section).is_empty()
+            && self.section_status(section) == Status::Passed;
+        is_settled.then(|| Line::new(Status::Passed, self.nothing(section).trim_end_matches('.').to_owned()))
+    }
+
     /// What a section without lines says: that there is nothing to find fault with, or no plan to look at.
     pub fn nothing(&self, section: Section) -> &'static str {
         match section {

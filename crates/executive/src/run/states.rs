@@ -187,7 +187,7 @@ impl Run<'_> {
             }
         };
         let name = self.stage.name(node).into();
-        Some(Violation { name, reason, news: News::None, is_final: false })
+        Some(Violation { name, reason, news: News::None, is_final: false, is_contact: false })
     }
 
     /// Who a requirement belongs to.
@@ -317,7 +317,13 @@ impl Run<'_> {
             of.values.get(value.index()).map_or("", |value| value.as_str()),
             shown(self.now)
         );
-        Some(Violation { name: self.stage.name(start).into(), reason, news: News::None, is_final: false })
+        Some(Violation {
+            name: self.stage.name(start).into(),
+            reason,
+            news: News::None,
+            is_final: false,
+            is_contact: false,
+        })
     }
 
     /// A reservoir's level changes otherwise than planned: the plan is broken if it does not keep the level in its range any
@@ -393,7 +399,13 @@ impl Run<'_> {
                 let text = format!("{stands}: the plan no longer keeps it {range} in every schedule");
                 (network.start, text)
             };
-        Violation { name: self.stage.name(node).into(), reason, news: News::None, is_final: false }
+        Violation {
+            name: self.stage.name(node).into(),
+            reason,
+            news: News::None,
+            is_final: false,
+            is_contact: false,
+        }
     }
 
     /// Whether what is to come keeps a level in its range in every schedule (SPEC 11), from where it is now.

@@ -132,7 +132,10 @@ fn vehicles_that_touch_end_the_run() {
                 Some(distance(&place(0, time)?, &place(1, time)?))
             })
             .fold(f64::INFINITY, f64::min);
-        let tells = violations(&execution).iter().any(|reason| reason.contains("Alpha and Delta touch"));
+        let tells = execution.log.iter().any(|entry| {
+            matches!(&entry.happening, Happening::Violation { reason, is_contact: true, .. }
+                if reason.contains("Alpha and Delta touch"))
+        });
         assert_eq!(tells, execution.ending == Ending::Stopped, "seed {seed}: {:?}", violations(&execution));
         // Frames are up to a metre apart.
         assert!(tells || nearest > 1.3, "seed {seed}: {nearest} m apart");

@@ -125,6 +125,9 @@ impl ReviewPanel {
         let lines = list.review.lines(section);
         if lines.is_empty() {
             row::quiet(ui, list.context, list.review.nothing(section));
+            if let Some(settled) = list.review.settled(section) {
+                contradict::of_line(ui, list.context, list.review, (section, &settled), commands);
+            }
             return;
         }
         let is_whole = self.whole.contains(section.title());

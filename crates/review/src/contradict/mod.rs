@@ -129,13 +129,17 @@ impl Trial {
         let (network, plan) = (Arc::clone(snapshot.network.as_ref()?), snapshot.plan()?.clone());
         let mut lines = Vec::new();
         for section in Section::ALL {
-            for (index, line) in review.lines(section).into_iter().enumerate() {
-                let key = LineKey::new(section, line);
-                if line.status != Status::Passed || only.is_some_and(|only| *only != key) {
-                    continue;
-                }
+            let of_lines = review.lines(section).into_iter().enumerate();
+            let of_lines = of_lines.filter(|(_, line)| line.status == Status::Passed).map(|(index, line)| {
                 let promise = Promise::of_line(snapshot, (&network, &plan), review, section, index);
-                lines.push((promise, Tried { line: key, schedules: 0, runs: 0, counterexample: None }));
+                (promise, LineKey::new(section, line))
+            });
+            let settled = review.settled(section);
+            let settled = settled.map(|line| (Promise::of_nothing(section), LineKey::new(section, &line)));
+            for (promise, line) in of_lines.chain(settled) {
+                if only.is_none_or(|only| *only == line) {
+                    lines.push((promise, Tried { line, schedules: 0, runs: 0, counterexample: None }));
+                }
             }
         }
         let has_drives = !snapshot.traverses.is_empty();

@@ -33,6 +33,8 @@ pub(super) enum Promise {
     InOrder { variable: SmolStr, nodes: Vec<(usize, NodeId)>, by: Vec<(usize, String)> },
     /// No two of these are under way at a time.
     Apart(Vec<Performed>),
+    /// Vehicles touch in no run.
+    NoContact,
     /// Nothing that is looked at here.
     Nothing,
 }
@@ -124,6 +126,15 @@ impl Promise {
         found.unwrap_or(Self::Nothing)
     }
 
+    /// What a section promises that has passed because it has no lines.
+    pub(super) const fn of_nothing(section: Section) -> Self {
+        match section {
+            Section::Conflicts => Self::Valid,
+            Section::SeparationViolations => Self::NoContact,
+            _ => Self::Nothing,
+        }
+    }
+
     /// What a line about a state, or about the movements of a vehicle, promises: its changes are the plan's, in its order. A
     /// line without any is about all requirements.
     fn of_state(network: &Network, plan: &Plan, line: &crate::Line) -> Option<Self> {
@@ -162,7 +173,10 @@ impl Promise {
 
     /// Whether a schedule says something of it.
     pub(super) const fn is_of_schedules(&self) -> bool {
-        !matches!(self, Self::Lasts { .. } | Self::Runs | Self::Chosen { .. } | Self::Nothing)
+        !matches!(
+            self,
+            Self::Lasts { .. } | Self::Runs | Self::NoContact | Self::Chosen { .. } | Self::Nothing
+        )
     }
 
     /// Whether a run says something of it.
@@ -206,7 +220,7 @@ impl Promise {
                 let time = |node: NodeId| of.times.get(node.index()).copied().flatten();
                 Some(overlap(all, |it| Some([time(it.start)?, time(it.end)?])))
             }
-            Self::Lasts { .. } | Self::Runs | Self::Chosen { .. } | Self::Nothing => None,
+            Self::Lasts { .. } | Self::Runs | Self::NoContact | Self::Chosen { .. } | Self::Nothing => None,
         }
     }
 
@@ -230,6 +244,12 @@ impl Promise {
                     (ending != Ending::Finished).then(|| "the run did not reach the end".to_owned());
                 Some(violation.or(unfinished))
             }
+            Self::NoContact => Some(log.iter().find_map(|entry| match &entry.happening {
+                Happening::Violation { reason, is_contact: true, .. } => {
+                    Some(format!("at {}: {reason}", entry.time.readable()))
+                }
+                _ => None,
+            })),
             Self::Chosen { decision } => {
                 let taken = format!("{decision} takes ");
                 let other = log.iter().find_map(|entry| match &entry.happening {

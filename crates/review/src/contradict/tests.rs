@@ -297,3 +297,24 @@ scenario S[0,30] = { { delay[0,9]; X=A [1,2] }, { delay[0,9]; X=A [1,2] }, { del
     );
     assert_eq!(line.verdict(), Verdict::Survived, "{line:?}");
 }
+
+#[test]
+fn a_contact_in_a_run_contradicts_that_vehicles_keep_apart() {
+    let source = "location A (0, 0); location B (30, 0); location C (0, 30); location D (30, 30);
+        vehicle R1 : ATRV at A; vehicle R2 : ATRV at C;
+        primitive Drive(r, to)[0,100] moves r;
+        scenario S[0,100] = { Drive(R1, B), Drive(R2, D) }";
+    let snapshot = snapshot(source);
+    let reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
+    let of = |is_contact: bool| {
+        let mut trial = Trial::new(&snapshot, &reviewed, None, Effort::default()).expect("a plan");
+        let reason = "R1 and R2 touch".to_owned();
+        let happening = Happening::Violation { name: "Drive#1.end".into(), reason, is_contact };
+        let log = [executive::Entry { time: Time::from(2), happening }];
+        trial.try_run(&Script::default(), &log, Ending::Stopped);
+        let line = trial.tried().find(|it| it.line.section == Section::SeparationViolations);
+        line.expect("vehicles keep apart").verdict()
+    };
+    assert_eq!(of(true), Verdict::Contradicted);
+    assert_eq!(of(false), Verdict::Survived);
+}
