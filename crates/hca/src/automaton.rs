@@ -1,5 +1,6 @@
 //! The automaton as flat data with typed indices (SPEC 8.1).
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rmpl::Span;
@@ -139,6 +140,8 @@ pub struct Transition {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Automaton {
     pub variables: Vec<Variable>,
+    /// The numbers of the variables by their names.
+    pub(crate) by_name: BTreeMap<SmolStr, VariableId>,
     /// Its conditions.
     pub tests: Vec<Test>,
     /// Its primitive locations (Σp).
@@ -196,7 +199,7 @@ impl Automaton {
 
     /// The number of the variable called `name`.
     pub fn variable(&self, name: &str) -> Option<VariableId> {
-        self.variables.iter().position(|variable| variable.name == name).map(|at| VariableId(at as u32))
+        self.by_name.get(name).copied()
     }
 
     /// An estimate that knows the named values; variables that the program does not speak of are left out.

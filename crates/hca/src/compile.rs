@@ -93,7 +93,6 @@ struct Compiler<'vocabulary> {
     automaton: Automaton,
     /// Per location; flattened at the end.
     transitions: Vec<Vec<Transition>>,
-    by_name: BTreeMap<SmolStr, u32>,
     /// Tests already compiled, by the text of their guard.
     by_guard: BTreeMap<String, TestId>,
     diagnostics: Vec<Diagnostic>,
@@ -103,20 +102,14 @@ impl<'vocabulary> Compiler<'vocabulary> {
     fn new(vocabulary: &'vocabulary Vocabulary, diagnostics: Vec<Diagnostic>) -> Self {
         let automaton = Automaton {
             variables: Vec::new(),
+            by_name: BTreeMap::new(),
             tests: Vec::new(),
             locations: Vec::new(),
             composites: Vec::new(),
             transitions: Vec::new(),
             watched_by: Vec::new(),
         };
-        Self {
-            vocabulary,
-            automaton,
-            transitions: Vec::new(),
-            by_name: BTreeMap::new(),
-            by_guard: BTreeMap::new(),
-            diagnostics,
-        }
+        Self { vocabulary, automaton, transitions: Vec::new(), by_guard: BTreeMap::new(), diagnostics }
     }
 
     /// Finds all variables and values first, so that every value set is as wide as its domain.
@@ -142,15 +135,16 @@ impl<'vocabulary> Compiler<'vocabulary> {
     }
 
     fn collect_equality(&mut self, name: &Name, value: &Name) {
-        let at = *self.by_name.entry(name.text.clone()).or_insert_with(|| {
+        let Automaton { variables, by_name, .. } = &mut self.automaton;
+        let VariableId(at) = *by_name.entry(name.text.clone()).or_insert_with(|| {
             let domain = self.vocabulary.domains.get(&name.text);
-            self.automaton.variables.push(Variable {
+            variables.push(Variable {
                 name: name.text.clone(),
                 values: domain.cloned().unwrap_or_default(),
                 closed: domain.is_some(),
                 is_program_variable: self.vocabulary.program_variables.contains(&name.text),
             });
-            self.automaton.variables.len() as u32 - 1
+            VariableId(variables.len() as u32 - 1)
         });
         let Some(variable) = self.automaton.variables.get_mut(at as usize) else { return };
         if variable.values.contains(&value.text) {
@@ -177,7 +171,9 @@ impl<'vocabulary> Compiler<'vocabulary> {
             ConstraintKind::And(parts) => Formula::And(parts.iter().map(|part| self.formula(part)).collect()),
             ConstraintKind::Or(parts) => Formula::Or(parts.iter().map(|part| self.formula(part)).collect()),
             ConstraintKind::Equals { variable, value } => {
-                let Some(&at) = self.by_name.get(&variable.text) else { return Formula::Constant(false) };
+                let Some(VariableId(at)) = self.automaton.variable(&variable.text) else {
+                    return Formula::Constant(false);
+                };
                 let Some(data) = self.automaton.variables.get(at as usize) else {
                     return Formula::Constant(false);
                 };
@@ -379,10 +375,11 @@ impl<'vocabulary> Compiler<'vocabulary> {
             ConstraintKind::And(parts) => parts.iter().for_each(|part| self.goals(part, goals, settings)),
             ConstraintKind::Equals { variable, value } => {
                 goals.push(format_smolstr!("{constraint}"));
-                let Some(&at) = self.by_name.get(&variable.text) else { return };
-                let data = self.automaton.variables.get(at as usize).filter(|data| data.is_program_variable);
+                let Some(id) = self.automaton.variable(&variable.text) else { return };
+                let data =
+                    self.automaton.variables.get(id.0 as usize).filter(|data| data.is_program_variable);
                 if let Some(number) = data.and_then(|data| data.value_number(&value.text)) {
-                    settings.push((VariableId(at), number));
+                    settings.push((id, number));
                 }
             }
             _ => goals.push(format_smolstr!("{constraint}")),

@@ -2,9 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::automaton::{Automaton, CompositeId, CompositeKind, LocationId, TestId, TransitionId};
+use crate::automaton::{
+    Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind, TestId,
+    TransitionId,
+};
 use crate::knowledge::Estimate;
 use crate::marking::{Marking, bits};
+use crate::vocabulary::VariableId;
 
 /// Is told what happens in a step; [`Unobserved`] costs nothing.
 pub trait StepObserver {
@@ -24,7 +28,16 @@ pub struct Unobserved;
 
 impl StepObserver for Unobserved {}
 
-/// A composite whose maintenance is checked, or a sequence to move on, with what that needs at hand.
+/// How a step finds out whether conditions are entailed.
+#[derive(Clone, Copy)]
+enum Source<'known> {
+    /// They are if they are true in all of these states.
+    States(&'known [Estimate]),
+    /// The caller says so.
+    Told(&'known dyn Fn(TestId) -> bool),
+}
+
+/// A composite whose maintenance is checked.
 #[derive(Clone, Debug)]
 struct Watch {
     composite: CompositeId,
@@ -32,11 +45,12 @@ struct Watch {
     range: std::ops::Range<u32>,
 }
 
+/// A composite of which a step finds out whether it completes, or in which it starts what comes next.
 #[derive(Clone, Debug)]
-struct Chain {
+struct Stage {
     composite: CompositeId,
+    kind: CompositeKind,
     range: std::ops::Range<u32>,
-    children: Vec<std::ops::Range<u32>>,
 }
 
 /// A marking of an automaton and the room to compute the next one.
@@ -49,7 +63,15 @@ pub struct Stepper {
     dropped: Vec<bool>,
     watches: Vec<Watch>,
     /// Innermost first.
-    chains: Vec<Chain>,
+    stages: Vec<Stage>,
+    /// Whether a join is among them: then what a transition starts is started after what is inside its target has been
+    /// looked at.
+    has_joins: bool,
+    /// Transitions that have fired and whose targets are still to be started, outermost first.
+    fired: Vec<TransitionId>,
+    /// Which locations and composites complete in this step.
+    completed: Marking,
+    is_completed: Vec<bool>,
     /// Per program variable and overlay: what is known with this step's assertions added.
     overlay: Estimate,
     has_program_variables: bool,
@@ -58,12 +80,6 @@ pub struct Stepper {
 impl Stepper {
     /// Starts in the automaton's start marking.
     pub fn new(automaton: &Arc<Automaton>) -> Self {
-        let range_of = |element: &crate::Element| match element {
-            crate::Element::Location(location) => location.0..location.0 + 1,
-            crate::Element::Composite(id) => {
-                automaton.composite(*id).map_or(0..0, |inner| inner.locations.clone())
-            }
-        };
         let numbered = || {
             automaton.composites.iter().enumerate().map(|(at, composite)| (CompositeId(at as u32), composite))
         };
@@ -72,23 +88,24 @@ impl Stepper {
                 Some(Watch { composite, test: data.maintenance?, range: data.locations.clone() })
             })
             .collect();
-        let mut chains: Vec<Chain> = numbered()
-            .filter(|(_, data)| data.kind == CompositeKind::Sequence)
-            .map(|(composite, data)| Chain {
-                composite,
-                range: data.locations.clone(),
-                children: data.children.iter().map(range_of).collect(),
-            })
+        let is_asked = asked_for(&automaton.composites, &automaton.locations);
+        let mut stages: Vec<Stage> = numbered()
+            .filter(|(id, data)| data.kind == CompositeKind::Sequence || is_asked[id.0 as usize])
+            .map(|(composite, data)| Stage { composite, kind: data.kind, range: data.locations.clone() })
             .collect();
-        chains.reverse();
+        stages.reverse();
         let empty = Marking::empty(automaton.locations.len());
         Self {
             marking: automaton.start(),
             alive: empty.clone(),
+            completed: empty.clone(),
             next: empty,
+            is_completed: vec![false; automaton.composites.len()],
+            has_joins: stages.iter().any(|stage| stage.kind == CompositeKind::Parallel),
+            fired: Vec::with_capacity(automaton.transitions.len()),
             dropped: vec![false; automaton.composites.len()],
             watches,
-            chains,
+            stages,
             overlay: Estimate::unknown(automaton.variables.len()),
             has_program_variables: automaton.variables.iter().any(|variable| variable.is_program_variable),
             automaton: Arc::clone(automaton),
@@ -123,6 +140,35 @@ impl Stepper {
         self.step_observed(std::slice::from_ref(estimate), &mut Unobserved);
     }
 
+    /// The conditions that the next step may ask for, in order: what is asserted and waited for, and what is watched.
+    pub fn asked(&self) -> Vec<TestId> {
+        let watches = self.watches.iter().filter(|watch| self.marking.intersects(&watch.range));
+        let mut asked: Vec<TestId> = watches.map(|watch| watch.test).collect();
+        for location in self.marking.iter().filter_map(|location| self.automaton.location(location)) {
+            asked.extend(location.assertion.as_ref().map(|assertion| assertion.test));
+            let transitions = location.transitions.clone();
+            let transitions = transitions.filter_map(|at| self.automaton.transitions.get(at as usize));
+            asked.extend(transitions.filter_map(|transition| transition.guard));
+        }
+        asked.sort_unstable();
+        asked.dedup();
+        asked
+    }
+
+    /// What the marked locations set of the program's own variables, as variable and value number.
+    pub fn settings(&self) -> impl Iterator<Item = (VariableId, u32)> + '_ {
+        let marked = self.marking.iter().filter_map(|location| self.automaton.location(location));
+        marked
+            .filter_map(|location| location.assertion.as_ref())
+            .flat_map(|assertion| assertion.program_settings.iter().copied())
+    }
+
+    /// Takes one step where the caller says which of the [asked](Self::asked) conditions are entailed, whatever bar is over
+    /// them.
+    pub fn step_told(&mut self, is_entailed: &dyn Fn(TestId) -> bool, observer: &mut impl StepObserver) {
+        self.advance(Source::Told(is_entailed), observer);
+    }
+
     /// Takes one step when the plant is known to be in one of several states: what is true in all of them is known.
     ///
     /// An empty slice knows nothing.
@@ -132,10 +178,10 @@ impl Stepper {
                 let mut overlay = std::mem::replace(&mut self.overlay, Estimate::unknown(0));
                 overlay.copy_from(only);
                 self.apply_program_settings(&mut overlay);
-                self.advance(std::slice::from_ref(&overlay), observer);
+                self.advance(Source::States(std::slice::from_ref(&overlay)), observer);
                 self.overlay = overlay;
             } else {
-                self.advance(states, observer);
+                self.advance(Source::States(states), observer);
             }
         } else {
             let mut states = states.to_vec();
@@ -145,62 +191,38 @@ impl Stepper {
             for state in &mut states {
                 self.apply_program_settings(state);
             }
-            self.advance(&states, observer);
+            self.advance(Source::States(&states), observer);
         }
     }
 
     /// A program variable that is asserted is known in the same step, and only there.
     fn apply_program_settings(&self, estimate: &mut Estimate) {
-        for location in self.marking.iter() {
-            let assertion =
-                self.automaton.location(location).and_then(|location| location.assertion.as_ref());
-            for &(variable, value) in assertion.iter().flat_map(|assertion| &assertion.program_settings) {
-                estimate.set(variable, Some(value));
-            }
+        for (variable, value) in self.settings() {
+            estimate.set(variable, Some(value));
         }
     }
 
-    fn advance(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
-        self.preempt(states, observer);
+    fn advance(&mut self, source: Source<'_>, observer: &mut impl StepObserver) {
+        self.preempt(source, observer);
         self.next.clear();
+        self.completed.clear();
         for at in 0..self.alive.words().len() {
             let word = self.alive.words().get(at).copied().unwrap_or(0);
             for bit in bits(word) {
-                self.leave_or_stay(LocationId(at as u32 * 64 + bit), states, observer);
+                self.leave_or_stay(LocationId(at as u32 * 64 + bit), source, observer);
             }
         }
-        for chain in &self.chains {
-            if !self.marking.intersects(&chain.range) {
-                continue;
-            }
-            let watched_by =
-                self.automaton.watched_by.get(chain.composite.0 as usize).map_or(&[][..], Vec::as_slice);
-            if watched_by.iter().any(|outer| self.dropped.get(outer.0 as usize) == Some(&true)) {
-                continue;
-            }
-            // From the last child backwards, so that a child started here is not taken for one that goes on.
-            for child in (0..chain.children.len().saturating_sub(1)).rev() {
-                let Some(range) = chain.children.get(child) else { continue };
-                if self.marking.intersects(range) && !self.next.intersects(range) {
-                    let following = self
-                        .automaton
-                        .composite(chain.composite)
-                        .and_then(|sequence| sequence.children.get(child + 1));
-                    for &location in following.map_or(&[][..], |following| self.automaton.start_of(following))
-                    {
-                        self.next.insert(location);
-                    }
-                    observer.continued(chain.composite, child);
-                }
-            }
+        for at in 0..self.stages.len() {
+            self.complete(at, observer);
         }
+        self.start_fired_down_to(Automaton::ROOT);
         std::mem::swap(&mut self.marking, &mut self.next);
     }
 
-    fn preempt(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
+    fn preempt(&mut self, source: Source<'_>, observer: &mut impl StepObserver) {
         self.alive.copy_from(&self.marking);
         for watch in &self.watches {
-            let fails = self.marking.intersects(&watch.range) && !holds(&self.automaton, watch.test, states);
+            let fails = self.marking.intersects(&watch.range) && !holds(&self.automaton, watch.test, source);
             if let Some(dropped) = self.dropped.get_mut(watch.composite.0 as usize) {
                 *dropped = fails;
             }
@@ -211,35 +233,152 @@ impl Stepper {
         }
     }
 
-    fn leave_or_stay(&mut self, id: LocationId, states: &[Estimate], observer: &mut impl StepObserver) {
+    fn leave_or_stay(&mut self, id: LocationId, source: Source<'_>, observer: &mut impl StepObserver) {
         let automaton = &*self.automaton;
         let Some(location) = automaton.location(id) else { return };
         if let Some(assertion) = &location.assertion
-            && !holds(automaton, assertion.test, states)
+            && !holds(automaton, assertion.test, source)
         {
             self.next.insert(id);
             return;
         }
+        let (mut stays, mut completes) = (false, true);
         for at in location.transitions.clone() {
             let Some(transition) = automaton.transitions.get(at as usize) else { continue };
-            if transition.guard.is_none_or(|guard| holds(automaton, guard, states)) {
-                for &location in automaton.start_of(&transition.target) {
-                    self.next.insert(location);
+            if transition.guard.is_none_or(|guard| holds(automaton, guard, source)) {
+                completes = false;
+                stays |= transition.target == Element::Location(id);
+                if self.has_joins {
+                    self.fired.push(TransitionId(at));
+                } else {
+                    start(automaton, transition.target, &mut self.next);
                 }
                 observer.fired(TransitionId(at));
             }
         }
-        if !self.next.contains(id) {
+        if completes {
+            self.completed.insert(id);
+        }
+        if !stays {
             observer.left(id);
         }
     }
+
+    /// Starts what has been fired in a composite or inside it, the innermost first. Locations are numbered with the
+    /// composites that hold them, so that what is inside comes later.
+    fn start_fired_down_to(&mut self, composite: CompositeId) {
+        let automaton = &*self.automaton;
+        while let Some(transition) =
+            self.fired.last().and_then(|last| automaton.transitions.get(last.0 as usize))
+        {
+            let parent = automaton.location(transition.source).map(|source| source.parent);
+            if parent.is_some_and(|parent| parent < composite) {
+                return;
+            }
+            start(automaton, transition.target, &mut self.next);
+            self.fired.pop();
+        }
+    }
+
+    /// Finds out whether a composite completes in this step, when that is known of all inside it (SPEC 8.3), and starts
+    /// what comes next in a sequence.
+    fn complete(&mut self, stage: usize, observer: &mut impl StepObserver) {
+        let Some(Stage { composite: id, kind, range }) = self.stages.get(stage).cloned() else { return };
+        let is_active = self.marking.intersects(&range) && !self.is_dropped_from_outside(id);
+        let completes = is_active && {
+            self.start_fired_down_to(CompositeId(id.0 + 1));
+            match kind {
+                CompositeKind::Sequence => self.continue_sequence(id, observer),
+                // A start from outside in this step does not hold a join back: it comes later.
+                CompositeKind::Parallel => !self.next.intersects(&range),
+                CompositeKind::DoWatching => {
+                    self.dropped.get(id.0 as usize) == Some(&true) || self.some_child_completes(id)
+                }
+                CompositeKind::Guarded | CompositeKind::Program => self.some_child_completes(id),
+            }
+        };
+        if let Some(is_completed) = self.is_completed.get_mut(id.0 as usize) {
+            *is_completed = completes;
+        }
+    }
+
+    fn is_dropped_from_outside(&self, composite: CompositeId) -> bool {
+        let watched_by = self.automaton.watched_by.get(composite.0 as usize).map_or(&[][..], Vec::as_slice);
+        watched_by.iter().any(|outer| self.dropped.get(outer.0 as usize) == Some(&true))
+    }
+
+    fn completes(&self, element: Element) -> bool {
+        match element {
+            Element::Location(location) => self.completed.contains(location),
+            Element::Composite(composite) => self.is_completed.get(composite.0 as usize) == Some(&true),
+        }
+    }
+
+    fn some_child_completes(&self, composite: CompositeId) -> bool {
+        let data = self.automaton.composite(composite);
+        data.is_some_and(|data| data.children.iter().any(|&child| self.completes(child)))
+    }
+
+    /// Starts the next part after each that completes; returns whether the last one does.
+    fn continue_sequence(&mut self, id: CompositeId, observer: &mut impl StepObserver) -> bool {
+        let automaton = &*self.automaton;
+        let Some(sequence) = automaton.composite(id) else { return false };
+        for (child, pair) in sequence.children.windows(2).enumerate() {
+            if self.completes(pair[0]) {
+                start(automaton, pair[1], &mut self.next);
+                observer.continued(id, child);
+            }
+        }
+        sequence.children.last().is_some_and(|&last| self.completes(last))
+    }
 }
 
-/// Whether a guard holds: entailed in all states, or for a barred guard not entailed in all of them.
+/// Marks the locations in which an element starts.
 #[inline]
-fn holds(automaton: &Automaton, test: TestId, states: &[Estimate]) -> bool {
-    let Some(test) = automaton.tests.get(test.0 as usize) else { return true };
-    let entailed =
-        states.iter().all(|state| test.condition.is_entailed(state.values(), &automaton.variables));
+fn start(automaton: &Automaton, element: Element, next: &mut Marking) {
+    for &location in automaton.start_of(&element) {
+        next.insert(location);
+    }
+}
+
+/// Of each composite, whether something around it depends on its completion: the parts of a sequence but for the last,
+/// and what completes with something that is asked for. ALWAYS, WHENEVER, and the whole program never complete, and a join
+/// looks at the marks inside it.
+fn asked_for(composites: &[Composite], locations: &[Location]) -> Vec<bool> {
+    let mut is_asked = vec![false; composites.len()];
+    for (at, composite) in composites.iter().enumerate() {
+        let is_own_asked = is_asked[at];
+        let of_children = |place: usize| match composite.kind {
+            CompositeKind::Sequence => is_own_asked || place + 1 < composite.children.len(),
+            CompositeKind::DoWatching | CompositeKind::Guarded => is_own_asked,
+            CompositeKind::Parallel | CompositeKind::Program => false,
+        };
+        for (place, child) in composite.children.iter().enumerate() {
+            if let Element::Composite(child) = child {
+                let repeats = composites.get(child.0 as usize).is_some_and(|it| repeats(it, locations));
+                is_asked[child.0 as usize] = of_children(place) && !repeats;
+            }
+        }
+    }
+    is_asked
+}
+
+/// Whether a composite starts its body again and again.
+fn repeats(composite: &Composite, locations: &[Location]) -> bool {
+    let first = locations.get(composite.locations.start as usize);
+    composite.kind == CompositeKind::Guarded
+        && first.is_some_and(|own| matches!(own.kind, LocationKind::Always | LocationKind::Whenever))
+}
+
+/// Whether a guard holds: its constraint is entailed, or for a barred guard it is not.
+#[inline]
+fn holds(automaton: &Automaton, id: TestId, source: Source<'_>) -> bool {
+    let Some(test) = automaton.tests.get(id.0 as usize) else { return true };
+    let entailed = match source {
+        Source::States(states) => {
+            states.iter().all(|state| test.condition.is_entailed(state.values(), &automaton.variables))
+        }
+        Source::Told(is_entailed) => is_entailed(id),
+    };
     entailed != test.guard.non_entailed
 }

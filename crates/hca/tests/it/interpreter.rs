@@ -79,19 +79,44 @@ impl<'tree> Running<'tree> {
         self.parts.iter().for_each(|part| part.asserted(into));
     }
 
-    /// Transitions of everything that was active in `before`, which has this tree's shape.
-    fn transitions(&self, known: &Known, next: &mut Self) {
+    /// One step of what is active here: what it marks goes to `next`, which has this tree's shape and holds nothing that is
+    /// started from outside. Returns whether it completes (SPEC 8.3).
+    fn step(&self, known: &Known, next: &mut Self) -> bool {
+        let is_watched = match &self.form.kind {
+            ExpressionKind::DoWatching { guard, .. } => holds(guard, known),
+            _ => false,
+        };
+        if !self.active() || is_watched {
+            return self.active();
+        }
+        let completed: Vec<bool> =
+            self.parts.iter().zip(&mut next.parts).map(|(part, next)| part.step(known, next)).collect();
+        let some_part_completes = completed.contains(&true);
         match &self.form.kind {
-            ExpressionKind::Assert(constraint) if self.marked => next.marked |= !entailed(constraint, known),
-            ExpressionKind::Always(_) if self.marked => next.start(),
-            ExpressionKind::IfThenNext { guard, .. } if self.marked => {
-                let branch = usize::from(!holds(guard, known));
-                if let Some(part) = next.parts.get_mut(branch) {
-                    part.start();
-                }
+            ExpressionKind::Assert(constraint) => {
+                next.marked |= !entailed(constraint, known);
+                return !next.marked;
             }
-            ExpressionKind::UnlessThenNext { guard, .. } if self.marked && !holds(guard, known) => {
-                next.parts[0].start();
+            ExpressionKind::Parallel(_) => return !next.active(),
+            ExpressionKind::Sequence(_) => {
+                let (last, before) = completed.split_last().expect("a sequence has parts");
+                for (at, _) in before.iter().enumerate().filter(|(_, completed)| **completed) {
+                    next.parts[at + 1].start();
+                }
+                return *last;
+            }
+            ExpressionKind::Always(_) => {
+                if self.marked {
+                    next.start();
+                }
+                return false;
+            }
+            ExpressionKind::WheneverDoNext { guard, .. } => {
+                next.marked |= self.marked;
+                if self.marked && holds(guard, known) {
+                    next.parts[0].start();
+                }
+                return false;
             }
             ExpressionKind::WhenDoNext { guard, .. } if self.marked => {
                 if holds(guard, known) {
@@ -100,44 +125,21 @@ impl<'tree> Running<'tree> {
                     next.marked = true;
                 }
             }
-            ExpressionKind::WheneverDoNext { guard, .. } if self.marked => {
-                next.marked = true;
-                if holds(guard, known) {
-                    next.parts[0].start();
+            ExpressionKind::IfThenNext { guard, .. } if self.marked => {
+                match next.parts.get_mut(usize::from(!holds(guard, known))) {
+                    Some(part) => part.start(),
+                    None => return true,
                 }
             }
-            ExpressionKind::DoWatching { guard, .. } if self.active() && holds(guard, known) => return,
+            ExpressionKind::UnlessThenNext { guard, .. } if self.marked => {
+                if holds(guard, known) {
+                    return true;
+                }
+                next.parts[0].start();
+            }
             _ => {}
         }
-        for (part, next) in self.parts.iter().zip(&mut next.parts) {
-            part.transitions(known, next);
-        }
-    }
-
-    /// Sequences move on, inner ones first; nothing below a watch that has ended does.
-    fn completions(&self, known: &Known, next: &mut Self) {
-        if let ExpressionKind::DoWatching { guard, .. } = &self.form.kind
-            && self.active()
-            && holds(guard, known)
-        {
-            return;
-        }
-        for (part, next) in self.parts.iter().zip(&mut next.parts) {
-            part.completions(known, next);
-        }
-        if matches!(self.form.kind, ExpressionKind::Sequence(_)) {
-            let ended: Vec<bool> = self
-                .parts
-                .iter()
-                .zip(&next.parts)
-                .map(|(before, after)| before.active() && !after.active())
-                .collect();
-            for (at, ended) in ended.into_iter().enumerate() {
-                if ended && let Some(following) = next.parts.get_mut(at + 1) {
-                    following.start();
-                }
-            }
-        }
+        some_part_completes
     }
 }
 
@@ -245,8 +247,7 @@ fn random_programs_run_as_a_direct_interpreter_runs_them() {
             }
             let mut next = Running::idle(&tree);
             next.clear();
-            running.transitions(&known, &mut next);
-            running.completions(&known, &mut next);
+            running.step(&known, &mut next);
             stepper
                 .step(&automaton.estimate(known.iter().map(|(name, value)| (name.as_str(), value.as_str()))));
             let (mut before, mut after) = (Vec::new(), Vec::new());
