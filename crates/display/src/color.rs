@@ -1,5 +1,5 @@
 //! Colours by their meaning, and what they are in the two themes, after Okabe and Ito.
-#![expect(clippy::unreadable_literal, reason = "colours are read as six digits")]
+#![expect(clippy::unreadable_literal, reason = "a color has six hexadecimal digits")]
 
 /// A colour as red, green and blue.
 pub type Rgb = [u8; 3];

@@ -167,10 +167,10 @@ pub fn label_text(network: &Network, label: LabelId) -> (SmolStr, TextRole) {
 pub fn label_words(label: &Label) -> String {
     let text = &label.text;
     match (label.mode, label.extent) {
-        (LabelMode::Ask, Extent::Start) => format!("requires {text} at its start"),
+        (LabelMode::Ask, Extent::Start) => format!("requires {text} at start"),
         (LabelMode::Ask, _) => format!("requires {text} throughout"),
-        (LabelMode::Tell, Extent::Effect) => format!("sets {text} at its end"),
-        (LabelMode::Tell, Extent::Initial) => format!("{text} holds at first"),
+        (LabelMode::Tell, Extent::Effect) => format!("sets {text} at end"),
+        (LabelMode::Tell, Extent::Initial) => format!("{text} holds initially"),
         (LabelMode::Tell, _) => format!("asserts {text} throughout"),
     }
 }

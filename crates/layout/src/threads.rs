@@ -57,7 +57,7 @@ pub fn thread_name(network: &Network, following: &[Thread]) -> Option<SmolStr> {
     let first = own.flat_map(|it| &it.occurrences).next()?;
     let activity = &network.occurrences.get(first.index())?.activity;
     Some(if thread.path.is_empty() {
-        format_smolstr!("Outside threads · {activity}")
+        format_smolstr!("Main thread · {activity}")
     } else {
         format_smolstr!("Thread {} · {activity}", thread.number())
     })

@@ -15,7 +15,7 @@ use smol_str::SmolStr;
 use crate::metrics::TextRole;
 
 /// What is said of a composite that was preempted, on its lower border.
-pub(crate) const PREEMPTED: &str = "✗ preempted in the last step";
+pub(crate) const PREEMPTED: &str = "✗ preempted in last step";
 
 /// How large that is written.
 pub(crate) const NOTE_SIZE: f64 = 11.5;

@@ -199,9 +199,9 @@ fn starts_of(network: &Network, plan: &Plan, arc: ArcId) -> Option<[f64; 2]> {
 /// When something could start in the other plan, or end if its starts are the same, and what that means.
 fn moved([starts, ends]: [[f64; 2]; 2], now: Option<[f64; 2]>) -> (String, &'static str) {
     if now == Some(starts) {
-        (format!("end was {}", span(ends)), "when it could end in the approved plan")
+        (format!("end was {}", span(ends)), "end in the approved plan")
     } else {
-        (format!("was {}", span(starts)), "when it could start in the approved plan")
+        (format!("was {}", span(starts)), "start in the approved plan")
     }
 }
 
@@ -232,7 +232,7 @@ fn boxes(drawing: &NetworkDrawing, network: &Network, arcs: &[(ArcId, BarChange)
     for rect in rects {
         let dashed = Stroke::solid(ColorRole::Accent, 1.6).dashed(Dash::Dashed);
         list.rectangle(rect.expanded(OFF_BOX), 8.0, None, Some(dashed));
-        list.entitle("something in it is other than in the approved plan");
+        list.entitle("differs from the approved plan");
     }
 }
 
@@ -266,12 +266,12 @@ fn places_of_gone(bounds: Rect, gone: &[Gone], measure: &dyn Measure) -> Vec<Rec
 fn add_gone(places: &[Rect], gone: &[Gone], list: &mut DisplayList) {
     let Some(first) = places.first() else { return };
     let heading = Rect::new(first.min.x, first.min.y - WORDS.1 - 2.0, first.min.x + 160.0, first.min.y - 2.0);
-    let text = Text::new("No longer in the plan", WORDS.0, heading).anchored(Anchor::Start, Fit::Overflow);
+    let text = Text::new("Removed from the plan", WORDS.0, heading).anchored(Anchor::Start, Fit::Overflow);
     list.write(text.colored(ColorRole::TextMuted));
     for (place, Gone { name, times }) in places.iter().zip(gone) {
         let dashed = Stroke::solid(ColorRole::TextMuted, 1.2).dashed(Dash::Dashed);
         list.rectangle(*place, 3.0, None, Some(dashed));
-        list.entitle(format!("{name}: could start {} in the approved plan", span(times[0])));
+        list.entitle(format!("{name}: start {} in the approved plan", span(times[0])));
         let text = Text::new(name.clone(), WORDS.0, *place).anchored(Anchor::Middle, Fit::Overflow);
         list.write(text.colored(ColorRole::TextMuted));
         let middle = place.center().y;

@@ -93,7 +93,7 @@ impl Chart {
             bars: end..end,
         };
         if !self.gone.is_empty() {
-            self.rows.push(row(RowKind::Heading, SmolStr::new_static("No longer in the plan"), 0));
+            self.rows.push(row(RowKind::Heading, SmolStr::new_static("Removed from the plan"), 0));
         }
         let rows =
             self.gone.iter().enumerate().map(|(at, gone)| row(RowKind::Gone(at), gone.name.clone(), 1));

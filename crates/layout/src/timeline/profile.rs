@@ -162,22 +162,22 @@ impl Profile {
             (Supply::Reusable { capacity }, Some(Levels::Peak(peak))) => {
                 let spare = capacity.checked_sub(peak).filter(|spare| spare.is_positive());
                 [
-                    format_smolstr!("at most {} of {}", peak.readable(), capacity.readable()),
+                    format_smolstr!("peak {} of {}", peak.readable(), capacity.readable()),
                     spare.map_or_else(
-                        || SmolStr::new_static("nothing to spare"),
+                        || SmolStr::new_static("none to spare"),
                         |spare| format_smolstr!("{} to spare", spare.readable()),
                     ),
                 ]
             }
             (Supply::Reservoir { least, greatest, .. }, Some(Levels::Range { low, high })) => [
                 format_smolstr!("from {} to {}", low.readable(), high.readable()),
-                format_smolstr!("within {} and {}", least.readable(), greatest.readable()),
+                format_smolstr!("allowed {} to {}", least.readable(), greatest.readable()),
             ],
             (Supply::Reusable { capacity }, _) => {
                 [format_smolstr!("capacity {}", capacity.readable()), SmolStr::default()]
             }
             (Supply::Reservoir { least, greatest, .. }, _) => [
-                format_smolstr!("within {} and {}", least.readable(), greatest.readable()),
+                format_smolstr!("allowed {} to {}", least.readable(), greatest.readable()),
                 SmolStr::default(),
             ],
         }
@@ -232,8 +232,8 @@ impl Taker {
         let amount = self.amount.readable();
         match self.change {
             Change::Uses => format!("{} uses {amount}", self.name),
-            Change::Consumes => format!("{} consumes {amount}, at its start", self.name),
-            Change::Produces => format!("{} produces {amount}, at its end", self.name),
+            Change::Consumes => format!("{} consumes {amount} at start", self.name),
+            Change::Produces => format!("{} produces {amount} at end", self.name),
         }
     }
 }
@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(levels(&profile), [(0.0, 2), (3.0, 3), (5.0, 3), (7.0, 2), (9.0, 0)]);
         let names: Vec<&str> = profile.takers_at(5.0).map(|taker| taker.name.as_str()).collect();
         assert_eq!(names, ["B", "C"]);
-        assert_eq!(profile.summary(), ["at most 3 of 3", "nothing to spare"]);
+        assert_eq!(profile.summary(), ["at most 3 of 3", "none to spare"]);
         assert_eq!(profile.words(6.0), ["3 of 3 used", "B uses 2", "C uses 1"]);
         assert_eq!(profile.range(), [0.into(), 3.into()]);
     }
@@ -298,7 +298,7 @@ mod tests {
         let profile = profile(supply, Some(range), takers);
         assert_eq!(levels(&profile), [(2.0, 10), (20.0, 30)], "at one instant both happen");
         assert_eq!(profile.level_at(1.0), 60.into());
-        assert_eq!(profile.words(10.0), ["level 10", "Charge#1 produces 70, at its end"]);
+        assert_eq!(profile.words(10.0), ["level 10", "Charge#1 produces 70 at end"]);
         assert_eq!(profile.summary(), ["from 10 to 80", "within 0 and 100"]);
     }
 }

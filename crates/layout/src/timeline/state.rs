@@ -146,22 +146,22 @@ pub fn words(network: &Network, plan: &Plan, bar: &Bar) -> Vec<String> {
         BarKind::Need => {
             let carrier = plan.causal_links.iter().find(|link| link.ask == id);
             let mut lines = vec![format!("{owner} {}", crate::text::label_words(label))];
-            lines.extend(carrier.map(|link| format!("carried by {}", network.label_name(link.tell))));
+            lines.extend(carrier.map(|link| format!("supported by {}", network.label_name(link.tell))));
             lines
         }
-        BarKind::Changing => vec![format!("{variable} is changing: {owner} makes it {}", bar.name)],
+        BarKind::Changing => vec![format!("{variable} is changing: {owner} sets it to {}", bar.name)],
         _ => {
             let from = match label.extent {
-                Extent::Initial => format!("{variable} is {} at first", bar.name),
+                Extent::Initial => format!("{variable} is initially {}", bar.name),
                 Extent::Effect => format!("{variable} is {}, set by {owner}", bar.name),
                 _ => format!("{variable} is {}, asserted by {owner}", bar.name),
             };
             let needed = plan.causal_links.iter().filter(|link| link.tell == id);
             let needed: Vec<&str> = needed.filter_map(|link| owner_of(link.ask)).collect();
             let needed = if needed.is_empty() {
-                "nothing needs it".to_owned()
+                "no activity needs it".to_owned()
             } else {
-                format!("needed by {}", needed.join(", "))
+                format!("required by {}", needed.join(", "))
             };
             vec![from, needed]
         }

@@ -279,12 +279,15 @@ fn what_a_value_is_for_is_said_in_words() {
         let bar = chart.bars.iter().find(|bar| bar.kind == kind && bar.label == Some(label)).expect("a bar");
         layout::timeline::state::words(&network, &plan, bar)
     };
-    assert_eq!(words(BarKind::Value, tell), ["ARM is OUT, set by Deploy#1", "needed by Dig#1"]);
-    assert_eq!(words(BarKind::Changing, tell), ["ARM is changing: Deploy#1 makes it OUT"]);
-    assert_eq!(words(BarKind::Value, label("Init(ARM=IN)")), ["ARM is IN at first", "nothing needs it"]);
+    assert_eq!(words(BarKind::Value, tell), ["ARM is OUT, set by Deploy#1", "required by Dig#1"]);
+    assert_eq!(words(BarKind::Changing, tell), ["ARM is changing: Deploy#1 sets it to OUT"]);
+    assert_eq!(
+        words(BarKind::Value, label("Init(ARM=IN)")),
+        ["ARM is initially IN", "no activity needs it"]
+    );
     assert_eq!(
         words(BarKind::Need, ask),
-        ["Dig#1 requires ARM=OUT throughout", "carried by Set(ARM=OUT)@Deploy#1"]
+        ["Dig#1 requires ARM=OUT throughout", "supported by Set(ARM=OUT)@Deploy#1"]
     );
     let link = chart.links.first().expect("the link is drawn");
     assert_eq!(chart.bars[link.from.1].kind, BarKind::Value, "the value carries it");
@@ -313,7 +316,7 @@ fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
         "low 10",
         "high 50",
         "least 0",
-        "greatest 100",
+        "maximum 100",
         "at most 2 of 3",
         "1 to spare",
         "peak 2",
@@ -322,7 +325,7 @@ fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
         assert!(written.contains(&words), "{words} is missing in {written:?}");
     }
     let is_number = |text: &&display::Text| {
-        let words = ["low ", "high ", "least ", "greatest ", "peak ", "capacity "];
+        let words = ["low ", "high ", "least ", "maximum ", "peak ", "capacity "];
         words.iter().any(|word| text.text.starts_with(word))
     };
     let numbers: Vec<_> = list.texts().iter().filter(is_number).collect();
@@ -350,10 +353,7 @@ fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
     let lower = timeline_list(&chart, (&network, &plan), &place, first + 1..chart.rows.len(), &state);
     assert!(lower.texts().iter().any(|text| text.text == "low 10"));
     let written = display::svg(&[&list], Theme::Light, "t");
-    assert!(
-        written.contains("<title>Battery: level 10; Deploy#1 consumes 50, at its start</title>"),
-        "{written}"
-    );
+    assert!(written.contains("<title>Battery: level 10; Deploy#1 consumes 50 at start</title>"), "{written}");
 }
 
 #[test]
@@ -503,7 +503,7 @@ fn a_network_over_another_plan_has_words_beside_what_is_new_or_moved_and_crosses
     let list = changes_list(&drawing, (&network, &plan), &changes, measure);
     let mut words: Vec<String> = list.texts().iter().map(|text| text.text.to_string()).collect();
     words.sort();
-    assert_eq!(words, ["C#1", "No longer in the plan", "end was 2–32", "new", "was 2–32"]);
+    assert_eq!(words, ["C#1", "Removed from the plan", "end was 2–32", "new", "was 2–32"]);
     // What is said along arcs lies over no name, no bound and no circle, and over nothing else that is said.
     let said: Vec<_> = list.texts().iter().filter(|it| it.text.contains("was") || it.text == "new").collect();
     for (at, words) in said.iter().enumerate() {

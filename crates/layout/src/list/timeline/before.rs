@@ -27,7 +27,7 @@ impl Builder<'_> {
     /// The bar of something that is gone.
     pub(super) fn gone(&mut self, index: usize, row: Rect) {
         let Some(Gone { name, times }) = self.chart.gone.get(index) else { return };
-        self.former(*times, row, &format!("{name} is no longer in the plan; approved: {}", words(*times)));
+        self.former(*times, row, &format!("{name}: removed from the plan; approved: {}", words(*times)));
         let middle = row.center().y;
         let [from, to] = [times[0][0], times[1][1]].map(|time| self.track.x(time));
         let line = Stroke::solid(ColorRole::TextMuted, 1.0);
@@ -53,5 +53,5 @@ fn words([start, end]: [[f64; 2]; 2]) -> String {
             format!("{} to {}", rounded(from), rounded(to))
         }
     };
-    format!("from {}, until {}", text(start), text(end))
+    format!("start {}, end {}", text(start), text(end))
 }

@@ -486,15 +486,15 @@ impl Builder<'_> {
             return;
         }
         let own = bar.label.map(|_| match bar.kind {
-            BarKind::Ask => (format_smolstr!("needs {}", bar.name), ColorRole::Ask),
+            BarKind::Ask => (format_smolstr!("requires {}", bar.name), ColorRole::Ask),
             _ => (bar.name.clone(), ColorRole::Tell),
         });
         let labels = bar.labels.iter().filter_map(|label| self.network.labels.get(label.index()));
         let labels = labels.map(|label| match label.mode {
             LabelMode::Ask if label.extent == Extent::Start => {
-                (format_smolstr!("needs {} at its start", label.text), ColorRole::Ask)
+                (format_smolstr!("requires {} at start", label.text), ColorRole::Ask)
             }
-            LabelMode::Ask => (format_smolstr!("needs {}", label.text), ColorRole::Ask),
+            LabelMode::Ask => (format_smolstr!("requires {}", label.text), ColorRole::Ask),
             LabelMode::Tell => (format_smolstr!("sets {}", label.text), ColorRole::Tell),
         });
         let size = SIZES[1];

@@ -84,7 +84,7 @@ impl Builder<'_> {
     fn lines(&mut self, profile: &Profile, plot: &Plot) {
         let limits = match profile.supply {
             Supply::Reusable { capacity } => vec![(capacity, "capacity")],
-            Supply::Reservoir { least, greatest, .. } => vec![(greatest, "greatest"), (least, "least")],
+            Supply::Reservoir { least, greatest, .. } => vec![(greatest, "maximum"), (least, "minimum")],
         };
         let reached = match profile.levels {
             Some(Levels::Peak(peak)) => vec![(peak, "peak")],
