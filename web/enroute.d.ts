@@ -23,7 +23,7 @@ export interface Plan {
   reward?: Time;
   /** The earliest time of the scenario's end. */
   end?: Time;
-  /** Metres driven. */
+  /** Meters driven. */
   length?: number;
   /** Whether no plan is better; only with an objective. */
   optimal?: boolean;
@@ -34,7 +34,7 @@ export type ResourceLevels =
   | { capacity: Time; peak: Time }
   | { least: Time; greatest: Time; low: Time; high: Time };
 
-/** A path between two waypoints. Lengths in metres, durations in mission units. */
+/** A path between two waypoints. Lengths in meters, durations in mission units. */
 export interface Leg {
   to: string;
   path: [number, number][];
@@ -240,7 +240,7 @@ export type SearchFigures = {
   millis: number;
 };
 
-/** Where a vehicle is: metres, and radians counter-clockwise from east. */
+/** Where a vehicle is: meters, and radians counter-clockwise from east. */
 export type Vehicle = {
   name: string;
   x: number;
@@ -254,7 +254,7 @@ export type Vehicle = {
 /** What is done on the terrain. */
 export type Terrain = {
   tool: "look" | "measure" | "location" | "circle" | "appear" | "polygon" | "wall" | "vehicle";
-  /** The places that the tool has so far, in metres east and north. */
+  /** The places that the tool has so far, in meters east and north. */
   points: Array<[number, number]>;
   /** Whether the clearance map is shown. */
   clearance: boolean;
@@ -271,7 +271,7 @@ export type PathGrowth = {
   samples: number;
   total: number;
   vertices: number;
-  /** The length of the best path so far, in metres. */
+  /** The length of the best path so far, in meters. */
   length: number | null;
   /** What the last sample did, in a sentence. */
   sentence: string | null;
@@ -286,7 +286,7 @@ export type PathSearch = {
   vertices: number;
   /** Straight pieces of ground that were checked for obstacles. */
   checks: number;
-  /** The length of the best path so far, in metres. */
+  /** The length of the best path so far, in meters. */
   length: number | null;
   /** Whether the core has drawn all samples. */
   complete: boolean;

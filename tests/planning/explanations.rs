@@ -28,19 +28,28 @@ const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learne
     others out plan program put rest rests room rule ruled rules s search so some start take takes teaches text than that the \
     their them then there these they time times to together too try up wait was what whatever which with would";
 
+/// More such words, of the messages about steps of a search.
+const OF_SEARCH: &str = "Backjump Backtrack Closed Continue Either Expand Find For Found No Open Order Restart Ruled Start Threat \
+    adjacent alternatives cause change changes complete conflicts consistent constraints decide departure depends destination \
+    early every found imply implies incompatible inconsistent initial learning many maximum minimum necessary open or ordered \
+    orderings outgoing overused place possible prevent resource simultaneous state states succeed t these travel users window \
+    windows";
+
 /// Whether a mission has what some words are about.
 type Has = fn(&Network) -> bool;
 
 /// Words that are about something, and whether a mission has that.
 const TELLING: [(&str, Has); 10] = [
-    ("Ask asserts causal link required requires", |it| it.labels.iter().any(|it| it.mode == LabelMode::Ask)),
+    ("Ask asserts assertion causal link required requires", |it| {
+        it.labels.iter().any(|it| it.mode == LabelMode::Ask)
+    }),
     ("Set Tell hold holds set", |it| !it.labels.is_empty()),
     ("apart way", |it| has_conflict(it, |_| true)),
     ("between conflicting gap gaps intervals touch", |it| has_conflict(it, |label| !it.is_lasting(label))),
     ("above below drawn enough filled fits give helps level share use", |it| !it.uses.is_empty()),
-    ("gives", |it| !it.labels.is_empty() || !it.uses.is_empty()),
+    ("gives support supports", |it| !it.labels.is_empty() || !it.uses.is_empty()),
     ("controllable nature took", |it| (0..it.arcs.len()).any(|arc| it.is_uncertain(ArcId::from_index(arc)))),
-    ("best better far less", |it| !it.objective.is_empty()),
+    ("Best best better far improve less optimal", |it| !it.objective.is_empty()),
     ("alternative", |it| !it.decisions.is_empty()),
     ("because ground line near", |it| !it.sights.is_empty()),
 ];
@@ -137,7 +146,8 @@ fn strangers<'a>(network: &Network, text: &str, sentence: &'a str) -> Vec<&'a st
     };
     let is_telling =
         |word: &str| TELLING.iter().any(|(all, has)| all.split(' ').any(|it| it == word) && has(network));
-    let is_plain = |word: &str| PLAIN.split_whitespace().any(|it| it == word);
+    let is_plain =
+        |word: &str| [PLAIN, OF_SEARCH].iter().any(|all| all.split_whitespace().any(|it| it == word));
     words(sentence)
         .filter(|word| !(own.contains(word) || is_plain(word) || is_decision(word) || is_telling(word)))
         .collect()

@@ -238,7 +238,7 @@ impl FileKind {
     pub fn title(self) -> &'static str {
         match self {
             Self::Mission => "Missions and networks",
-            Self::Map => "Maps, and places in GeoJSON",
+            Self::Map => "Maps and GeoJSON places",
             Self::Json => "JSON documents",
             Self::Lesson => "Lessons",
             Self::Comparison => "Missions, plans and reviews",
@@ -263,13 +263,13 @@ impl FileKind {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StorageError {
     /// The place is full; nothing was changed.
-    #[error("there is no room left to keep {bytes} more bytes")]
+    #[error("storage is full: no space for {bytes} more bytes")]
     Full {
         /// How many bytes were to be kept.
         bytes: usize,
     },
     /// There is no place to keep anything, as in a private window.
-    #[error("nothing can be kept here: {reason}")]
+    #[error("storage is not available: {reason}")]
     Unavailable {
         /// What the host says about it.
         reason: String,
@@ -280,7 +280,7 @@ pub enum StorageError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RemoteError {
     /// There is no example of this name.
-    #[error("there is no mission \"{name}\"; there are {}", known.join(", "))]
+    #[error("unknown mission \"{name}\"; known missions: {}", known.join(", "))]
     UnknownMission {
         /// What was asked for.
         name: String,
@@ -288,20 +288,20 @@ pub enum RemoteError {
         known: Vec<String>,
     },
     /// The registry has no such command.
-    #[error("there is no command \"{name}\"")]
+    #[error("unknown command \"{name}\"")]
     UnknownCommand {
         /// What was asked for.
         name: String,
     },
     /// The command cannot be used with these arguments.
-    #[error("the command \"{command}\" cannot be used like this: {reason}")]
+    #[error("invalid arguments for command \"{command}\": {reason}")]
     BadArguments {
         command: String,
         /// What is wrong with the arguments.
         reason: String,
     },
     /// The command cannot be used now.
-    #[error("the command \"{command}\" cannot be used now: {reason}")]
+    #[error("command \"{command}\" is not available now: {reason}")]
     Unavailable {
         command: String,
         /// What it waits for.

@@ -22,14 +22,10 @@ pub const EXAMPLES: &[Example] = &[
         title: "Both paths open",
         source: include_str!("../../../assets/missions/both-paths.rmpl"),
     },
-    Example {
-        name: "detour",
-        title: "A detour",
-        source: include_str!("../../../assets/missions/detour.rmpl"),
-    },
+    Example { name: "detour", title: "Detour", source: include_str!("../../../assets/missions/detour.rmpl") },
     Example {
         name: "negative-cycle",
-        title: "A negative cycle",
+        title: "Negative cycle",
         source: include_str!("../../../assets/missions/negative-cycle.rmpl"),
     },
     Example {
@@ -49,12 +45,12 @@ pub const EXAMPLES: &[Example] = &[
     },
     Example {
         name: "arm",
-        title: "An arm that stays out",
+        title: "Robotic arm (lasting state)",
         source: include_str!("../../../assets/missions/arm.rmpl"),
     },
     Example {
         name: "battery",
-        title: "A battery and a charge",
+        title: "Battery recharge",
         source: include_str!("../../../assets/missions/battery.rmpl"),
     },
     Example {
@@ -64,22 +60,22 @@ pub const EXAMPLES: &[Example] = &[
     },
     Example {
         name: "controllability",
-        title: "Consistent, and not controllable",
+        title: "Consistent but not controllable",
         source: include_str!("../../../assets/missions/controllability.rmpl"),
     },
     Example {
         name: "storm",
-        title: "A storm that comes when it comes",
+        title: "Storm with an uncertain start",
         source: include_str!("../../../assets/missions/storm.rmpl"),
     },
     Example {
         name: "sol",
-        title: "A sol with more wishes than room",
+        title: "Oversubscribed sol",
         source: include_str!("../../../assets/missions/sol.rmpl"),
     },
     Example {
         name: "relay",
-        title: "In sight of the base",
+        title: "Line of sight to the base",
         source: include_str!("../../../assets/missions/relay.rmpl"),
     },
     Example {
@@ -94,12 +90,12 @@ pub const EXAMPLES: &[Example] = &[
     },
     Example {
         name: "orbit",
-        title: "Into orbit",
+        title: "Orbit insertion (mission)",
         source: include_str!("../../../assets/missions/orbit.rmpl"),
     },
     Example {
         name: "flyby",
-        title: "A camera that may fail",
+        title: "Camera failover",
         source: include_str!("../../../assets/missions/flyby.rmpl"),
     },
     Example {

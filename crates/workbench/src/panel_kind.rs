@@ -70,7 +70,7 @@ panel_kinds! {
     /// The distances between the events of the plan, or of the step that is looked at.
     Distances: "distances", "Distances", "specification" "61-the-dispatchable-form", Zoomable, MarkedWhenStale;
     /// A run against nature, whose durations are chosen one by one.
-    Strategy: "strategy", "Against nature", "controllability" "on-screen", MarkedWhenStale;
+    Strategy: "strategy", "Controllability", "controllability" "on-screen", MarkedWhenStale;
     /// The run of a control program.
     Automaton: "automaton", "Automaton", "control-programs" "on-screen", Zoomable;
     /// The checklist of the review, comments and approvals.

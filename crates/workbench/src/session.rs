@@ -269,16 +269,16 @@ impl Session {
         let fragment = outside::fragment(&self.state);
         match self.host.link(&fragment) {
             Some(link) if !outside::is_link_short(&link) => {
-                let words = "The mission is too long for a link that every browser opens. It is saved as a file instead";
+                let words = "This mission is too long for a link. Saving it to a file instead.";
                 self.state.window.info(words);
                 self.state.apply(Command::Library(LibraryCommand::SaveWhole));
                 self.do_effects();
             }
             Some(link) => {
                 self.window_effects.push(WindowEffect::Copy(link));
-                self.state.window.done("The link is on the clipboard");
+                self.state.window.done("Link copied");
             }
-            None => self.state.window.failed("Links work in the web page only"),
+            None => self.state.window.failed("Links are available in the browser version only"),
         }
     }
 }

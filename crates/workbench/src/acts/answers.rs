@@ -24,11 +24,11 @@ impl AppState {
             HostEvent::CoreFailed { message, revision } => {
                 self.give_up(revision);
                 self.window.failed(format!(
-                    "Planning stopped and was started anew. Edit the text, or plan again. ({message})"
+                    "The planner crashed and was restarted ({message}). Edit the text or plan again."
                 ));
             }
             HostEvent::CoreRestarted { message } => {
-                self.window.info(format!("Planning was interrupted ({message}) and has begun again"));
+                self.window.info(format!("Planning was interrupted ({message}) and restarted"));
             }
             HostEvent::FileOpened { kind, name, bytes, token } => {
                 // What the text imports decides on what a file is for, also where the text came just now.
@@ -72,15 +72,16 @@ impl AppState {
                         1 => ", one without data".to_owned(),
                         count => format!(", {count} without data"),
                     };
-                    let use_it = format!("A mission uses it by: terrain \"{name}\";");
-                    self.window.done(format!("{name} is a map of {width} × {height} cells{holes}. {use_it}"));
+                    let use_it = format!("Use it with: terrain \"{name}\";");
+                    self.window
+                        .done(format!("Imported map {name}: {width} × {height} cells{holes}. {use_it}"));
                 }
                 // Texts that name it are planned again.
                 self.document.touch();
             }
             Response::MapRejected { name, reason } => {
                 self.maps.let_go(&name);
-                self.window.failed(format!("The map {name} cannot be used: {reason}"));
+                self.window.failed(format!("Couldn't import map {name}: {reason}"));
             }
             Response::PlacesRead { name, lines } => {
                 self.maps.let_go(&name);
@@ -114,7 +115,7 @@ impl AppState {
 
     fn open_file(&mut self, kind: FileKind, name: &str, bytes: Vec<u8>) {
         if let Some(reason) = too_large(bytes.len(), kind.max_bytes(name)) {
-            self.window.failed(format!("{name} is not opened: {reason}. What is open stays as it is"));
+            self.window.failed(format!("Couldn't open {name}: {reason}. Your current mission is unchanged."));
             return;
         }
         match kind {

@@ -21,7 +21,7 @@ impl AppState {
         let Some(review) = self.review.current().cloned() else {
             self.reviewing().run();
             self.review.wants_report = true;
-            self.window.info("The mission is reviewed first; the report follows");
+            self.window.info("Reviewing first; the report opens when it's done");
             return;
         };
         let revision = self.document.revision();
@@ -53,15 +53,15 @@ impl AppState {
     }
 
     fn schedule(&self, form: ScheduleForm, epoch: &str) -> Result<String, String> {
-        let beyond = || "The schedule does not fit into the calendar".to_owned();
+        let beyond = || "The schedule has dates a calendar file can't hold".to_owned();
         let snapshot = self
             .shown()
             .filter(|shown| shown.plan().is_some() && !self.snapshots.is_stale(self.document.revision()))
-            .ok_or("There is no plan, so there is no schedule")?;
+            .ok_or("Cannot export a schedule without a plan")?;
         let calendar = match epoch {
             "" if !form.needs_epoch() => None,
             epoch => Some(Calendar::new(epoch, snapshot.program.options.time_unit).ok_or_else(|| {
-                format!("\"{epoch}\" is no date such as 2004-01-25 or 2004-01-25T05:05:00Z")
+                format!("Invalid date “{epoch}”. Enter a date such as 2004-01-25 or 2004-01-25T05:05:00Z.")
             })?),
         };
         let plan = self.pins.plan(snapshot);
@@ -88,13 +88,13 @@ impl AppState {
     /// Whether the text is a network that was read as it stands.
     pub(crate) fn has_read_network(&self) -> Result<(), &'static str> {
         if !self.language.is_network() {
-            return Err("the text is not the network of another tool");
+            return Err("this mission isn't an imported network");
         }
         if self.snapshots.is_stale(self.document.revision()) {
-            return Err("the network is still being read");
+            return Err("the network is still loading");
         }
         let is_read = self.shown().is_some_and(|shown| shown.network.is_some());
-        if is_read { Ok(()) } else { Err("the network cannot be read") }
+        if is_read { Ok(()) } else { Err("the network has errors") }
     }
 
     /// The text becomes that of a mission which compiles to the same network. What it was is kept as a version, beside
@@ -103,7 +103,7 @@ impl AppState {
         let text = match self.network_in_rmpl() {
             Ok(text) => text,
             Err(reason) => {
-                self.window.failed(format!("The network cannot be written in RMPL: {reason}"));
+                self.window.failed(format!("Couldn't convert the network to RMPL: {reason}"));
                 return;
             }
         };
@@ -113,9 +113,8 @@ impl AppState {
         self.mission_of_its_own();
         self.library.keep_version(VERSION, self.frame.unix_millis);
         self.document.replace_all(&text);
-        let words = format!(
-            "The network is a mission in RMPL now. Undo brings it back, and the version \"{VERSION}\" keeps it"
-        );
+        let words =
+            format!("Converted to RMPL. Undo to go back; the network is saved as version “{VERSION}”.");
         self.window.done(words);
     }
 
@@ -127,7 +126,7 @@ impl AppState {
                 self.window.save_file(format!("{}{ending}", self.mission), text.into_bytes());
             }
             Err(reason) => {
-                self.window.failed(format!("The network is not written: {reason}"));
+                self.window.failed(format!("Couldn't save the network: {reason}"));
             }
         }
     }
@@ -142,10 +141,10 @@ impl AppState {
             return Ok((network_ending(text), text.to_owned()));
         }
         if self.snapshots.is_stale(self.document.revision()) {
-            return Err("what is shown is of an earlier text".to_owned());
+            return Err("the network is out of date".to_owned());
         }
         let network = self.shown().and_then(|shown| shown.network.as_deref());
-        let network = network.ok_or("there is none")?;
+        let network = network.ok_or("the mission has no network")?;
         match form {
             NetworkForm::PlanSchema => {
                 let text = serde_json::to_string_pretty(&plan_schema::write(network));
@@ -157,8 +156,8 @@ impl AppState {
 
     fn network_in_rmpl(&self) -> Result<String, String> {
         self.has_read_network()?;
-        let shown = self.shown().ok_or("the network is still being read")?;
-        let network = shown.network.as_deref().ok_or("the network cannot be read")?;
+        let shown = self.shown().ok_or("the network is still loading")?;
+        let network = shown.network.as_deref().ok_or("the network has errors")?;
         let said: Vec<String> = shown.problems.iter().map(|problem| problem.message.clone()).collect();
         rmpl_text::write(network, &said).map_err(|obstacle| obstacle.told(network, &[], &[]))
     }

@@ -94,8 +94,8 @@ impl AppState {
         let errors: Arc<[LessonError]> = errors.into();
         if !errors.is_empty() {
             let count =
-                if errors.len() == 1 { "a mistake".to_owned() } else { format!("{} mistakes", errors.len()) };
-            self.window.failed(format!("{file} has {count}; the panel lists them"));
+                if errors.len() == 1 { "1 error".to_owned() } else { format!("{} errors", errors.len()) };
+            self.window.failed(format!("{file} has {count}; see the Lesson panel"));
         }
         self.lesson.own.insert(name.clone(), (Arc::new(lesson), errors));
         self.open_lesson(&name, stop);
@@ -122,7 +122,7 @@ impl AppState {
                 (Arc::new(lesson), errors.into())
             }
             (None, None) => {
-                self.window.failed(format!("There is no lesson \"{name}\""));
+                self.window.failed(format!("Unknown lesson “{name}”"));
                 return;
             }
         };
@@ -247,7 +247,7 @@ impl AppState {
             return;
         }
         let Some(is_right) = ask.answer.is_right(&text, &Description::of(self)) else {
-            self.window.info("This cannot be judged while the mission is worked out");
+            self.window.info("Wait until planning ends, then check your answer");
             return;
         };
         self.note_answer(Given { text, is_right });
@@ -285,7 +285,7 @@ impl AppState {
                         self.document.replace_all(&text);
                     } else {
                         let text = format!(
-                            "\"{before}\" does not stand in the text; begin with the lesson's text again"
+                            "Couldn't find “{before}” in the text. Choose Reset text, then try again."
                         );
                         self.window.info(text);
                     }

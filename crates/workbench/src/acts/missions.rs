@@ -39,7 +39,7 @@ impl AppState {
                 let id = id.unwrap_or_else(|| self.mission_of_its_own());
                 if let Some(copy) = self.library.duplicate(&id, now_millis) {
                     self.open_mission(&copy);
-                    self.window.done(format!("This is \"{}\" now", self.mission));
+                    self.window.done(format!("Opened copy “{}”", self.mission));
                 }
             }
             LibraryCommand::Delete(id) => self.delete_mission(id),
@@ -56,7 +56,7 @@ impl AppState {
                 let name = name.trim();
                 let name = if name.is_empty() { "Unnamed" } else { name };
                 self.library.keep_version(name, now_millis);
-                self.window.done(format!("The version \"{name}\" is kept"));
+                self.window.done(format!("Saved version “{name}”"));
             }
             LibraryCommand::RestoreVersion(index) => self.restore_version(index),
             LibraryCommand::TurnIntoRmpl => self.turn_into_rmpl(),
@@ -108,7 +108,7 @@ impl AppState {
     pub(crate) fn open_mission(&mut self, id: &MissionId) {
         self.note_text();
         let Some(mission) = self.library.mission(id) else {
-            self.window.failed("This mission is not in the library of this browser");
+            self.window.failed("This mission isn't saved in this browser");
             return;
         };
         let (name, text) = (mission.name.clone(), mission.joined_text());
@@ -166,7 +166,7 @@ impl AppState {
     fn delete_mission(&mut self, id: Option<MissionId>) {
         let open = self.library.open_id().cloned();
         let Some(id) = id.or_else(|| open.clone()) else {
-            self.window.info("Examples stay; only missions of your own can be deleted");
+            self.window.info("Examples can't be deleted");
             return;
         };
         self.note_text();
@@ -181,7 +181,7 @@ impl AppState {
             }
             self.window.dialog = dialog;
         }
-        let text = format!("\"{name}\" is deleted; File · Bring back the deleted mission undoes that");
+        let text = format!("Deleted “{name}”. To restore it, choose File > Restore deleted mission.");
         self.window.done(text);
     }
 
@@ -192,7 +192,7 @@ impl AppState {
         let name = version.name.clone();
         self.document.replace_all(&text);
         self.window.dialog = None;
-        self.window.done(format!("This is the version \"{name}\"; undo takes it back"));
+        self.window.done(format!("Restored version “{name}”. Undo to go back."));
     }
 
     /// Lets the user save the open mission: to the file it has, as its text or as a whole; with `asks` to another file,
@@ -222,7 +222,7 @@ impl AppState {
             forms.reverse();
         }
         if asks && whole.is_none() || forms.is_empty() {
-            self.window.info("The maps of this mission are still being read; try again");
+            self.window.info("The maps of this mission are still loading. Try again soon.");
             return;
         }
         let downloads = if asks { whole.into_iter().collect() } else { texts };
@@ -239,7 +239,7 @@ impl AppState {
             Err(error) => return self.open_what_is_no_mission(name, error.into_bytes()),
         };
         let refuse = |state: &mut Self, reason: &str| {
-            let text = format!("{name} is not opened: {reason}. What is open stays as it is");
+            let text = format!("Couldn't open {name}: {reason}. Your current mission is unchanged.");
             state.window.failed(text);
         };
         match Mission::from_json(&text) {
@@ -271,7 +271,7 @@ impl AppState {
             return self.maps.open_file(name, bytes, &mut self.window);
         }
         let reason = refusal(&bytes).map_or_else(|| NO_MISSION.to_owned(), |reason| reason.to_string());
-        let text = format!("{name} is not opened: {reason}. What is open stays as it is");
+        let text = format!("Couldn't open {name}: {reason}. Your current mission is unchanged.");
         self.window.failed(text);
     }
 
@@ -287,7 +287,8 @@ impl AppState {
         match record {
             Some(Ok(record)) => self.window.ask(Effect::JoinReview(Box::new(record))),
             Some(Err(reason)) => {
-                let words = format!("The review of this mission cannot be used: {reason}. It is kept aside");
+                let words =
+                    format!("Couldn't read the review of this mission: {reason}. A copy was set aside.");
                 self.window.failed(words);
                 let aside = Aside { reason: reason.to_string(), text: text.unwrap_or_default() };
                 self.window.ask(Effect::SetReviewAside(aside));
@@ -318,10 +319,10 @@ impl AppState {
 }
 
 /// Why a file is not opened as a mission, and what is read.
-const NO_MISSION: &str = "it does not read as a mission in RMPL, as a network (plan-schema or Enroute in JSON or EDN, pTPN in XML), \
-                          as a plan of PlanDev, as a control program or as a whole mission (.enroute), and it is no map (PNG, PGM, TIFF, PDS3, ESRI \
-                          ASCII grid, MovingAI or ROS). Places (.geojson), lessons (.md), plans, runs and reviews (.json) are read by \
-                          the endings of their names";
+const NO_MISSION: &str = "unrecognized format. Supported: missions and control programs (.rmpl, \
+                          .enroute), networks (.tpn.json, .tpn.edn, .tpn), PlanDev plans (.json), maps \
+                          (PNG, PGM, TIFF, PDS3, ESRI ASCII grid, MovingAI, ROS), places (.geojson), \
+                          lessons (.md), saved plans, runs and reviews (.json)";
 
 /// Whether a file is a mission: its name says so, or it reads as one.
 fn reads_as_mission(name: &str, text: &str) -> bool {

@@ -156,7 +156,7 @@ impl AppState {
                 self.terrain.tool = Tool::Look;
             }
             if !self.is_executing() {
-                self.window.failed("Obstacles appear only in a mission that is executed");
+                self.window.failed("Run the mission first, then add an obstacle");
                 return;
             }
         }
@@ -183,7 +183,7 @@ impl AppState {
                     let now_secs = self.frame.now_secs;
                     self.contradict.start(update, review, only, now_secs, &mut self.window);
                 }
-                None => self.window.failed("The present text has not been reviewed"),
+                None => self.window.failed("Review the current text first"),
             },
             ContradictCommand::Replay(line) => {
                 let script = review.and_then(|review| self.contradict.script(&review, &line));
@@ -285,7 +285,7 @@ impl AppState {
     fn refuses_text(&mut self, bytes: usize) -> bool {
         let reason = too_large(bytes, MAX_TEXT_BYTES);
         if let Some(reason) = &reason {
-            let words = format!("The text is too long for a mission: {reason}. What is open stays as it is");
+            let words = format!("Text too long: {reason}. Your current mission is unchanged.");
             self.window.failed(words);
         }
         reason.is_some()

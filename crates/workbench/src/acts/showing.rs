@@ -74,7 +74,7 @@ impl AppState {
         if let Some((line, target)) = &show.step {
             match self.step_of(target) {
                 Some(step) => self.apply_to_search(SearchCommand::GoTo(step)),
-                None => self.tell_lecturer(*line, "the search has no such step"),
+                None => self.tell_lecturer(*line, "the search doesn't have this step"),
             }
         }
         if let Some(moments) = show.moments {
@@ -84,7 +84,7 @@ impl AppState {
             let found = self.shown().and_then(|shown| Selection::by_name(shown, name));
             match found {
                 Some(selection) => self.writing().select(selection),
-                None => self.tell_lecturer(*line, &format!("the mission has nothing named \"{name}\"")),
+                None => self.tell_lecturer(*line, &format!("nothing in the mission is named “{name}”")),
             }
         }
         if show.samples.is_some() || show.planner.is_some() {
@@ -168,8 +168,10 @@ impl AppState {
             Expectation::Program => (Status::Program, "is a control program"),
         };
         if is_its_mission && self.lesson.text() == Some(self.document.text()) && self.status() != status {
-            let text =
-                format!("The head of the lesson says that its mission {words} (`expects`); that is not so");
+            let text = format!(
+                "The lesson header (expects) states that its mission {words}, but the planner \
+                         found otherwise"
+            );
             self.window.failed(text);
         }
     }
@@ -178,7 +180,7 @@ impl AppState {
     fn tell_lecturer(&mut self, line: u32, message: &str) {
         let is_own_text = self.lesson.text() == Some(self.document.text());
         let kind = if is_own_text { ToastKind::Failed } else { ToastKind::Info };
-        let whose = if is_own_text { "Line" } else { "The text was edited. Line" };
+        let whose = if is_own_text { "Line" } else { "You edited the text. Line" };
         self.window.toasts.add(kind, format!("{whose} {line} of the lesson: {message}"));
     }
 }

@@ -19,7 +19,7 @@ pub struct Terrain {
         )
     )]
     pub tool: &'static str,
-    /// The places that the tool has so far, in metres east and north.
+    /// The places that the tool has so far, in meters east and north.
     pub points: Vec<[f64; 2]>,
     /// Whether the clearance map is shown.
     pub clearance: bool,
@@ -38,7 +38,7 @@ pub struct PathGrowth {
     pub samples: u32,
     pub total: u32,
     pub vertices: u32,
-    /// The length of the best path so far, in metres.
+    /// The length of the best path so far, in meters.
     pub length: Option<f64>,
     /// What the last sample did, in a sentence.
     pub sentence: Option<String>,
@@ -55,7 +55,7 @@ pub struct PathSearch {
     pub vertices: u32,
     /// Straight pieces of ground that were checked for obstacles.
     pub checks: u32,
-    /// The length of the best path so far, in metres.
+    /// The length of the best path so far, in meters.
     pub length: Option<f64>,
     /// Whether the core has drawn all samples.
     pub complete: bool,
@@ -63,7 +63,7 @@ pub struct PathSearch {
     pub refusal: Option<String>,
 }
 
-/// Where a vehicle is: metres, and radians counter-clockwise from east.
+/// Where a vehicle is: meters, and radians counter-clockwise from east.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Vehicle {

@@ -36,7 +36,7 @@ export interface Plan {
   reward?: Time;
   /** The earliest time of the scenario's end. */
   end?: Time;
-  /** Metres driven. */
+  /** Meters driven. */
   length?: number;
   /** Whether no plan is better; only with an objective. */
   optimal?: boolean;
@@ -47,7 +47,7 @@ export type ResourceLevels =
   | { capacity: Time; peak: Time }
   | { least: Time; greatest: Time; low: Time; high: Time };
 
-/** A path between two waypoints. Lengths in metres, durations in mission units. */
+/** A path between two waypoints. Lengths in meters, durations in mission units. */
 export interface Leg {
   to: string;
   path: [number, number][];

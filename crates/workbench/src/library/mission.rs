@@ -130,13 +130,13 @@ pub const FORMAT: &str = "enroute-mission/1";
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MissionError {
     /// It is no mission at all.
-    #[error("it is no mission file")]
+    #[error("not a mission file")]
     NoMission,
     /// A later version of the program wrote it.
-    #[error("it is in a format that is not known here ({0})")]
+    #[error("unknown mission format {0}; update Enroute to open it")]
     Unknown(String),
     /// It says that it is a mission, and is damaged.
-    #[error("it is damaged: {0}")]
+    #[error("the file is damaged: {0}")]
     Damaged(String),
 }
 
@@ -208,7 +208,7 @@ impl Mission {
         let mission: Self =
             serde_json::from_value(value).map_err(|error| MissionError::Damaged(error.to_string()))?;
         if mission.texts.is_empty() {
-            return Err(MissionError::Damaged("it has no text".to_owned()));
+            return Err(MissionError::Damaged("the text is missing".to_owned()));
         }
         Ok(mission)
     }

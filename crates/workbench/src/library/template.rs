@@ -14,13 +14,13 @@ pub struct Template {
 
 /// All of them, the plainest first.
 pub const TEMPLATES: &[Template] = &[
-    Template { name: "empty", title: "Empty", about: "Nothing but the caret", source: "" },
+    Template { name: "empty", title: "Empty", about: "Start from an empty text", source: "" },
     Template {
         name: "sequence",
-        title: "A first mission",
-        about: "Three activities, two of them at the same time",
+        title: "First mission",
+        about: "Three activities, two in parallel",
         source: "// Three activities: one after the other with `;`, at the same time with `,`.\n\
-                 // Bounds are least and greatest durations.\n\n\
+                 // Bounds are minimum and maximum durations.\n\n\
                  primitive Wake-Up()[1,2];\n\
                  primitive Take-Picture(what)[2,4];\n\
                  primitive Measure-Wind()[5,8];\n\n\
@@ -31,9 +31,9 @@ pub const TEMPLATES: &[Template] = &[
     },
     Template {
         name: "rover",
-        title: "A rover on a map",
-        about: "Places, a vehicle, and two ways to choose from",
-        source: "// Times are in minutes, distances in metres.\n\n\
+        title: "Rover on a map",
+        about: "Places, a vehicle, and a choice between two paths",
+        source: "// Times are in minutes, distances in meters.\n\n\
                  terrain \"tai-plain\" cell 0.6 origin (0, 0);\n\n\
                  location BASE (24, 52);\n\
                  location ROCK (120, 70);\n\

@@ -87,7 +87,7 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
             }
             "mission" => match mission_file::example(value) {
                 Some(example) => state.apply(Command::OpenExample(example.name.into())),
-                None => state.window.failed(format!("There is no mission \"{value}\"")),
+                None => state.window.failed(format!("Unknown mission “{value}”")),
             },
             "source" => match unpack(value) {
                 Ok(source) => state.apply(Command::OpenSource { name: "shared".into(), source }),
@@ -148,15 +148,11 @@ pub fn is_link_short(link: &str) -> bool {
 /// Why the text of a link is not opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 enum LinkError {
-    #[error(
-        "The mission in this link is damaged: a part of the link is missing or was changed. What is open stays as it is"
-    )]
+    #[error("Couldn't open this link: it is incomplete or was changed. Your current mission is unchanged.")]
     Damaged,
-    #[error(
-        "This link is of a later version of Enroute. Load the page again to get it; what is open stays as it is"
-    )]
+    #[error("This link needs a later version of Enroute. Reload the page to update.")]
     Newer,
-    #[error("The mission in this link has more than {} MB and is not opened. What is open stays as it is", MAX_TEXT_BYTES >> 20)]
+    #[error("Couldn't open this link: the mission has more than {} MB. Your current mission is unchanged.", MAX_TEXT_BYTES >> 20)]
     TooLong,
 }
 

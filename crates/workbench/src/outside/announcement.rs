@@ -31,18 +31,17 @@ fn plan_words(state: &AppState) -> Option<String> {
                     Some(file) => format!("{file}, line {}", problem.line),
                     None => format!("Line {}", problem.line),
                 };
-                format!("{line}: {}", problem.message)
+                format!("{line}: {}", problem.message.replace('`', ""))
             });
             format!("{count} {noun}. {place}.")
         }
-        Status::NoPlan => {
-            first().map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message))
-        }
-        Status::Undecided => "Not decided whether there is a plan.".to_owned(),
-        Status::Plan if state.is_improving() => "Plan found. A better one is looked for.".to_owned(),
+        Status::NoPlan => first()
+            .map_or_else(|| "No plan.".to_owned(), |it| format!("No plan. {}.", it.message.replace('`', ""))),
+        Status::Undecided => "No result: planning was stopped.".to_owned(),
+        Status::Plan if state.is_improving() => "Plan found. Searching for a better one.".to_owned(),
         Status::Plan => match verdict.map(|verdict| verdict.valid) {
             Some(true) => "Plan found and verified.".to_owned(),
-            Some(false) => "A plan was found that the checker refuses.".to_owned(),
+            Some(false) => "The independent checker rejected the plan.".to_owned(),
             None => "Plan found.".to_owned(),
         },
     })
@@ -53,7 +52,7 @@ fn step_words(state: &AppState) -> Option<String> {
     let trace = view.recording.trace();
     let entry = trace.events.get(view.step.step)?;
     let words = event(view.recording.network(), trace, &entry.event);
-    Some(format!("Step {} of {}: {words}.", view.step.step + 1, trace.events.len()))
+    Some(format!("Step {} of {}: {words}", view.step.step + 1, trace.events.len()))
 }
 
 fn program_words(state: &AppState) -> Option<String> {

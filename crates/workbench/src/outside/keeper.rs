@@ -108,7 +108,7 @@ impl Keeper {
             Some(id) => {
                 self.wants_last = false;
                 state.open_mission(&id);
-                state.window.done("Your text is as you left it");
+                state.window.done("Restored your last session");
             }
             None => self.wants_last = self.shelf == Shelf::Opening,
         }
@@ -166,10 +166,10 @@ impl Keeper {
                         }
                     }
                     Ok(None) => {
-                        state.window.failed(format!("The map {name} is not kept any more"));
+                        state.window.failed(format!("The map {name} is no longer saved. Import it again."));
                     }
                     Err(reason) => {
-                        let text = format!("The map {name} cannot be read: {reason}");
+                        let text = format!("Couldn't read map {name}: {reason}");
                         state.window.failed(text);
                     }
                 }
@@ -325,7 +325,7 @@ impl Keeper {
                     Ok(mission) if mission.id.0 == id => {
                         state.library.take_in(mission);
                     }
-                    Ok(_) => Self::set_aside(state, key, &bytes, "it says that it is another mission"),
+                    Ok(_) => Self::set_aside(state, key, &bytes, "the identifiers differ"),
                     Err(error) => Self::set_aside(state, key, &bytes, &error.to_string()),
                 }
             }
@@ -338,8 +338,8 @@ impl Keeper {
     fn set_aside(state: &mut AppState, key: String, bytes: &[u8], reason: &str) {
         state.library.unreadable.push(Unreadable { key, reason: reason.to_owned(), bytes: bytes.into() });
         let count = state.library.unreadable.len();
-        let what = if count == 1 { "A kept mission" } else { "Kept missions" };
-        let text = format!("{what} cannot be read ({reason}); it stays where it is, see File · Missions");
+        let what = if count == 1 { "A saved mission" } else { "Saved missions" };
+        let text = format!("{what} can't be opened ({reason}). To export it, choose File > Missions….");
         state.window.failed(text);
     }
 
@@ -399,17 +399,18 @@ impl Keeper {
         }
         match &keeping {
             Keeping::Nothing(reason) if !std::mem::replace(&mut self.has_complained, true) => {
-                let text = format!("Your text is not kept when this closes ({reason}); save it as a file");
-                state.window.failed(text);
-            }
-            Keeping::LatestOnly(reason) if !std::mem::replace(&mut self.has_complained, true) => {
                 let text = format!(
-                    "Only your latest text is kept, without maps and versions ({reason}); save the mission as a file"
+                    "Saving failed ({reason}). Save your mission to a file before you close this window."
                 );
                 state.window.failed(text);
             }
+            Keeping::LatestOnly(reason) if !std::mem::replace(&mut self.has_complained, true) => {
+                let text =
+                    format!("Maps and versions can't be saved ({reason}). Save your mission to a file.");
+                state.window.failed(text);
+            }
             Keeping::Kept if std::mem::take(&mut self.has_complained) => {
-                state.window.done("Your missions are kept again");
+                state.window.done("Saving works again");
             }
             _ => {}
         }

@@ -81,7 +81,7 @@ fn put_aside(host: &mut dyn Host, state: &AppState, text: &str) -> Result<(), St
             None => return host.store(&key, text).map_err(|reason| reason.to_string()),
         }
     }
-    Err("too many reviews that cannot be used are kept aside already".to_owned())
+    Err("too many unreadable reviews have been set aside".to_owned())
 }
 
 const SETTINGS_KEY: &str = "enroute/settings-1";

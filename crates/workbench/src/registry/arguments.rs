@@ -10,11 +10,11 @@ use crate::state::automaton::{AutomatonCommand, Program, ProgramPart};
 
 /// The component and its mode by name; without a mode, the component is left to behave.
 pub(super) fn injection(state: &AppState, arguments: &Value) -> Result<Command, String> {
-    let model = state.automaton.program().and_then(Program::model).ok_or("there is no plant")?;
+    let model = state.automaton.program().and_then(Program::model).ok_or("no plant model")?;
     let component = text_argument(arguments, "component")?;
     let (id, mode) = if arguments.get("mode").is_none_or(Value::is_null) {
         let id = model.component_named(component);
-        (id.ok_or_else(|| format!("the model has no component `{component}`"))?, None)
+        (id.ok_or_else(|| format!("unknown component {component}"))?, None)
     } else {
         let (id, mode) = model.component_mode(component, text_argument(arguments, "mode")?)?;
         (id, Some(mode))
@@ -24,15 +24,15 @@ pub(super) fn injection(state: &AppState, arguments: &Value) -> Result<Command, 
 
 /// What is known of a variable of a program without a plant; without a value, nothing is.
 pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, String> {
-    let automaton = state.automaton.program().and_then(Program::automaton).ok_or("there is no program")?;
+    let automaton = state.automaton.program().and_then(Program::automaton).ok_or("no control program")?;
     let name = text_argument(arguments, "variable")?;
     let found = automaton.variables.iter().position(|it| it.name == name);
-    let at = found.ok_or_else(|| format!("the program has no variable `{name}`"))?;
+    let at = found.ok_or_else(|| format!("unknown variable {name}"))?;
     let value = match arguments.get("value").and_then(Value::as_str) {
         None => None,
         Some(value) => {
             let found = automaton.variables[at].values.iter().position(|it| it == value);
-            Some(found.ok_or_else(|| format!("`{name}` has no value `{value}`"))? as u32)
+            Some(found.ok_or_else(|| format!("{name} has no value {value}"))? as u32)
         }
     };
     Ok(Command::Automaton(AutomatonCommand::Know(VariableId(at as u32), value)))
@@ -44,7 +44,7 @@ pub(super) fn part(_: &AppState, arguments: &Value) -> Result<Command, String> {
     let found = ProgramPart::ALL.into_iter().find(|part| part.name() == name);
     let part = found.ok_or_else(|| {
         format!(
-            "there is no part \"{name}\"; there are {}",
+            "unknown part \"{name}\"; known parts: {}",
             ProgramPart::ALL.map(ProgramPart::name).join(", ")
         )
     })?;
@@ -53,18 +53,18 @@ pub(super) fn part(_: &AppState, arguments: &Value) -> Result<Command, String> {
 
 pub(super) fn text_argument<'a>(arguments: &'a Value, name: &str) -> Result<&'a str, String> {
     let value = arguments.get(name).unwrap_or(arguments);
-    value.as_str().ok_or_else(|| format!("it takes {{\"{name}\": text}}"))
+    value.as_str().ok_or_else(|| format!("expected {{\"{name}\": text}}"))
 }
 
 pub(super) fn number_argument(arguments: &Value, name: &str) -> Result<f64, String> {
     let value = arguments.get(name).unwrap_or(arguments);
-    value.as_f64().ok_or_else(|| format!("it takes {{\"{name}\": number}}"))
+    value.as_f64().ok_or_else(|| format!("expected {{\"{name}\": number}}"))
 }
 
 pub(super) fn panel_argument(arguments: &Value) -> Result<PanelKind, String> {
     let name = text_argument(arguments, "name")?;
     PanelKind::by_name(name).ok_or_else(|| {
         let known: Vec<&str> = PanelKind::ALL.iter().map(|panel| panel.name()).collect();
-        format!("there is no panel \"{name}\"; there are {}", known.join(", "))
+        format!("unknown panel \"{name}\"; known panels: {}", known.join(", "))
     })
 }

@@ -15,37 +15,41 @@ pub(super) fn while_working(state: &AppState) -> Availability {
         || state.contradict.progress().is_some()
         || state.execution.is_working()
         || state.automaton.chance.is_running();
-    if is_working { Ok(()) } else { Err("nothing is being worked out") }
+    if is_working { Ok(()) } else { Err("no planning in progress") }
 }
 
 /// Whether the caret is in a file beside the main text.
 pub(super) fn with_file_at_caret(state: &AppState) -> Availability {
-    if state.file_at_caret() > 0 { Ok(()) } else { Err("the caret is in the main text") }
+    if state.file_at_caret() > 0 { Ok(()) } else { Err("the cursor is in the main file") }
 }
 
 pub(super) fn with_network(state: &AppState) -> Availability {
     let has_network = state.shown().is_some_and(|shown| shown.network.is_some());
-    if has_network { Ok(()) } else { Err("there is no network") }
+    if has_network { Ok(()) } else { Err("no network") }
 }
 
 pub(super) fn with_plan(state: &AppState) -> Availability {
     let has_plan = state.shown().is_some_and(|shown| shown.plan().is_some());
-    if has_plan { Ok(()) } else { Err("there is no plan") }
+    if has_plan { Ok(()) } else { Err("no plan") }
 }
 
 /// Whether the present text has been reviewed, and has a plan.
 pub(super) fn with_review(state: &AppState) -> Availability {
     with_plan(state)?;
-    if state.review.current().is_some() { Ok(()) } else { Err("the present text has not been reviewed") }
+    if state.review.current().is_some() { Ok(()) } else { Err("review the current text first") }
 }
 
 /// Whether counterexamples are being looked for.
 pub(super) fn with_trial(state: &AppState) -> Availability {
-    if state.contradict.progress().is_some() { Ok(()) } else { Err("nothing is being contradicted") }
+    if state.contradict.progress().is_some() {
+        Ok(())
+    } else {
+        Err("no search for counterexamples is in progress")
+    }
 }
 
 pub(super) fn with_program(state: &AppState) -> Availability {
-    if state.automaton.moment().is_some() { Ok(()) } else { Err("there is no control program") }
+    if state.automaton.moment().is_some() { Ok(()) } else { Err("no control program") }
 }
 
 /// Whether there is something that chance can go wrong with: a plan, or a control program with its plant.
@@ -70,7 +74,7 @@ pub(super) fn with_step(state: &AppState) -> Availability {
 
 pub(super) fn with_comparison(state: &AppState) -> Availability {
     let is_compared = state.search.recordings(state.shown()).len() > 1;
-    if is_compared { Ok(()) } else { Err("no searches are compared") }
+    if is_compared { Ok(()) } else { Err("no comparison of searches is open") }
 }
 
 pub(super) fn with_lesson(state: &AppState) -> Availability {
@@ -79,21 +83,21 @@ pub(super) fn with_lesson(state: &AppState) -> Availability {
 
 pub(super) fn with_question(state: &AppState) -> Availability {
     let asks = state.lesson.stop().is_some_and(|stop| stop.ask.is_some());
-    if asks { Ok(()) } else { Err("this stop asks nothing") }
+    if asks { Ok(()) } else { Err("this step has no question") }
 }
 
 /// Whether the stop has a task that can be shown.
 pub(super) fn with_solution(state: &AppState) -> Availability {
     let ask = state.lesson.stop().and_then(|stop| stop.ask.as_ref());
-    if ask.is_some_and(|ask| !ask.solution.is_empty()) { Ok(()) } else { Err("this stop has no task") }
+    if ask.is_some_and(|ask| !ask.solution.is_empty()) { Ok(()) } else { Err("this step has no task") }
 }
 
 pub(super) fn with_run(state: &AppState) -> Availability {
-    if state.is_executing() { Ok(()) } else { Err("no mission is executed") }
+    if state.is_executing() { Ok(()) } else { Err("no run is in progress") }
 }
 
 pub(super) fn with_selection(state: &AppState) -> Availability {
-    if state.selection.is_none() { Err("nothing is selected") } else { Ok(()) }
+    if state.selection.is_none() { Err("no selection") } else { Ok(()) }
 }
 
 /// Somewhere to fly to: what is selected, or what the last sample of a growing tree did.
@@ -123,52 +127,48 @@ pub(super) fn with_natures_choice(state: &AppState) -> Availability {
     });
     match chosen {
         Some(true) => Ok(()),
-        Some(false) => Err("nature chooses nothing in this plan"),
-        None => Err("there is no plan"),
+        Some(false) => Err("this plan has no uncontrolled durations"),
+        None => Err("no plan"),
     }
 }
 
 pub(super) fn with_pins(state: &AppState) -> Availability {
-    if state.pins.is_empty() { Err("no event is pinned, and no run has begun") } else { Ok(()) }
+    if state.pins.is_empty() { Err("no event is pinned and no run has started") } else { Ok(()) }
 }
 
 pub(super) fn with_undo(state: &AppState) -> Availability {
-    if state.document.can_undo() { Ok(()) } else { Err("nothing has been edited") }
+    if state.document.can_undo() { Ok(()) } else { Err("nothing to undo") }
 }
 
 pub(super) fn with_redo(state: &AppState) -> Availability {
-    if state.document.can_redo() { Ok(()) } else { Err("nothing has been undone") }
+    if state.document.can_redo() { Ok(()) } else { Err("nothing to redo") }
 }
 
 pub(super) fn with_deleted(state: &AppState) -> Availability {
-    if state.library.deleted().is_empty() { Err("no mission has been deleted") } else { Ok(()) }
+    if state.library.deleted().is_empty() { Err("no deleted mission") } else { Ok(()) }
 }
 
 /// Whether the open mission is one of the library: originals cannot be deleted.
 pub(super) fn with_own_mission(state: &AppState) -> Availability {
-    if state.library.open_id().is_some() { Ok(()) } else { Err("this is an original, which stays") }
+    if state.library.open_id().is_some() { Ok(()) } else { Err("examples can't be deleted") }
 }
 
 pub(super) fn with_problems(state: &AppState) -> Availability {
     let has_problems = !state.snapshots.problems().is_empty();
-    if has_problems { Ok(()) } else { Err("there are no problems") }
+    if has_problems { Ok(()) } else { Err("no problems") }
 }
 
 /// Whether a mission is open that can be reviewed, planned or not.
 pub(super) fn with_mission(state: &AppState) -> Availability {
     let is_reviewed = state.automaton.program().is_none() && state.snapshots.latest().is_some();
-    if is_reviewed { Ok(()) } else { Err("there is no mission to review") }
+    if is_reviewed { Ok(()) } else { Err("no mission to review") }
 }
 
 pub(super) fn with_approval(state: &AppState) -> Availability {
     let is_approved = state.review.record().last_approval().is_some();
-    if is_approved { Ok(()) } else { Err("nobody has approved this mission yet") }
+    if is_approved { Ok(()) } else { Err("this mission has no approval yet") }
 }
 
 pub(super) fn with_record(state: &AppState) -> Availability {
-    if state.review.record().is_empty() {
-        Err("nobody has said anything of this mission yet")
-    } else {
-        Ok(())
-    }
+    if state.review.record().is_empty() { Err("the review history is empty") } else { Ok(()) }
 }

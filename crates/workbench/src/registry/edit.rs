@@ -45,7 +45,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     plain(
         "edit.selectNext",
-        "Select where this stands next, too",
+        "Add next occurrence to selection",
         Group::Edit,
         &[keys(CTRL, Key::D)],
         Scope::Typing,
@@ -53,7 +53,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     plain(
         "edit.caretAbove",
-        "Another caret above",
+        "Add cursor above",
         Group::Edit,
         &[keys(CTRL_ALT, Key::ArrowUp)],
         Scope::Typing,
@@ -61,13 +61,13 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     plain(
         "edit.caretBelow",
-        "Another caret below",
+        "Add cursor below",
         Group::Edit,
         &[keys(CTRL_ALT, Key::ArrowDown)],
         Scope::Typing,
         |_| Command::Text(TextCommand::AddCaretBelow),
     ),
-    plain("edit.selectLine", "Select the line", Group::Edit, &[keys(CTRL, Key::L)], Scope::Typing, |_| {
+    plain("edit.selectLine", "Select line", Group::Edit, &[keys(CTRL, Key::L)], Scope::Typing, |_| {
         Command::Text(TextCommand::SelectLines)
     }),
     plain(
@@ -105,12 +105,17 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Scope::Typing,
         |_| Command::Text(TextCommand::MoveLinesDown),
     ),
-    plain("edit.complete", "Complete", Group::Edit, &[keys(CTRL, Key::Space)], Scope::Typing, |_| {
-        Command::Editor(EditorCommand::Complete)
-    }),
+    plain(
+        "edit.complete",
+        "Trigger completion",
+        Group::Edit,
+        &[keys(CTRL, Key::Space)],
+        Scope::Typing,
+        |_| Command::Editor(EditorCommand::Complete),
+    ),
     plain(
         "edit.quickFix",
-        "Quick fix…",
+        "Show quick fixes…",
         Group::Edit,
         &[keys(CTRL, Key::Period)],
         Scope::Everywhere,
@@ -121,7 +126,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     }),
     plain(
         "edit.format",
-        "Format the text",
+        "Format document",
         Group::Edit,
         &[keys(ALT_SHIFT, Key::F)],
         Scope::Everywhere,
@@ -129,7 +134,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     plain(
         "edit.expandSelection",
-        "Select more",
+        "Expand selection",
         Group::Edit,
         &[keys(ALT_SHIFT, Key::ArrowRight)],
         Scope::Typing,
@@ -151,16 +156,16 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Scope::Typing,
         |_| Command::Editor(EditorCommand::FoldAtCaret(false)),
     ),
-    plain("edit.foldAll", "Fold everything", Group::Edit, &[], Scope::Everywhere, |_| {
+    plain("edit.foldAll", "Fold all", Group::Edit, &[], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::FoldAll(true))
     }),
-    plain("edit.unfoldAll", "Unfold everything", Group::Edit, &[], Scope::Everywhere, |_| {
+    plain("edit.unfoldAll", "Unfold all", Group::Edit, &[], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::FoldAll(false))
     }),
-    called("edit.setSource", "Replace the text", Group::Edit, |_, arguments| {
+    called("edit.setSource", "Replace text", Group::Edit, |_, arguments| {
         text_argument(arguments, "text").map(|text| Command::SetSource(text.to_owned()))
     }),
-    called("edit.insert", "Type text at the caret", Group::Edit, |_, arguments| {
+    called("edit.insert", "Insert text at cursor", Group::Edit, |_, arguments| {
         let text = text_argument(arguments, "text")?;
         Ok(Command::Text(TextCommand::Insert(text.to_owned())))
     }),

@@ -15,7 +15,7 @@ use crate::state::window::WindowCommand;
 pub(super) const COMMANDS: &[CommandSpec] = &[
     plain(
         "go.palette",
-        "Command palette",
+        "Show command palette",
         Group::Go,
         &[keys(CTRL_SHIFT, Key::P), keys(PLAIN, Key::F1)],
         Scope::Everywhere,
@@ -24,30 +24,35 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("go.line", "Go to line…", Group::Go, &[keys(CTRL, Key::G)], Scope::Everywhere, |_| {
         Command::Window(WindowCommand::ShowDialog(Dialog::go_to_line()))
     }),
-    plain("go.definition", "Definition", Group::Go, &[keys(PLAIN, Key::F12)], Scope::Everywhere, |_| {
-        Command::Editor(EditorCommand::GoToDefinition)
-    }),
-    plain("go.references", "References", Group::Go, &[keys(SHIFT, Key::F12)], Scope::Everywhere, |_| {
+    plain(
+        "go.definition",
+        "Go to definition",
+        Group::Go,
+        &[keys(PLAIN, Key::F12)],
+        Scope::Everywhere,
+        |_| Command::Editor(EditorCommand::GoToDefinition),
+    ),
+    plain("go.references", "Find references", Group::Go, &[keys(SHIFT, Key::F12)], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::FindReferences)
     }),
     plain(
         "go.bracket",
-        "The other bracket",
+        "Go to matching bracket",
         Group::Go,
         &[keys(CTRL_SHIFT, Key::Backslash), keys(PLAIN, Key::F7)],
         Scope::Typing,
         |_| Command::Editor(EditorCommand::GoToBracket),
     ),
-    plain("go.back", "Back", Group::Go, &[keys(ALT, Key::ArrowLeft)], Scope::Editor, |_| {
+    plain("go.back", "Go back", Group::Go, &[keys(ALT, Key::ArrowLeft)], Scope::Editor, |_| {
         Command::Editor(EditorCommand::GoToPlace { forwards: false })
     }),
-    plain("go.forward", "Forward", Group::Go, &[keys(ALT, Key::ArrowRight)], Scope::Editor, |_| {
+    plain("go.forward", "Go forward", Group::Go, &[keys(ALT, Key::ArrowRight)], Scope::Editor, |_| {
         Command::Editor(EditorCommand::GoToPlace { forwards: true })
     }),
     when(
         plain(
             "go.nextProblem",
-            "Next problem",
+            "Go to next problem",
             Group::Go,
             &[keys(PLAIN, Key::F8)],
             Scope::Everywhere,
@@ -58,7 +63,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "go.previousProblem",
-            "Previous problem",
+            "Go to previous problem",
             Group::Go,
             &[keys(SHIFT, Key::F8)],
             Scope::Everywhere,
@@ -66,25 +71,25 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         ),
         with_problems,
     ),
-    plain("go.findNext", "Next match", Group::Go, &[keys(PLAIN, Key::F3)], Scope::Everywhere, |_| {
+    plain("go.findNext", "Find next", Group::Go, &[keys(PLAIN, Key::F3)], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::FindNext)
     }),
-    plain("go.findPrevious", "Previous match", Group::Go, &[keys(SHIFT, Key::F3)], Scope::Everywhere, |_| {
+    plain("go.findPrevious", "Find previous", Group::Go, &[keys(SHIFT, Key::F3)], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::FindPrevious)
     }),
     when(
-        plain("go.selectionText", "Text of the selection", Group::Go, &[], Scope::Everywhere, |state| {
+        plain("go.selectionText", "Go to source of selection", Group::Go, &[], Scope::Everywhere, |state| {
             Command::SelectAndReveal(state.selection.clone())
         }),
         with_selection,
     ),
-    plain("go.editor", "Mission text", Group::Go, &[keys(CTRL, Key::Num0)], Scope::Everywhere, |_| {
+    plain("go.editor", "Focus mission text", Group::Go, &[keys(CTRL, Key::Num0)], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::Focus)
     }),
-    plain("go.leave", "Leave", Group::Go, &[keys(PLAIN, Key::Escape)], Scope::Everywhere, |_| {
+    plain("go.leave", "Close or cancel", Group::Go, &[keys(PLAIN, Key::Escape)], Scope::Everywhere, |_| {
         Command::Escape
     }),
-    called("edit.renameTo", "Rename the name at the caret", Group::Edit, |_, arguments| {
+    called("edit.renameTo", "Rename symbol at cursor", Group::Edit, |_, arguments| {
         let name = text_argument(arguments, "name")?;
         Ok(Command::Editor(EditorCommand::RenameTo(name.to_owned())))
     }),
@@ -93,9 +98,9 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         if name.is_empty() {
             return Ok(Command::Select(Selection::None));
         }
-        let snapshot = state.shown().ok_or("nothing has been worked out yet")?;
+        let snapshot = state.shown().ok_or("the mission is still being planned")?;
         Selection::by_name(snapshot, name)
             .map(Command::Select)
-            .ok_or_else(|| format!("the mission has nothing named \"{name}\""))
+            .ok_or_else(|| format!("nothing in the mission is named \"{name}\""))
     }),
 ];

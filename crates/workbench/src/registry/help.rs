@@ -12,7 +12,7 @@ use crate::state::window::WindowCommand;
 pub(super) const COMMANDS: &[CommandSpec] = &[
     plain(
         "help.keys",
-        "Keyboard shortcuts",
+        "Show keyboard shortcuts",
         Group::Help,
         &[keys(PLAIN, Key::Questionmark)],
         Scope::NotTyping,
@@ -21,8 +21,8 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("help.about", "About Enroute", Group::Help, &[], Scope::Everywhere, |_| {
         Command::Window(WindowCommand::ShowDialog(Dialog::About))
     }),
-    called("help.newVersion", "Say that there is a new version", Group::Help, |_, _| {
-        let text = "A new version of Enroute is here. It opens when all its tabs have been closed.";
+    called("help.newVersion", "Announce new version", Group::Help, |_, _| {
+        let text = "A new version is available. Close all Enroute tabs to update.";
         Ok(Command::Window(WindowCommand::Notify(ToastKind::Info, text.to_owned())))
     }),
 ];

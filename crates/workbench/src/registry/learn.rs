@@ -16,27 +16,22 @@ use crate::state::window::WindowCommand;
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
-    plain("learn.lessons", "Lessons", Group::Help, &[keys(PLAIN, Key::L)], Scope::NotTyping, |_| {
+    plain("learn.lessons", "Show lessons", Group::Help, &[keys(PLAIN, Key::L)], Scope::NotTyping, |_| {
         Command::Lesson(LessonCommand::Show)
     }),
-    plain("learn.contents", "Contents of the course", Group::Help, &[], Scope::Everywhere, |_| {
+    plain("learn.contents", "Show course contents", Group::Help, &[], Scope::Everywhere, |_| {
         Command::Lesson(LessonCommand::Contents)
     }),
     when(
-        plain(
-            "learn.next",
-            "Next stop of the lesson",
-            Group::Help,
-            &[keys(PLAIN, Key::N)],
-            Scope::NotTyping,
-            |_| Command::Lesson(LessonCommand::Turn(true)),
-        ),
+        plain("learn.next", "Go to next step", Group::Help, &[keys(PLAIN, Key::N)], Scope::NotTyping, |_| {
+            Command::Lesson(LessonCommand::Turn(true))
+        }),
         with_lesson,
     ),
     when(
         plain(
             "learn.previous",
-            "Previous stop of the lesson",
+            "Go to previous step",
             Group::Help,
             &[keys(SHIFT, Key::N)],
             Scope::NotTyping,
@@ -45,76 +40,76 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_lesson,
     ),
     when(
-        plain("learn.showAgain", "Show what the stop shows", Group::Help, &[], Scope::Everywhere, |_| {
+        plain("learn.showAgain", "Reset view to step", Group::Help, &[], Scope::Everywhere, |_| {
             Command::Lesson(LessonCommand::ShowAgain)
         }),
         with_lesson,
     ),
     when(
-        plain("learn.restore", "Take the lesson's text again", Group::Help, &[], Scope::Everywhere, |_| {
+        plain("learn.restore", "Reset lesson text", Group::Help, &[], Scope::Everywhere, |_| {
             Command::Lesson(LessonCommand::Restore)
         }),
         with_lesson,
     ),
     when(
-        plain("learn.solve", "Do the lesson's task", Group::Help, &[], Scope::Everywhere, |_| {
+        plain("learn.solve", "Solve task", Group::Help, &[], Scope::Everywhere, |_| {
             Command::Lesson(LessonCommand::Solve)
         }),
         with_solution,
     ),
     when(
-        plain("learn.leave", "Leave the lesson", Group::Help, &[], Scope::Everywhere, |_| {
+        plain("learn.leave", "Close lesson", Group::Help, &[], Scope::Everywhere, |_| {
             Command::Lesson(LessonCommand::Leave)
         }),
         with_lesson,
     ),
-    plain("learn.openFile", "Open a lesson file…", Group::Help, &[], Scope::Everywhere, |_| {
+    plain("learn.openFile", "Open lesson file…", Group::Help, &[], Scope::Everywhere, |_| {
         Command::Window(WindowCommand::OpenFile(FileKind::Lesson))
     }),
-    plain("help.manual", "Manual", Group::Help, &[], Scope::Everywhere, |_| {
+    plain("help.manual", "Open manual", Group::Help, &[], Scope::Everywhere, |_| {
         Command::Manual(ManualCommand::Contents)
     }),
     plain(
         "help.panel",
-        "About this panel",
+        "Show panel help",
         Group::Help,
         &[keys(SHIFT, Key::F1)],
         Scope::Everywhere,
         |state| Command::Manual(ManualCommand::About(state.window.active_panel)),
     ),
-    called("learn.open", "Open a lesson", Group::Help, |state, arguments| {
+    called("learn.open", "Open lesson", Group::Help, |state, arguments| {
         let name = text_argument(arguments, "name")?;
         let is_known =
             crate::lesson::course_lesson(name).is_some() || state.lesson.own().any(|(own, _)| own == name);
         let stop = number_argument(arguments, "stop").unwrap_or(1.0).max(1.0) as usize;
         is_known
             .then(|| Command::Lesson(LessonCommand::Open(name.into(), stop - 1)))
-            .ok_or_else(|| format!("there is no lesson \"{name}\""))
+            .ok_or_else(|| format!("unknown lesson \"{name}\""))
     }),
     when(
-        called("learn.goTo", "Go to a stop of the lesson", Group::Help, |_, arguments| {
+        called("learn.goTo", "Go to lesson step", Group::Help, |_, arguments| {
             let stop = number_argument(arguments, "stop")?.max(1.0) as usize;
             Ok(Command::Lesson(LessonCommand::GoTo(stop - 1)))
         }),
         with_lesson,
     ),
     when(
-        called("learn.answer", "Answer the question of the stop", Group::Help, |_, arguments| {
+        called("learn.answer", "Answer question", Group::Help, |_, arguments| {
             let answer = text_argument(arguments, "answer")?;
             Ok(Command::Lesson(LessonCommand::Answer(answer.to_owned())))
         }),
         with_question,
     ),
-    called("help.page", "Open a page of the manual", Group::Help, |_, arguments| {
+    called("help.page", "Open manual page", Group::Help, |_, arguments| {
         let page = text_argument(arguments, "page")?;
         let section = arguments.get("section").and_then(Value::as_str).unwrap_or_default();
-        let page = manual::page_named(page).ok_or_else(|| format!("the manual has no page \"{page}\""))?;
+        let page = manual::page_named(page).ok_or_else(|| format!("unknown manual page \"{page}\""))?;
         if !section.is_empty() && page.document.heading(section).is_none() {
-            return Err(format!("the page has no section \"{section}\""));
+            return Err(format!("unknown section \"{section}\""));
         }
         Ok(Command::Manual(ManualCommand::Open(page.name, section.to_owned())))
     }),
-    called("help.search", "Look for words in the manual", Group::Help, |_, arguments| {
+    called("help.search", "Search the manual", Group::Help, |_, arguments| {
         let words = text_argument(arguments, "words")?;
         Ok(Command::Manual(ManualCommand::Search(words.to_owned())))
     }),

@@ -7,7 +7,7 @@ use crate::registry::by_id;
 pub fn read_lesson(name: &str, text: &str) -> (Lesson, Vec<LessonError>) {
     let (lesson, mut errors) = Lesson::read(name, text);
     let unknown = lesson.commands().filter(|(_, id)| by_id(id).is_none());
-    errors.extend(unknown.map(|(line, id)| LessonError::new(line, format!("there is no command `{id}`"))));
+    errors.extend(unknown.map(|(line, id)| LessonError::new(line, format!("unknown command {id}"))));
     errors.sort();
     (lesson, errors)
 }

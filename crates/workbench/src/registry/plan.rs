@@ -15,7 +15,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     }),
     plain(
         "plan.conflictDirected",
-        "Search directed by conflicts",
+        "Search with conflict learning",
         Group::Plan,
         &[],
         Scope::Everywhere,
@@ -24,10 +24,10 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("plan.bestFirst", "Search best first", Group::Plan, &[], Scope::Everywhere, |_| {
         Command::Settings(SettingsCommand::SetSearch(kirk::Search::BestFirst))
     }),
-    plain("plan.compare", "Compare both searches", Group::Plan, &[], Scope::Everywhere, |state| {
+    plain("plan.compare", "Compare searches", Group::Plan, &[], Scope::Everywhere, |state| {
         Command::Search(SearchCommand::Compare(!state.search.compares()))
     }),
-    plain("plan.otherPaths", "Plan other paths", Group::Plan, &[], Scope::Everywhere, |state| {
+    plain("plan.otherPaths", "Try other paths", Group::Plan, &[], Scope::Everywhere, |state| {
         Command::Settings(SettingsCommand::SetSeed(state.settings.plan.seed + 1))
     }),
     when(
@@ -35,11 +35,11 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         while_working,
     ),
     plain("plan.again", "Plan again", Group::Plan, &[], Scope::Everywhere, |_| Command::PlanAgain),
-    called("plan.seed", "Choose the seed of path planning", Group::Plan, |_, arguments| {
+    called("plan.seed", "Set path planning seed", Group::Plan, |_, arguments| {
         number_argument(arguments, "seed")
             .map(|seed| Command::Settings(SettingsCommand::SetSeed(seed.max(0.0) as u64)))
     }),
-    called("plan.scenario", "Choose what to plan", Group::Plan, |_, arguments| {
+    called("plan.scenario", "Choose scenario", Group::Plan, |_, arguments| {
         let name = text_argument(arguments, "name")?;
         Ok(Command::Settings(SettingsCommand::SetGoal(snapshot::Goal::Scenario(name.into()))))
     }),

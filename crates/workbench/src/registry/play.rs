@@ -23,7 +23,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "play.forward",
-            "Next event",
+            "Go to next event",
             Group::Play,
             &[keys(PLAIN, Key::Period)],
             Scope::NotTyping,
@@ -34,7 +34,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "play.back",
-            "Previous event",
+            "Go to previous event",
             Group::Play,
             &[keys(PLAIN, Key::Comma)],
             Scope::NotTyping,
@@ -43,21 +43,21 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_steps,
     ),
     when(
-        plain("play.start", "To the start", Group::Play, &[keys(PLAIN, Key::Home)], Scope::NotTyping, |_| {
+        plain("play.start", "Go to start", Group::Play, &[keys(PLAIN, Key::Home)], Scope::NotTyping, |_| {
             transport(TransportCommand::Start)
         }),
         with_steps,
     ),
     when(
-        plain("play.end", "To the end", Group::Play, &[keys(PLAIN, Key::End)], Scope::NotTyping, |_| {
+        plain("play.end", "Go to end", Group::Play, &[keys(PLAIN, Key::End)], Scope::NotTyping, |_| {
             transport(TransportCommand::End)
         }),
         with_steps,
     ),
-    plain("play.faster", "Faster", Group::Play, &[], Scope::Everywhere, |_| {
+    plain("play.faster", "Increase playback speed", Group::Play, &[], Scope::Everywhere, |_| {
         transport(TransportCommand::Speed(2.0))
     }),
-    plain("play.slower", "Slower", Group::Play, &[], Scope::Everywhere, |_| {
+    plain("play.slower", "Decrease playback speed", Group::Play, &[], Scope::Everywhere, |_| {
         transport(TransportCommand::Speed(0.5))
     }),
 ];

@@ -25,7 +25,7 @@ use crate::state::window::WindowCommand;
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
-        plain("review.run", "Review this plan", Group::Review, &[], Scope::Everywhere, |_| {
+        plain("review.run", "Review plan", Group::Review, &[], Scope::Everywhere, |_| {
             Command::Review(ReviewCommand::Run)
         }),
         with_mission,
@@ -47,33 +47,26 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }),
         with_trial,
     ),
-    called("review.contradictItem", "Contradict a passed item", Group::Review, |state, arguments| {
+    called("review.contradictItem", "Contradict passed item", Group::Review, |state, arguments| {
         Ok(Command::Contradict(ContradictCommand::Start(Some(item(state, arguments)?))))
     }),
-    called("review.replay", "Replay a counterexample", Group::Review, |state, arguments| {
+    called("review.replay", "Replay counterexample", Group::Review, |state, arguments| {
         Ok(Command::Contradict(ContradictCommand::Replay(item(state, arguments)?)))
     }),
     when(
-        plain("file.report", "Write the report", Group::Review, &[], Scope::Everywhere, |_| {
-            Command::WriteReport
-        }),
+        plain("file.report", "Write report", Group::Review, &[], Scope::Everywhere, |_| Command::WriteReport),
         with_mission,
     ),
     when(
-        plain("export.csv", "Export the schedule as CSV…", Group::Review, &[], Scope::Everywhere, |state| {
+        plain("export.csv", "Export schedule as CSV…", Group::Review, &[], Scope::Everywhere, |state| {
             ask_epoch(state, ScheduleForm::Csv)
         }),
         with_plan,
     ),
     when(
-        plain(
-            "export.json",
-            "Export the schedule as JSON…",
-            Group::Review,
-            &[],
-            Scope::Everywhere,
-            |state| ask_epoch(state, ScheduleForm::Json),
-        ),
+        plain("export.json", "Export schedule as JSON…", Group::Review, &[], Scope::Everywhere, |state| {
+            ask_epoch(state, ScheduleForm::Json)
+        }),
         with_plan,
     ),
     when(
@@ -83,7 +76,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_plan,
     ),
     when(
-        plain("export.icalendar", "Export to a calendar…", Group::Review, &[], Scope::Everywhere, |state| {
+        plain("export.icalendar", "Export to calendar…", Group::Review, &[], Scope::Everywhere, |state| {
             ask_epoch(state, ScheduleForm::Icalendar)
         }),
         with_plan,
@@ -95,7 +88,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_plan,
     ),
     when(
-        plain("compare.pin", "Compare from now on", Group::Review, &[], Scope::Everywhere, |_| {
+        plain("compare.pin", "Set plan as baseline", Group::Review, &[], Scope::Everywhere, |_| {
             Command::Compare(CompareCommand::Pin)
         }),
         with_plan,
@@ -103,7 +96,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "compare.approved",
-            "Compare with the last approval",
+            "Compare with last approval",
             Group::Review,
             &[],
             Scope::Everywhere,
@@ -111,41 +104,41 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         ),
         with_approval,
     ),
-    plain("compare.file", "Compare with a file…", Group::Review, &[], Scope::Everywhere, |_| {
+    plain("compare.file", "Compare with file…", Group::Review, &[], Scope::Everywhere, |_| {
         Command::Compare(CompareCommand::OpenFile)
     }),
     when(
-        plain("review.save", "Save the history of the review", Group::Review, &[], Scope::Everywhere, |_| {
+        plain("review.save", "Save review history", Group::Review, &[], Scope::Everywhere, |_| {
             Command::Review(ReviewCommand::SaveRecord)
         }),
         with_record,
     ),
-    plain("review.open", "Add the history of a review…", Group::Review, &[], Scope::Everywhere, |_| {
+    plain("review.open", "Merge review history…", Group::Review, &[], Scope::Everywhere, |_| {
         Command::Review(ReviewCommand::OpenRecord)
     }),
-    called("review.approve", "Approve", Group::Review, |state, arguments| {
+    called("review.approve", "Approve plan", Group::Review, |state, arguments| {
         let by = state.review.seated(&person(arguments, "name")?);
-        let standing = state.review.standing().ok_or("the mission has not been worked out")?;
+        let standing = state.review.standing().ok_or("wait until planning ends")?;
         standing.may_approve(&by.name, &by.role)?;
         Ok(Command::Review(ReviewCommand::Approve { by, text: words(arguments) }))
     }),
-    called("review.acknowledge", "Acknowledge a line", Group::Review, |state, arguments| {
+    called("review.acknowledge", "Acknowledge item", Group::Review, |state, arguments| {
         let line = item(state, arguments)?;
         said(state, arguments, Act::Acknowledge { line, text: words(arguments) })
     }),
-    called("review.resolve", "Resolve a comment", Group::Review, |state, arguments| {
+    called("review.resolve", "Resolve comment", Group::Review, |state, arguments| {
         said(state, arguments, Act::Resolve { of: entry(arguments)?, text: words(arguments) })
     }),
-    called("review.reopen", "Open a comment again", Group::Review, |state, arguments| {
+    called("review.reopen", "Reopen comment", Group::Review, |state, arguments| {
         said(state, arguments, Act::Reopen { of: entry(arguments)?, text: words(arguments) })
     }),
-    called("review.withdraw", "Take something back", Group::Review, |state, arguments| {
+    called("review.withdraw", "Withdraw entry", Group::Review, |state, arguments| {
         said(state, arguments, Act::Withdraw { of: entry(arguments)?, text: words(arguments) })
     }),
-    called("review.rules", "Change the flight rules", Group::Review, |state, arguments| {
+    called("review.rules", "Change flight rules", Group::Review, |state, arguments| {
         // What is not named stays as it is.
         let mut rules = serde_json::to_value(state.review.record().rules()).map_err(|it| it.to_string())?;
-        let members = arguments.as_object().ok_or("it takes the rules to change by name")?;
+        let members = arguments.as_object().ok_or("expected an object with the rules to change")?;
         if let Some(known) = rules.as_object_mut() {
             known.extend(members.iter().map(|(name, rule)| (name.clone(), rule.clone())));
         }
@@ -153,54 +146,54 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         rules.problem().map_or(Ok(()), |problem| Err(problem.to_owned()))?;
         Ok(Command::Review(ReviewCommand::SetRules(Box::new(rules))))
     }),
-    plain("review.saveRules", "Save the flight rules", Group::Review, &[], Scope::Everywhere, |_| {
+    plain("review.saveRules", "Save flight rules", Group::Review, &[], Scope::Everywhere, |_| {
         Command::Review(ReviewCommand::SaveRules)
     }),
-    called("review.comment", "Comment", Group::Review, |state, arguments| {
+    called("review.comment", "Add comment", Group::Review, |state, arguments| {
         let about = arguments.get("about").and_then(Value::as_str).map(str::to_owned);
         let by = person(arguments, "author")?;
         let act = Act::Comment { about, text: text_argument(arguments, "text")?.trim().to_owned() };
         state.review.may_say(&by, &act)?;
         Ok(Command::Review(ReviewCommand::Say { by, act }))
     }),
-    called("export.schedule", "Export the schedule", Group::Review, |_, arguments| {
+    called("export.schedule", "Export schedule", Group::Review, |_, arguments| {
         let name = text_argument(arguments, "as")?;
         let form = ScheduleForm::by_name(name).ok_or_else(|| {
-            "\"as\" is \"csv\", \"json\", \"open-mct\", \"icalendar\" or \"plandev\"".to_owned()
+            "\"as\" must be \"csv\", \"json\", \"open-mct\", \"icalendar\" or \"plandev\"".to_owned()
         })?;
         let epoch = arguments.get("epoch").and_then(Value::as_str).unwrap_or_default().to_owned();
         Ok(Command::WriteSchedule { form, epoch })
     }),
     when(
-        plain("plan.release", "Release pinned events", Group::Plan, &[], Scope::Everywhere, |_| {
+        plain("plan.release", "Unpin all events", Group::Plan, &[], Scope::Everywhere, |_| {
             Command::Pins(PinCommand::ReleaseAll)
         }),
         with_pins,
     ),
     when(
-        plain("strategy.goOn", "Go on to the next event", Group::Plan, &[], Scope::Everywhere, |_| {
+        plain("strategy.goOn", "Advance to next event", Group::Plan, &[], Scope::Everywhere, |_| {
             Command::Pins(PinCommand::GoOn)
         }),
         with_natures_choice,
     ),
     when(
-        plain("strategy.takeBack", "Take the last step back", Group::Plan, &[], Scope::Everywhere, |_| {
+        plain("strategy.takeBack", "Undo last step", Group::Plan, &[], Scope::Everywhere, |_| {
             Command::Pins(PinCommand::TakeBack)
         }),
         with_pins,
     ),
     when(
-        called("plan.pin", "Pin an event to a time", Group::Plan, |state, arguments| {
+        called("plan.pin", "Pin event", Group::Plan, |state, arguments| {
             let name = arguments.get("event").and_then(Value::as_str);
             let time = arguments.get("time").and_then(Value::as_f64);
             let (Some(name), Some(time)) = (name, time.filter(|time| time.abs() < 1e12)) else {
-                return Err("it takes {\"event\": text, \"time\": number}".to_owned());
+                return Err("expected {\"event\": text, \"time\": number}".to_owned());
             };
             let network = state.shown().and_then(|shown| shown.network.as_deref());
             let node = network.and_then(|network| event_by_name(network, name));
-            let node = node.ok_or_else(|| format!("there is no event \"{name}\""))?;
+            let node = node.ok_or_else(|| format!("unknown event \"{name}\""))?;
             // Pins are resolved to a tenth of a unit at least; thousandths are finer than any drag.
-            let time = exact::Time::from_f64_nearest(time, 1000).ok_or("that is no time")?;
+            let time = exact::Time::from_f64_nearest(time, 1000).ok_or("\"time\" must be a number")?;
             Ok(Command::Pins(PinCommand::Pin(node, time)))
         }),
         with_plan,
@@ -215,13 +208,13 @@ fn person(arguments: &Value, name: &str) -> Result<Person, String> {
 
 /// The line of the present review that it is about, by its number.
 fn item(state: &AppState, arguments: &Value) -> Result<LineKey, String> {
-    let review = state.review.current().ok_or("the present text has not been reviewed")?;
+    let review = state.review.current().ok_or("review the current text first")?;
     let mut lines = Section::ALL
         .iter()
         .flat_map(|&section| review.lines(section).into_iter().map(move |line| (section, line)));
     let index = arguments.get("item").and_then(Value::as_u64).and_then(|index| usize::try_from(index).ok());
     let (section, line) =
-        index.and_then(|index| lines.nth(index)).ok_or("\"item\" is the number of a line of the review")?;
+        index.and_then(|index| lines.nth(index)).ok_or("\"item\" must be the number of a review item")?;
     Ok(LineKey::new(section, line))
 }
 

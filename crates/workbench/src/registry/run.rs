@@ -14,29 +14,29 @@ use crate::state::execution::ExecutionCommand;
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
-        plain("execute.reset", "Start the run over", Group::Play, &[], Scope::Everywhere, |_| {
+        plain("execute.reset", "Restart run", Group::Play, &[], Scope::Everywhere, |_| {
             Command::Execution(ExecutionCommand::Reset)
         }),
         with_run,
     ),
     when(
-        plain("execute.save", "Save the run…", Group::Play, &[], Scope::Everywhere, |_| {
+        plain("execute.save", "Save run…", Group::Play, &[], Scope::Everywhere, |_| {
             Command::Execution(ExecutionCommand::Save)
         }),
         with_run,
     ),
-    plain("execute.replay", "Replay a run…", Group::Play, &[], Scope::Everywhere, |_| {
+    plain("execute.replay", "Replay run…", Group::Play, &[], Scope::Everywhere, |_| {
         Command::Execution(ExecutionCommand::Open)
     }),
     when(
-        called("execute.withdraw", "Withdraw a condition now", Group::Play, |_, arguments| {
+        called("execute.withdraw", "Withdraw condition", Group::Play, |_, arguments| {
             let condition = text_argument(arguments, "condition")?;
             Ok(Command::Execution(ExecutionCommand::Withdraw(condition.into())))
         }),
         with_run,
     ),
     when(
-        called("execute.disturb", "Disturb the run", Group::Play, |_, arguments| {
+        called("execute.disturb", "Add disturbance", Group::Play, |_, arguments| {
             let disturbance: Disturbance =
                 serde_json::from_value(arguments.clone()).map_err(|error| error.to_string())?;
             disturbance.problem().map_or(Ok(()), |problem| Err(problem.to_owned()))?;
@@ -44,43 +44,29 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }),
         with_run,
     ),
+    when(called("program.inject", "Force component mode", Group::Play, injection), with_program),
+    when(called("program.know", "Set known value", Group::Play, knowledge), with_program),
     when(
-        called("program.inject", "Bring a component into a mode in this step", Group::Play, injection),
-        with_program,
-    ),
-    when(
-        called("program.know", "Say what is known of a variable in this step", Group::Play, knowledge),
-        with_program,
-    ),
-    when(
-        called("program.goTo", "Go to the moment after so many steps", Group::Play, |_, arguments| {
+        called("program.goTo", "Go to step", Group::Play, |_, arguments| {
             let moment = number_argument(arguments, "moment")?.max(0.0) as usize;
             Ok(Command::Automaton(AutomatonCommand::GoTo(moment)))
         }),
         with_program,
     ),
+    when(called("program.show", "Show part of program", Group::Play, part), with_program),
     when(
-        called(
-            "program.show",
-            "Show a part of the program where there is no room for all",
-            Group::Play,
-            part,
-        ),
-        with_program,
-    ),
-    when(
-        plain("program.reset", "Start the program anew", Group::Play, &[], Scope::Everywhere, |_| {
+        plain("program.reset", "Restart program", Group::Play, &[], Scope::Everywhere, |_| {
             Command::Automaton(AutomatonCommand::Reset)
         }),
         with_program,
     ),
     when(
-        plain("execute.sample", "Run many times with chance", Group::Play, &[], Scope::Everywhere, |_| {
+        plain("execute.sample", "Run Monte Carlo", Group::Play, &[], Scope::Everywhere, |_| {
             Command::Chance(ChanceCommand::Start)
         }),
         with_chance,
     ),
-    plain("execute.stopSampling", "Stop the runs with chance", Group::Play, &[], Scope::Everywhere, |_| {
+    plain("execute.stopSampling", "Stop Monte Carlo", Group::Play, &[], Scope::Everywhere, |_| {
         Command::Chance(ChanceCommand::Stop)
     }),
 ];

@@ -15,7 +15,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "search.run",
-            "Run to the next breakpoint",
+            "Run to next breakpoint",
             Group::Play,
             &[keys(PLAIN, Key::CloseBracket)],
             Scope::NotTyping,
@@ -26,7 +26,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "search.runBack",
-            "Run back to the breakpoint before",
+            "Run to previous breakpoint",
             Group::Play,
             &[keys(PLAIN, Key::OpenBracket)],
             Scope::NotTyping,
@@ -35,33 +35,28 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_search,
     ),
     when(
-        plain("search.close", "Show the plan again", Group::Play, &[], Scope::Everywhere, |_| {
+        plain("search.close", "Show plan", Group::Play, &[], Scope::Everywhere, |_| {
             search(SearchCommand::Close)
         }),
         with_step,
     ),
     when(
-        plain("search.turn", "Turn to the other search", Group::Play, &[], Scope::Everywhere, |state| {
+        plain("search.turn", "Switch to other search", Group::Play, &[], Scope::Everywhere, |state| {
             search(SearchCommand::Turn(1 - state.search.side().min(1)))
         }),
         with_comparison,
     ),
-    plain(
-        "search.keySteps",
-        "Key steps of the search only, or all",
-        Group::Play,
-        &[],
-        Scope::Everywhere,
-        |state| search(SearchCommand::OnlyKey(!state.search.only_key())),
-    ),
+    plain("search.keySteps", "Toggle key steps only", Group::Play, &[], Scope::Everywhere, |state| {
+        search(SearchCommand::OnlyKey(!state.search.only_key()))
+    }),
     when(
-        plain("search.link", "Step both searches together", Group::Play, &[], Scope::Everywhere, |state| {
+        plain("search.link", "Toggle linked stepping", Group::Play, &[], Scope::Everywhere, |state| {
             search(SearchCommand::Link(!state.search.is_linked()))
         }),
         with_comparison,
     ),
     when(
-        called("search.goTo", "Go to a step of the search", Group::Play, |_, arguments| {
+        called("search.goTo", "Go to search step", Group::Play, |_, arguments| {
             let step = number_argument(arguments, "step")?;
             if step < 1.0 {
                 return Ok(search(SearchCommand::Close));
@@ -71,13 +66,13 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_search,
     ),
     when(
-        called("search.goToState", "Go to a state of the search", Group::Play, |_, arguments| {
+        called("search.goToState", "Go to search state", Group::Play, |_, arguments| {
             let state = number_argument(arguments, "state")?;
             Ok(search(SearchCommand::GoToNode(state.max(0.0) as u32)))
         }),
         with_search,
     ),
-    called("search.breakpoints", "Choose where the search stops", Group::Play, |state, arguments| {
+    called("search.breakpoints", "Set breakpoints", Group::Play, |state, arguments| {
         let mut chosen = state.search.breakpoints;
         for (name, value) in [
             ("decision", &mut chosen.decision),
@@ -88,15 +83,15 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             match arguments.get(name) {
                 None => {}
                 Some(Value::Bool(stops)) => *value = *stops,
-                Some(_) => return Err(format!("\"{name}\" is true or false")),
+                Some(_) => return Err(format!("\"{name}\" must be true or false")),
             }
         }
         Ok(search(SearchCommand::SetBreakpoints(chosen)))
     }),
-    called("search.speed", "Choose how many steps go by in a second", Group::Play, |_, arguments| {
+    called("search.speed", "Set search speed", Group::Play, |_, arguments| {
         number_argument(arguments, "steps").map(|speed| search(SearchCommand::SetSpeed(speed)))
     }),
-    called("play.seek", "Go to a time", Group::Play, |_, arguments| {
+    called("play.seek", "Go to time", Group::Play, |_, arguments| {
         number_argument(arguments, "time").map(Command::Seek)
     }),
 ];

@@ -13,25 +13,25 @@ use crate::state::terrain::{TerrainCommand, Tool};
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
-        plain("terrain.fly", "Fly to the selection", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.fly", "Zoom map to selection", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::View(ViewAction::FitSelection))
         }),
         with_goal_of_flight,
     ),
     when(
-        plain("terrain.follow", "Follow the vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.follow", "Follow vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::View(ViewAction::Follow))
         }),
         with_vehicles,
     ),
     when(
-        plain("terrain.top", "Look straight down", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.top", "Show top-down view", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::View(ViewAction::TopView))
         }),
         with_ground,
     ),
     when(
-        plain("terrain.reset", "Show the whole map", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.reset", "Show whole map", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::View(ViewAction::Fit))
         }),
         with_ground,
@@ -39,7 +39,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "terrain.clearance",
-            "Clearance map",
+            "Toggle clearance map",
             Group::Terrain,
             &[keys(PLAIN, Key::C)],
             Scope::NotTyping,
@@ -50,7 +50,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "terrain.growth",
-            "Search tree of a path",
+            "Toggle path search tree",
             Group::Terrain,
             &[keys(PLAIN, Key::T)],
             Scope::NotTyping,
@@ -58,67 +58,62 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         ),
         with_paths,
     ),
-    called("terrain.growTo", "Draw so many samples", Group::Terrain, |_, arguments| {
+    called("terrain.growTo", "Go to sample", Group::Terrain, |_, arguments| {
         let samples = number_argument(arguments, "samples")?.max(0.0) as u32;
         Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::GoTo(samples))))
     }),
-    called("terrain.growLeg", "Choose the leg of the search tree", Group::Terrain, |_, arguments| {
+    called("terrain.growLeg", "Choose leg", Group::Terrain, |_, arguments| {
         let leg = number_argument(arguments, "leg")?.max(0.0) as usize;
         Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::ChooseLeg(leg))))
     }),
-    called("terrain.growBy", "Choose the path planner", Group::Terrain, |_, arguments| {
+    called("terrain.growBy", "Choose path planner", Group::Terrain, |_, arguments| {
         let name = text_argument(arguments, "planner")?;
-        let planners = Planners::named(name).ok_or_else(|| format!("there is no path planner \"{name}\""))?;
+        let planners = Planners::named(name).ok_or_else(|| format!("unknown path planner \"{name}\""))?;
         Ok(Command::Terrain(TerrainCommand::Growth(GrowthCommand::Choose(planners))))
     }),
     when(
-        plain("terrain.measure", "Measure", Group::Terrain, &[keys(PLAIN, Key::M)], Scope::NotTyping, |_| {
-            Command::Terrain(TerrainCommand::Take(Tool::Measure))
-        }),
+        plain(
+            "terrain.measure",
+            "Measure distance",
+            Group::Terrain,
+            &[keys(PLAIN, Key::M)],
+            Scope::NotTyping,
+            |_| Command::Terrain(TerrainCommand::Take(Tool::Measure)),
+        ),
         with_ground,
     ),
     when(
-        plain("terrain.location", "Place a location", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.location", "Place location", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::Take(Tool::Location))
         }),
         with_ground,
     ),
     when(
-        plain("terrain.circle", "Place a round obstacle", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.circle", "Place round obstacle", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::Take(Tool::Circle))
         }),
         with_ground,
     ),
     when(
-        plain(
-            "terrain.appear",
-            "Let an obstacle appear in the run",
-            Group::Terrain,
-            &[],
-            Scope::Everywhere,
-            |_| Command::Terrain(TerrainCommand::Take(Tool::Appear)),
-        ),
+        plain("terrain.appear", "Add obstacle to run", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Appear))
+        }),
         with_run,
     ),
     when(
-        plain(
-            "terrain.polygon",
-            "Place an obstacle with corners",
-            Group::Terrain,
-            &[],
-            Scope::Everywhere,
-            |_| Command::Terrain(TerrainCommand::Take(Tool::Polygon)),
-        ),
+        plain("terrain.polygon", "Place polygon obstacle", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::Take(Tool::Polygon))
+        }),
         with_ground,
     ),
     when(
-        plain("terrain.wall", "Draw a wall", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.wall", "Draw wall", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::Take(Tool::Wall))
         }),
         with_ground,
     ),
     when(
-        plain("terrain.vehicle", "Place a vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
+        plain("terrain.vehicle", "Place vehicle", Group::Terrain, &[], Scope::Everywhere, |_| {
             Command::Terrain(TerrainCommand::Take(Tool::Vehicle(motion::VEHICLE_MODELS[0].name.into())))
         }),
         with_ground,

@@ -19,18 +19,23 @@ use crate::workspace::Workspace;
 pub(super) const COMMANDS: &[CommandSpec] = &[
     plain(
         "view.author",
-        "Author workspace",
+        "Show Author workspace",
         Group::View,
         &[keys(CTRL, Key::Num1)],
         Scope::Everywhere,
         |_| Command::ShowWorkspace(Workspace::Author),
     ),
-    plain("view.teach", "Teach workspace", Group::View, &[keys(CTRL, Key::Num2)], Scope::Everywhere, |_| {
-        Command::ShowWorkspace(Workspace::Teach)
-    }),
+    plain(
+        "view.teach",
+        "Show Teach workspace",
+        Group::View,
+        &[keys(CTRL, Key::Num2)],
+        Scope::Everywhere,
+        |_| Command::ShowWorkspace(Workspace::Teach),
+    ),
     plain(
         "view.review",
-        "Review workspace",
+        "Show Review workspace",
         Group::View,
         &[keys(CTRL, Key::Num3)],
         Scope::Everywhere,
@@ -38,13 +43,13 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     plain(
         "view.execute",
-        "Execute workspace",
+        "Show Execute workspace",
         Group::View,
         &[keys(CTRL, Key::Num4)],
         Scope::Everywhere,
         |_| Command::ShowWorkspace(Workspace::Execute),
     ),
-    plain("view.resetWorkspace", "Reset the panels", Group::View, &[], Scope::Everywhere, |_| {
+    plain("view.resetWorkspace", "Reset layout", Group::View, &[], Scope::Everywhere, |_| {
         Command::Window(WindowCommand::ResetWorkspace)
     }),
     plain(
@@ -58,21 +63,16 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("view.zoomOut", "Zoom out", Group::View, &[keys(PLAIN, Key::Minus)], Scope::NotTyping, |_| {
         Command::Window(WindowCommand::View(ViewAction::ZoomOut))
     }),
-    plain(
-        "view.zoomReset",
-        "Reset the zoom",
-        Group::View,
-        &[keys(PLAIN, Key::Num0)],
-        Scope::NotTyping,
-        |_| Command::Window(WindowCommand::View(ViewAction::ZoomReset)),
-    ),
-    plain("view.fit", "Fit everything", Group::View, &[keys(PLAIN, Key::F)], Scope::NotTyping, |_| {
+    plain("view.zoomReset", "Reset zoom", Group::View, &[keys(PLAIN, Key::Num0)], Scope::NotTyping, |_| {
+        Command::Window(WindowCommand::View(ViewAction::ZoomReset))
+    }),
+    plain("view.fit", "Zoom to fit", Group::View, &[keys(PLAIN, Key::F)], Scope::NotTyping, |_| {
         Command::Window(WindowCommand::View(ViewAction::Fit))
     }),
     when(
         plain(
             "view.fitSelection",
-            "Fit the selection",
+            "Zoom to selection",
             Group::View,
             &[keys(SHIFT, Key::F)],
             Scope::NotTyping,
@@ -80,24 +80,19 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         ),
         with_selection,
     ),
-    plain("view.theme", "Light or dark", Group::View, &[], Scope::Everywhere, |state| {
+    plain("view.theme", "Toggle light/dark theme", Group::View, &[], Scope::Everywhere, |state| {
         Command::Settings(SettingsCommand::SetTheme(if state.is_dark() {
             ThemeChoice::Light
         } else {
             ThemeChoice::Dark
         }))
     }),
-    plain(
-        "view.systemTheme",
-        "Light or dark as the system has it",
-        Group::View,
-        &[],
-        Scope::Everywhere,
-        |_| Command::Settings(SettingsCommand::SetTheme(ThemeChoice::System)),
-    ),
+    plain("view.systemTheme", "Use system theme", Group::View, &[], Scope::Everywhere, |_| {
+        Command::Settings(SettingsCommand::SetTheme(ThemeChoice::System))
+    }),
     plain(
         "view.textLarger",
-        "Larger text",
+        "Increase text size",
         Group::View,
         &[keys(CTRL, Key::Equals), keys(CTRL, Key::Plus)],
         Scope::Everywhere,
@@ -105,18 +100,18 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     plain(
         "view.textSmaller",
-        "Smaller text",
+        "Decrease text size",
         Group::View,
         &[keys(CTRL, Key::Minus)],
         Scope::Everywhere,
         |state| Command::Settings(SettingsCommand::SetTextScale(state.settings.text_scale - 0.1)),
     ),
-    plain("view.textReset", "Normal text size", Group::View, &[], Scope::Everywhere, |_| {
+    plain("view.textReset", "Reset text size", Group::View, &[], Scope::Everywhere, |_| {
         Command::Settings(SettingsCommand::SetTextScale(1.0))
     }),
     plain(
         "view.wordWrap",
-        "Wrap long lines",
+        "Toggle word wrap",
         Group::View,
         &[keys(ALT, Key::Z)],
         Scope::Everywhere,
@@ -126,12 +121,17 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             Command::Settings(SettingsCommand::SetViews(Box::new(views)))
         },
     ),
-    plain("view.nextPanel", "Next panel", Group::View, &[keys(PLAIN, Key::F6)], Scope::Everywhere, |_| {
-        Command::Window(WindowCommand::TurnPanel(true))
-    }),
+    plain(
+        "view.nextPanel",
+        "Focus next panel",
+        Group::View,
+        &[keys(PLAIN, Key::F6)],
+        Scope::Everywhere,
+        |_| Command::Window(WindowCommand::TurnPanel(true)),
+    ),
     plain(
         "view.previousPanel",
-        "Previous panel",
+        "Focus previous panel",
         Group::View,
         &[keys(SHIFT, Key::F6)],
         Scope::Everywhere,
@@ -139,41 +139,42 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     plain(
         "view.maximize",
-        "Give the panel the whole window, or put it back",
+        "Maximize or restore panel",
         Group::View,
         &[keys(ALT, Key::Enter)],
         Scope::Everywhere,
         |_| Command::Window(WindowCommand::Maximize(None)),
     ),
-    called("view.panel", "Show a panel", Group::View, |_, arguments| {
+    called("view.panel", "Show panel", Group::View, |_, arguments| {
         panel_argument(arguments).map(|panel| Command::Window(WindowCommand::ShowPanel(panel)))
     }),
-    called("view.closePanel", "Close a panel", Group::View, |_, arguments| {
+    called("view.closePanel", "Close panel", Group::View, |_, arguments| {
         panel_argument(arguments).map(|panel| Command::Window(WindowCommand::ClosePanel(panel)))
     }),
-    called("view.grouping", "Choose the grouping of the timeline", Group::View, |state, arguments| {
+    called("view.grouping", "Group timeline rows", Group::View, |state, arguments| {
         let name = text_argument(arguments, "name")?;
         let grouping = Grouping::ALL.into_iter().find(|grouping| grouping.name() == name);
         let mut views = state.settings.views.clone();
-        views.timeline.grouping = grouping.ok_or("\"name\" is \"structure\", \"thread\" or \"vehicle\"")?;
+        views.timeline.grouping =
+            grouping.ok_or("\"name\" must be \"structure\", \"thread\" or \"vehicle\"")?;
         Ok(Command::Settings(SettingsCommand::SetViews(Box::new(views))))
     }),
-    called("view.selectTimes", "Select a range of times", Group::View, |_, arguments| {
+    called("view.selectTimes", "Select time range", Group::View, |_, arguments| {
         let number = |name: &str| arguments.get(name).and_then(Value::as_f64);
         Ok(Command::SelectTimes(number("from").zip(number("to")).map(|(from, to)| [from, to])))
     }),
-    called("view.setTheme", "Choose the theme", Group::View, |_, arguments| {
+    called("view.setTheme", "Choose theme", Group::View, |_, arguments| {
         match text_argument(arguments, "theme")? {
             "dark" => Ok(Command::Settings(SettingsCommand::SetTheme(ThemeChoice::Dark))),
             "light" => Ok(Command::Settings(SettingsCommand::SetTheme(ThemeChoice::Light))),
             "system" => Ok(Command::Settings(SettingsCommand::SetTheme(ThemeChoice::System))),
-            other => Err(format!("\"theme\" is \"dark\", \"light\" or \"system\", not \"{other}\"")),
+            other => Err(format!("\"theme\" must be \"dark\", \"light\" or \"system\", not \"{other}\"")),
         }
     }),
-    called("view.workspace", "Show a workspace", Group::View, |_, arguments| {
+    called("view.workspace", "Show workspace", Group::View, |_, arguments| {
         let name = text_argument(arguments, "name")?;
         Workspace::by_name(name)
             .map(Command::ShowWorkspace)
-            .ok_or_else(|| format!("there is no workspace \"{name}\""))
+            .ok_or_else(|| format!("unknown workspace \"{name}\""))
     }),
 ];

@@ -69,7 +69,7 @@ impl CompareState {
         match command {
             CompareCommand::Pin => {
                 let Some(shown) = shown.filter(|shown| shown.plan().is_some()) else { return };
-                let name = format!("pinned revision {}", shown.revision);
+                let name = format!("baseline (revision {})", shown.revision);
                 let (side, text) = (Side::of_snapshot(&name, shown), Arc::clone(&shown.source));
                 self.reference = Some(Arc::new(side));
                 self.text = Some(text);
@@ -81,7 +81,7 @@ impl CompareState {
                     let Subject { source, goal, seed, .. } = approved.clone();
                     self.evaluate(name, &source, goal, seed, window);
                 }
-                None => window.info("Nobody has approved this mission yet"),
+                None => window.info("This mission has no approval yet"),
             },
             CompareCommand::OpenFile => {
                 window.ask(Effect::OpenFile(crate::host::FileKind::Comparison));
@@ -101,7 +101,7 @@ impl CompareState {
             self.evaluate(name.to_owned(), text, Goal::Default, seed, window);
             return;
         }
-        let failed = |reason: String| format!("{name} cannot be compared with: {reason}");
+        let failed = |reason: String| format!("Couldn't compare with {name}: {reason}");
         let document: Value = match serde_json::from_str(text) {
             Ok(document) => document,
             Err(reason) => return window.failed(failed(reason.to_string())),
@@ -113,7 +113,7 @@ impl CompareState {
                 Ok(Some(Subject { source, goal, seed, .. })) => {
                     self.evaluate(name.to_owned(), &source, goal, seed, window);
                 }
-                Ok(None) => window.failed(failed("nobody has approved it".to_owned())),
+                Ok(None) => window.failed(failed("it has no approval".to_owned())),
                 Err(reason) => window.failed(failed(reason.to_string())),
             }
             return;

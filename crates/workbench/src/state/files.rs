@@ -62,7 +62,7 @@ impl Writing<'_> {
         self.document.replace_all(&files::joined(known));
         let start = self.document.text().len() - text.len();
         self.document.set_caret(Caret::at(start));
-        self.window.done(format!("{name} is a file of this mission now"));
+        self.window.done(format!("Added {name} to this mission"));
         Ok(())
     }
 
@@ -70,7 +70,7 @@ impl Writing<'_> {
     pub(crate) fn take_places(&mut self, of_file: &str, lines: &str) {
         let stem = of_file.rsplit_once('.').map_or(of_file, |(stem, _)| stem);
         let added = if self.language.is_network() || self.language.is_control() {
-            Err(format!("The places of {of_file} belong into a mission; open or begin one first"))
+            Err(format!("Open or create a mission before you import the places of {of_file}"))
         } else {
             self.add_file(&format!("{stem}{EXTENSION}"), lines)
         };
@@ -110,7 +110,7 @@ impl Writing<'_> {
         });
         spans.extend(imports.filter(|span| !(start..file.end as u32).contains(&span.start)));
         self.replace_spans(spans.into_iter().map(|span| (span, String::new())).collect());
-        self.window.done(format!("{old} is removed; undo brings it back"));
+        self.window.done(format!("Removed {old}. Undo to restore it."));
         Ok(())
     }
 
@@ -143,7 +143,8 @@ impl Writing<'_> {
         let line = self.document.line_at(self.document.caret().head);
         let heading = self.document.file_lines(line).start.checked_sub(1);
         let name = heading.and_then(|heading| Some((heading, self.document.heading(heading)?)));
-        let (heading, name) = name.ok_or("The main text is named by the mission, and stays")?;
+        let (heading, name) =
+            name.ok_or("The main file can't be removed. To rename it, rename the mission.")?;
         let range = self.document.line_range(heading);
         Ok((name.to_owned(), Span::new((range.start + MARK.len_utf8()) as u32, range.end as u32)))
     }
@@ -153,10 +154,10 @@ impl Writing<'_> {
         let name = name.trim();
         let name = if name.contains('.') { name.to_owned() } else { format!("{name}{EXTENSION}") };
         if name.starts_with('.') || !files::is_name(&name) {
-            return Err(format!("\"{name}\" is no name of a file in the mission's folder"));
+            return Err(format!("“{name}” is not a valid file name"));
         }
         if names(self.document, self.main_text.clone()).iter().any(|known| *known == name) {
-            return Err(format!("{name} is a file of this mission already"));
+            return Err(format!("This mission already has a file {name}"));
         }
         Ok(name)
     }

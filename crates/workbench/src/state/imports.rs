@@ -26,7 +26,7 @@ pub(crate) fn offer_files(problems: &mut [Problem], text: &str, declared: &[Impo
         let of_import = problems.iter_mut().filter(|it| it.span == import.file_span && it.fixes.is_empty());
         for problem in of_import {
             let edit = Edit { span: Span::new(end, end), text: format!("\n{MARK}{file}\n") };
-            problem.fixes.push(TextFix { label: format!("Add the file `{file}`"), edits: vec![edit] });
+            problem.fixes.push(TextFix { label: format!("Add file {file}"), edits: vec![edit] });
         }
     }
 }

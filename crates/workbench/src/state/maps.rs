@@ -81,7 +81,7 @@ impl Maps {
         let (label, image_name, image) = if let Some(image_name) = image_of_label(&bytes) {
             let label = WaitingLabel { name: name.to_owned(), image_name, bytes };
             let Some((known, image)) = self.last.take().filter(|(known, _)| label.describes(known)) else {
-                let words = format!("{name} describes {}: open or drop that file, too", label.image_name);
+                let words = format!("{name} is a label of {}. Open that file, too.", label.image_name);
                 window.info(words);
                 self.waiting_label = Some(label);
                 return None;
@@ -105,7 +105,7 @@ impl Maps {
         match attach_label(&label.bytes, &image) {
             Ok(whole) => Some((whole_name, whole)),
             Err(reason) => {
-                window.failed(format!("The map {whole_name} cannot be used: {reason}"));
+                window.failed(format!("Couldn't import map {whole_name}: {reason}"));
                 None
             }
         }

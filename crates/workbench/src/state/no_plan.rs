@@ -32,7 +32,7 @@ pub(super) fn problems(snapshot: &Snapshot) -> Vec<Problem> {
             file_start: file.start,
             line: place.line,
             column: place.column,
-            hint: (!fixes.is_empty()).then(|| "each of the fixes alone would give a plan".to_owned()),
+            hint: (!fixes.is_empty()).then(|| "any one of these fixes gives a plan".to_owned()),
             fixes: fixes.to_vec(),
             more: 0,
         }

@@ -144,12 +144,12 @@ impl Pins {
         let (Some(network), Some(planning), Some(plan)) =
             (snapshot.network.as_deref(), &snapshot.planning, snapshot.plan())
         else {
-            return Err("there is no plan".to_owned());
+            return Err("no plan".to_owned());
         };
         let is_current = self.planning.as_ref().is_some_and(|own| Arc::ptr_eq(own, planning));
         if !is_current || self.pinned.is_none() {
             let pinned = PinnedPlan::new(network, plan);
-            self.pinned = Some(pinned.map_err(|reason| format!("nothing can be pinned: {reason}"))?);
+            self.pinned = Some(pinned.map_err(|reason| format!("cannot pin events: {reason}"))?);
             self.planning = Some(Arc::clone(planning));
             self.plan = None;
         }

@@ -305,7 +305,7 @@ impl Reviewing<'_> {
 
     fn set_rules(&mut self, rules: FlightRules) {
         if let Some(problem) = rules.problem() {
-            self.window.failed(format!("These flight rules cannot be used: {problem}"));
+            self.window.failed(format!("Invalid flight rules: {problem}"));
             return;
         }
         if *self.review.record.rules() == rules {
@@ -323,7 +323,7 @@ impl Reviewing<'_> {
         match FlightRules::from_json(text) {
             Ok(rules) => {
                 self.set_rules(rules);
-                self.window.done(format!("{name}: these are the flight rules now"));
+                self.window.done(format!("Applied the flight rules of {name}"));
             }
             Err(reason) => self.window.failed(format!("{name}: {reason}")),
         }
@@ -335,7 +335,7 @@ impl Reviewing<'_> {
             Ok(record) if !self.is_of_open_mission(&record) => {
                 // What is added to a history stays in it for good.
                 let words = format!(
-                    "{name}: this is the review of “{}”, and nothing in it is about the text that is open. Nothing of it was added",
+                    "{name} is a review of “{}”, not of the open mission. No entries added.",
                     record.mission
                 );
                 self.window.failed(words);
@@ -344,11 +344,11 @@ impl Reviewing<'_> {
                 let count = self.review.record.merge(record);
                 self.learn_runs();
                 let entries = if count == 1 { "entry" } else { "entries" };
-                self.window.done(format!("{name}: {count} new {entries}"));
+                self.window.done(format!("Added {count} new {entries} from {name}"));
                 self.keep();
             }
             Err(reason) => {
-                self.window.failed(format!("{name}: {reason}. Nothing of it was added"));
+                self.window.failed(format!("Couldn't add {name}: {reason}. No entries added."));
             }
         }
     }
@@ -375,13 +375,13 @@ impl Reviewing<'_> {
     pub(crate) fn recall(&mut self, kept: Option<&str>, aside: Option<String>) {
         self.review.of = self.mission_key.clone();
         let set_aside = self.review.set_aside.remove(&self.mission_key);
-        let reason = "it was found here before, and could not be used".to_owned();
+        let reason = "an earlier copy was unreadable".to_owned();
         self.review.aside = aside.map(|text| Aside { reason, text });
         let record = match kept.map(|text| (text, Record::from_json(text))) {
             Some((_, Ok(record))) => record,
             Some((text, Err(reason))) => {
                 // It stays where it is; what is kept from here on goes beside it.
-                let words = format!("The kept review cannot be used: {reason}. It is kept aside");
+                let words = format!("Couldn't read the saved review: {reason}. A copy was set aside.");
                 self.window.failed(words);
                 self.review.aside = Some(Aside { reason: reason.to_string(), text: text.to_owned() });
                 Record::default()

@@ -57,7 +57,7 @@ impl Writing<'_> {
         if !found.items.is_empty() {
             self.editor.popup = Some(found);
         } else if is_asked {
-            self.window.info("Nothing is known to go here");
+            self.window.info("No suggestions");
         }
     }
 
@@ -85,7 +85,7 @@ impl Writing<'_> {
         if found.wants == Some(editor::Wanted::Map) {
             let typed = self.document.text().get(found.replaces.start as usize..head).unwrap_or_default();
             let built_in = ::terrain::asset_names().map(|name| (name, "built in"));
-            let own = self.maps.keys().map(|key| (key.asset.as_str(), "a map of yours"));
+            let own = self.maps.keys().map(|key| (key.asset.as_str(), "your map"));
             let mut known: BTreeSet<&str> = BTreeSet::new();
             items.extend(
                 built_in.chain(own).filter(|(name, _)| name.contains(typed) && known.insert(name)).map(
@@ -106,7 +106,7 @@ impl Writing<'_> {
         self.editor.popup = None;
         let revision = self.document.revision();
         if self.snapshots.latest().is_none_or(|latest| latest.revision != revision) {
-            self.window.info("The text is still being read");
+            self.window.info("The text is still loading");
             return;
         }
         let caret = span_of(&self.document.caret().range());
@@ -117,7 +117,7 @@ impl Writing<'_> {
             touching
                 .flat_map(|problem| problem.fixes.iter().map(move |fix| (problem, fix)))
                 .map(|(problem, fix)| PopupItem {
-                    label: fix.label.clone(),
+                    label: fix.label.replace('`', ""),
                     detail: problem.code.to_string(),
                     kind: None,
                     action: PopupAction::Edit(fix.edits.clone()),
@@ -132,7 +132,7 @@ impl Writing<'_> {
         let mut seen = BTreeSet::new();
         items.retain(|item| seen.insert(item.label.clone()));
         if items.is_empty() {
-            self.window.info("No fix is known for this line");
+            self.window.info("No quick fixes available");
             return;
         }
         self.editor.popup = Some(Popup { kind: PopupKind::Fixes, items, chosen: 0, span: caret });
@@ -150,7 +150,7 @@ impl Writing<'_> {
                     label: self.document.line_text(line).trim().to_owned(),
                     detail: format!(
                         "{}{}",
-                        if found.is_definition { "declared, line " } else { "line " },
+                        if found.is_definition { "declaration, line " } else { "line " },
                         self.document.line_in_file(line)
                     ),
                     kind: None,
@@ -159,7 +159,7 @@ impl Writing<'_> {
             })
             .collect();
         if items.is_empty() {
-            self.window.info("There is no name here");
+            self.window.info("No references found");
             return;
         }
         self.editor.popup = Some(Popup { kind: PopupKind::References, items, chosen: 0, span: caret });
@@ -173,7 +173,7 @@ impl Writing<'_> {
                 self.reveal(span);
                 self.window.focus_editor();
             }
-            None => self.window.info("This is not declared in the text"),
+            None => self.window.info("No definition found"),
         }
     }
 
@@ -201,7 +201,7 @@ impl Writing<'_> {
                 self.document.set_caret(Caret::selecting(span.start as usize, span.end as usize));
                 self.window.dialog = Some(Dialog::Rename { old: name.clone(), name });
             }
-            Err(problem) => self.window.failed(format!("Cannot rename: {problem}")),
+            Err(problem) => self.window.failed(format!("Couldn't rename: {problem}")),
         }
     }
 
@@ -215,7 +215,7 @@ impl Writing<'_> {
                 let places = if count == 1 { "place" } else { "places" };
                 self.window.done(format!("Renamed in {count} {places}"));
             }
-            Err(problem) => self.window.failed(format!("Cannot rename: {problem}")),
+            Err(problem) => self.window.failed(format!("Couldn't rename: {problem}")),
         }
         self.window.focus_editor();
     }
@@ -226,7 +226,7 @@ impl Writing<'_> {
                 self.document.replace_all(&text);
                 self.window.done("Formatted");
             }
-            None => self.window.info("The text is formatted already"),
+            None => self.window.info("Already formatted"),
         }
     }
 

@@ -171,7 +171,7 @@ impl Writing<'_> {
     /// Declares `thing`, selects it, and shows its name in the text; false where nothing can be declared.
     fn place(&mut self, thing: &NewThing) -> bool {
         let Some(program) = self.language.parse().map(rmpl::Parse::program) else {
-            self.window.failed("A control program has no places");
+            self.window.failed("Control programs have no map. Open a mission first.");
             return false;
         };
         let declared = placing::declare(self.document.text(), &program, thing);

@@ -331,7 +331,7 @@ fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
     let rules = app.session.state().review.record().rules().clone();
     open_json(&mut app, &theirs);
     let said = last_toast(&app);
-    assert!(said.contains("the review of “enroute”") && said.contains("Nothing of it was added"), "{said}");
+    assert!(said.contains("the review of “enroute”") && said.contains("No entries added"), "{said}");
     assert_eq!(app.json()["review"]["history"], json!([]));
     assert_eq!(*app.session.state().review.record().rules(), rules, "its flight rules, neither");
     assert_eq!(status(&app), "draft");

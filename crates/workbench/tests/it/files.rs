@@ -48,7 +48,7 @@ fn a_file_that_is_imported_is_added_by_a_fix_written_planned_and_there_in_the_ne
     apply(&mut app, vec![Command::SetSource(MAIN.to_owned())]);
     assert_eq!(problems(&app), ["the mission has no file `world/places.rmpl`"]);
     let fix = app.session.state().snapshots.problems()[0].fixes[0].clone();
-    assert_eq!(fix.label, "Add the file `world/places.rmpl`");
+    assert_eq!(fix.label, "Add file world/places.rmpl");
     apply(&mut app, vec![Command::Edit { edits: fix.edits, kind: text_editing::EditKind::Single }]);
     assert_eq!(files(&app)[1..], ["world/places.rmpl"]);
     let end = text(&app).len();

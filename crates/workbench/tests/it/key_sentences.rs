@@ -15,11 +15,11 @@ use workbench::state::search::wording;
 
 /// What comes before the sentences.
 const LISTING: &str = "\
-# The key steps of lessons 1 to 8
+# Search messages in lessons 1 to 8
 
-What the page says at each key step of the first eight lessons, by both searches, in the order in which it is first said. A test writes
-this list, and holds each sentence against the network, the choices behind it, the step's record and the list of all plans
-(`crates/workbench/tests/it/key_sentences.rs`).
+This page lists the message of each key step in the first eight lessons, for both searches, in order of first use. A test
+(`crates/workbench/tests/it/key_sentences.rs`) generates the list. It checks each message against the network, the choices,
+the recorded step and all possible plans.
 ";
 
 /// A search with what it was made of.
@@ -152,7 +152,8 @@ impl Told<'_> {
                     holds(left.is_empty() || self.excludes(&chosen), &format!("{left:?} could carry it"))
                 }
                 Event::TryLink { link } => {
-                    says(&format!("{} gives {} its ", self.name(link.tell), self.name(link.ask)))?;
+                    says(&format!("{} supports ", self.name(link.tell)))?;
+                    says(&format!(" of {}.", self.name(link.ask)))?;
                     holds(literal(link.tell).supports(literal(link.ask)), "it carries something else")?;
                     holds(is_selected(link.ask) && is_selected(link.tell), "one of them is not selected")
                 }
@@ -163,7 +164,7 @@ impl Told<'_> {
                     holds(is_selected(*left) && is_selected(*right), "one of them is not selected")
                 }
                 Event::TryOrder { order } => {
-                    says(&format!("{} comes before {}:", self.name(order.first), self.name(order.then)))?;
+                    says(&format!("Order {} before {}:", self.name(order.first), self.name(order.then)))?;
                     let is_threat = |event: &Event| {
                         matches!(event, Event::Threat { left, right }
                             if [(*left, *right), (*right, *left)].contains(&(order.first, order.then)))
@@ -251,8 +252,8 @@ fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
         let all = Options { all: true, max_plans: 10_000, ..Options::default() };
         let plans = kirk::plan(&network, &all, &mut Unlimited).plans;
         for (search, title) in [
-            (Search::Chronological, "One choice after the other"),
-            (Search::ConflictDirected, "Learning from failures"),
+            (Search::Chronological, "Chronological search"),
+            (Search::ConflictDirected, "Conflict-directed search"),
         ] {
             let options = Options { search, trace_events: Some(100_000), ..Options::default() };
             let trace = kirk::plan(&network, &options, &mut Unlimited).trace.expect("it was asked for");
@@ -291,6 +292,6 @@ fn every_sentence_of_the_key_steps_of_lessons_1_to_8_is_true() {
     let kept = std::fs::read_to_string(file).unwrap_or_default();
     assert!(
         listing == kept,
-        "docs/key-sentences.md is not what the test finds: UPDATE_SNAPSHOTS=1 writes it anew"
+        "docs/key-sentences.md is not what the test finds: run it with UPDATE_SNAPSHOTS=1 to update the file"
     );
 }

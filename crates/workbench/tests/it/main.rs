@@ -1,6 +1,7 @@
 //! The integration tests of `workbench`, in one program: each module is about one thing.
 
 mod board;
+mod commands;
 mod counters;
 mod course;
 mod derived;

@@ -63,7 +63,7 @@ fn a_network_is_turned_into_a_mission_in_rmpl_and_nothing_is_lost() {
     let mut app = started();
     let refused = app.session.dispatch("file.toRmpl", &json!(null)).expect_err("a mission in RMPL");
     let refused = refused.to_string();
-    assert!(refused.contains("not the network of another tool"), "{refused}");
+    assert!(refused.contains("isn't an imported network"), "{refused}");
     open(&mut app, "day.tpn.edn", NETWORK.as_bytes());
     app.dispatch("file.toRmpl", &json!(null));
     let text = text_of(&app);
@@ -103,7 +103,7 @@ fn a_network_that_does_not_nest_says_what_is_in_the_way_and_stays() {
     app.dispatch("file.toRmpl", &json!(null));
     assert_eq!(text_of(&app), network);
     let toasts = app.json()["toasts"].to_string();
-    assert!(toasts.contains("cannot be written in RMPL") && toasts.contains("`ad#1`, `bd#1`"), "{toasts}");
+    assert!(toasts.contains("convert the network to RMPL") && toasts.contains("`ad#1`, `bd#1`"), "{toasts}");
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn a_ptpn_opens_as_a_mission_and_is_written_as_it_was() {
     let mut app = started();
     let before = text_of(&app);
     open(&mut app, "drawing.xml", b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
-    assert!(app.json()["toasts"].to_string().contains("drawing.xml is not opened"));
+    assert!(app.json()["toasts"].to_string().contains("Couldn't open drawing.xml"));
     assert_eq!(text_of(&app), before);
     open(&mut app, "broken.tpn", PTPN.replace("<to-event>e", "<to-event>x").as_bytes());
     let state = app.json();
@@ -211,13 +211,13 @@ fn files_of_other_formats_are_refused_by_their_name_and_maps_are_known_by_what_t
         ),
         ("dem.cub", b"Object = IsisCube\n  Object = Core\n", "ISIS cube"),
         ("dem.nc", b"CDF\x01\xff\xfe\x00", "NetCDF file"),
-        ("noise.bin", b"\xff\xfe\x80\x81", "ESRI ASCII grid, MovingAI or ROS"),
-        ("notes.doc", b"Dear all, [", "pTPN in XML"),
+        ("noise.bin", b"\xff\xfe\x80\x81", "ESRI ASCII grid, MovingAI, ROS"),
+        ("notes.doc", b"Dear all, [", "unrecognized format"),
     ] {
         open(&mut app, name, bytes);
         let toasts = app.json()["toasts"].to_string();
         assert!(
-            toasts.contains(&format!("{name} is not opened")) && toasts.contains(said),
+            toasts.contains(&format!("Couldn't open {name}")) && toasts.contains(said),
             "{name}: {toasts}"
         );
     }
@@ -233,12 +233,14 @@ fn what_is_too_large_is_refused_with_its_size() {
     let large = "x".repeat(MAX_TEXT_BYTES + 1);
     for name in ["large.rmpl", "large.json", "large.md"] {
         open(&mut app, name, large.as_bytes());
-        assert!(app.json()["toasts"].to_string().contains(&format!("{name} is not opened: it has 4.0 MB")));
+        assert!(
+            app.json()["toasts"].to_string().contains(&format!("Couldn't open {name}: the size is 4.0 MB"))
+        );
     }
     app.session.apply(vec![Command::SetSource(large)]);
     app.settle();
     assert_eq!(text_of(&app), before);
-    assert!(app.json()["toasts"].to_string().contains("too long for a mission"));
+    assert!(app.json()["toasts"].to_string().contains("Text too long"));
 }
 
 fn label() -> Vec<u8> {
@@ -289,7 +291,7 @@ fn a_map_of_ros_and_its_image_are_one_map_whichever_comes_first() {
         let state = app.json();
         let maps = state["library"]["missions"][0]["maps"].as_array().cloned().unwrap_or_default();
         assert!(maps.contains(&json!("site.yaml")), "{state}");
-        assert!(state["toasts"].to_string().contains("site.yaml is a map of 2 × 1 cells"), "{state}");
+        assert!(state["toasts"].to_string().contains("Imported map site.yaml: 2 × 1 cells"), "{state}");
     }
     // A map that is turned is refused once its image is there.
     let mut app = started();

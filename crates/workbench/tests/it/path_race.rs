@@ -112,7 +112,7 @@ fn walls_that_close_every_way_are_said_to_and_the_tree_is_back_without_them() {
     }
     wall(&mut app, [[20.0, 60.0], [20.0, 40.0]]);
     assert_eq!(app.json()["status"], "no-plan");
-    assert_eq!(shown(&app).words(), "No way is planned for Drive#1 now: see Plan");
+    assert_eq!(shown(&app).words(), "Drive#1 has no planned path. The Plan panel explains why.");
     app.dispatch("edit.undo", &json!(null));
     app.settle();
     assert_eq!(shown(&app).samples(), 7);
@@ -143,13 +143,13 @@ fn every_sample_is_told_by_what_it_did() {
         if let Some(added) = step.added.first() {
             grown += 1;
             let stride = (added.point_m - step.nearest_m).norm();
-            let end = format!(" Steered {stride:.1} m towards the sample, to {}.", place(added.point_m));
+            let end = format!(" Steered {stride:.1} m toward the sample, to {}.", place(added.point_m));
             assert!(sentence[begin.len()..].starts_with(&end), "{sentence}");
         } else {
             blocked += 1;
-            assert!(sentence.ends_with("An obstacle is in the way: nothing is added."), "{sentence}");
+            assert!(sentence.ends_with("Blocked by an obstacle; nothing added."), "{sentence}");
         }
-        assert_eq!(sentence.contains("There is a way of"), step.path_m.is_some(), "{sentence}");
+        assert_eq!(sentence.contains("Path found:"), step.path_m.is_some(), "{sentence}");
     }
     assert!(grown > 5 && blocked > 0, "{grown} grown, {blocked} blocked");
 }

@@ -22,10 +22,10 @@ pub(super) const VALUES: &[Row] = &[
     ("likelihood", |it, _| {
         let probability = it.plant_of_moment()?.1.belief.highest_probability();
         if let Some(exact) = probability.exact() {
-            return words(format!("{:.3} %", percent(&exact.to_string())?));
+            return words(format!("{:.3}%", percent(&exact.to_string())?));
         }
         let (low, high) = probability.percents(3);
-        words(format!("{low} to {high} %"))
+        words(format!("{low} to {high}%"))
     }),
     ("commands", |it, _| {
         let named = it.plant()?.next_commands.as_ref()?.iter();

@@ -24,7 +24,7 @@ enum Message {
 }
 
 /// What a tab calls the version of another one that it could not agree with.
-const OTHER_TAB: &str = "As in another tab";
+const OTHER_TAB: &str = "From another tab";
 
 impl Keeper {
     /// Tells the text of the open mission, if it is not what the tabs agree on.
@@ -95,8 +95,8 @@ impl Keeper {
             let version =
                 Version { name: OTHER_TAB.to_owned(), at_millis: changed_millis, texts: mission.texts };
             state.library.put_version(id, version);
-            let text = "This mission is edited in another tab too, and the two differ: what it says there is kept as \
-                        a version";
+            let text = "This mission was also edited in another tab. The other tab's text was saved as a \
+                        version.";
             state.window.failed(text);
         }
     }

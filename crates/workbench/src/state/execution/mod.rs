@@ -140,7 +140,7 @@ impl ExecutionState {
     /// The run that was asked for does not come.
     pub(crate) fn give_up(&mut self) {
         if self.is_working() {
-            self.trouble = Some("working the run out was stopped".to_owned());
+            self.trouble = Some("simulation was stopped".to_owned());
         }
     }
 
@@ -223,7 +223,7 @@ impl ExecutionState {
             ExecutionCommand::Disturb(disturbance) => {
                 let now = settle_time(playback);
                 if disturbance.since().is_some_and(|since| since < now) {
-                    window.failed("What has happened stays: nothing goes otherwise before now");
+                    window.failed("Past events can't change. Choose a time after the current time.");
                     return;
                 }
                 self.disturb(disturbance);
@@ -329,11 +329,11 @@ fn compare(expected: &[Entry], run: &Execution, window: &mut Window) {
         differing.or_else(|| (expected.len() != run.log.len()).then(|| expected.len().min(run.log.len())));
     match first {
         None => {
-            let text = format!("Replayed exactly: all {} entries agree", expected.len());
+            let text = format!("Replay matches: all {} log entries agree", expected.len());
             window.done(text);
         }
         Some(at) => {
-            let text = format!("The replay differs from the saved log at entry {}", at + 1);
+            let text = format!("Replay differs from the saved log at entry {}", at + 1);
             window.failed(text);
         }
     }
@@ -362,30 +362,30 @@ pub fn disturbance_text(disturbance: &Disturbance) -> String {
     match disturbance {
         Disturbance::Duration { activity, duration } => format!("{activity} takes {}", time(*duration)),
         Disturbance::Slow { activity, factor } => {
-            format!("{activity} drives at {factor} of its speed")
+            format!("{activity} drives at {factor} times its speed")
         }
         Disturbance::Fault { activity, step, component, mode } => {
-            format!("{component} comes into {mode} in step {step} of {activity}")
+            format!("{component} enters {mode} in step {step} of {activity}")
         }
         Disturbance::Obstacle { at, x, y, radius, low } => {
             format!(
-                "an obstacle{} with a radius of {radius:.1} m stands at ({x:.1}, {y:.1}) from {}",
+                "obstacle{} of radius {radius:.1} m at ({x:.1}, {y:.1}) from {}",
                 if *low { " near the ground" } else { "" },
                 time(*at)
             )
         }
         Disturbance::VehicleSlow { vehicle, factor, from, until } if factor.is_zero() => {
-            format!("{vehicle} stands from {} to {}", time(*from), time(*until))
+            format!("{vehicle} stops from {} to {}", time(*from), time(*until))
         }
         Disturbance::VehicleSlow { vehicle, factor, from, until } => {
             let (from, until) = (time(*from), time(*until));
-            format!("{vehicle} drives at {factor} of its speed from {from} to {until}")
+            format!("{vehicle} drives at {factor} times its speed from {from} to {until}")
         }
         Disturbance::State { variable, value, at } => format!("{variable} becomes {value} at {}", time(*at)),
         Disturbance::Level { resource, level, at } => {
-            format!("{resource} is at {} at {}", level.readable(), time(*at))
+            format!("{resource} is set to {} at {}", level.readable(), time(*at))
         }
-        Disturbance::Withdrawn { condition, at } => format!("{condition} is withdrawn at {}", time(*at)),
-        Disturbance::Late { condition, at } => format!("{condition} comes at {} at the earliest", time(*at)),
+        Disturbance::Withdrawn { condition, at } => format!("{condition} ends at {}", time(*at)),
+        Disturbance::Late { condition, at } => format!("{condition} starts at {} at the earliest", time(*at)),
     }
 }

@@ -120,9 +120,9 @@ impl Planners {
     /// Their name on screen.
     pub const fn title(self) -> &'static str {
         match self {
-            Self::AsPlanned => "As planned",
+            Self::AsPlanned => "Planner of the plan",
             Self::One(planner) => planner_title(planner),
-            Self::Race => "All, side by side",
+            Self::Race => "All planners",
         }
     }
 }
@@ -357,7 +357,7 @@ impl Shown {
 
     /// The same leg while no plan drives it.
     fn without_path(self, occurrence: OccurrenceId) -> Self {
-        let reason = format!("No way is planned for {} now: see Plan", self.name);
+        let reason = format!("{} has no planned path. The Plan panel explains why.", self.name);
         let refuse = |search: Search| Search::refused(search.planner, reason.clone());
         Self { occurrence, searches: self.searches.into_iter().map(refuse).collect(), ..self }
     }

@@ -32,23 +32,23 @@ impl Shown {
         let nearest = place(step.nearest_m);
         let Some(to) = step.steered_m() else {
             return Some(format!(
-                "{sample}. Nearest vertex: {nearest}. An obstacle is in the way: nothing is added."
+                "{sample}. Nearest vertex: {nearest}. Blocked by an obstacle; nothing added."
             ));
         };
         let stride_m = (to - step.nearest_m).norm();
         let mut text = format!(
-            "{sample}. Nearest vertex: {nearest}. Steered {stride_m:.1} m towards the sample, to {}.",
+            "{sample}. Nearest vertex: {nearest}. Steered {stride_m:.1} m toward the sample, to {}.",
             place(to)
         );
         let others = step.added.len() - 1;
         if others > 0 && self.searches[0].roots_count() > 1 {
-            text.push_str(&format!(" The other tree reaches for it, by {}.", vertices(others)));
+            text.push_str(&format!(" The other tree grew toward it by {}.", vertices(others)));
         }
         if !step.rewired.is_empty() {
-            text.push_str(&format!(" By it, {} shorter to reach.", are(step.rewired.len())));
+            text.push_str(&format!(" Rewired: {} now on a shorter path.", are(step.rewired.len())));
         }
         if let Some(path_m) = &step.path_m {
-            text.push_str(&format!(" There is a way of {:.1}\u{a0}m.", motion::length_m(path_m)));
+            text.push_str(&format!(" Path found: {:.1}\u{a0}m.", motion::length_m(path_m)));
         }
         Some(text)
     }
@@ -59,9 +59,9 @@ fn place(point: Point2<f64>) -> String {
 }
 
 fn vertices(count: usize) -> String {
-    if count == 1 { "a vertex".to_owned() } else { format!("{count} vertices") }
+    if count == 1 { "1 vertex".to_owned() } else { format!("{count} vertices") }
 }
 
 fn are(count: usize) -> String {
-    if count == 1 { "a vertex is".to_owned() } else { format!("{count} vertices are") }
+    if count == 1 { "1 vertex is".to_owned() } else { format!("{count} vertices are") }
 }

@@ -34,7 +34,7 @@ impl ReviewState {
     /// Whether somebody may do something; `Err` says why not.
     pub fn may_say(&self, by: &Person, act: &Act) -> Result<(), String> {
         let record = &self.record;
-        let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("there is no entry {of}")));
+        let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("Unknown entry {of}")));
         let of = of.transpose()?;
         let is_open = |of: &str| {
             let open = open_comments(record);
@@ -42,36 +42,30 @@ impl ReviewState {
         };
         let is_empty = act.text().trim().is_empty();
         match act {
-            _ if self.hash().is_none() => {
-                Err("The mission has not been worked out: wait until it is".to_owned())
-            }
-            _ if by.name.trim().is_empty() => {
-                Err("Whoever does something for a review has a name".to_owned())
-            }
-            Act::Comment { .. } if is_empty => Err("A comment needs words".to_owned()),
-            Act::Acknowledge { .. } if is_empty => {
-                Err("To acknowledge a line it takes a reason why it may be so".to_owned())
-            }
-            Act::Resolve { of, .. } if !is_open(of) => Err("The comment is not open".to_owned()),
-            Act::Reopen { of, .. } if is_open(of) => Err("The comment is open".to_owned()),
+            _ if self.hash().is_none() => Err("Wait until planning ends, then try again".to_owned()),
+            _ if by.name.trim().is_empty() => Err("Enter your name to review".to_owned()),
+            Act::Comment { .. } if is_empty => Err("Comment is empty".to_owned()),
+            Act::Acknowledge { .. } if is_empty => Err("Enter a reason to acknowledge this item".to_owned()),
+            Act::Resolve { of, .. } if !is_open(of) => Err("This comment is already resolved".to_owned()),
+            Act::Reopen { of, .. } if is_open(of) => Err("This comment is already open".to_owned()),
             Act::Resolve { .. } | Act::Reopen { .. }
                 if !of.is_some_and(|of| matches!(of.act, Act::Comment { .. })) =>
             {
-                Err("Only comments are resolved".to_owned())
+                Err("Only comments can be resolved".to_owned())
             }
             Act::Resolve { of, .. } | Act::Reopen { of, .. } | Act::Withdraw { of, .. }
                 if record.withdrawn().contains_key(of.as_str()) =>
             {
-                Err("That has been taken back already".to_owned())
+                Err("This entry was already withdrawn".to_owned())
             }
             Act::Withdraw { .. }
                 if !of.is_some_and(|of| {
                     matches!(of.act, Act::Comment { .. } | Act::Acknowledge { .. } | Act::Approve { .. })
                 }) =>
             {
-                Err("Comments, acknowledgements and approvals are taken back".to_owned())
+                Err("Only comments, acknowledgements and approvals can be withdrawn".to_owned())
             }
-            Act::Approve { .. } | Act::Rules { .. } => Err("That is not said but done".to_owned()),
+            Act::Approve { .. } | Act::Rules { .. } => Err("This entry can't be withdrawn".to_owned()),
             _ => Ok(()),
         }
     }
@@ -96,7 +90,7 @@ impl Reviewing<'_> {
         let by = self.review.seated(by);
         let refused = match self.review.standing() {
             Some(standing) => standing.may_approve(&by.name, &by.role).err(),
-            None => Some("the mission has not been worked out".to_owned()),
+            None => Some("wait until planning ends".to_owned()),
         };
         if let Some(reason) = refused {
             self.window.failed(format!("Not approved: {reason}"));

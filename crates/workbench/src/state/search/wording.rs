@@ -7,13 +7,13 @@ use tpn::Network;
 
 use crate::state::selection::{alternative_text, node_name};
 
-use conflict_driven::{gives, named};
+use conflict_driven::{decided, gives, named};
 pub use conflict_driven::{learned, never};
 
 /// What was chosen in a state, in words.
 pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
     match choice {
-        None => "Before any choice".to_owned(),
+        None => "Initial state".to_owned(),
         Some(TreeChoice::Decision { decision, alternative }) => {
             let text = alternative_text(network, decision, alternative);
             format!("{} = {text}", Network::decision_name(decision))
@@ -43,6 +43,7 @@ pub fn event(network: &Network, trace: &Trace, event: &Event) -> String {
 /// What a search that makes one choice after the other says in its own way.
 fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> Option<String> {
     match event {
+        Event::Backtrack { to } => Some(backtrack(network, trace, *to)),
         Event::Backjump { to, because } => Some(backjump(network, trace, *to, because)),
         Event::TryLink { link } => Some(format!("Try: {}.", gives(network, link.ask, Some(link.tell)))),
         _ => None,
@@ -52,7 +53,7 @@ fn step_by_step(network: &Network, trace: &Trace, event: &Event) -> Option<Strin
 /// What both kinds of search say alike.
 fn plain(network: &Network, event: &Event) -> String {
     match event {
-        Event::Expand { node } => format!("Follow all arcs out of {}.", node_name(network, *node)),
+        Event::Expand { node } => format!("Expand {}: follow all outgoing arcs.", node_name(network, *node)),
         Event::Decide { decision, alternative } => {
             let chosen = TreeChoice::Decision { decision: *decision, alternative: *alternative };
             format!("Decide {}.", choice(network, Some(chosen)))
@@ -62,18 +63,24 @@ fn plain(network: &Network, event: &Event) -> String {
             let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
             format!("Add {from} → {to} [{}, {}].", arc.lower, arc.upper)
         }
-        Event::Propagate { moved: 0 } => "Propagate: nothing has to move.".to_owned(),
-        Event::Propagate { moved: 1 } => "Propagate: one event moves.".to_owned(),
-        Event::Propagate { moved } => format!("Propagate: {moved} events move."),
+        Event::Propagate { moved: 0 } => "Propagate: no windows change.".to_owned(),
+        Event::Propagate { moved: 1 } => "Propagate: the window of 1 event changes.".to_owned(),
+        Event::Propagate { moved } => format!("Propagate: the windows of {moved} events change."),
         Event::Inconsistent { cycle } => match kirk::contradiction(network, cycle) {
             Some(contradiction) => format!("Failure: {contradiction}."),
-            None => "Failure: the bounds contradict each other.".to_owned(),
+            None => "Failure: the bounds are inconsistent.".to_owned(),
         },
-        Event::Backtrack { .. } => "Back to the last choice.".to_owned(),
-        Event::Solution { .. } => "This is a plan.".to_owned(),
-        Event::Exhausted => "Nothing is left to try.".to_owned(),
+        Event::Solution { .. } => "Plan found.".to_owned(),
+        Event::Exhausted => "No alternatives left.".to_owned(),
         _ => String::new(),
     }
+}
+
+/// Back to the choice that was made in state `to`, named by one of its alternatives.
+fn backtrack(network: &Network, trace: &Trace, to: TreeNodeId) -> String {
+    let choice = trace.tree.iter().find(|state| state.parent == Some(to)).and_then(|state| state.choice);
+    let choice = choice.map_or_else(|| "the start".to_owned(), |choice| decided(network, choice));
+    format!("Backtrack to {choice}.")
 }
 
 /// Back over choices that have no part in a failure, to the last one that has.
@@ -83,26 +90,26 @@ fn backjump(network: &Network, trace: &Trace, to: TreeNodeId, because: &[TreeNod
     let is_last = |id: &TreeNodeId| state(*id).is_some_and(|state| state.parent == Some(to));
     let last = because.iter().copied().find(is_last).or(because.iter().copied().max());
     let Some(last) = last else {
-        return "Jump back to the start: the failure rests on no choice.".to_owned();
+        return "Backjump to the start: the failure depends on no choice.".to_owned();
     };
     let others: Vec<String> = because.iter().filter(|&&id| id != last).map(|&id| named(id)).collect();
     let besides = match others.as_slice() {
         [] => String::new(),
-        others => format!(", besides {}", others.join(" and ")),
+        others => format!(", together with {}", others.join(" and ")),
     };
-    format!("Jump back to before {}, the last choice that the failure rests on{besides}.", named(last))
+    format!("Backjump to before {}, the last choice that caused the failure{besides}.", named(last))
 }
 
 /// A constraint of a negative cycle, and why it holds.
 pub fn cycle_step(network: &Network, member: &CycleMember) -> String {
     let (from, to) = (node_name(network, member.from), node_name(network, member.to));
     let why = match member.constraint {
-        Constraint::Lower(_) => "least duration",
-        Constraint::Upper(_) => "greatest duration",
+        Constraint::Lower(_) => "minimum duration",
+        Constraint::Upper(_) => "maximum duration",
         Constraint::Link(_) => "causal link",
         Constraint::Order(_) => "ordering",
-        Constraint::UseOrder(_) => "order of uses",
-        Constraint::Departure(_) => "the way from where it sets out",
+        Constraint::UseOrder(_) => "resource ordering",
+        Constraint::Departure(_) => "travel time from the departure place",
     };
     format!("{from} → {to}: {} ({why})", member.weight)
 }

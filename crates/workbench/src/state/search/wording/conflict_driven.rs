@@ -21,23 +21,22 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
         }
         Event::TryOrder { order } => {
             let why = reason_of_order(network, *order);
-            format!("{} comes before {}: {why}.", owner(network, order.first), owner(network, order.then))
+            format!("Order {} before {}: {why}.", owner(network, order.first), owner(network, order.then))
         }
         Event::TryUseOrder { order } => use_order(network, *order),
         Event::TryStart { used, by } => {
             let (user, resource) = (user(network, *used), resource(network, *used));
-            format!(
-                "{user} starts as early as it can, by {by}: whatever needs too much of {resource} waits for it."
-            )
+            format!("Start {user} as early as possible, by {by}; other users of {resource} wait.")
         }
         Event::Imply { choice, holds: true, because } if because.is_empty() => {
-            format!("Whatever is chosen: {}.", fact(network, *choice))
+            format!("For every choice: {}.", fact(network, *choice))
         }
         Event::Imply { choice, holds: true, because } => {
-            format!("From {} it follows: {}.", facts(network, because), fact(network, *choice))
+            let verb = if because.len() == 1 { "implies" } else { "imply" };
+            format!("{} {verb} {}.", facts(network, because), fact(network, *choice))
         }
         Event::Imply { choice, holds: false, because } if because.is_empty() => {
-            format!("Whatever is chosen, {} is ruled out.", fact(network, *choice))
+            format!("Ruled out for every choice: {}.", fact(network, *choice))
         }
         Event::Imply { choice, holds: false, because } => {
             let verb = if because.len() == 1 { "rules" } else { "rule" };
@@ -45,98 +44,90 @@ pub(super) fn event(network: &Network, trace: &Trace, event: &Event) -> Option<S
         }
         Event::Unclosable { ask } => {
             format!(
-                "Failure: nothing is left that gives {} its {}.",
-                owner(network, *ask),
-                text(network, *ask)
+                "Failure: no assertion is left that supports {} of {}.",
+                text(network, *ask),
+                owner(network, *ask)
             )
         }
         Event::Unresolvable { left, right } => {
             let why = reason_of_order(network, Ordering { first: *left, then: *right });
             let (left, right) = (owner(network, *left), owner(network, *right));
-            format!("Failure: {left} and {right} fit in neither order: {why}.")
+            format!("Failure: no order of {left} and {right} is possible: {why}.")
         }
         Event::NoAlternative { decision } => {
-            format!("Failure: no alternative of {} is left.", Network::decision_name(*decision))
+            format!("Failure: {} has no alternative left.", Network::decision_name(*decision))
         }
         Event::Unsharable { uses } => {
-            format!("Failure: {}, and none of them can wait any more.", demand(network, uses))
+            format!("Failure: {}, and none can wait longer.", demand(network, uses))
         }
         Event::NotBetter { choices } if choices.is_empty() && is_best_first(trace) => {
-            "Closed: no plan with this is better than the one that was found.".to_owned()
+            "Closed: no plan from this state is better than the best plan found.".to_owned()
         }
         Event::NotBetter { choices } if choices.is_empty() => {
-            "Failure: no plan is better than the best one found.".to_owned()
+            "Failure: no plan is better than the best plan found.".to_owned()
         }
         Event::NotBetter { choices } => {
-            format!("Failure: with {} no plan is better than the best one found.", facts(network, choices))
+            format!("Failure: no plan with {} is better than the best plan found.", facts(network, choices))
         }
         Event::Clash { choices } => match choices.as_slice() {
-            [] => "Failure: there is a contradiction, whatever is chosen.".to_owned(),
+            [] => "Failure: the constraints are inconsistent for every choice.".to_owned(),
             [only] => format!("Failure: {} is impossible.", fact(network, *only)),
-            _ => format!("Failure: {} cannot be together.", facts(network, choices)),
+            _ => format!("Failure: {} are incompatible.", facts(network, choices)),
         },
         Event::Uncontrollable { choices } if choices.is_empty() => {
-            "Failure: nature can choose durations that leave no times, whatever is chosen.".to_owned()
+            "Failure: the mission is not controllable, for every choice.".to_owned()
         }
         Event::Uncontrollable { choices } => format!(
-            "Failure: with {} nature can choose durations that leave no times. {}",
+            "Failure: the mission is not controllable with {}. {}",
             facts(network, choices),
             learned(network, choices)
         ),
         Event::Circle { orders } if orders.is_empty() => {
-            "Failure: what happens at one time can be put in no order.".to_owned()
+            "Failure: simultaneous events can't be ordered.".to_owned()
         }
         Event::Circle { orders } => {
-            let verb = if orders.len() == 1 { "leaves" } else { "leave" };
-            format!("Failure: {} {verb} no order for what happens at one time.", facts(network, orders))
+            format!("Failure: simultaneous events can't be ordered with {}.", facts(network, orders))
         }
-        Event::NoRoomForGap => {
-            "Failure: there is no room for a gap between intervals that need not touch.".to_owned()
-        }
+        Event::NoRoomForGap => "Failure: no time is left for a gap between adjacent intervals.".to_owned(),
         Event::Learn { choices } => learned(network, choices),
-        Event::Known { choices } => format!("Failure, as was learned before: {}.", never(network, choices)),
+        Event::Known { choices } => format!("Failure by a learned conflict: {}.", never(network, choices)),
         Event::Threat { left, right } => {
             let why = reason_of_order(network, Ordering { first: *left, then: *right });
             let (left, right) = (owner(network, *left), owner(network, *right));
-            format!(
-                "{left} and {right} would be in each other's way, for {why}: one must come before the other."
-            )
+            format!("Threat: {why}. Either {left} or {right} must come first.")
         }
         Event::Overload { uses } => format!("{}: one must wait for another.", demand(network, uses)),
         Event::OutOfRange { early, late } => out_of_range(network, early, late),
-        Event::Restart => "Back to the start, with all that was learned.".to_owned(),
+        Event::Restart => "Restart with all learned conflicts.".to_owned(),
         Event::Backjump { to, because } => backjump(network, trace, *to, because),
         Event::Keep { orders, uses } => {
             let kept = orders.iter().map(|&order| TreeChoice::Order(order));
             let kept: Vec<TreeChoice> =
                 kept.chain(uses.iter().map(|&order| TreeChoice::UseOrder(order))).collect();
             if kept.is_empty() {
-                "The times fit, and what must be kept of their order follows from the choices.".to_owned()
+                "The times are consistent, and the choices imply all necessary orderings.".to_owned()
             } else {
-                format!("The times fit. Of their order the plan keeps {}.", facts(network, &kept))
+                format!(
+                    "The times are consistent. The plan keeps these orderings: {}.",
+                    facts(network, &kept)
+                )
             }
         }
         Event::Bound { values } => {
-            format!("Open: with this no plan is better than {}.", goals(network, values))
+            format!("Open: no plan from this state is better than {}.", goals(network, values))
         }
         Event::Visit { values, waiting: 0 } => {
-            format!(
-                "Go on here, where no plan is better than {}; nothing else is open.",
-                goals(network, values)
-            )
+            format!("Continue here: best possible {}; no other state is open.", goals(network, values))
         }
         Event::Visit { values, waiting } => {
             let others = if *waiting == 1 {
-                "one other state is".to_owned()
+                "1 other state is".to_owned()
             } else {
                 format!("{waiting} other states are")
             };
-            format!(
-                "Go on here: of all that is open this may become best, with {}; {others} open.",
-                goals(network, values)
-            )
+            format!("Continue here: best possible {}; {others} open.", goals(network, values))
         }
-        Event::Improve { values } => format!("The best plan so far: {}.", goals(network, values)),
+        Event::Improve { values } => format!("Best plan so far: {}.", goals(network, values)),
         _ => return None,
     })
 }
@@ -153,11 +144,11 @@ pub fn learned(network: &Network, choices: &[TreeChoice]) -> String {
 /// Choices that a search has learned never to make together again.
 pub fn never(network: &Network, choices: &[TreeChoice]) -> String {
     match choices {
-        [] => "whatever is chosen, it cannot succeed".to_owned(),
+        [] => "no choice can succeed".to_owned(),
         [TreeChoice::Apart] => "some intervals must touch".to_owned(),
         [only] => format!("never {}", fact(network, *only)),
         [first, rest @ ..] => {
-            format!("never again {} together with {}", fact(network, *first), facts(network, rest))
+            format!("never {} together with {}", fact(network, *first), facts(network, rest))
         }
     }
 }
@@ -195,20 +186,38 @@ pub fn fact(network: &Network, choice: TreeChoice) -> String {
         TreeChoice::Departure(Departing { movement, before }) => {
             let (movement, label) = (owner(network, movement), &network.labels[before.index()]);
             if label.extent == Extent::Initial {
-                format!("{movement} from where {} is at first", vehicle(network, before).unwrap_or_default())
+                format!(
+                    "{movement} from the initial place of {}",
+                    vehicle(network, before).unwrap_or_default()
+                )
             } else {
-                format!("{movement} from where {} ends", owner(network, before))
+                format!("{movement} from the destination of {}", owner(network, before))
             }
         }
-        TreeChoice::NoLink { ask } => format!("nothing for {}", network.label_name(ask)),
+        TreeChoice::NoLink { ask } => format!("no support for {}", network.label_name(ask)),
         TreeChoice::Apart => "keeping all gaps".to_owned(),
     }
 }
 
-/// What gives somebody what it requires; without a giver, that nothing does.
+/// Which assertion supports a requirement; without one, that nothing does.
 pub(super) fn gives(network: &Network, ask: LabelId, tell: Option<LabelId>) -> String {
     let giver = tell.map_or_else(|| "Nothing".to_owned(), |tell| giver(network, tell));
-    format!("{giver} gives {} its {}", owner(network, ask), text(network, ask))
+    format!("{giver} supports {} of {}", text(network, ask), owner(network, ask))
+}
+
+/// What a choice decides, whichever of its alternatives is taken.
+pub(super) fn decided(network: &Network, choice: TreeChoice) -> String {
+    match choice {
+        TreeChoice::Decision { decision, .. } => Network::decision_name(decision),
+        TreeChoice::Link(link) => {
+            format!("the support for {} of {}", text(network, link.ask), owner(network, link.ask))
+        }
+        TreeChoice::Order(order) => {
+            let [first, then] = named(network, [order.first, order.then]);
+            format!("the order of {first} and {then}")
+        }
+        other => fact(network, other),
+    }
 }
 
 /// Two conditions by whose they are, or in full if both are of the same.
@@ -242,20 +251,17 @@ fn begin(network: &Network, round: &SearchRound) -> String {
         let measure = measure(goal);
         let proven = bound.map_or_else(String::new, |bound| format!("; no plan has {more} than {bound}"));
         return format!(
-            "Look for a plan that is better than {}: with {more} {measure}{proven}.",
+            "Search for a better plan than {}: {more} {measure}{proven}.",
             goals(network, values)
         );
     }
     if *is_best_first {
-        return "Always go on where the best plan may still be. The first plan that is finished is the best one."
-            .to_owned();
+        return "Expand the state with the best bound first. The first complete plan is optimal.".to_owned();
     }
     match (is_in_textual_order, network.objective.is_empty()) {
-        (true, _) => {
-            "Search in the order of the text. Each failure teaches what never to choose together again."
-        }
-        (false, false) => "Look for some plan first, and then for better and better ones.",
-        (false, true) => "Too many failures in the order of the text: choose first what failures are about.",
+        (true, _) => "Search in text order, learning a conflict from each failure.",
+        (false, false) => "Find a first plan, then improve it.",
+        (false, true) => "Too many failures in text order: decide the choices that cause failures first.",
     }
     .to_owned()
 }
@@ -285,8 +291,8 @@ fn backjump(network: &Network, trace: &Trace, to: TreeNodeId, because: &[TreeNod
     let causes: Vec<TreeChoice> = because.iter().filter_map(|&state| choice(state)).collect();
     let to = choice(to).map_or_else(|| "the start".to_owned(), |choice| fact(network, choice));
     match causes.len() {
-        0 => format!("Back to {to}."),
-        _ => format!("Back to {to}: the failure has to do with {} alone.", facts(network, &causes)),
+        0 => format!("Backjump to {to}."),
+        _ => format!("Backjump to {to}: the failure depends only on {}.", facts(network, &causes)),
     }
 }
 
@@ -322,12 +328,12 @@ fn use_order(network: &Network, order: UseOrdering) -> String {
         (Change::Produces, _) => format!("both produce {resource}"),
         (Change::Uses, _) => format!("both use {resource}"),
     };
-    format!("{} comes before {}: {why}.", user(network, order.first), user(network, order.then))
+    format!("Order {} before {}: {why}.", user(network, order.first), user(network, order.then))
 }
 
 /// Who takes how much of a resource that has less.
 fn demand(network: &Network, uses: &[UseId]) -> String {
-    let Some(&first) = uses.first() else { return "A resource is used too much".to_owned() };
+    let Some(&first) = uses.first() else { return "A resource is overused".to_owned() };
     let resource = &network.resources[network.uses[first.index()].resource.index()];
     let names = users(network, uses);
     match resource.supply {
@@ -338,7 +344,7 @@ fn demand(network: &Network, uses: &[UseId]) -> String {
             let verb = if uses.len() == 1 { "takes" } else { "take" };
             format!("{together}{names} {verb} {sum} of {}, which has {capacity}", resource.name)
         }
-        Supply::Reservoir { .. } => format!("{names} cannot all have what they need of {}", resource.name),
+        Supply::Reservoir { .. } => format!("{names} together need too much {}", resource.name),
     }
 }
 
@@ -352,7 +358,7 @@ fn out_of_range(network: &Network, early: &[UseId], late: &[UseId]) -> String {
     let verb = if early.len() == 1 { "takes" } else { "take" };
     let those = if early.len() == 1 { "that" } else { "one of them" };
     let first = match late.len() {
-        0 => "nothing can come before that helps".to_owned(),
+        0 => "no other use can prevent this".to_owned(),
         1 => format!("{} must come before {those}", users(network, late)),
         _ => format!("one of {} must come before {those}", users(network, late)),
     };

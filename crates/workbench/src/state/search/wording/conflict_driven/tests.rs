@@ -33,11 +33,11 @@ fn a_state() {
          primitive Stow()[1,1] sets ARM=STOWED;
          scenario S[0,4] = { { delay[1,2]; Look(); delay }, { delay; Deploy(); delay; Stow(); delay } }",
         &[
-            "Search in the order of the text. Each failure teaches what never to choose together again.",
-            "Whatever is chosen, ARM=STOWED for Look#1 from the start of the mission is ruled out.",
-            "Whatever is chosen: ARM=STOWED for Look#1 from Stow#1.",
-            "The times fit, and what must be kept of their order follows from the choices.",
-            "This is a plan.",
+            "Search in text order, learning a conflict from each failure.",
+            "Ruled out for every choice: ARM=STOWED for Look#1 from the start of the mission.",
+            "For every choice: ARM=STOWED for Look#1 from Stow#1.",
+            "The times are consistent, and the choices imply all necessary orderings.",
+            "Plan found.",
         ],
     );
 }
@@ -51,12 +51,12 @@ fn one_vehicle() {
          primitive Look()[5,5] requires R1.at=B;
          scenario S[0,30] = { free Drive(B), free Drive(C), free Look() }",
         &[
-            "Search in the order of the text. Each failure teaches what never to choose together again.",
-            "Whatever is chosen: R1.at=B for Look#1 from Drive#1.",
-            "Drive#1 comes before Drive#2: both move R1.",
-            "From Drive#1 before Drive#2 it follows: Look#1 before Drive#2.",
-            "The times fit. Of their order the plan keeps Drive#1 before Drive#2 and Look#1 before Drive#2.",
-            "This is a plan.",
+            "Search in text order, learning a conflict from each failure.",
+            "For every choice: R1.at=B for Look#1 from Drive#1.",
+            "Order Drive#1 before Drive#2: both move R1.",
+            "Drive#1 before Drive#2 implies Look#1 before Drive#2.",
+            "The times are consistent. The plan keeps these orderings: Drive#1 before Drive#2 and Look#1 before Drive#2.",
+            "Plan found.",
         ],
     );
 }
@@ -70,12 +70,12 @@ fn a_resource() {
          primitive Heat()[5,5] uses Power 3;
          scenario S[0,10] = { free Radio(), Arm(), Heat() }",
         &[
-            "Search in the order of the text. Each failure teaches what never to choose together again.",
+            "Search in text order, learning a conflict from each failure.",
             "Together Radio#1, Arm#1 and Heat#1 take 9 of Power, which has 7: one must wait for another.",
-            "Back to the start, with all that was learned.",
-            "Heat#1 comes before Radio#1: both use Power.",
-            "The times fit. Of their order the plan keeps Heat#1 before Radio#1 (Power).",
-            "This is a plan.",
+            "Restart with all learned conflicts.",
+            "Order Heat#1 before Radio#1: both use Power.",
+            "The times are consistent. The plan keeps these orderings: Heat#1 before Radio#1 (Power).",
+            "Plan found.",
         ],
     );
 }
@@ -88,12 +88,12 @@ fn a_reservoir() {
          primitive Charge()[6,6] produces Battery 40;
          scenario S[0,20] = { { Drive(); delay[0,2]; Drive() }, { delay; Charge(); delay } }",
         &[
-            "Search in the order of the text. Each failure teaches what never to choose together again.",
+            "Search in text order, learning a conflict from each failure.",
             "Drive#1 and Drive#2 take Battery below 10: Charge#1 must come before one of them.",
-            "Back to the start, with all that was learned.",
-            "Whatever is chosen: Charge#1 before Drive#2 (Battery).",
-            "The times fit. Of their order the plan keeps Charge#1 before Drive#2 (Battery).",
-            "This is a plan.",
+            "Restart with all learned conflicts.",
+            "For every choice: Charge#1 before Drive#2 (Battery).",
+            "The times are consistent. The plan keeps these orderings: Charge#1 before Drive#2 (Battery).",
+            "Plan found.",
         ],
     );
 }
@@ -105,21 +105,21 @@ fn an_objective() {
          objective minimize end;
          scenario S[0,20] = { choose { Long(), Short() } }",
         &[
-            "Look for some plan first, and then for better and better ones.",
+            "Find a first plan, then improve it.",
             "Decide D1 = 0: Long#1.",
-            "The times fit, and what must be kept of their order follows from the choices.",
-            "The best plan so far: end 5.",
-            "Look for a plan that is better than end 5: with less end; no plan has less than 2.",
-            "Whatever is chosen, D1=0 is ruled out.",
-            "Whatever is chosen: D1=1.",
-            "The times fit, and what must be kept of their order follows from the choices.",
-            "The best plan so far: end 2.",
-            "Look for a plan that is better than end 2: with less end; no plan has less than 2.",
-            "Whatever is chosen, D1=0 is ruled out.",
-            "Whatever is chosen: D1=1.",
-            "Failure: no plan is better than the best one found.",
-            "Nothing is left to try.",
-            "This is a plan.",
+            "The times are consistent, and the choices imply all necessary orderings.",
+            "Best plan so far: end 5.",
+            "Search for a better plan than end 5: less end; no plan has less than 2.",
+            "Ruled out for every choice: D1=0.",
+            "For every choice: D1=1.",
+            "The times are consistent, and the choices imply all necessary orderings.",
+            "Best plan so far: end 2.",
+            "Search for a better plan than end 2: less end; no plan has less than 2.",
+            "Ruled out for every choice: D1=0.",
+            "For every choice: D1=1.",
+            "Failure: no plan is better than the best plan found.",
+            "No alternatives left.",
+            "Plan found.",
         ],
     );
 }
@@ -132,25 +132,25 @@ fn best_first() {
          scenario S[0,10] = { choose { Long(), Short() }; choose { Walk(), Ride() } }",
         Search::BestFirst,
         &[
-            "Always go on where the best plan may still be. The first plan that is finished is the best one.",
-            "Go on here, where no plan is better than cost 4; nothing else is open.",
+            "Expand the state with the best bound first. The first complete plan is optimal.",
+            "Continue here: best possible cost 4; no other state is open.",
             "Decide D1 = 0: Long#1.",
             "D1=0 rules out D2=0.",
-            "From D1=0 it follows: D2=1.",
-            "Open: with this no plan is better than cost 8.",
+            "D1=0 implies D2=1.",
+            "Open: no plan from this state is better than cost 8.",
             "Decide D1 = 1: Short#1.",
-            "Open: with this no plan is better than cost 5.",
-            "Go on here: of all that is open this may become best, with cost 5; one other state is open.",
+            "Open: no plan from this state is better than cost 5.",
+            "Continue here: best possible cost 5; 1 other state is open.",
             "Decide D2 = 0: Walk#1.",
-            "Open: with this no plan is better than cost 5.",
+            "Open: no plan from this state is better than cost 5.",
             "Decide D2 = 1: Ride#1.",
-            "Open: with this no plan is better than cost 9.",
-            "Go on here: of all that is open this may become best, with cost 5; 2 other states are open.",
-            "The times fit, and what must be kept of their order follows from the choices.",
-            "Closed: no plan with this is better than the one that was found.",
-            "Closed: no plan with this is better than the one that was found.",
-            "The best plan so far: cost 5.",
-            "This is a plan.",
+            "Open: no plan from this state is better than cost 9.",
+            "Continue here: best possible cost 5; 2 other states are open.",
+            "The times are consistent, and the choices imply all necessary orderings.",
+            "Closed: no plan from this state is better than the best plan found.",
+            "Closed: no plan from this state is better than the best plan found.",
+            "Best plan so far: cost 5.",
+            "Plan found.",
         ],
     );
 }
@@ -161,14 +161,14 @@ fn nature() {
         "primitive Drive() contingent [10,20]; primitive Walk()[12,13];
          scenario S[0,30] = { choose { Drive(), Walk() } [0,15] }",
         &[
-            "Search in the order of the text. Each failure teaches what never to choose together again.",
+            "Search in text order, learning a conflict from each failure.",
             "Decide D1 = 0: Drive#1.",
-            "Failure: with D1=0 nature can choose durations that leave no times. Learned: never D1=0.",
-            "Back to the start: the failure has to do with D1=0 alone.",
-            "Whatever is chosen, D1=0 is ruled out.",
-            "Whatever is chosen: D1=1.",
-            "The times fit, and what must be kept of their order follows from the choices.",
-            "This is a plan.",
+            "Failure: the mission is not controllable with D1=0. Learned: never D1=0.",
+            "Backjump to the start: the failure depends only on D1=0.",
+            "Ruled out for every choice: D1=0.",
+            "For every choice: D1=1.",
+            "The times are consistent, and the choices imply all necessary orderings.",
+            "Plan found.",
         ],
     );
 }
@@ -181,18 +181,18 @@ fn too_many_drives() {
          primitive Drive(to)[10,20] moves R1 speed (0.02, 0.5);
          scenario S[0,25] = { free Drive(B), free Drive(C), free Drive(A) }",
         &[
-            "Search in the order of the text. Each failure teaches what never to choose together again.",
-            "Drive#1 comes before Drive#2: both move R1.",
-            "From Drive#1 before Drive#2 it follows: Drive#1 before Drive#3.",
-            "From Drive#1 before Drive#2 it follows: Drive#3 before Drive#2.",
+            "Search in text order, learning a conflict from each failure.",
+            "Order Drive#1 before Drive#2: both move R1.",
+            "Drive#1 before Drive#2 implies Drive#1 before Drive#3.",
+            "Drive#1 before Drive#2 implies Drive#3 before Drive#2.",
             "Failure: Drive#1, Drive#2 and Drive#3 need at least 30, but the scenario allows only 25: 5 too much.",
             "Learned: never Drive#1 before Drive#2.",
-            "Back to the start: the failure has to do with Drive#1 before Drive#2 alone.",
-            "Whatever is chosen: Drive#2 before Drive#1.",
-            "Whatever is chosen: Drive#2 before Drive#3.",
-            "Whatever is chosen: Drive#3 before Drive#1.",
+            "Backjump to the start: the failure depends only on Drive#1 before Drive#2.",
+            "For every choice: Drive#2 before Drive#1.",
+            "For every choice: Drive#2 before Drive#3.",
+            "For every choice: Drive#3 before Drive#1.",
             "Failure: Drive#1, Drive#2 and Drive#3 need at least 30, but the scenario allows only 25: 5 too much.",
-            "Nothing is left to try.",
+            "No alternatives left.",
         ],
     );
 }
