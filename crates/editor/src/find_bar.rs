@@ -26,12 +26,12 @@ pub(crate) fn show(ui: &mut Ui, view: &EditorView<'_>, find: &Find, actions: &mu
         let is_wide = ui.available_width() >= ROOM_FOR_WORDS;
         filled_row(ui, "query", |ui, room| {
             let sign = if find.replacing { Icon::ChevronDown } else { Icon::ChevronRight };
-            let toggle = icon::button(ui, tokens, sign, "Replace row");
+            let toggle = icon::button(ui, tokens, sign, "Toggle replace");
             changed.replacing ^= toggle.clicked();
             query_field(ui, find, room, &mut changed, actions);
             toggle_button(ui, "Aa", "Match case", &mut changed.case_sensitive);
-            toggle_button(ui, "ab", "Whole words", &mut changed.whole_words);
-            toggle_button(ui, ".*", "Regular expression", &mut changed.is_regex);
+            toggle_button(ui, "ab", "Match whole word", &mut changed.whole_words);
+            toggle_button(ui, ".*", "Use regular expression", &mut changed.is_regex);
             if is_wide {
                 show_outcome(ui, view, find, WORDS_WIDTH);
             }
@@ -42,8 +42,8 @@ pub(crate) fn show(ui: &mut Ui, view: &EditorView<'_>, find: &Find, actions: &mu
         if find.replacing {
             filled_row(ui, "replacement", |ui, room| {
                 ui.add_space(space::ROW + ui.spacing().item_spacing.x);
-                let field = TextEdit::singleline(&mut changed.replacement).hint_text("Replace by");
-                ui.add(field.desired_width(room)).accessible_name("Replace by");
+                let field = TextEdit::singleline(&mut changed.replacement).hint_text("Replace with");
+                ui.add(field.desired_width(room)).accessible_name("Replace with");
                 if ui.button("Replace").clicked() {
                     actions.push(EditorAction::ReplaceOne);
                 }
@@ -141,7 +141,7 @@ fn outcome(view: &EditorView<'_>, find: &Find) -> String {
         }
     }
     match (count, current) {
-        (0, _) => "No matches".to_owned(),
+        (0, _) => "No results".to_owned(),
         (1, 0) => "1 match".to_owned(),
         (_, 0) => format!("{count} matches"),
         _ => format!("{current} of {count}"),

@@ -33,7 +33,7 @@ pub(crate) fn show(
             show_markdown(ui, view.tokens, markdown);
         }
         if let Some(keys) = view.manual_keys {
-            let text = format!("{keys}: in the manual");
+            let text = format!("{keys}: open manual");
             ui.label(RichText::new(text).small().color(view.tokens.text_muted));
         }
     });

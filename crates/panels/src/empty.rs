@@ -28,9 +28,9 @@ pub fn show_empty(ui: &mut Ui, context: &Context<'_>, text: &str) {
 /// which mostly is a moment, nothing is said.
 pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
     let now = match context.state.status() {
-        Status::Broken => "what is written now has errors",
-        Status::Empty => "there is nothing to plan in what is written now",
-        Status::Undecided => "what is written now is not worked out",
+        Status::Broken => "the current text has errors",
+        Status::Empty => "the current text has nothing to plan",
+        Status::Undecided => "planning was stopped",
         _ => return,
     };
     if !panel.is_marked_when_stale() || !context.is_stale || context.snapshot.is_none() {
@@ -42,7 +42,7 @@ pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
         ui.set_min_width(ui.available_width());
         ui.horizontal(|ui| {
             icon::label(ui, Icon::Warning, color);
-            ui.add(Label::new(RichText::new(format!("Of an earlier text: {now}")).color(color)).truncate());
+            ui.add(Label::new(RichText::new(format!("Out of date: {now}")).color(color)).truncate());
         });
     });
 }
@@ -53,9 +53,9 @@ pub(crate) fn missing(context: &Context<'_>, then: &str) -> String {
         _ if context.state.snapshots.lacks_a_scenario() => {
             format!("This mission has no scenario yet. With one, {then}.")
         }
-        Status::Broken => format!("The text has errors: see the problems. Without them, {then}."),
-        Status::Empty => format!("There is nothing to plan in this text. With a scenario, {then}."),
-        _ => "The mission is being read…".to_owned(),
+        Status::Broken => format!("The text has errors: see the Problems panel. Without them, {then}."),
+        Status::Empty => format!("This text has no scenario. With one, {then}."),
+        _ => "Loading the mission…".to_owned(),
     }
 }
 
@@ -72,7 +72,7 @@ pub(crate) fn show_missing(ui: &mut Ui, context: &Context<'_>, then: &str, comma
         ui.set_max_width(ui.available_width().min(380.0));
         ui.label(RichText::new(missing(context, then)).color(context.tokens.text_muted));
         ui.add_space(space::M);
-        if ui.button("Add a scenario").clicked() {
+        if ui.button("Add scenario").clicked() {
             // At the end of the mission's first file.
             let document = &context.state.document;
             let end = document.file_range(0).end;

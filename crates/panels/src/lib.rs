@@ -5,6 +5,7 @@ mod compare;
 mod distances;
 mod empty;
 mod execution;
+mod inline_code;
 pub mod keyboard_navigation;
 mod lesson;
 mod manual;
@@ -25,6 +26,7 @@ mod terrain;
 mod timeline;
 
 pub use empty::{show_empty, show_stale};
+pub use inline_code::without_backticks;
 pub use mission_text::{editor_id, typed_text};
 pub use panel::{Context, Panel};
 pub use plan::counted;

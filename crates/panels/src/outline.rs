@@ -30,7 +30,7 @@ impl Panel for OutlinePanel {
         let mut items = items(&latest.program, context.tokens);
         items.sort_by_key(|item| item.whole);
         if items.is_empty() {
-            show_empty(ui, context, "Nothing is declared yet.");
+            show_empty(ui, context, "No declarations.");
             return;
         }
         let caret = context.state.document.caret().head as u32;

@@ -1,7 +1,7 @@
 //! What is wrong with the text: a list that leads to the places, offers fixes and explains.
 
 use editor::Severity;
-use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{Role, ScrollArea, Sense, Ui, WidgetInfo};
 use rmpl::Span;
 use snapshot::Problem;
 use text_editing::{EditKind, TextCommand};
@@ -16,7 +16,7 @@ use workbench::state::manual::ManualCommand;
 use workbench::state::no_plan::NO_PLAN;
 use workbench::state::window::WindowCommand;
 
-use crate::{Context, Panel, keyboard_navigation, show_empty};
+use crate::{Context, Panel, inline_code, keyboard_navigation, show_empty, without_backticks};
 
 /// The list of problems.
 #[derive(Default)]
@@ -30,7 +30,7 @@ impl Panel for ProblemsPanel {
         let latest = context.state.snapshots.latest();
         let problems = context.state.snapshots.problems();
         if problems.is_empty() {
-            let text = if latest.is_some() { "No problems." } else { "Reading the text…" };
+            let text = if latest.is_some() { "No problems." } else { "Checking…" };
             show_empty(ui, context, text);
             return;
         }
@@ -92,10 +92,11 @@ fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem, is_selected: 
     let small = egui::TextStyle::Small.resolve(ui.style());
     let width = ui.available_width();
     let text_width = (width - 28.0 - 120.0).max(80.0);
-    let message = ui.painter().layout(problem.message.clone(), body, tokens.text, text_width);
+    let message = inline_code::job(&problem.message, &body, tokens.text, text_width);
+    let message = ui.painter().layout_job(message);
     let height = (message.size().y + 6.0).max(space::ROW);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
-    let name = format!("Line {}: {} {}", problem.line, problem.code, problem.message);
+    let name = format!("Line {}: {} {}", problem.line, problem.code, without_backticks(&problem.message));
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
     if is_selected {
         ui.painter().rect_filled(rect, 0.0, tokens.selection);
@@ -123,7 +124,8 @@ fn show_details(
 ) {
     ui.indent("details", |ui| {
         if let Some(hint) = &problem.hint {
-            ui.label(RichText::new(hint).color(context.tokens.text_muted));
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            ui.label(inline_code::job(hint, &font, context.tokens.text_muted, ui.available_width()));
         }
         let is_of_plan = problem.code == NO_PLAN;
         let explain = if is_of_plan { "Show why" } else { "Explain" };
@@ -135,14 +137,15 @@ fn show_details(
             });
         }
         if is_of_plan
-            && ui.add(egui::Button::new("In the manual").frame_when_inactive(false)).clicked()
+            && ui.add(egui::Button::new("Open in manual").frame_when_inactive(false)).clicked()
             && let Some((page, section)) = manual::about_code(&problem.code)
         {
             commands.send(Command::Manual(ManualCommand::Open(page, section)));
         }
         for fix in &problem.fixes {
-            let button = ui.add_enabled(is_current, egui::Button::new(&fix.label));
-            if button.accessible_name(format!("Fix: {}", fix.label)).clicked() {
+            let label = without_backticks(&fix.label);
+            let button = ui.add_enabled(is_current, egui::Button::new(&label));
+            if button.accessible_name(format!("Fix: {label}")).clicked() {
                 commands.send(Command::Edit { edits: fix.edits.clone(), kind: EditKind::Single });
             }
         }

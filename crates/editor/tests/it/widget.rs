@@ -263,7 +263,7 @@ fn what_is_wrong_is_told_under_the_pointer_with_what_the_language_says() {
     window.harness.get_by_label("This is wrong");
     window.harness.get_by_label("Make it right");
     window.harness.get_by_label("E-WRONG   F9 to fix");
-    window.harness.get_by_label("F10: in the manual");
+    window.harness.get_by_label("F10: open manual");
     assert!(window.harness.query_by_label_contains("byte ").is_some());
 }
 

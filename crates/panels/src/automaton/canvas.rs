@@ -48,7 +48,7 @@ impl Canvas {
     ) {
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let name = format!(
-            "Automaton. {} locations. Step {}, marked: {}.",
+            "Automaton. {} locations. Step {}, active: {}.",
             shown.automaton.locations.len(),
             shown.moment.upcoming.step,
             log::marked_text(shown.automaton, shown.moment)
@@ -144,7 +144,7 @@ impl Canvas {
             let name = match item {
                 AutomatonItem::Location(id) => {
                     let label = automaton.location(id).map_or("", |location| location.label.as_str());
-                    let standing = if is_marked { ", marked" } else { "" };
+                    let standing = if is_marked { ", active" } else { "" };
                     format!("{}: {label}{standing}", automaton.location_name(id))
                 }
                 _ => text.clone(),
@@ -196,12 +196,12 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
         AutomatonItem::Location(id) => {
             let location = automaton.location(id)?;
             let meaning = match location.kind {
-                LocationKind::Assert => "stays marked, and its goal pursued, until the goal holds",
-                LocationKind::Always => "starts its body at every step",
-                LocationKind::If => "chooses once",
-                LocationKind::Unless => "starts its body once unless something is known to hold",
-                LocationKind::When => "waits until something is known to hold, then starts its body once",
-                LocationKind::Whenever => "starts its body whenever something is known to hold",
+                LocationKind::Assert => "Active until its goal is achieved",
+                LocationKind::Always => "Starts its body at every step",
+                LocationKind::If => "Branches once",
+                LocationKind::Unless => "Starts its body once, unless the condition is known to hold",
+                LocationKind::When => "Waits for the condition, then starts its body once",
+                LocationKind::Whenever => "Starts its body whenever the condition is known to hold",
             };
             Some(format!("{}: {}\n{meaning}", automaton.location_name(id), location.label))
         }
@@ -217,14 +217,13 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
             let composite = automaton.composite(id)?;
             let Some(guard) = composite.maintenance.and_then(|test| automaton.guard(test)) else {
                 return match composite.kind {
-                    CompositeKind::Parallel => Some("All of this runs side by side".to_owned()),
-                    CompositeKind::Sequence => Some("What ends is followed by what is next".to_owned()),
+                    CompositeKind::Parallel => Some("These branches run in parallel".to_owned()),
+                    CompositeKind::Sequence => Some("These parts run in sequence".to_owned()),
                     _ => None,
                 };
             };
-            let verb =
-                if guard.non_entailed { "becomes known to hold" } else { "is no longer known to hold" };
-            Some(format!("All of this ends as soon as {} {verb}", guard.constraint))
+            let verb = if guard.non_entailed { "is known to hold" } else { "is no longer known to hold" };
+            Some(format!("Ends as soon as {} {verb}", guard.constraint))
         }
     }
 }

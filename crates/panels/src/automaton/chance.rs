@@ -20,7 +20,7 @@ const MAX_LISTED: usize = 8;
 
 /// Shows what is asked for and what was found.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    title(ui, context, "Many runs", "components fail with the probabilities of their classes");
+    title(ui, context, "Monte Carlo", "random faults, with the probabilities in the plant model");
     ask(ui, context, commands);
     let chance = &context.state.automaton.chance;
     if let Some(trouble) = &chance.trouble {
@@ -33,8 +33,8 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         faults(ui, context, tally);
         stuck(ui, context, tally, commands);
     } else {
-        let text = "Runs the program many times in the background, and says how often it reaches its end, what \
-                    failed, and what the other runs waited for.";
+        let text = "Run the program many times with random faults to see how often it reaches its end, \
+                    which faults occurred, and where other runs got stuck.";
         ui.add_space(space::M);
         ui.label(RichText::new(text).color(context.tokens.text_muted));
     }
@@ -51,9 +51,9 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         ui.add(DragValue::new(&mut settings.runs).range(1..=MAX_RUNS).speed(10.0)).labelled_by(label);
         let label = ui.label(muted("Seed")).id;
         ui.add(DragValue::new(&mut settings.seed).speed(0.1)).labelled_by(label);
-        let label = ui.label(muted("Steps at most")).id;
+        let label = ui.label(muted("Maximum steps")).id;
         let steps = DragValue::new(&mut settings.most_steps).range(1..=MAX_STEPS_OF_RUN);
-        ui.add(steps).labelled_by(label).on_hover_text("A run that takes more has not reached its end");
+        ui.add(steps).labelled_by(label).on_hover_text("A longer run counts as not finished");
     });
     let injected = state.injected();
     if !injected.is_empty() {
@@ -63,14 +63,14 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 modes.iter().map(move |(name, mode)| format!("{name}={mode} in step {step}"))
             })
             .collect();
-        let text = format!("Always with {}", faults.join(", "));
+        let text = format!("Always inject {}", faults.join(", "));
         ui.checkbox(&mut settings.keeps_injected, text);
     }
     if chance.is_running() {
-        if ui.button("Stop the runs").clicked() {
+        if ui.button("Stop runs").clicked() {
             commands.send(Command::Chance(ChanceCommand::Stop));
         }
-    } else if ui.button("Run with chance").clicked() {
+    } else if ui.button("Run Monte Carlo").clicked() {
         commands.send(Command::Chance(ChanceCommand::Start));
     }
     if settings != chance.settings {
@@ -94,7 +94,7 @@ fn answer(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
     let share = percent(tally.probability());
     ui.label(strong(&share).size(size::TITLE * 1.8).color(color));
     let text = format!(
-        "{} of {} runs reach the end; with 95 % confidence between {} and {}",
+        "{} of {} runs reach the end (95% confidence: {} to {})",
         tally.reached,
         tally.runs,
         percent(low),
@@ -102,7 +102,7 @@ fn answer(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
     );
     ui.label(RichText::new(text).color(tokens.text));
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 14.0), Sense::hover());
-    let name = format!("Between {} and {}", percent(low), percent(high));
+    let name = format!("Success rate between {} and {}", percent(low), percent(high));
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let painter = ui.painter_at(rect);
     let track = Rect::from_center_size(rect.center(), vec2(rect.width() - 2.0, 6.0));
@@ -148,9 +148,9 @@ fn ends(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
 }
 
 fn faults(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
-    title(ui, context, "What failed by chance", "and how many of those runs reached the end all the same");
+    title(ui, context, "Random faults", "and the share of these runs that still reached the end");
     if tally.faults.is_empty() {
-        ui.label(RichText::new("Nothing").color(context.tokens.text_muted));
+        ui.label(RichText::new("None").color(context.tokens.text_muted));
     }
     let mut faults: Vec<_> = tally.faults.iter().collect();
     faults.sort_by_key(|(name, tally)| (std::cmp::Reverse(tally.runs), name.as_str()));
@@ -166,7 +166,7 @@ fn faults(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally) {
 
 fn stuck(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally, commands: &mut CommandSender) {
     let Some(number) = tally.first_stuck else { return };
-    title(ui, context, "Still marked in the other runs", "");
+    title(ui, context, "Still active in the other runs", "");
     let mut stuck: Vec<_> = tally.stuck.iter().collect();
     stuck.sort_by_key(|(label, runs)| (std::cmp::Reverse(**runs), label.as_str()));
     for (label, runs) in stuck.into_iter().take(MAX_LISTED) {
@@ -174,7 +174,7 @@ fn stuck(ui: &mut Ui, context: &Context<'_>, tally: &ProgramTally, commands: &mu
     }
     ui.add_space(space::S);
     let button = ui.button(format!("Step through run {}", number + 1));
-    if button.on_hover_text("The first run that did not reach the end, from the same fault seed").clicked() {
+    if button.on_hover_text("Replay the first unfinished run with its fault seed").clicked() {
         commands.send(Command::ProgramChance(ProgramChanceCommand::StepThrough(number)));
         commands.send(Command::Automaton(AutomatonCommand::GoTo(0)));
     }

@@ -44,7 +44,7 @@ impl Machines {
         plant: &PlantMoment,
         commands: &mut CommandSender,
     ) {
-        title(ui, context, "Components", "shade: how likely   ● true   dotted: fault");
+        title(ui, context, "Components", "shading: probability   ● true mode   dotted: fault");
         chance(ui, context, commands);
         let available = ui.available_width();
         let mut row: Vec<(ComponentId, f32)> = Vec::new();
@@ -145,7 +145,7 @@ fn chance(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let usual = FaultSeed { seed: context.state.automaton.chance.settings.seed, run: None };
     ui.horizontal_wrapped(|ui| {
         let mut is_on = fault_seed.is_some();
-        if ui.checkbox(&mut is_on, "Components fail by chance").changed() {
+        if ui.checkbox(&mut is_on, "Random component faults").changed() {
             commands.send(Command::Automaton(AutomatonCommand::SetFaultSeed(is_on.then_some(usual))));
         }
         match fault_seed {
@@ -153,13 +153,13 @@ fn chance(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 let label = ui.label(RichText::new("Fault seed").color(context.tokens.text_muted)).id;
                 let field = DragValue::new(&mut seed).speed(0.1);
                 let field = ui.add(field).labelled_by(label);
-                if field.on_hover_text("With the same number, the same components fail").changed() {
+                if field.on_hover_text("The same seed gives the same faults").changed() {
                     let changed = Some(FaultSeed { seed, run: None });
                     commands.send(Command::Automaton(AutomatonCommand::SetFaultSeed(changed)));
                 }
             }
             Some(FaultSeed { seed, run: Some(run) }) => {
-                let text = format!("as in run {} with seed {seed}", run + 1);
+                let text = format!("as in Monte Carlo run {}, seed {seed}", run + 1);
                 ui.label(RichText::new(text).color(context.tokens.text_muted));
             }
             None => {}
@@ -176,7 +176,7 @@ fn fault_menu(
 ) {
     let Some(component) = model.component(id) else { return };
     let menu = ui.menu_button(component.name.as_str(), |ui| {
-        ui.label(RichText::new("In this step, whatever is commanded, it comes into").small());
+        ui.label(RichText::new("Force mode in this step:").small());
         for (mode, data) in (0_u8..).zip(&component.modes) {
             if ui.selectable_label(injected == Some(mode), data.name.as_str()).clicked() {
                 commands.send(Command::Automaton(AutomatonCommand::Inject(id, Some(mode))));
@@ -184,12 +184,12 @@ fn fault_menu(
             }
         }
         ui.separator();
-        if ui.selectable_label(injected.is_none(), "Let it behave").clicked() {
+        if ui.selectable_label(injected.is_none(), "Clear fault").clicked() {
             commands.send(Command::Automaton(AutomatonCommand::Inject(id, None)));
             ui.close();
         }
     });
-    menu.response.on_hover_text(format!("{}, a {}: inject a fault", component.name, component.class));
+    menu.response.on_hover_text(format!("Inject a fault into {} ({})", component.name, component.class));
 }
 
 /// A probability for reading, as an interval where it is not known exactly, with at most this many decimals then.
@@ -198,17 +198,17 @@ pub(super) fn percent_between(probability: &Interval, most_decimals: u32) -> Str
         return percent(probability.to_f64().0);
     }
     let (low, high) = probability.percents(most_decimals);
-    format!("{low}–{high} %")
+    format!("{low}–{high}%")
 }
 
 /// A probability for reading: never rounded to certainty.
 pub(super) fn percent(probability: f64) -> String {
     let percent = probability * 100.0;
     match percent {
-        _ if percent >= 99.995 && probability < 1.0 => ">99.99 %".to_owned(),
-        _ if percent > 0.0 && percent < 0.005 => "<0.01 %".to_owned(),
-        _ if percent == 0.0 || percent == 100.0 => format!("{percent:.0} %"),
-        _ if (10.0..99.0).contains(&percent) => format!("{percent:.1} %"),
-        _ => format!("{percent:.2} %"),
+        _ if percent >= 99.995 && probability < 1.0 => ">99.99%".to_owned(),
+        _ if percent > 0.0 && percent < 0.005 => "<0.01%".to_owned(),
+        _ if percent == 0.0 || percent == 100.0 => format!("{percent:.0}%"),
+        _ if (10.0..99.0).contains(&percent) => format!("{percent:.1}%"),
+        _ => format!("{percent:.2}%"),
     }
 }

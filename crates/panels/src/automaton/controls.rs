@@ -22,9 +22,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             jump(ui, context, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let zoom = [
-                    (Icon::Fit, "Show the whole automaton", ViewAction::Fit),
-                    (Icon::Plus, "Closer", ViewAction::ZoomIn),
-                    (Icon::Minus, "Further away", ViewAction::ZoomOut),
+                    (Icon::Fit, "Zoom to fit", ViewAction::Fit),
+                    (Icon::Plus, "Zoom in", ViewAction::ZoomIn),
+                    (Icon::Minus, "Zoom out", ViewAction::ZoomOut),
                 ];
                 for (sign, name, action) in zoom {
                     if icon::button(ui, context.tokens, sign, name).clicked() {
@@ -32,7 +32,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                     }
                 }
                 if matches!(context.state.automaton.program(), Some(Program::Unbound(_))) {
-                    let text = RichText::new("No plant: what is known is typed in").small();
+                    let text = RichText::new("No plant model: enter observations by hand").small();
                     let galley = in_one_line(ui, text.color(context.tokens.text_muted));
                     // Beside the controls, where there is room; the panel *What is known* says it as well.
                     if galley.size().x <= ui.available_width() {
@@ -43,16 +43,16 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         });
     });
     if let Some(error) = &context.state.automaton.error {
-        ui.label(RichText::new(format!("✗ The step cannot be taken: {error}")).color(context.tokens.error));
+        ui.label(RichText::new(format!("✗ This step failed: {error}")).color(context.tokens.error));
     }
 }
 
 fn stepping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let state = &context.state.automaton;
     let (sign, name) =
-        if state.is_playing { (Icon::Pause, "Pause the program") } else { (Icon::Play, "Run the program") };
+        if state.is_playing { (Icon::Pause, "Pause program") } else { (Icon::Play, "Run program") };
     let buttons = [
-        (Icon::ToStart, "Back to the start of the program", AutomatonCommand::GoTo(0), state.at() > 0),
+        (Icon::ToStart, "Go to the first step", AutomatonCommand::GoTo(0), state.at() > 0),
         (Icon::StepBack, "Step back", AutomatonCommand::Step(-1), state.at() > 0),
         (sign, name, AutomatonCommand::TogglePlaying, true),
         (Icon::StepForward, "Step", AutomatonCommand::Step(1), state.can_step()),
@@ -66,7 +66,7 @@ fn stepping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             commands.send(Command::Automaton(command));
         }
     }
-    let reset = ui.button("Reset").on_hover_text("Forgets all steps, faults and changed observations");
+    let reset = ui.button("Reset").on_hover_text("Discard all steps, faults and changed observations");
     if reset.clicked() {
         commands.send(Command::Automaton(AutomatonCommand::Reset));
     }
@@ -85,7 +85,7 @@ fn jump(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
     let note = match state.moment() {
         Some(moment) if moment.marking.is_empty() => "ended".to_owned(),
-        Some(moment) => format!("{} marked", moment.marking.len()),
+        Some(moment) => format!("{} active", moment.marking.len()),
         None => String::new(),
     };
     ui.add_space(space::S);

@@ -45,11 +45,11 @@ pub(super) fn show(
 fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
     let count = plant.belief.len();
     let note = match count {
-        1 if plant.belief.is_exact() => "one state is possible".to_owned(),
-        1 => "one state is kept".to_owned(),
-        usize::MAX => "very many states are possible".to_owned(),
-        _ if plant.belief.is_exact() => format!("{count} states are possible"),
-        _ => format!("{count} states are kept"),
+        1 if plant.belief.is_exact() => "1 possible state".to_owned(),
+        1 => "1 tracked state".to_owned(),
+        usize::MAX => "too many possible states to count".to_owned(),
+        _ if plant.belief.is_exact() => format!("{count} possible states"),
+        _ => format!("{count} tracked states"),
     };
     title(ui, context, "Belief", &note);
     let listed: Vec<(State, Interval)> = plant.belief.states().take(MAX_LISTED).collect();
@@ -67,9 +67,9 @@ fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment
         let sum = listed.iter().map(|(_, probability)| probability.to_f64().0).sum::<f64>();
         let rest = percent((1.0 - sum).max(0.0));
         let text = match count {
-            usize::MAX => format!("and very many more, {rest}"),
+            usize::MAX => format!("and others, {rest}"),
             _ if plant.belief.is_exact() => format!("and {} more, {rest}", count - listed.len()),
-            _ => format!("and {} more and those not kept, at most {rest}", count - listed.len()),
+            _ => format!("and {} more, plus untracked states, at most {rest}", count - listed.len()),
         };
         ui.label(RichText::new(text).small().color(context.tokens.text_muted));
     }
@@ -144,7 +144,7 @@ fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             commands.send(Command::Automaton(AutomatonCommand::GoTo(at)));
         }
     }
-    response.on_hover_text("The most likely states before each step; press a step to go there");
+    response.on_hover_text("Most likely states before each step. Click a step to open it.");
 }
 
 fn observations(
@@ -162,7 +162,7 @@ fn observations(
         ui,
         context,
         &format!("Observed in step {}", record.trace.step),
-        "change one to see the diagnosis change",
+        "change a value to update the diagnosis",
     );
     Grid::new("automaton-observations").num_columns(3).show(ui, |ui| {
         for (&id, &value) in &record.observation.0 {
@@ -171,7 +171,9 @@ fn observations(
             let color = if is_changed { context.tokens.warning } else { context.tokens.text };
             ui.label(RichText::new(variable.name.as_str()).color(color));
             observation(ui, id, &variable.name, &variable.values, value, commands);
-            if is_changed && ui.button("as shown").on_hover_text("What the plant really showed").clicked() {
+            if is_changed
+                && ui.button("Reset").on_hover_text("Restore the value that the plant produced").clicked()
+            {
                 commands.send(Command::Automaton(AutomatonCommand::Observe(id, None)));
             }
             ui.end_row();
@@ -195,7 +197,7 @@ fn observation(
             }
         }
     });
-    combo.response.accessible_name(format!("{name} was observed to be"));
+    combo.response.accessible_name(format!("Observed value of {name}"));
 }
 
 fn diagnosis(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
@@ -207,25 +209,28 @@ fn diagnosis(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMom
         StepOutcome::Refuted { conflict } => {
             let names = model.observation_names(conflict);
             let names: Vec<String> = names.iter().map(|(name, value)| format!("{name}={value}")).collect();
-            Some(format!("The belief is refuted: no state of the plant explains {}.", names.join(", ")))
+            Some(format!("No state of the plant explains {}. The estimate is invalid.", names.join(", ")))
         }
-        StepOutcome::LimitReached => Some("No state that was kept explains what was observed.".to_owned()),
+        StepOutcome::LimitReached => {
+            Some("The observation doesn't match any tracked state; it was ignored.".to_owned())
+        }
     };
     if let Some(text) = &ended {
         ui.label(RichText::new(text).color(tokens.error));
     }
     if record.is_uncertain {
-        let text = "Uncertain: more states are possible than the estimator keeps.";
+        let text = "Uncertain: the estimator tracks only some of the possible states.";
         ui.label(RichText::new(text).color(tokens.warning));
     }
     if record.conflicts.is_empty() && ended.is_none() {
-        ui.label(RichText::new("All is as expected.").color(tokens.good));
+        ui.label(RichText::new("No faults diagnosed.").color(tokens.good));
     }
     for conflict in &record.conflicts {
         ui.label(RichText::new(conflict.describe(model)).color(tokens.warning));
     }
     if plant.belief.most_likely() != &plant.true_state {
-        let text = format!("In truth: {}", difference(model, plant.belief.most_likely(), &plant.true_state));
+        let text =
+            format!("True state: {}", difference(model, plant.belief.most_likely(), &plant.true_state));
         ui.label(RichText::new(text).small().color(tokens.text_muted));
     }
 }

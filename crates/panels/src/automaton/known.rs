@@ -10,8 +10,8 @@ use crate::Context;
 
 /// Shows one choice per variable.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, automaton: &Automaton, commands: &mut CommandSender) {
-    title(ui, context, "What is known at the end of this step", "");
-    let note = RichText::new("The text has no plant to estimate it from.").small();
+    title(ui, context, "Observations in this step", "");
+    let note = RichText::new("No plant model: enter them by hand.").small();
     ui.label(note.color(context.tokens.text_muted));
     let input = context.state.automaton.next_input();
     Grid::new("automaton-known").num_columns(2).show(ui, |ui| {
@@ -19,9 +19,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, automaton: &Automaton, co
             ui.label(RichText::new(variable.name.as_str()).color(context.tokens.text));
             let now = input.known.get(&id).copied();
             let text = |value: Option<u32>| match value {
-                None => "not known",
+                None => "unknown",
                 Some(value) => {
-                    variable.values.get(value as usize).map_or("something else", |name| name.as_str())
+                    variable.values.get(value as usize).map_or("another value", |name| name.as_str())
                 }
             };
             let combo = ComboBox::from_id_salt(("known", id)).selected_text(text(now)).show_ui(ui, |ui| {
@@ -31,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, automaton: &Automaton, co
                     }
                 }
             });
-            combo.response.accessible_name(format!("{} is known to be", variable.name));
+            combo.response.accessible_name(format!("Known value of {}", variable.name));
             ui.end_row();
         }
     });

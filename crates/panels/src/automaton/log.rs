@@ -12,7 +12,7 @@ use crate::Context;
 
 /// What each column tells, and whether there is nothing to tell without a plant.
 const COLUMNS: [(&str, bool); 5] =
-    [("Marked", false), ("Goals", false), ("Commands", true), ("What came of it", false), ("Observed", true)];
+    [("Active", false), ("Goals", false), ("Commands", true), ("Result", false), ("Observed", true)];
 
 /// Widths in points: of the column of step numbers, and the least that any other has.
 const STEP_WIDTH: f32 = 48.0;
@@ -44,7 +44,7 @@ pub(super) fn show(
             for (at, moment) in state.moments().iter().enumerate() {
                 let is_shown = at == state.at();
                 let number = if moment.marking.is_empty() { "end".to_owned() } else { (at + 1).to_string() };
-                let label = ui.selectable_label(is_shown, number).on_hover_text("Shows this step");
+                let label = ui.selectable_label(is_shown, number).on_hover_text("Show this step");
                 if is_shown && *in_view != at {
                     *in_view = at;
                     label.scroll_to_me(None);
@@ -88,14 +88,14 @@ fn outcome(shown: Shown<'_>, next: Option<&Moment>) -> String {
         }
         for &(component, mode) in &record.failed {
             let name = model.component(component).map_or("?", |component| component.name.as_str());
-            parts.push(format!("by chance: {name}={}", model.mode_name(component, mode)));
+            parts.push(format!("random fault: {name}={}", model.mode_name(component, mode)));
         }
         match record.outcome {
             StepOutcome::Explained => {}
             StepOutcome::Refuted { .. } => {
-                parts.push("nothing explains what was observed: the belief is refuted".to_owned());
+                parts.push("no state explains the observation".to_owned());
             }
-            StepOutcome::LimitReached => parts.push("no kept state explains what was observed".to_owned()),
+            StepOutcome::LimitReached => parts.push("no tracked state explains the observation".to_owned()),
         }
         parts.extend(record.conflicts.iter().map(|conflict| conflict.describe(model)));
     }

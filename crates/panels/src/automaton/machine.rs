@@ -56,7 +56,7 @@ impl Machine {
             for fault in &mode.faults {
                 arcs.push(MachineArc { from, to: usize::from(fault.to), is_fault: true });
                 let to = name(fault.to);
-                texts.push(format!("{} → {to} by chance, {} per step", mode.name, fault.label));
+                texts.push(format!("{} → {to}: random fault, {} per step", mode.name, fault.label));
             }
         }
         let drawing = layout::machine(&widths, &arcs);
@@ -170,7 +170,7 @@ impl Standing {
             text.push_str(", most likely");
         }
         if mode == self.truth {
-            text.push_str(", true");
+            text.push_str(", true mode");
         }
         if self.injected == Some(mode) {
             text.push_str(", injected in this step");
@@ -214,6 +214,6 @@ fn act(
         let wanted = (!is_injected).then_some(mode);
         commands.send(Command::Automaton(AutomatonCommand::Inject(standing.id, wanted)));
     }
-    let hint = if is_injected { "Press to let it behave" } else { "Press to bring it here in this step" };
+    let hint = if is_injected { "Click to clear the fault" } else { "Click to force this mode in this step" };
     response.clone().on_hover_text(format!("{text}\n{hint}"));
 }

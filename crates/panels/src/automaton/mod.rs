@@ -94,10 +94,10 @@ impl Panel for AutomatonPanel {
         let state = &context.state.automaton;
         let Some(program) = state.program() else {
             if state.is_control() {
-                show_empty(ui, context, "The program is being compiled.");
+                show_empty(ui, context, "Compiling the program…");
                 return;
             }
-            show_empty(ui, context, "The text is a mission. A control program shows its automaton here.");
+            show_empty(ui, context, "Open a control program to see its automaton. This text is a mission.");
             return;
         };
         let Some((automaton, moment)) = program.automaton().zip(state.moment()) else {
@@ -105,12 +105,12 @@ impl Panel for AutomatonPanel {
                 Program::Plant(_) => show_empty(
                     ui,
                     context,
-                    "The text describes a plant. Add a program below it to see the plant controlled.",
+                    "This text is a plant model. Add a control program below it to run both.",
                 ),
                 Program::Bound { .. } | Program::Unbound(_) => {
-                    show_empty(ui, context, "The program is being run.");
+                    show_empty(ui, context, "Running the program…");
                 }
-                Program::Broken => show_empty(ui, context, "The program has errors. See the problems."),
+                Program::Broken => show_empty(ui, context, "The program has errors. See the Problems panel."),
             }
             return;
         };
@@ -242,8 +242,8 @@ fn choose(ui: &mut Ui, part: ProgramPart, is_chosen: bool, has_plant: bool, comm
     let name = match part {
         ProgramPart::Automaton => "Automaton",
         ProgramPart::Plant if has_plant => "Plant",
-        ProgramPart::Plant => "What is known",
-        ProgramPart::ManyRuns => "Many runs",
+        ProgramPart::Plant => "Observations",
+        ProgramPart::ManyRuns => "Monte Carlo",
         ProgramPart::Steps => "Steps",
     };
     if ui.selectable_label(is_chosen, name).clicked() {
@@ -267,11 +267,11 @@ fn goals(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     let tokens = context.tokens;
     let moment = shown.moment;
     if moment.marking.is_empty() {
-        title(ui, context, "The program has ended", "nothing is marked");
+        title(ui, context, "Program ended", "no active locations");
         return;
     }
     let has_plant = moment.plant.is_some();
-    let note = if has_plant { "what is wanted, and what is commanded" } else { "what is wanted" };
+    let note = if has_plant { "goals and commands" } else { "goals" };
     title(ui, context, &format!("Step {}", moment.upcoming.step), note);
     let goals = moment.upcoming.goals.join(", ");
     let goals = if goals.is_empty() { "no goals".to_owned() } else { goals };
@@ -282,6 +282,6 @@ fn goals(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
         ui.label(RichText::new(text).color(tokens.accent));
     }
     for (goal, reason) in &plant.unachievable {
-        ui.label(RichText::new(format!("✗ {goal} is not pursued: {reason}")).color(tokens.warning));
+        ui.label(RichText::new(format!("✗ Cannot pursue {goal}: {reason}")).color(tokens.warning));
     }
 }

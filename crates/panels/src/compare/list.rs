@@ -27,7 +27,7 @@ pub(super) fn show(
     }
     let left_out = comparison.differences.len().saturating_sub(MOST);
     if left_out > 0 {
-        ui.label(format!("and {left_out} more: `enroute compare` lists them all"));
+        ui.label(format!("and {left_out} more (run enroute compare for the full list)"));
     }
 }
 

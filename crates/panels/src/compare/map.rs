@@ -63,5 +63,5 @@ fn words(comparison: &Comparison) -> String {
             format!("{}: before {}, after {}", pair.name, length(&pair.before), length(&pair.after))
         })
         .collect();
-    format!("Paths of both plans from above. {}", lengths.join(". "))
+    format!("Map with the paths of both plans. {}", lengths.join(". "))
 }

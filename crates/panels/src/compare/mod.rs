@@ -59,7 +59,7 @@ impl Panel for ComparePanel {
                 }
                 summary(ui, context, &made.comparison);
                 changes::text(ui, context, &made.text, "and more lines");
-                ui.checkbox(&mut self.only_differences, "Only what differs");
+                ui.checkbox(&mut self.only_differences, "Show differences only");
                 timeline::show(ui, context, &made.comparison, self.only_differences, commands);
                 if !made.comparison.paths.is_empty() {
                     map::show(ui, context, &made.comparison);
@@ -92,16 +92,16 @@ fn sources(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         ui.label(RichText::new("Compare with").color(context.tokens.text_muted));
         let has_approval = state.review.record().last_approval().is_some();
         let approved = ui.add_enabled(has_approval, egui::Button::new("Last approval"));
-        if approved.on_disabled_hover_text("nobody has approved this mission yet").clicked() {
+        if approved.on_disabled_hover_text("this mission has no approval yet").clicked() {
             commands.send(Command::Compare(CompareCommand::WithApproved));
         }
-        let file = ui.button("A file…").on_hover_text("A mission, a saved plan or an approved review");
+        let file = ui.button("Choose file…").on_hover_text("Open a mission, saved plan or approved review");
         if file.clicked() {
             commands.send(Command::Compare(CompareCommand::OpenFile));
         }
         let has_plan = context.snapshot.is_some_and(|snapshot| snapshot.plan().is_some());
-        let pin = ui.add_enabled(has_plan, egui::Button::new("This plan from now on"));
-        if pin.on_hover_text("Keeps this plan, to see what later edits change").clicked() {
+        let pin = ui.add_enabled(has_plan, egui::Button::new("Set as baseline"));
+        if pin.on_hover_text("Compare later edits with this plan").clicked() {
             commands.send(Command::Compare(CompareCommand::Pin));
         }
         if state.compare.reference().is_some() && ui.button("Stop").clicked() {
@@ -109,15 +109,15 @@ fn sources(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
     });
     if let Some(name) = state.compare.waiting() {
-        ui.label(RichText::new(format!("Working out {name}…")).color(context.tokens.text_muted));
+        ui.label(RichText::new(format!("Planning {name}…")).color(context.tokens.text_muted));
     }
 }
 
 fn introduction(ui: &mut Ui, context: &Context<'_>) {
     ui.add_space(space::L);
-    ui.label(strong("Nothing to compare with yet").color(context.tokens.text));
-    let text = "Choose the last approved text, another mission or a saved plan, or keep this plan and edit on: \
-                what is added, removed, moved or re-chosen is listed by name, over one timeline and one map.";
+    ui.label(strong("Choose a plan to compare with").color(context.tokens.text));
+    let text = "Choose the last approval, another mission or a saved plan, or set the current plan as \
+                baseline. The panel lists what was added, removed, moved or chosen differently.";
     ui.label(RichText::new(text).color(context.tokens.text_muted));
 }
 
@@ -144,7 +144,7 @@ fn summary(ui: &mut Ui, context: &Context<'_>, comparison: &Comparison) {
     if comparison.is_same() {
         ui.horizontal(|ui| {
             theme::icon::label(ui, Icon::Check, tokens.good);
-            ui.label(strong("The plans do not differ").color(tokens.good));
+            ui.label(strong("The plans are identical").color(tokens.good));
         });
         return;
     }

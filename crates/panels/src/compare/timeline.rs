@@ -132,7 +132,7 @@ fn show_row(ui: &Ui, context: &Context<'_>, row: &Row, rect: Rect, commands: &mu
 
 fn words(row: &Row) -> String {
     let text = |windows: Option<[Window; 2]>| windows.map(windows_text);
-    let change = row.change.map_or("the same", review::compare::Change::name);
+    let change = row.change.map_or("unchanged", review::compare::Change::name);
     let times = match (text(row.before), text(row.after)) {
         (Some(before), Some(after)) if before != after => format!("{before}, now {after}"),
         (_, Some(only)) | (Some(only), None) => only,

@@ -30,7 +30,10 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, selected: &Selected<'_>, c
     };
     let named: Vec<NodeId> = selected.nodes.iter().filter(is_named).copied().collect();
     if named.is_empty() || named.len() > MAX_EVENTS {
-        let text = format!("{} events are selected; a matrix shows up to {MAX_EVENTS}.", named.len());
+        let text = format!(
+            "{} events are selected. The matrix shows at most {MAX_EVENTS}; use the graph instead.",
+            named.len()
+        );
         crate::show_empty(ui, context, &text);
         return;
     }
@@ -39,7 +42,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, selected: &Selected<'_>, c
     egui::ScrollArea::both().id_salt("distances").auto_shrink(false).show(ui, |ui| {
         ui.add_space(space::XS);
         if !selected.cycle.is_empty() {
-            let text = "  Without the bound that closes the negative cycle: with it there are no shortest distances.";
+            let text = "Shown without the bound that closes the negative cycle; with it, no shortest \
+                        distances exist.";
             ui.label(RichText::new(text).small().color(tokens.text_muted));
         }
         egui::Grid::new("distance-matrix").striped(true).spacing([10.0, 3.0]).show(ui, |ui| {

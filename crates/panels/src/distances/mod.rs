@@ -56,7 +56,7 @@ const KEY_ZOOM: f64 = 1.3;
 impl Panel for DistancesPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let (Some(snapshot), Some((network, plan))) = (context.snapshot, context.plan()) else {
-            let text = "There is no plan whose distances could be shown. Step through the search to see those of a step.";
+            let text = "No plan, so no distances. Step through the search to see the distances at a step.";
             show_empty(ui, context, text);
             return;
         };
@@ -111,9 +111,9 @@ impl DistancesPanel {
                 ui.add_space(space::M);
                 if cycle.is_empty() {
                     let text = match (self.shows_matrix, context.step()) {
-                        (true, _) => "the least upper bound from row to column",
-                        (false, None) => "x → y: y happens at most so much after x, in the plan",
-                        (false, Some(_)) => "x → y: y happens at most so much after x, at this step",
+                        (true, _) => "maximum time from row to column",
+                        (false, None) => "x → y: maximum time from x to y, in the plan",
+                        (false, Some(_)) => "x → y: maximum time from x to y, at this step",
                     };
                     ui.label(RichText::new(text).small().color(tokens.text_muted));
                 } else {
@@ -152,13 +152,13 @@ impl DistancesPanel {
         let part::Shown { graph, left_out, stretch } =
             part::shown(&Selected { network, nodes, arcs, plan, cycle }, &seeds);
         let what = match (cycle.is_empty(), seeds.is_empty()) {
-            (false, _) => "The part around the contradiction",
-            (true, false) => "The part around what is selected",
-            (true, true) => "The part around the beginning; select an event to see what is around it",
+            (false, _) => "Events near the conflict",
+            (true, false) => "Events near the selection",
+            (true, true) => "Events near the start (select an event to see its neighborhood)",
         };
         let note = (left_out > 0).then(|| match stretch {
-            1 => format!("{what}: {left_out} events are not drawn."),
-            _ => format!("{what}: each edge stands for up to {stretch} bounds after each other."),
+            1 => format!("{what}; {left_out} more are hidden."),
+            _ => format!("{what}; each edge combines up to {stretch} consecutive bounds."),
         });
         if !cycle.is_empty() {
             self.view.keep_fitted();
@@ -182,7 +182,7 @@ impl DistancesPanel {
         let (vertices, edges) = (drawn.graph.vertices.len(), drawn.graph.edges.len());
         let cycle = drawn.graph.edges.iter().filter(|edge| edge.is_in_cycle).count();
         response.widget_info(|| {
-            let mut name = format!("Distance graph of {vertices} points in time and {edges} bounds");
+            let mut name = format!("Distance graph of {vertices} events and {edges} bounds");
             if cycle > 0 {
                 name.push_str(&format!("; {cycle} of them form a negative cycle"));
             }

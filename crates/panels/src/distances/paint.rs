@@ -119,12 +119,12 @@ impl Scene<'_> {
                 let (from, to) = (name(edge.from), name(edge.to));
                 let weight = time_text::time(edge.weight);
                 let why = match edge.constraint {
-                    Constraint::Lower(_) => "a least duration",
-                    Constraint::Upper(_) => "a greatest duration",
-                    Constraint::Link(_) => "a causal link",
-                    Constraint::Order(_) => "an ordering",
-                    Constraint::UseOrder(_) => "an order of uses",
-                    Constraint::Departure(_) => "the way from where a movement sets out",
+                    Constraint::Lower(_) => "minimum duration",
+                    Constraint::Upper(_) => "maximum duration",
+                    Constraint::Link(_) => "causal link",
+                    Constraint::Order(_) => "ordering",
+                    Constraint::UseOrder(_) => "resource ordering",
+                    Constraint::Departure(_) => "travel time from the departure place",
                 };
                 vec![format!("{to} is at most {weight} after {from}"), why.to_owned()]
             }

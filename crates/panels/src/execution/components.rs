@@ -53,7 +53,7 @@ impl Components {
             let elapsed = pending.since.map_or(0.0, |since| context.state.playback.time - number(since));
             let next = (elapsed / step_units.max(1e-9)).floor().to_u32().unwrap_or(0) + 1;
             let name = now::name(shown, pending.occurrence);
-            section(ui, context, "Components", &format!("of the plant that {name} commands"));
+            section(ui, context, "Components", &format!("of the plant controlled by {name}"));
             self.step = self.step.max(next);
             self.component = self.component.min(choices.len() - 1);
             ui.horizontal_wrapped(|ui| {
@@ -72,12 +72,12 @@ impl Components {
                 combo(ui, "Component", &mut self.component, &names);
                 let choice = &choices[self.component.min(choices.len() - 1)];
                 self.mode = self.mode.min(choice.modes.len().saturating_sub(1));
-                ui.label(RichText::new("comes into").color(muted));
+                ui.label(RichText::new("enters mode").color(muted));
                 let names: Vec<&str> = choice.modes.iter().map(String::as_str).collect();
                 combo(ui, "Mode", &mut self.mode, &names);
                 let label = ui.label(RichText::new("in step").color(muted)).id;
                 ui.add(DragValue::new(&mut self.step).range(next..=1000)).labelled_by(label);
-                if ui.button("Let it happen").clicked()
+                if ui.button("Inject").clicked()
                     && let Some(mode) = choice.modes.get(self.mode)
                 {
                     let fault = Disturbance::Fault {

@@ -44,9 +44,9 @@ impl Disturb {
             moment.under_way.iter().chain(&moment.holding).chain(&moment.to_come).collect();
         let unit = context.snapshot.map(|snapshot| time_text::unit(snapshot.program.options.time_unit));
         if !all.is_empty() {
-            section(ui, context, "Let something go wrong", "from now on");
+            section(ui, context, "Disturbances", "from the current time");
             ui.horizontal(|ui| {
-                let name = ui.label(RichText::new("longer or later by").color(context.tokens.text_muted)).id;
+                let name = ui.label(RichText::new("Delay by").color(context.tokens.text_muted)).id;
                 let field = DragValue::new(&mut self.amount).range(0.0..=1e6).speed(0.5).max_decimals(1);
                 ui.add(field.suffix(suffix(unit))).labelled_by(name);
             });
@@ -84,7 +84,7 @@ impl Disturb {
             if occurrence.kind == OccurrenceKind::Assertion {
                 button(ui, "Withdraw", &|| ExecutionCommand::Withdraw(occurrence.name.clone()));
                 if pending.since.is_none() {
-                    button(ui, "Later", &|| {
+                    button(ui, "Delay", &|| {
                         let at = pending.window.earliest;
                         let at = at.checked_add(amount).unwrap_or(at);
                         let condition = occurrence.name.clone();
@@ -92,7 +92,7 @@ impl Disturb {
                     });
                 }
             } else {
-                button(ui, "Longer", &|| {
+                button(ui, "Extend", &|| {
                     let usual = usual_duration(shown, id);
                     let duration = usual.checked_add(amount).unwrap_or(usual);
                     let activity = occurrence.name.clone();
@@ -109,8 +109,8 @@ fn natures(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut 
         return;
     }
     let mut is_opposed = context.state.execution.is_opposed();
-    let hint = "Contingent durations are what breaks the plan soonest, where anything can; from the start";
-    if ui.checkbox(&mut is_opposed, "Nature chooses against the plan").on_hover_text(hint).changed() {
+    let hint = "Choose contingent durations that break the plan, if any can. Restarts the run.";
+    if ui.checkbox(&mut is_opposed, "Worst-case durations").on_hover_text(hint).changed() {
         commands.send(Command::Execution(ExecutionCommand::Oppose(is_opposed)));
     }
 }
@@ -131,11 +131,11 @@ fn made(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if disturbances.is_empty() {
         return;
     }
-    section(ui, context, "Made to go wrong", "");
+    section(ui, context, "Active disturbances", "");
     for (index, disturbance) in disturbances.iter().enumerate() {
         ui.horizontal(|ui| {
             let text = disturbance_text(disturbance);
-            if icon::button(ui, context.tokens, Icon::Close, &format!("Take back: {text}")).clicked() {
+            if icon::button(ui, context.tokens, Icon::Close, &format!("Remove: {text}")).clicked() {
                 commands.send(Command::Execution(ExecutionCommand::TakeBack(index)));
             }
             ui.add(egui::Label::new(&text).truncate()).on_hover_text(&text);

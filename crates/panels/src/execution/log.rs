@@ -39,11 +39,9 @@ fn row(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, entry: &Entry, comm
         }
         Happening::Violation { reason, .. } => (format!("✗ {reason}"), tokens.error),
         Happening::Replanned { changes } if changes.is_empty() => {
-            ("→ planned again, with the same choices".to_owned(), tokens.warning)
+            ("→ replanned, same choices".to_owned(), tokens.warning)
         }
-        Happening::Replanned { changes } => {
-            (format!("→ planned again: {}", changes.join(", ")), tokens.warning)
-        }
+        Happening::Replanned { changes } => (format!("→ replanned: {}", changes.join(", ")), tokens.warning),
         Happening::Stopped { reason } => (format!("✗ stopped: {reason}"), tokens.error),
         Happening::Finished => ("✓ finished".to_owned(), tokens.good),
     };

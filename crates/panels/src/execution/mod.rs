@@ -65,19 +65,17 @@ impl Panel for ExecutionPanel {
 fn why_not(context: &Context<'_>) -> String {
     let state = context.state;
     if let Some(trouble) = state.execution.trouble() {
-        return format!("The mission cannot be executed: {trouble}.");
+        return format!("Cannot execute this mission: {trouble}.");
     }
     let text = match state.status() {
-        Status::Program => "A control program is stepped in the automaton panel.",
-        Status::Broken => "The mission has errors. See the problems.",
-        Status::NoPlan => "There is no plan to execute. The plan panel says why.",
-        Status::Empty => "There is no mission to execute.",
-        Status::Plan if state.window.workspace == workbench::workspace::Workspace::Execute => {
-            "Working the run out…"
-        }
-        Status::Plan => "The mission runs in the Execute workspace.",
+        Status::Program => "Open the Automaton panel to run a control program.",
+        Status::Broken => "The mission has errors. See the Problems panel.",
+        Status::NoPlan => "No plan to execute. The Plan panel explains why.",
+        Status::Empty => "No mission to execute.",
+        Status::Plan if state.window.workspace == workbench::workspace::Workspace::Execute => "Simulating…",
+        Status::Plan => "Open the Execute workspace to run this mission.",
         Status::Working => "Planning…",
-        Status::Undecided => "Planning was stopped. The plan panel plans again.",
+        Status::Undecided => "Planning was stopped. Choose Plan again in the Plan panel.",
     };
     text.to_owned()
 }
@@ -95,9 +93,9 @@ fn bar(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         });
         ui.horizontal_wrapped(|ui| {
             let buttons = [
-                ("Start over", "Back to the start, without disturbances", ExecutionCommand::Reset),
-                ("Save run…", "Disturbances and log as a file that replays exactly", ExecutionCommand::Save),
-                ("Replay…", "Opens the file of a run and compares its log", ExecutionCommand::Open),
+                ("Restart", "Restart the run without disturbances", ExecutionCommand::Reset),
+                ("Save run…", "Save disturbances and log to a replayable file", ExecutionCommand::Save),
+                ("Replay…", "Open a saved run, replay it, and compare the logs", ExecutionCommand::Open),
             ];
             for (name, hint, command) in buttons {
                 if ui.button(name).on_hover_text(hint).clicked() {
@@ -105,11 +103,11 @@ fn bar(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 }
             }
             if context.state.execution.is_replay() {
-                let text = "replays given times or durations; Start over ends that";
+                let text = "replaying a saved run; Restart ends the replay";
                 ui.label(RichText::new(text).small().color(context.tokens.text_muted));
             }
             if context.state.execution.is_working() {
-                ui.label(RichText::new("working the run out…").small().color(context.tokens.text_muted));
+                ui.label(RichText::new("simulating…").small().color(context.tokens.text_muted));
             }
         });
     });

@@ -23,24 +23,22 @@ pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     let tokens = context.tokens;
     let time = context.state.playback.time;
     let seen = shown.run.log.iter().filter(|entry| has_come(entry.time, time));
-    let mut sign = (Icon::Play, tokens.info, tokens.soft[3], "Under way".to_owned());
+    let mut sign = (Icon::Play, tokens.info, tokens.soft[3], "In progress".to_owned());
     let mut because = None;
     for entry in seen {
         let at = time_text::short(entry.time);
         match &entry.happening {
             Happening::Violation { reason, .. } => because = Some(reason.clone()),
             Happening::Replanned { changes } => {
-                let how =
-                    if changes.is_empty() { "with the same choices".to_owned() } else { changes.join(", ") };
-                sign =
-                    (Icon::Warning, tokens.warning, tokens.soft[1], format!("Planned again at {at}: {how}"));
+                let how = if changes.is_empty() { "same choices".to_owned() } else { changes.join(", ") };
+                sign = (Icon::Warning, tokens.warning, tokens.soft[1], format!("Replanned at {at}: {how}"));
             }
             Happening::Stopped { reason } => {
                 sign =
                     (Icon::Error, tokens.error, tokens.soft[2], format!("Stopped safely at {at}: {reason}"));
             }
             Happening::Finished => {
-                let text = format!("The mission ended well at {at}");
+                let text = format!("Mission completed at {at}");
                 sign = (Icon::Check, tokens.good, tokens.soft[0], text);
             }
             _ => {}
@@ -75,7 +73,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, command
     }
     due(ui, context, shown, commands);
     let moment = shown.moment;
-    section(ui, context, "Under way", "");
+    section(ui, context, "In progress", "");
     if moment.under_way.is_empty() {
         ui.label(RichText::new("No activity").color(context.tokens.text_muted));
     }
@@ -87,7 +85,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, command
     if moment.to_come.is_empty() {
         return;
     }
-    section(ui, context, "Waited for", "when it can begin");
+    section(ui, context, "Upcoming", "with start windows");
     for pending in moment.to_come.iter().take(MAX_LISTED) {
         let window = time_text::interval(pending.window.earliest, pending.window.latest);
         row(ui, context, shown, pending, &window, commands);

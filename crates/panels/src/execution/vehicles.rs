@@ -32,11 +32,11 @@ impl Vehicles {
         }
         let unit = time_text::unit(snapshot.program.options.time_unit);
         let muted = context.tokens.text_muted;
-        section(ui, context, "Vehicles and ground", "while they drive");
+        section(ui, context, "Vehicles and obstacles", "during a traverse");
         ui.horizontal_wrapped(|ui| {
-            let name = ui.label(RichText::new("slowed to").color(muted)).id;
+            let name = ui.label(RichText::new("Slow to").color(muted)).id;
             let field = DragValue::new(&mut self.percent).range(1.0..=99.0).speed(0.5).max_decimals(0);
-            ui.add(field.suffix(" %")).labelled_by(name);
+            ui.add(field.suffix("%")).labelled_by(name);
             let name = ui.label(RichText::new("for").color(muted)).id;
             let field = DragValue::new(&mut self.duration).range(0.1..=1e6).speed(0.5).max_decimals(1);
             ui.add(field.suffix(suffix(Some(unit)))).labelled_by(name);
@@ -59,8 +59,8 @@ impl Vehicles {
             });
         }
         let is_placing = context.state.terrain.tool == Tool::Appear;
-        let button = egui::Button::new("A new obstacle…").selected(is_placing);
-        let hint = "Then click the map, or drag from the centre of the obstacle outwards";
+        let button = egui::Button::new("Add obstacle…").selected(is_placing);
+        let hint = "Click the map, or drag from the obstacle's center outwards";
         if ui.add(button).on_hover_text(hint).clicked() {
             commands.send(Command::Terrain(TerrainCommand::Take(Tool::Appear)));
         }

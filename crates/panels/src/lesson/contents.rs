@@ -19,7 +19,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         Frame::new().inner_margin(Margin::symmetric(14, 10)).show(ui, |ui| {
             theme::structure::mark_heading(&ui.heading("Lessons"), 2);
             ui.label(
-                RichText::new("A course from the first line of a mission to a whole one.")
+                RichText::new("A course from your first RMPL line to a complete mission.")
                     .color(tokens.text_muted),
             );
             let mut number = 0;
@@ -32,17 +32,17 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                 }
             }
             ui.add_space(space::L);
-            ui.label(theme::strong("Your own lessons"));
+            ui.label(theme::strong("Your lessons"));
             for (name, title) in context.state.lesson.own() {
                 if ui.add(Button::new(title).frame_when_inactive(false).wrap()).clicked() {
                     commands.send(Command::Lesson(LessonCommand::Open(name.clone(), 0)));
                 }
             }
             ui.horizontal_wrapped(|ui| {
-                if ui.button("Open a lesson file…").clicked() {
+                if ui.button("Open lesson file…").clicked() {
                     commands.send(Command::Window(WindowCommand::OpenFile(FileKind::Lesson)));
                 }
-                if ui.button("How to write one").clicked() {
+                if ui.button("Write your own lesson").clicked() {
                     commands.send(Command::Manual(ManualCommand::Open("lessons", String::new())));
                 }
             });

@@ -85,7 +85,7 @@ impl LessonPanel {
             question::show(ui, context, ask, &mut self.typed.2, commands);
         }
         if context.state.lesson.is_due() {
-            ui.label(RichText::new("The mission is worked out …").color(context.tokens.text_muted));
+            ui.label(RichText::new("Planning…").color(context.tokens.text_muted));
         }
         ui.add_space(space::XL);
     }
@@ -121,16 +121,13 @@ fn header(ui: &mut Ui, context: &Context<'_>, lesson: &Lesson, at: usize, comman
     Frame::new().inner_margin(Margin::symmetric(14, 6)).show(ui, |ui| {
         ui.horizontal(|ui| {
             let contents = ui.add(Button::new("Contents"));
-            if contents.on_hover_text("Leaves this lesson and lists the course").clicked() {
+            if contents.on_hover_text("Close this lesson and list the course").clicked() {
                 commands.send(Command::Lesson(LessonCommand::Contents));
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let is_edited = context.state.lesson.text() != Some(context.state.document.text());
-                let again = ui.add_enabled(is_edited, Button::new("Text as it was"));
-                if again
-                    .on_hover_text("Gives the mission the lesson's text again; undo takes that back")
-                    .clicked()
-                {
+                let again = ui.add_enabled(is_edited, Button::new("Reset text"));
+                if again.on_hover_text("Restore the lesson's original text (can be undone)").clicked() {
                     commands.send(Command::Lesson(LessonCommand::Restore));
                 }
             });
@@ -155,7 +152,7 @@ fn mistakes(ui: &mut Ui, context: &Context<'_>) {
     let tokens = context.tokens;
     Frame::new().fill(tokens.soft[2]).corner_radius(4.0).inner_margin(Margin::same(8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        ui.label(theme::strong("This lesson has mistakes"));
+        ui.label(theme::strong("This lesson has errors"));
         for error in errors {
             ui.horizontal_top(|ui| {
                 icon::label(ui, Icon::Error, tokens.error);
@@ -179,21 +176,21 @@ fn buttons(ui: &mut Ui, context: &Context<'_>, lesson: &Lesson, at: usize, comma
     ui.horizontal_centered(|ui| {
         ui.add_space(space::L);
         let back = ui.add_enabled(!is_first, Button::new("Previous"));
-        if back.on_hover_text("The stop before (Shift+N)").clicked() {
+        if back.on_hover_text("Previous step (Shift+N)").clicked() {
             commands.send(Command::Lesson(LessonCommand::Turn(false)));
         }
         let (title, hint, turn) = match (is_last, state.neighbour(true)) {
-            (false, _) => ("Next", "The next stop (N)", LessonCommand::Turn(true)),
-            (true, Some(_)) => ("Next lesson", "The next stop (N)", LessonCommand::Turn(true)),
-            (true, None) => ("To the contents", "All lessons of the course", LessonCommand::Contents),
+            (false, _) => ("Next", "Next step (N)", LessonCommand::Turn(true)),
+            (true, Some(_)) => ("Next lesson", "Next step (N)", LessonCommand::Turn(true)),
+            (true, None) => ("Back to contents", "List all lessons of the course", LessonCommand::Contents),
         };
         let next = Button::new(RichText::new(title).color(context.tokens.text_on_accent))
             .fill(context.tokens.accent);
         if ui.add(next).on_hover_text(hint).clicked() {
             commands.send(Command::Lesson(turn));
         }
-        let again = ui.button("Show again");
-        if again.on_hover_text("Brings step, selection and camera back to what this stop shows").clicked() {
+        let again = ui.button("Reset view");
+        if again.on_hover_text("Reset the view to this step").clicked() {
             commands.send(Command::Lesson(LessonCommand::ShowAgain));
         }
         // The line above the text says it too, where there is no room beside the buttons.

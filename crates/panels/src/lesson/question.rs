@@ -36,9 +36,9 @@ pub(super) fn show(
         ui.add_space(space::S);
         let (sign, color, text) = match (given, &ask.answer) {
             (Some(given), Answer::Task(_)) if given.is_right => (Icon::Check, tokens.good, "Done."),
-            (Some(given), _) if given.is_right => (Icon::Check, tokens.good, "Right."),
-            (Some(_), _) => (Icon::Close, tokens.error, "Not yet."),
-            (None, Answer::Task(_)) => (Icon::Working, tokens.text_muted, "The page sees when it is done."),
+            (Some(given), _) if given.is_right => (Icon::Check, tokens.good, "Correct."),
+            (Some(_), _) => (Icon::Close, tokens.error, "Incorrect. Try again."),
+            (None, Answer::Task(_)) => (Icon::Working, tokens.text_muted, "Checked automatically."),
             (None, _) => return,
         };
         ui.horizontal(|ui| {
@@ -98,7 +98,7 @@ fn show_task(ui: &mut Ui, context: &Context<'_>, ask: &Ask, is_done: bool, comma
     }
     ui.horizontal_wrapped(|ui| {
         if !ask.solution.is_empty()
-            && ui.button("Show me").on_hover_text("Does it; undo takes it back").clicked()
+            && ui.button("Show me").on_hover_text("Apply the solution (can be undone)").clicked()
         {
             commands.send(Command::Lesson(LessonCommand::Solve));
         }

@@ -115,7 +115,7 @@ fn contents(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 fn found(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let state = &context.state.manual;
     if state.found().is_empty() {
-        let text = format!("The manual has no place with all of these words: {}", state.query());
+        let text = format!("No results for “{}”", state.query());
         ui.add(egui::Label::new(RichText::new(text).color(context.tokens.text_muted)).wrap());
     }
     for place in state.found() {

@@ -18,16 +18,15 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         ui.add_space(space::S);
         for (index, name) in state.file_names().iter().enumerate() {
             let chosen = ui.selectable_label(index == here, name.as_str());
-            if chosen.on_hover_text("Goes to this file; all of them are one text below each other").clicked()
-            {
+            if chosen.on_hover_text("Go to this file in the text below").clicked() {
                 let heading = index.checked_sub(1).and_then(|own| document.headings().get(own));
                 let start = heading.map_or(0, |heading| document.line_range(heading + 1).start) as u32;
                 commands.send(Command::Reveal(Span::new(start, start)));
                 commands.send(Command::Editor(EditorCommand::Focus));
             }
         }
-        let add = ui.button("+").on_hover_text("Adds a file to the mission");
-        if add.accessible_name("Add a file").clicked() {
+        let add = ui.button("+").on_hover_text("Add a file to the mission");
+        if add.accessible_name("Add file").clicked() {
             commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::FileName {
                 name: String::new(),
                 renames: false,

@@ -28,7 +28,7 @@ pub(super) fn describe(item: Item, network: &Network, plan: Option<&Plan>) -> Op
                 kind => layout::text::structure_name(kind).to_string(),
             };
             let ends = format!("{} → {}", node_name(network, block.start), node_name(network, block.end));
-            Some((name, vec![ends, "double click to open or close".to_owned()]))
+            Some((name, vec![ends, "double-click to expand or collapse".to_owned()]))
         }
     }
 }
@@ -61,7 +61,7 @@ pub(super) fn describe_box(
     if let Some(more) = inside.len().checked_sub(MAX_INSIDE).filter(|&more| more > 0) {
         lines.push(format!("… and {more} more"));
     }
-    lines.push("double click, or Enter, to open".to_owned());
+    lines.push("double-click or press Enter to expand".to_owned());
     (title.to_owned(), lines)
 }
 
@@ -83,9 +83,9 @@ pub(super) fn summary(network: &Network, plan: Option<&Plan>) -> String {
     let choices = plan.map(|plan| plan.choices.as_slice());
     match choices {
         None => {}
-        Some([]) => text.push_str(" Chosen: nothing."),
+        Some([]) => text.push_str(" No decisions made."),
         Some(choices) if choices.len() > MAX_CHOICES => {
-            text.push_str(&format!(" {} decisions are made.", choices.len()));
+            text.push_str(&format!(" {} decisions made.", choices.len()));
         }
         Some(choices) => {
             let name = Network::decision_name;
@@ -117,7 +117,7 @@ fn describe_node(id: tpn::NodeId, network: &Network, plan: Option<&Plan>) -> Opt
             lines.push(match window.latest.checked_sub(window.earliest) {
                 Some(Bound::Finite(slack)) => format!("slack {slack}"),
                 Some(Bound::Infinite) => "slack ∞".to_owned(),
-                None => "slack beyond 64 bits".to_owned(),
+                None => "slack too large to calculate".to_owned(),
             });
         }
         Some(None) => lines.push("not selected by the plan".to_owned()),
@@ -136,8 +136,8 @@ fn describe_arc(id: tpn::ArcId, network: &Network, plan: Option<&Plan>) -> Optio
     lines.push(format!("{} {}", kind_name(arc.kind), bounds_label(arc.lower, arc.upper)));
     if arc.is_contingent {
         lines.push(match network.controllability {
-            Controllability::None => "contingent, and read as if the planner chose it".to_owned(),
-            _ => "contingent: nature chooses it, and the end is seen when it comes".to_owned(),
+            Controllability::None => "contingent, but planned as if controllable".to_owned(),
+            _ => "contingent: the environment chooses, and the executive observes the end".to_owned(),
         });
     }
     let labels = arc.labels.iter().filter_map(|label| network.labels.get(label.index()));

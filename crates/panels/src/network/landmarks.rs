@@ -44,7 +44,7 @@ pub(super) fn show(
     let mut act = None;
     for Landmark { rect, selection, opens } in found {
         let name = match &opens {
-            Some((_, _, title)) => format!("{title}, folded, in the network"),
+            Some((_, _, title)) => format!("{title}, collapsed, in the network"),
             None => format!("{} in the network", selection.name(Some(network))),
         };
         // Several boxes may have one name.

@@ -70,7 +70,7 @@ pub(super) fn marks(
                 Place::Arc(arc) => (place_on(drawing, network, arc), Some(arc)),
                 Place::Node(node) => (drawing.anchor(node), None),
             };
-            let (severity, message) = (problem.severity, problem.message.clone());
+            let (severity, message) = (problem.severity, crate::without_backticks(&problem.message));
             Some(Mark { at, arc, severity, message, span: problem.span })
         })
         .collect()

@@ -78,7 +78,7 @@ impl Panel for NetworkPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let Some((snapshot, network)) = context.snapshot.and_then(|it| Some((it, it.network.as_ref()?)))
         else {
-            crate::empty::show_missing(ui, context, "its network is drawn here", commands);
+            crate::empty::show_missing(ui, context, "its network appears here", commands);
             return;
         };
         let views = &context.state.settings.views;
@@ -546,7 +546,7 @@ fn overlay_selection(curve: &OverlayCurve, network: &Network, plan: &Plan) -> Op
 /// The name of the drawing for screen readers.
 fn title(context: &Context<'_>) -> &'static str {
     if context.is_stale && context.state.status() == Status::Broken {
-        "Network of the last text without errors"
+        "Network of the last valid version"
     } else {
         "Network"
     }
@@ -572,9 +572,9 @@ fn arrow_keys(ui: &Ui) -> egui::Vec2 {
 fn stale_text(context: &Context<'_>) -> Option<&'static str> {
     match context.state.status() {
         _ if !context.is_stale => None,
-        Status::Broken => Some("⚠ The text has errors: this is its last good network"),
-        Status::Empty => Some("⚠ There is nothing to plan in the text: this is the network before"),
-        Status::Undecided => Some("⚠ This is the network of an earlier text"),
+        Status::Broken => Some("⚠ The text has errors: showing the last valid network"),
+        Status::Empty => Some("⚠ Nothing to plan: showing the previous network"),
+        Status::Undecided => Some("⚠ Out of date: network of a previous version"),
         _ => None,
     }
 }
@@ -642,7 +642,7 @@ fn show_tooltip(
         },
         Pointed::Curve(selection) => {
             let what = match selection {
-                Selection::Link(_) => "causal link: the assertion holds as long as the requirement",
+                Selection::Link(_) => "causal link: the assertion supports the requirement",
                 _ => "ordering: the first ends before the second starts",
             };
             (selection.name(Some(network)), vec![what.to_owned()])

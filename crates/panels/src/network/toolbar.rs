@@ -42,8 +42,8 @@ pub(super) fn show(
         ui.add_space(space::S);
         ui.spacing_mut().item_spacing.x = space::S;
         let field = TextEdit::singleline(&mut search.text).hint_text("Find…").desired_width(110.0);
-        let field = ui.add(field).on_hover_text("Find activities, events, decisions and conditions by name");
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Find in the network"));
+        let field = ui.add(field).on_hover_text("Search activities, events, decisions and conditions");
+        field.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Search the network"));
         if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
             let back = ui.input(|input| input.modifiers.shift);
             asked = if back { Asked::PreviousMatch } else { Asked::NextMatch };
@@ -70,11 +70,11 @@ pub(super) fn show(
             }
         }
         let small = |name: &str| egui::Button::new(RichText::new(name).small());
-        if ui.add(small("Fit")).on_hover_text("Show everything (F)").clicked() {
+        if ui.add(small("Fit")).on_hover_text("Zoom to fit (F)").clicked() {
             commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Network, ViewAction::Fit)));
         }
         ui.menu_button(RichText::new("Save").small(), |ui| {
-            for (format, name) in [(PictureFormat::Svg, "As SVG"), (PictureFormat::Png, "As PNG")] {
+            for (format, name) in [(PictureFormat::Svg, "Save as SVG"), (PictureFormat::Png, "Save as PNG")] {
                 if ui.button(name).clicked() {
                     commands.send(Command::Window(WindowCommand::SaveNetwork(format)));
                     ui.close();
@@ -82,9 +82,9 @@ pub(super) fn show(
             }
         });
         let buttons = [
-            (has_boxes, "Open all", "Draw everything, however small", Asked::OpenAll),
-            (is_changed, "Overview", "As much of everything as can be read here", Asked::FitAll),
-            (!has_boxes, "Close all", "Collapse the outermost activities", Asked::CloseAll),
+            (has_boxes, "Expand all", "Show all details", Asked::OpenAll),
+            (is_changed, "Overview", "Fit as much detail as is readable", Asked::FitAll),
+            (!has_boxes, "Collapse all", "Collapse top-level activities", Asked::CloseAll),
         ];
         for (is_offered, name, help, answer) in buttons {
             if is_offered && ui.add(small(name)).on_hover_text(help).clicked() {
@@ -102,16 +102,16 @@ const ROOM_FOR_SWITCHES: f32 = 880.0;
 fn switches(view: &mut NetworkView) -> [(&mut bool, &'static str, &'static str); 12] {
     [
         (&mut view.names, "Names", "Names of activities"),
-        (&mut view.bounds, "Bounds", "Bounds of every constraint"),
-        (&mut view.labels, "Conditions", "Asked and told conditions"),
-        (&mut view.windows, "Windows", "When each event may happen"),
-        (&mut view.links, "Links", "Causal links: which assertion carries which requirement"),
-        (&mut view.orderings, "Orderings", "What planning put in order to resolve threats"),
-        (&mut view.unselected, "Unselected", "What the plan does without"),
-        (&mut view.structure, "Structure", "Outlines of activities, lanes of branches"),
-        (&mut view.lanes, "Lanes", "A named band for every parallel branch"),
-        (&mut view.now, "Time", "What has happened at the time shown, and what is under way"),
-        (&mut view.problems, "Problems", "Errors and warnings at their places"),
-        (&mut view.minimap, "Overview", "The small map of the whole drawing"),
+        (&mut view.bounds, "Bounds", "Bounds of each constraint"),
+        (&mut view.labels, "Conditions", "Required and asserted conditions"),
+        (&mut view.windows, "Windows", "Time windows of events"),
+        (&mut view.links, "Links", "Causal links from assertions to requirements"),
+        (&mut view.orderings, "Orderings", "Orderings added to resolve threats"),
+        (&mut view.unselected, "Unselected", "Unselected alternatives"),
+        (&mut view.structure, "Structure", "Activity outlines and branch lanes"),
+        (&mut view.lanes, "Lanes", "A named band for each parallel branch"),
+        (&mut view.now, "Time", "Past and ongoing activities at the current time"),
+        (&mut view.problems, "Problems", "Errors and warnings"),
+        (&mut view.minimap, "Overview", "Minimap"),
     ]
 }

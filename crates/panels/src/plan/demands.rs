@@ -23,7 +23,7 @@ pub(super) fn worth(ui: &mut Ui, context: &Context<'_>, network: &Network, plan:
         return;
     }
     let tokens = context.tokens;
-    section(ui, context, "Worth", "");
+    section(ui, context, "Objective", "");
     ui.horizontal_wrapped(|ui| {
         for figure in figures {
             ui.label(RichText::new(figure).strong().color(tokens.text));
@@ -35,20 +35,17 @@ pub(super) fn worth(ui: &mut Ui, context: &Context<'_>, network: &Network, plan:
         Some(true) => {
             ui.horizontal_wrapped(|ui| {
                 icon::label(ui, Icon::Check, tokens.good);
-                ui.label(
-                    RichText::new("Optimal: the planner has shown that no plan is better.")
-                        .color(tokens.good),
-                );
+                ui.label(RichText::new("Optimal: no better plan exists.").color(tokens.good));
             });
         }
         Some(false) => {
             let mut text = if context.state.is_improving() {
-                "The best plan so far; others are not ruled out yet.".to_owned()
+                "Best plan so far. Searching for a better one.".to_owned()
             } else {
-                "The best plan found; planning ended before all others were ruled out.".to_owned()
+                "Best plan found. Planning stopped before proving it optimal.".to_owned()
             };
             if let Some(bound) = planning.outcome.bound {
-                text.push_str(&format!(" None is better than {}.", bound.readable()));
+                text.push_str(&format!(" No plan can be better than {}.", bound.readable()));
             }
             ui.horizontal_wrapped(|ui| {
                 icon::label(ui, Icon::Warning, tokens.warning);
@@ -70,13 +67,12 @@ pub(super) fn resources(
     let named = network.resources.iter().zip(&plan.levels).filter(|(it, _)| !it.name.contains('#'));
     let named: Vec<_> = named.collect();
     if !named.is_empty() {
-        section(ui, context, "Resources", "in all schedules of the plan");
+        section(ui, context, "Resources", "over all schedules of the plan");
         for (resource, &levels) in named {
             let Some((text, range)) = figures(resource.supply, levels) else { continue };
             ui.horizontal(|ui| {
                 let button = egui::Button::new(RichText::new(resource.name.as_str()).strong());
-                let button =
-                    ui.add(button.frame_when_inactive(false)).on_hover_text("Show where it is declared");
+                let button = ui.add(button.frame_when_inactive(false)).on_hover_text("Go to declaration");
                 if let Some(span) = resource.span.filter(|_| button.clicked()) {
                     commands.send(Command::Reveal(span));
                 }
@@ -97,7 +93,7 @@ fn show_orders(
     if plan.uses_ordered.is_empty() {
         return;
     }
-    section(ui, context, "Orders of uses", "put in order by planning");
+    section(ui, context, "Resource orderings", "added by the planner");
     rows(ui, "uses", plan.uses_ordered.len(), |ui, index| {
         let ordering = plan.uses_ordered[index];
         let text = format!("{} before {}", network.use_name(ordering.first), network.use_name(ordering.then));
@@ -111,12 +107,12 @@ fn show_orders(
 fn figures(supply: Supply, levels: Levels) -> Option<(String, [f32; 2])> {
     match (supply, levels) {
         (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
-            let text = format!("at most {} of {}", peak.readable(), capacity.readable());
+            let text = format!("peak {} of {}", peak.readable(), capacity.readable());
             Some((text, [0.0, part(peak, [Rational::ZERO, capacity])]))
         }
         (Supply::Reservoir { least, greatest, .. }, Levels::Range { low, high }) => {
             let [from, to, first, last] = [low, high, least, greatest].map(Rational::readable);
-            let text = format!("stays between {from} and {to}, of {first} to {last}");
+            let text = format!("{from} to {to} (allowed {first} to {last})");
             Some((text, [low, high].map(|level| part(level, [least, greatest]))))
         }
         _ => None,
@@ -150,10 +146,10 @@ mod tests {
     fn a_resource_is_told_in_words_and_as_a_part_of_what_there_is() {
         let power = Supply::Reusable { capacity: 4.into() };
         let told = figures(power, Levels::Peak(3.into()));
-        assert_eq!(told, Some(("at most 3 of 4".to_owned(), [0.0, 0.75])));
+        assert_eq!(told, Some(("peak 3 of 4".to_owned(), [0.0, 0.75])));
         let battery = Supply::Reservoir { least: 20.into(), greatest: 100.into(), level: 80.into() };
         let told = figures(battery, Levels::Range { low: 40.into(), high: 100.into() });
-        assert_eq!(told, Some(("stays between 40 and 100, of 20 to 100".to_owned(), [0.25, 1.0])));
+        assert_eq!(told, Some(("40 to 100 (allowed 20 to 100)".to_owned(), [0.25, 1.0])));
         assert_eq!(figures(battery, Levels::Peak(1.into())), None);
     }
 }

@@ -25,8 +25,8 @@ pub(crate) fn show(
     let tokens = context.tokens;
     let verdict = match planning.outcome.status {
         Status::Plan | Status::NoPlan => "This mission has no plan.",
-        Status::Limit => "Planning was stopped before it had an answer.",
-        Status::Error => "A time in this mission is too large to be planned exactly.",
+        Status::Limit => "Planning was stopped before it found an answer.",
+        Status::Error => "A time in this mission is too large to represent exactly.",
     };
     ui.horizontal(|ui| {
         icon::label(ui, Icon::Error, tokens.error);
@@ -40,13 +40,13 @@ pub(crate) fn show(
         ui.push_id(index, |ui| show_reason(ui, context, network, (index, reason), commands));
     }
     if !failure.is_complete {
-        let note = "There are more combinations of choices than can be listed; all of them fail.";
+        let note = "All combinations of choices fail (too many to list).";
         ui.label(RichText::new(note).color(tokens.text_muted));
     }
     if planning.ways_out().is_empty() {
         return;
     }
-    section(ui, context, "What would give a plan", "each change alone; every one has been planned");
+    section(ui, context, "Suggested fixes", "any one of these works; each has been verified");
     let source = context.snapshot.map(|snapshot| snapshot.source.as_ref()).unwrap_or_default();
     if failure.is_of_gap {
         ui.horizontal(|ui| {
@@ -114,11 +114,11 @@ fn show_reason(
     frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
         let kind = match reason.kind {
-            FailureKind::Temporal => "The bounds contradict each other",
-            FailureKind::OpenCondition => "A requirement cannot be met",
-            FailureKind::Threat => "Conditions cannot be kept apart",
-            FailureKind::Resource => "A resource does not suffice",
-            FailureKind::Controllability => "Nature can make it fail",
+            FailureKind::Temporal => "Inconsistent bounds",
+            FailureKind::OpenCondition => "Requirement without support",
+            FailureKind::Threat => "Conflicting conditions overlap",
+            FailureKind::Resource => "Not enough of a resource",
+            FailureKind::Controllability => "Not controllable",
         };
         let choices: Vec<String> = reason
             .choices
@@ -129,7 +129,7 @@ fn show_reason(
             })
             .collect();
         let heading = if choices.is_empty() {
-            format!("{kind}, whatever is chosen")
+            format!("{kind}, for every choice")
         } else {
             format!("{kind} with {}", choices.join(", "))
         };
@@ -144,15 +144,15 @@ fn show_reason(
                 let source = context.snapshot.and_then(|snapshot| snapshot.source.get(span.range()));
                 let text = one_line(source.unwrap_or_default());
                 let button = egui::Button::new(RichText::new(text).monospace().small()).truncate();
-                let button = ui.add(button).accessible_name(format!("Place {} in the text", index + 1));
+                let button = ui.add(button).accessible_name(format!("Go to source {}", index + 1));
                 if button.clicked() {
                     commands.send(Command::Reveal(span));
                     commands.send(Command::Editor(EditorCommand::Focus));
                 }
             }
             let is_shown = context.state.reason == index;
-            let button = egui::Button::selectable(is_shown, RichText::new("On the network").small());
-            let hint = "Marks what contradicts each other on the network";
+            let button = egui::Button::selectable(is_shown, RichText::new("Show on network").small());
+            let hint = "Highlight the conflict on the network";
             if ui.add(button).on_hover_text(hint).clicked() {
                 commands.send(Command::ShowReason(index));
             }
@@ -166,9 +166,9 @@ fn show_run(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Reas
     let Some((end, lines)) = lines.split_last() else { return };
     let tokens = context.tokens;
     ui.add_space(space::XS);
-    ui.label(theme::strong("The run in which it fails").small());
+    ui.label(theme::strong("Counterexample").small());
     for line in lines {
-        let color = if line.contains(" nature ends ") { tokens.nature } else { tokens.text_muted };
+        let color = if line.contains(" ends ") { tokens.nature } else { tokens.text_muted };
         ui.label(RichText::new(line).small().color(color));
     }
     ui.label(RichText::new(end).small().color(tokens.threat));
@@ -177,9 +177,9 @@ fn show_run(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Reas
 /// The contradiction as a sum: the steps of the cycle, which add up to less than zero.
 fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Reason) {
     let tokens = context.tokens;
-    egui::CollapsingHeader::new(RichText::new("The contradiction, step by step").small())
-        .id_salt("cycle")
-        .show(ui, |ui| {
+    egui::CollapsingHeader::new(RichText::new("Conflict, step by step").small()).id_salt("cycle").show(
+        ui,
+        |ui| {
             let total = exact::Time::checked_sum(reason.cycle.iter().map(|member| member.weight));
             for member in &reason.cycle {
                 let step = format!(
@@ -191,11 +191,12 @@ fn show_cycle(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Re
                 ui.label(RichText::new(step).small().color(tokens.text_muted));
             }
             let sum = format!(
-                "Around the cycle this adds up to {}, less than zero.",
-                total.map_or_else(|| "a time beyond 64 bits".to_owned(), workbench::time_text::time)
+                "The sum around the cycle is {}, which is negative.",
+                total.map_or_else(|| "a number too large to show".to_owned(), workbench::time_text::time)
             );
             ui.label(RichText::new(sum).small().color(tokens.threat));
-        });
+        },
+    );
 }
 
 /// A piece of text on one line, cut when it is long.

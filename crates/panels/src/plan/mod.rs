@@ -28,8 +28,8 @@ impl Panel for PlanPanel {
         let planning = context.snapshot.and_then(|snapshot| snapshot.planning.as_ref());
         let Some((snapshot, planning)) = context.snapshot.zip(planning) else {
             let text = match context.state.status() {
-                Status::Broken | Status::Empty => crate::empty::missing(context, "it is planned"),
-                Status::Undecided => "Nothing is known of a plan for this text.".to_owned(),
+                Status::Broken | Status::Empty => crate::empty::missing(context, "its plan appears here"),
+                Status::Undecided => "This text hasn't been planned yet.".to_owned(),
                 _ => "Planning…".to_owned(),
             };
             show_empty(ui, context, &text);
@@ -69,23 +69,23 @@ fn work(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             tokens.info,
             if secs > 0 { format!("Planning for {secs} s…") } else { "Planning…".to_owned() },
             "Stop",
-            "Leaves undecided what is not known yet",
+            "Stop planning; the result stays undecided",
             Command::StopWork,
         ),
         Status::Plan if context.state.is_improving() => (
             Icon::Working,
             tokens.info,
-            format!("This is the best plan so far, after {secs} s. A better one is looked for…"),
+            format!("Best plan so far ({secs} s). Searching for a better one…"),
             "Stop",
-            "Keeps this plan",
+            "Stop searching and use this plan",
             Command::StopWork,
         ),
         Status::Undecided => (
             Icon::Warning,
             tokens.warning,
-            "Planning was stopped: whether this text has a plan is not decided.".to_owned(),
+            "No result: planning was stopped.".to_owned(),
             "Plan again",
-            "Works the text out once more",
+            "Plan this text again",
             Command::PlanAgain,
         ),
         _ => return,
@@ -168,7 +168,7 @@ fn show_step(ui: &mut Ui, context: &Context<'_>, view: &workbench::state::search
         let (step, steps) = (view.step.step + 1, view.recording.steps());
         let text = format!("Step {step} / {steps} of the search");
         ui.label(theme::strong(&text).color(context.tokens.accent));
-        let note = "what was chosen, added and possible then";
+        let note = "choices, orderings and windows at that step";
         ui.label(RichText::new(note).small().color(context.tokens.text_muted));
     });
 }
@@ -180,17 +180,17 @@ fn show_verdict(ui: &mut Ui, context: &Context<'_>, planning: &snapshot::Plannin
         // What is of an earlier text says nothing good of what is written now.
         Some(verdict) if verdict.valid && context.is_stale => {
             icon::label(ui, Icon::Nothing, tokens.text_muted);
-            let text = "The independent checker accepted this plan of an earlier text.";
+            let text = "The independent checker verified this plan of a previous version.";
             ui.label(RichText::new(text).color(tokens.text_muted));
         }
         Some(verdict) if verdict.valid => {
             icon::label(ui, Icon::Check, tokens.good);
-            ui.label(RichText::new("The independent checker accepts this plan.").color(tokens.good));
+            ui.label(RichText::new("Verified by the independent checker.").color(tokens.good));
         }
         Some(verdict) => {
             icon::label(ui, Icon::Error, tokens.error);
             let count = counted(verdict.violations.len() as u64, "violation");
-            let text = format!("The independent checker refuses this plan: {count}.");
+            let text = format!("The independent checker rejected this plan: {count}.");
             ui.label(RichText::new(text).color(tokens.error));
         }
         None => {
@@ -225,7 +225,7 @@ fn show_choices(
     if network.decisions.is_empty() {
         return;
     }
-    section(ui, context, "Choices", &format!("{reached} of {} decisions reached", network.decisions.len()));
+    section(ui, context, "Choices", &format!("{reached} of {} decisions made", network.decisions.len()));
     rows(ui, "choices", plan.choices.len(), |ui, index| {
         let choice = &plan.choices[index];
         let Some(decision) = network.decisions.get(choice.decision.index()) else { return };
@@ -259,7 +259,7 @@ fn show_links(
     if plan.causal_links.is_empty() {
         return;
     }
-    section(ui, context, "Causal links", "a requirement, and the assertion or change that carries it");
+    section(ui, context, "Causal links", "each requirement with the assertion that supports it");
     rows(ui, "links", plan.causal_links.len(), |ui, index| {
         let link = plan.causal_links[index];
         let text = format!("{} ← {}", network.label_name(link.ask), network.label_name(link.tell));
@@ -281,7 +281,7 @@ fn show_orderings(
     }
     let added = plan.orderings_added.len();
     let pairs = counted(orders.len() as u64, "conflicting pair");
-    let note = format!("{pairs}, {added} ordered by planning");
+    let note = format!("{pairs}, {added} ordered by the planner");
     section(ui, context, "Threats and orderings", &note);
     let (added, holding): (Vec<tpn::Ordering>, Vec<tpn::Ordering>) =
         orders.into_iter().partition(|ordering| plan.orderings_added.contains(ordering));
@@ -296,8 +296,8 @@ fn show_orderings(
     list(ui, "orderings", &added, context.tokens.ordering);
     if !holding.is_empty() {
         let title = match holding.len() {
-            1 => "1 holds anyway".to_owned(),
-            count => format!("{count} hold anyway"),
+            1 => "1 implied by the bounds".to_owned(),
+            count => format!("{count} implied by the bounds"),
         };
         let header = egui::CollapsingHeader::new(title).id_salt("orderings that hold");
         header.show(ui, |ui| list(ui, "holding", &holding, context.tokens.text_muted));

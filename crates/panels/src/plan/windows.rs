@@ -57,7 +57,7 @@ impl WindowTable {
                 commands.send(Command::Select(Selection::Node(next.node)));
             }
         }
-        section(ui, context, "Windows", "when each event can happen, from the start of the mission");
+        section(ui, context, "Windows", "earliest and latest times, from mission start");
         let field = TextEdit::singleline(&mut self.filter).hint_text("Filter events").desired_width(180.0);
         ui.horizontal(|ui| {
             ui.add(field).accessible_name("Filter events");

@@ -70,11 +70,11 @@ impl Changes {
         let by = format!("Approved by {}, {}.", who(entry), moment(&entry.time));
         row::quiet(ui, context, &by);
         if since.is_nothing() {
-            row::quiet(ui, context, "Text, plan, checklist, flight rules and runs with chance are the same.");
+            row::quiet(ui, context, "No changes to text, plan, checklist, flight rules or Monte Carlo runs.");
             return;
         }
         indented(ui, |ui| {
-            text(ui, context, &since.text, "and more: the report has them all");
+            text(ui, context, &since.text, "and more (see the report)");
             plan(ui, context, since, commands);
             let lines: Vec<String> = since
                 .lines
@@ -98,7 +98,7 @@ impl Changes {
 
 fn note(since: &Since) -> String {
     if since.is_nothing() {
-        return "nothing differs".to_owned();
+        return "no differences".to_owned();
     }
     let plan = since.plan.as_ref().map_or(0, |plan| plan.differences.len());
     let parts = [("text", since.text.len()), ("plan", plan), ("checklist", since.lines.len())];
@@ -138,13 +138,13 @@ pub(crate) fn text(ui: &mut Ui, context: &Context<'_>, changes: &[TextChange], m
 
 fn plan(ui: &mut Ui, context: &Context<'_>, since: &Since, commands: &mut CommandSender) {
     match &since.plan {
-        None => list(ui, context, "Plan", &["the approved plan was not kept".to_owned()]),
+        None => list(ui, context, "Plan", &["the approved plan was not saved".to_owned()]),
         Some(plan) if plan.is_same() => {}
         Some(plan) => {
             let lines: Vec<String> =
                 plan.differences.iter().map(review::compare::Difference::sentence).collect();
             list(ui, context, &format!("Plan: {}", plan.summary()), &lines);
-            if ui.button("Compare the plans").clicked() {
+            if ui.button("Compare plans").clicked() {
                 commands.send(Command::Compare(CompareCommand::WithApproved));
             }
         }
@@ -160,7 +160,7 @@ fn list(ui: &mut Ui, context: &Context<'_>, title: &str, lines: &[String]) {
         ui.label(RichText::new(super::capital::sentence(line)).color(context.tokens.text));
     }
     if lines.len() > MOST {
-        row::quiet_word(ui, &format!("and {} more: the report has them all", lines.len() - MOST));
+        row::quiet_word(ui, &format!("and {} more (see the report)", lines.len() - MOST));
     }
 }
 

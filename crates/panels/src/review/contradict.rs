@@ -66,7 +66,7 @@ pub(super) fn all(ui: &mut Ui, context: &Context<'_>, review: &Review, commands:
         let has_plan = review.is_planned();
         let button = ui.add_enabled(has_plan, Button::new("Contradict all"));
         let hint = "Look for counterexamples of every passed item";
-        if button.on_hover_text(hint).on_disabled_hover_text("There is no plan").clicked() {
+        if button.on_hover_text(hint).on_disabled_hover_text("No plan to contradict").clicked() {
             commands.send(Command::Contradict(ContradictCommand::Start(None)));
         }
         let count = |wanted: Verdict| state.of_review(review).filter(|it| it.verdict() == wanted).count();

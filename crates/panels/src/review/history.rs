@@ -26,19 +26,19 @@ pub(super) fn show(
 ) {
     let review = &context.state.review;
     if let Some(reason) = review.unkept() {
-        let text = format!("{reason}. It is lost when this window closes, unless it is saved to a file.");
-        let save = ("Save it to a file", ReviewCommand::SaveRecord);
-        warning(ui, context, "The history of the review is not kept", &text, save, commands);
+        let text = format!("{reason}. Save the history to a file before you close this window.");
+        let save = ("Save to file", ReviewCommand::SaveRecord);
+        warning(ui, context, "Review history not saved", &text, save, commands);
     }
     if let Some(aside) = review.aside() {
-        let text = format!("{}. It is kept aside, and nothing is written over it.", aside.reason);
-        let save = ("Save what is kept aside", ReviewCommand::SaveAside);
-        warning(ui, context, "A review of this mission cannot be used", &text, save, commands);
+        let text = format!("{}. A copy was set aside.", aside.reason);
+        let save = ("Save copy to file", ReviewCommand::SaveAside);
+        warning(ui, context, "Couldn't read a review of this mission", &text, save, commands);
     }
     let record = review.record();
     let entries = record.entries();
     let note = match entries.len() {
-        0 => "nothing yet".to_owned(),
+        0 => "no entries".to_owned(),
         1 => "1 entry".to_owned(),
         count => format!("{count} entries"),
     };
@@ -47,22 +47,22 @@ pub(super) fn show(
     }
     let withdrawn = record.withdrawn();
     for (index, entry) in entries.iter().enumerate().rev().take(MAX_ENTRIES) {
-        let taken_back = withdrawn.get(entry.digest()).map(|by| format!("taken back by {}", who(by)));
+        let taken_back = withdrawn.get(entry.digest()).map(|by| format!("withdrawn by {}", who(by)));
         let number = |of: &str| entries.iter().position(|it| it.digest() == of).map_or(0, |of| of + 1);
         let of = entry.act.of().map(|of| format!(" {}", number(of))).unwrap_or_default();
         show_entry(ui, context, entry, &format!("{}  ", index + 1), &of, taken_back);
     }
     if entries.len() > MAX_ENTRIES {
-        row::quiet(ui, context, "Earlier entries are in the file and in the report.");
+        row::quiet(ui, context, "See the file or the report for earlier entries.");
     }
     indented(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            let save = ui.add_enabled(!record.is_empty(), Button::new("Save to a file"));
-            if save.on_hover_text("The history with its digests, as a JSON file").clicked() {
+            let save = ui.add_enabled(!record.is_empty(), Button::new("Save to file…"));
+            if save.on_hover_text("Save the history with its digests as JSON").clicked() {
                 commands.send(Command::Review(ReviewCommand::SaveRecord));
             }
-            let open = ui.button("Add from a file…");
-            if open.on_hover_text("Checks the history of a JSON file, and joins it with this one").clicked() {
+            let open = ui.button("Add from file…");
+            if open.on_hover_text("Verify a history file and merge it into this one").clicked() {
                 commands.send(Command::Review(ReviewCommand::OpenRecord));
             }
         });

@@ -46,7 +46,7 @@ impl Panel for ReviewPanel {
         let state = context.state;
         let is_worked_out = state.status() != state::Status::Working;
         if state.status() == state::Status::Program {
-            show_empty(ui, context, "A control program is run, not reviewed.");
+            show_empty(ui, context, "Control programs can't be reviewed. Open a mission to review its plan.");
             return;
         }
         if state.review.is_unasked() && !state.review.is_running() && is_worked_out {
@@ -171,7 +171,7 @@ fn status_look(tokens: &Tokens, status: Status, is_stale: bool) -> (Icon, &'stat
         let word = match status {
             Status::Information => "was information",
             Status::Passed => "had passed",
-            Status::Attention => "had attention",
+            Status::Attention => "needed attention",
             Status::Failed => "had failed",
         };
         return (Icon::Nothing, word, tokens.text_faint);
@@ -179,7 +179,7 @@ fn status_look(tokens: &Tokens, status: Status, is_stale: bool) -> (Icon, &'stat
     match status {
         Status::Information => (Icon::Info, "information", tokens.text_muted),
         Status::Passed => (Icon::Check, "passed", tokens.good),
-        Status::Attention => (Icon::Warning, "attention", tokens.warning),
+        Status::Attention => (Icon::Warning, "needs attention", tokens.warning),
         Status::Failed => (Icon::Error, "failed", tokens.error),
     }
 }

@@ -52,10 +52,10 @@ impl About {
     /// The word on the button that sends it, and what the field asks for.
     const fn words(&self) -> (&'static str, &'static str) {
         match self {
-            Self::Line(_) => ("Acknowledge", "Why may it be so?"),
-            Self::Resolved(_) => ("Resolve", "How is it resolved?"),
-            Self::Reopened(_) => ("Open again", "What is left?"),
-            Self::Withdrawn(_) => ("Take back", "Why is it taken back?"),
+            Self::Line(_) => ("Acknowledge", "Why is this acceptable?"),
+            Self::Resolved(_) => ("Resolve", "How was it resolved?"),
+            Self::Reopened(_) => ("Reopen", "Why is it reopened?"),
+            Self::Withdrawn(_) => ("Withdraw", "Reason for withdrawing"),
         }
     }
 
@@ -82,7 +82,7 @@ impl People {
             self.role = board.first().map(|seat| seat.role.clone()).unwrap_or_default();
         }
         ui.horizontal_wrapped(|ui| {
-            row::quiet_word(ui, "You are");
+            row::quiet_word(ui, "Your name");
             let name = self.name.get_or_insert_default();
             let width = 180.0_f32.min(ui.available_width());
             let field = TextEdit::singleline(name).hint_text("Your name").desired_width(width);
@@ -131,7 +131,7 @@ impl People {
             ui.horizontal_wrapped(|ui| {
                 icon::label(ui, Icon::Check, context.tokens.good);
                 ui.label(RichText::new(words).small().color(context.tokens.text_muted));
-                self.ask(ui, &about, "Take back…", &line.text);
+                self.ask(ui, &about, "Withdraw…", &line.text);
             });
             self.answer(ui, &about, commands);
         });
@@ -161,7 +161,7 @@ impl People {
         let (mut is_sent, mut is_left) = (is_entered && is_ready, false);
         ui.horizontal_wrapped(|ui| {
             let button = ui.add_enabled(is_ready, Button::new(send));
-            let why = if has_name { "it takes a reason" } else { "enter your name at the top first" };
+            let why = if has_name { "enter a reason first" } else { "enter your name at the top first" };
             is_sent |= button.on_disabled_hover_text(why).clicked();
             is_left = ui.button("Cancel").clicked();
             if !has_name {
@@ -190,7 +190,7 @@ impl People {
         let comments: Vec<&Entry> = record.entries().iter().filter(is_comment).collect();
         let open: &[&Entry] = standing.map_or(&[], |standing| &standing.open_comments);
         let note = match (comments.len(), open.len()) {
-            (0, _) => "none yet".to_owned(),
+            (0, _) => "none".to_owned(),
             (all, open) => format!("{open} open of {all}"),
         };
         if !header(ui, context, closed, "Comments", None, &note) {
@@ -202,7 +202,7 @@ impl People {
             comments.into_iter().partition(|entry| is_open(entry));
         for entry in first.iter().chain(&then) {
             let state = match withdrawn.get(entry.digest()) {
-                Some(by) => format!("taken back by {}", who(by)),
+                Some(by) => format!("withdrawn by {}", who(by)),
                 None if is_open(entry) => "open".to_owned(),
                 None => resolution(context, entry),
             };
@@ -233,14 +233,14 @@ impl People {
                 icon::label(ui, sign, color);
                 ui.label(strong(who(entry)).color(tokens.text));
                 let is_stale = context.state.review.hash() != Some(entry.content_hash.as_str());
-                let age = if is_stale { ", on other content" } else { "" };
+                let age = if is_stale { ", on different content" } else { "" };
                 let when = format!("{}{age}: {state}", moment(&entry.time));
                 ui.label(RichText::new(when).small().color(tokens.text_muted));
             });
             if let Some(about) = about {
                 let found = context.snapshot.and_then(|snapshot| Selection::by_name(snapshot, about));
                 let link = ui.add_enabled(found.is_some(), egui::Button::new(about));
-                if link.on_disabled_hover_text("the mission has nothing of this name any more").clicked()
+                if link.on_disabled_hover_text("nothing in the mission has this name").clicked()
                     && let Some(found) = found
                 {
                     commands.send(Command::SelectAndReveal(found));
@@ -251,11 +251,11 @@ impl People {
                 let (change, label) = if is_open {
                     (About::Resolved(id.clone()), "Resolve…")
                 } else {
-                    (About::Reopened(id.clone()), "Open again…")
+                    (About::Reopened(id.clone()), "Reopen…")
                 };
                 ui.horizontal_wrapped(|ui| {
                     self.ask(ui, &change, label, text);
-                    self.ask(ui, &About::Withdrawn(id.clone()), "Take back…", text);
+                    self.ask(ui, &About::Withdrawn(id.clone()), "Withdraw…", text);
                 });
                 self.answer(ui, &change, commands);
                 self.answer(ui, &About::Withdrawn(id), commands);
@@ -280,7 +280,7 @@ impl People {
                 }
             }
             let has_words = !self.comment.trim().is_empty();
-            let button = ui.add_enabled(has_words && self.has_name(), Button::new("Add the comment"));
+            let button = ui.add_enabled(has_words && self.has_name(), Button::new("Add comment"));
             if button.clicked() {
                 let text = std::mem::take(&mut self.comment).trim().to_owned();
                 let about = is_about_selected.then_some(selected);
@@ -324,7 +324,7 @@ impl People {
                     ui.push_id(entry.digest(), |ui| {
                         ui.horizontal_wrapped(|ui| {
                             ui.label(words);
-                            self.ask(ui, &about, "Take back…", &entry.by);
+                            self.ask(ui, &about, "Withdraw…", &entry.by);
                         });
                         self.answer(ui, &about, commands);
                     });
@@ -334,13 +334,13 @@ impl People {
             for blocker in standing.blockers() {
                 ui.horizontal_wrapped(|ui| {
                     icon::label(ui, Icon::Warning, tokens.warning);
-                    ui.label(RichText::new(format!("In the way: {blocker}")).color(tokens.text));
+                    ui.label(RichText::new(format!("Blocked by: {blocker}")).color(tokens.text));
                 });
             }
             let words = TextEdit::singleline(&mut self.approval)
-                .hint_text("Comments that go with the approval, if any")
+                .hint_text("Comments for the approval (optional)")
                 .desired_width(f32::INFINITY);
-            ui.add(words).accessible_name("Comments that go with the approval");
+            ui.add(words).accessible_name("Comments for the approval");
             let person = self.person();
             let refused = standing.may_approve(&person.name, &person.role);
             let label = if self.approval.trim().is_empty() { "Approve" } else { "Approve with comments" };
@@ -380,7 +380,7 @@ fn resolution(context: &Context<'_>, comment: &Entry) -> String {
 /// Who made an entry, with the role.
 pub(super) fn who(entry: &Entry) -> String {
     match (entry.by.as_str(), entry.role.as_str()) {
-        ("", _) => "somebody".to_owned(),
+        ("", _) => "someone".to_owned(),
         (name, "") => name.to_owned(),
         (name, role) => format!("{name} ({role})"),
     }

@@ -30,17 +30,13 @@ pub(super) fn show(
     commands: &mut CommandSender,
 ) {
     let Some(figures) = figures else {
-        row::quiet(
-            ui,
-            context,
-            "Not run yet: how often the plan succeeds when durations and conditions vary.",
-        );
+        row::quiet(ui, context, "No Monte Carlo runs yet. Run them to estimate how often the plan succeeds.");
         ui.horizontal(|ui| {
             ui.add_space(row::INDENT);
             let spec = registry::by_id(COMMAND);
             let refused =
-                spec.map_or(Err("this build cannot execute plans"), |spec| (spec.available)(context.state));
-            let button = ui.add_enabled(refused.is_ok(), Button::new("Run with chance"));
+                spec.map_or(Err("not available in this build"), |spec| (spec.available)(context.state));
+            let button = ui.add_enabled(refused.is_ok(), Button::new("Run Monte Carlo"));
             let button = match refused {
                 Err(reason) => button.on_disabled_hover_text(reason),
                 Ok(()) => button,
@@ -55,12 +51,12 @@ pub(super) fn show(
     };
     let tally = &figures.tally;
     let (low, high) = tally.interval();
-    let percent = |part: f64| format!("{:.1} %", part * 100.0);
+    let percent = |part: f64| format!("{:.1}%", part * 100.0);
     row::quiet(
         ui,
         context,
         &format!(
-            "{} of {} runs reached the end: {} (95 % confidence: {} to {}). {} had to plan again.",
+            "{} of {} runs reached the end: {} (95% confidence: {} to {}). {} had to replan.",
             tally.succeeded,
             tally.runs,
             percent(tally.probability()),
@@ -71,14 +67,14 @@ pub(super) fn show(
     );
     for (event, breaks) in tally.worst_events().into_iter().take(MAX_EVENTS) {
         let text = format!(
-            "{event} could not be kept {} times; {} of these ended the mission. {}",
+            "{event} missed its window {} times; {} of these ended the mission. {}",
             breaks.violations, breaks.stops, breaks.example
         );
         row::quiet(ui, context, &text);
     }
     for (event, mean, most) in tally.tightest_events().into_iter().take(MAX_EVENTS) {
         let text =
-            format!("{event} used {} of its slack on average, {} at most", percent(mean), percent(most));
+            format!("{event} used {} of its slack on average, at most {}", percent(mean), percent(most));
         row::quiet(ui, context, &text);
     }
 }

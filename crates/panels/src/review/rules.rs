@@ -37,10 +37,10 @@ impl Rules {
         // What others have set in the meantime counts.
         self.draft.take_if(|(before, draft)| *before != present || *draft == present);
         let note = match (&self.draft, record.ruled()) {
-            (Some(_), _) => "changed, not in force yet".to_owned(),
+            (Some(_), _) => "unsaved changes".to_owned(),
             (None, Some((ruled, _))) if !ruled.by.is_empty() => format!("set by {}", ruled.by),
-            (None, Some(_)) => "of this mission".to_owned(),
-            (None, None) => "the usual ones".to_owned(),
+            (None, Some(_)) => "from this mission".to_owned(),
+            (None, None) => "default".to_owned(),
         };
         if !header(ui, context, closed, "Flight rules", None, &note) {
             return;
@@ -52,15 +52,15 @@ impl Rules {
             let problem = rules.problem();
             ui.horizontal_wrapped(|ui| {
                 let is_ready = rules != present && problem.is_none();
-                if ui.add_enabled(is_ready, Button::new("Use these rules")).clicked() {
+                if ui.add_enabled(is_ready, Button::new("Apply rules")).clicked() {
                     let rules = Box::new(rules.clone());
                     commands.send(Command::Review(ReviewCommand::SetRules(rules)));
                 }
                 let is_usual = rules == FlightRules::default();
-                if ui.add_enabled(!is_usual, Button::new("The usual rules")).clicked() {
+                if ui.add_enabled(!is_usual, Button::new("Restore defaults")).clicked() {
                     rules = FlightRules::default();
                 }
-                if ui.button("Save the rules to a file").clicked() {
+                if ui.button("Save rules to file").clicked() {
                     commands.send(Command::Review(ReviewCommand::SaveRules));
                 }
             });
@@ -75,20 +75,20 @@ impl Rules {
 fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
     let usual = FlightRules::default();
     let mut margin = rules.margin.map(Time::to_f64);
-    if optional(ui, "Margins, at least", &mut margin, 0.0, 1.0e6) {
+    if optional(ui, "Minimum margin", &mut margin, 0.0, 1.0e6) {
         rules.margin = margin.and_then(|margin| Time::from_f64_nearest(margin, PARTS));
     }
-    optional(ui, "Clearance, at least (m)", &mut rules.clearance_m, 0.25, 1000.0);
-    optional(ui, "Slope, at most (°)", &mut rules.slope_deg, 15.0, 90.0);
+    optional(ui, "Minimum clearance (m)", &mut rules.clearance_m, 0.25, 1000.0);
+    optional(ui, "Maximum slope (°)", &mut rules.slope_deg, 15.0, 90.0);
     let mut reserve = rules.reserve.map(Rational::to_f64);
-    if optional(ui, "Reserve of each resource, at least", &mut reserve, 0.0, 1.0e6) {
+    if optional(ui, "Minimum reserve per resource", &mut reserve, 0.0, 1.0e6) {
         rules.reserve = reserve.and_then(|reserve| Rational::from_f64_nearest(reserve, PARTS));
     }
     let network = context.snapshot.and_then(|snapshot| snapshot.network.as_deref());
     let resources = network.map(|network| network.resources.as_slice()).unwrap_or_default();
     for resource in resources.iter().filter(|resource| !resource.name.contains('#')) {
         let mut own = rules.reserves.get(&resource.name).map(|reserve| reserve.to_f64());
-        if optional(ui, &format!("Reserve of {}, at least", resource.name), &mut own, 0.0, 1.0e6) {
+        if optional(ui, &format!("Minimum reserve of {}", resource.name), &mut own, 0.0, 1.0e6) {
             match own.and_then(|own| Rational::from_f64_nearest(own, PARTS)) {
                 Some(own) => rules.reserves.insert(resource.name.clone(), own),
                 None => rules.reserves.remove(&resource.name),
@@ -100,8 +100,8 @@ fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
     let mut is_held = rules.success_rate.is_some();
     let mut wanted = is_held.then_some(rate.wanted * 100.0);
     let mut least = is_held.then_some(rate.least * 100.0);
-    let is_changed = optional(ui, "Success rate, at least (%)", &mut wanted, 95.0, 100.0)
-        | optional(ui, "Success rate that is no failure, at least (%)", &mut least, 80.0, 100.0);
+    let is_changed = optional(ui, "Minimum success rate (%)", &mut wanted, 95.0, 100.0)
+        | optional(ui, "Fail below success rate (%)", &mut least, 80.0, 100.0);
     if is_changed {
         // The two are one rule.
         is_held =
@@ -117,10 +117,7 @@ fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
 /// What the mission has to keep to in its own language.
 fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule>) {
     ui.add_space(space::S);
-    row::quiet_word(
-        ui,
-        "Rules in the mission's own language, such as `Battery >= 20` or `never Drive while Mast=UP`",
-    );
+    row::quiet_word(ui, "Mission rules, such as Battery >= 20 or never Drive while Mast=UP");
     let mut gone = None;
     for (index, rule) in rules.iter_mut().enumerate() {
         let number = index + 1;
@@ -132,38 +129,38 @@ fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule
                 ui.add(name).accessible_name(format!("Name of rule {number}"));
                 let source = field(&mut rule.source, "Source, such as FR 4.2", 150.0);
                 ui.add(source).accessible_name(format!("Source of rule {number}"));
-                ui.checkbox(&mut rule.waivable, "May be waived")
-                    .on_hover_text("A plan that breaks it is for attention, and has not failed")
-                    .accessible_name(format!("Rule {number} may be waived"));
+                ui.checkbox(&mut rule.waivable, "Can be waived")
+                    .on_hover_text("Violations are warnings, not failures")
+                    .accessible_name(format!("Rule {number} can be waived"));
                 if ui.button("Remove").accessible_name(format!("Remove rule {number}")).clicked() {
                     gone = Some(index);
                 }
             });
             let width = ui.available_width().min(420.0);
             let text = TextEdit::singleline(&mut rule.rule)
-                .hint_text("never … while …")
+                .hint_text("never A while B")
                 .font(egui::TextStyle::Monospace)
                 .desired_width(width);
-            ui.add(text).accessible_name(format!("What rule {number} says"));
+            ui.add(text).accessible_name(format!("Text of rule {number}"));
             // Always a line, so that nothing below moves while somebody writes.
             match problem_of(context, &rule.rule) {
                 Some(problem) => {
                     ui.label(RichText::new(problem).color(context.tokens.error));
                 }
                 None if rule.rule.trim().is_empty() => {
-                    row::quiet_word(ui, "A condition, and when it has to hold");
+                    row::quiet_word(ui, "Enter a condition and when it must hold");
                 }
                 None if context.snapshot.is_some_and(|snapshot| snapshot.network.is_some()) => {
-                    row::quiet_word(ui, "The mission knows all that it names");
+                    row::quiet_word(ui, "All names in this rule are declared");
                 }
-                None => row::quiet_word(ui, "Not looked at: the mission has no network"),
+                None => row::quiet_word(ui, "Not checked: the mission has no network"),
             }
         });
     }
     if let Some(index) = gone {
         rules.remove(index);
     }
-    if ui.button("Add a rule").clicked() {
+    if ui.button("Add rule").clicked() {
         let is_new = |name: &String| !rules.iter().any(|rule| rule.name == *name);
         let name =
             (1..=rules.len() + 1).map(|number| format!("Rule {number}")).find(is_new).unwrap_or_default();
@@ -184,7 +181,7 @@ fn problem_of(context: &Context<'_>, rule: &str) -> Option<String> {
 /// Who has to approve, and how many of them.
 fn board(ui: &mut Ui, board: &mut Vec<Seat>) {
     ui.add_space(space::S);
-    row::quiet_word(ui, "Who has to approve");
+    row::quiet_word(ui, "Required approvals");
     let mut gone = None;
     let is_only = board.len() == 1;
     for (index, seat) in board.iter_mut().enumerate() {
@@ -205,7 +202,7 @@ fn board(ui: &mut Ui, board: &mut Vec<Seat>) {
     if let Some(index) = gone {
         board.remove(index);
     }
-    if ui.add_enabled(board.len() < MAX_SEATS, Button::new("Add a role")).clicked() {
+    if ui.add_enabled(board.len() < MAX_SEATS, Button::new("Add role")).clicked() {
         board.push(Seat { role: String::new(), approvals: 1 });
     }
 }
@@ -222,7 +219,7 @@ fn optional(ui: &mut Ui, label: &str, value: &mut Option<f64>, usual: f64, most:
             let field = DragValue::new(value).range(0.0..=most).speed(0.1).max_decimals(3);
             ui.add(field).accessible_name(label);
         } else {
-            row::quiet_word(ui, "not looked at");
+            row::quiet_word(ui, "not checked");
         }
     });
     before != *value

@@ -35,7 +35,7 @@ pub(super) fn show(
             (Icon::Working, tokens.info, info, "Reviewing…".to_owned())
         }
         None => (Icon::Nothing, tokens.info, info, "Not reviewed yet".to_owned()),
-        Some((_, true)) => (Icon::Warning, tokens.warning, warning, "Stale".to_owned()),
+        Some((_, true)) => (Icon::Warning, tokens.warning, warning, "Out of date".to_owned()),
         Some((review, false)) => {
             let (sign, _, color) = status_look(tokens, review.status, false);
             let fill = match review.status {
@@ -55,22 +55,23 @@ pub(super) fn show(
         if let Some((review, is_stale)) = shown {
             if is_stale {
                 let text = if context.state.status() == state::Status::Broken {
-                    "The text has errors: this review is of the text before. Nothing below is about what is \
-                     written now."
+                    "The text has errors. This review covers the last valid version, not the current text."
                 } else if context.state.review.hash() == Some(review.content_hash.as_str()) {
-                    "This review is of another plan of the same text than the one that is drawn. Review again to \
-                     see how that one stands."
+                    "This review covers a different plan of the same text. Review again to check the \
+                     current plan."
                 } else {
-                    "The text, the map or the seed has changed since this review. Undoing the change makes it \
-                     current again."
+                    "The text, the map or the seed changed after this review. Review again, or undo the \
+                     change."
                 };
                 ui.label(RichText::new(text).color(tokens.text));
             }
             let [passed, attention, failed] = review.counts();
-            let had = if is_stale { "It had " } else { "" };
+            let had = if is_stale { "Previously: " } else { "" };
+            let need = if attention == 1 { "needs" } else { "need" };
             let information = review.count(Status::Information);
             let counts = format!(
-                "{had}{passed} passed, {attention} for attention, {failed} failed; {information} for information"
+                "{had}{passed} passed, {attention} {need} attention, {failed} failed; {information} for \
+                 information"
             );
             ui.label(RichText::new(counts).color(tokens.text));
             if !is_stale {
@@ -78,7 +79,7 @@ pub(super) fn show(
             }
             content(ui, context, review, commands);
         } else {
-            let text = "Every line is computed from the plan; none is typed.";
+            let text = "All items are computed from the plan.";
             ui.label(RichText::new(text).color(tokens.text_muted));
         }
         ui.add_space(space::XS);
@@ -97,11 +98,11 @@ pub(super) fn show(
 fn title(review: &Review) -> String {
     let [_, attention, failed] = review.counts();
     match review.status {
-        Status::Information | Status::Passed => "Everything is as it should be".to_owned(),
-        Status::Attention if attention == 1 => "1 line deserves a look".to_owned(),
-        Status::Attention => format!("{attention} lines deserve a look"),
-        Status::Failed if failed == 1 => "Not ready: 1 line failed".to_owned(),
-        Status::Failed => format!("Not ready: {failed} lines failed"),
+        Status::Information | Status::Passed => "All checks passed".to_owned(),
+        Status::Attention if attention == 1 => "1 item needs attention".to_owned(),
+        Status::Attention => format!("{attention} items need attention"),
+        Status::Failed if failed == 1 => "1 check failed".to_owned(),
+        Status::Failed => format!("{failed} checks failed"),
     }
 }
 
@@ -112,10 +113,9 @@ fn step(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let step = view.step.step + 1;
     ui.horizontal_wrapped(|ui| {
         icon::label(ui, Icon::Warning, tokens.warning);
-        let text =
-            format!("The drawings show step {step} of the search, and not the plan that was reviewed.");
+        let text = format!("The panels show step {step} of the search, not the reviewed plan.");
         ui.label(RichText::new(text).color(tokens.text));
-        if ui.button("Show the plan").clicked() {
+        if ui.button("Show plan").clicked() {
             commands.send(Command::Search(SearchCommand::Close));
         }
     });
@@ -128,7 +128,7 @@ fn content(ui: &mut Ui, context: &Context<'_>, review: &Review, commands: &mut C
     let text = RichText::new(format!("Content {short}…")).small().color(context.tokens.text_muted);
     let label = ui.add(egui::Button::new(text).frame(false));
     let label = label.on_hover_text(format!("SHA-256 of text, map and seed. Click to copy.\n{hash}"));
-    if label.accessible_name("Copy the content hash").clicked() {
+    if label.accessible_name("Copy content hash").clicked() {
         commands.send(Command::Window(WindowCommand::Copy(hash.clone())));
     }
 }
@@ -149,7 +149,7 @@ fn board(ui: &mut Ui, context: &Context<'_>, standing: &Standing<'_>) {
         ui.label(RichText::new(standing.seats_in_words()).color(tokens.text));
     });
     if let (PlanStatus::Lapsed, Some((last, why))) = (standing.status, standing.lapsed) {
-        let text = format!("{} approved {}; since then {why}.", who(last), moment(&last.time));
+        let text = format!("{} approved this plan on {}. Since then, {why}.", who(last), moment(&last.time));
         ui.label(RichText::new(text).color(tokens.text));
     }
 }
@@ -171,7 +171,7 @@ fn buttons(
         if !is_current && ui.add_enabled(!is_running, egui::Button::new(text)).clicked() {
             commands.send(Command::Review(ReviewCommand::Run));
         }
-        if ui.button("Write the report").clicked() {
+        if ui.button("Write report").clicked() {
             commands.send(Command::WriteReport);
         }
     });

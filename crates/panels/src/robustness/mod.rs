@@ -25,7 +25,7 @@ const LEAST_NAME: f32 = 60.0;
 impl Panel for RobustnessPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         if context.state.shown().and_then(|shown| shown.plan()).is_none() {
-            show_empty(ui, context, "There is no plan whose robustness could be known.");
+            show_empty(ui, context, "No plan to test. The Plan panel explains why.");
             return;
         }
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -35,8 +35,8 @@ impl Panel for RobustnessPanel {
                 if let Some(robustness) = robustness {
                     show_result(ui, context, robustness);
                 } else {
-                    let text = "Runs the plan many times with chance, in the background, and says how often it \
-                                reaches its end and what breaks it.";
+                    let text = "Run the plan many times with random durations to estimate how often it \
+                                succeeds and what breaks it.";
                     ui.add_space(space::M);
                     ui.label(RichText::new(text).color(context.tokens.text_muted));
                 }
@@ -54,15 +54,15 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let seed = ui.label(RichText::new("Seed").color(context.tokens.text_muted)).id;
         ui.add(DragValue::new(&mut settings.seed)).labelled_by(seed);
         if chance.is_running() {
-            if ui.button("Stop the runs").clicked() {
+            if ui.button("Stop runs").clicked() {
                 commands.send(Command::Chance(ChanceCommand::Stop));
             }
-        } else if ui.button("Run with chance").clicked() {
+        } else if ui.button("Run Monte Carlo").clicked() {
             commands.send(Command::Chance(ChanceCommand::Start));
         }
     });
     let mut is_uniform = settings.uncertainty.others == Others::Uniform;
-    let text = "Activities take any time within their bounds";
+    let text = "Random durations within bounds";
     if ui.checkbox(&mut is_uniform, text).changed() {
         settings.uncertainty.others = if is_uniform { Others::Uniform } else { Others::Planned };
     }
@@ -85,9 +85,9 @@ fn natures(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Uncer
     if network.is_none_or(|network| network.arcs.iter().all(|arc| !arc.is_contingent)) {
         return;
     }
-    let text = "Nature chooses against the plan";
-    let hint = "Contingent durations are ends of their ranges, and fail the plan where they can; otherwise they are \
-                drawn from their ranges";
+    let text = "Worst-case durations";
+    let hint = "On: each contingent duration takes an extreme of its range. Off: it is sampled from the \
+                range.";
     ui.checkbox(&mut uncertainty.adversary, text).on_hover_text(hint);
 }
 
@@ -97,15 +97,15 @@ fn driving(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Uncer
         return;
     }
     let mut drives = uncertainty.traverses == Traverses::Driven;
-    let text = "Vehicles drive their traverses (seconds for each run)";
-    let hint = "Otherwise the duration of a traverse is drawn as that of any other activity is";
+    let text = "Simulate each traverse (slow)";
+    let hint = "Off: the duration of each traverse is sampled.";
     if ui.checkbox(&mut drives, text).on_hover_text(hint).changed() {
         uncertainty.traverses = if drives { Traverses::Driven } else { Traverses::Drawn };
     }
     if drives {
         ui.horizontal(|ui| {
             ui.add_space(space::L);
-            let label = ui.label("Rocks about each path that the map does not show, at most").id;
+            let label = ui.label("Max. unmapped rocks per path").id;
             ui.add(DragValue::new(&mut uncertainty.rocks.most).range(0..=50)).labelled_by(label);
         });
     }
@@ -124,8 +124,8 @@ fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Un
             let Some((start, end)) = bounds.filter(|_| is_condition) else { continue };
             let before = uncertainty.withdrawn.get(&occurrence.name).map_or(0.0, |it| it.probability);
             let mut percent = before * 100.0;
-            let label = ui.label(format!("{} is withdrawn", occurrence.name)).id;
-            let field = DragValue::new(&mut percent).range(0.0..=100.0).suffix(" %").max_decimals(1);
+            let label = ui.label(format!("Chance to withdraw {}", occurrence.name)).id;
+            let field = DragValue::new(&mut percent).range(0.0..=100.0).suffix("%").max_decimals(1);
             if ui.add(field).labelled_by(label).changed() {
                 let at = Distribution::Uniform(start.earliest, end.earliest);
                 let incident = Incident { probability: percent / 100.0, at };
@@ -155,29 +155,29 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
     let (low, high) = tally.interval();
     ui.add_space(space::M);
     let color = share_color(tokens, tally.probability());
-    let share = format!("{:.1} %", tally.probability() * 100.0);
+    let share = format!("{:.1}%", tally.probability() * 100.0);
     ui.label(strong(share).size(size::TITLE * 1.8).color(color));
     let text = format!(
-        "of {} runs reach the end; with 95 % confidence between {:.1} % and {:.1} %",
+        "of {} runs reach the end (95% confidence: {:.1}% to {:.1}%)",
         tally.runs,
         low * 100.0,
         high * 100.0
     );
     ui.label(RichText::new(text).color(tokens.text));
     if tally.runs < robustness.settings.runs && !context.state.chance.is_running() {
-        let text = format!("Stopped: only {} of {} runs were made", tally.runs, robustness.settings.runs);
+        let text = format!("Stopped after {} of {} runs", tally.runs, robustness.settings.runs);
         ui.label(RichText::new(text).color(tokens.warning));
     }
     if tally.succeeded_by_replanning > 0 {
         let share = tally.succeeded_by_replanning as f64 / tally.runs.max(1) as f64 * 100.0;
-        ui.label(RichText::new(format!("{share:.1} % only by planning again")).color(tokens.text_muted));
+        ui.label(RichText::new(format!("{share:.1}% only by replanning")).color(tokens.text_muted));
     }
     let names_width = (ui.available_width() - FIGURES_WIDTH).max(LEAST_NAME);
     if !tally.breaks.is_empty() {
-        section(ui, context, "What breaks the plan", "");
+        section(ui, context, "Causes of failure", "");
         Grid::new("breaks").num_columns(3).striped(true).show(ui, |ui| {
-            structure::part(ui, accesskit::Role::Table, "What breaks the plan");
-            heading(ui, context, ["Event", "plan broken", "run stopped"]);
+            structure::part(ui, accesskit::Role::Table, "Causes of failure");
+            heading(ui, context, ["Event", "Violations", "Stopped runs"]);
             for (name, breaks) in tally.worst_events().into_iter().take(MAX_LISTED) {
                 ui.label(cut_to(ui, name, names_width)).on_hover_text(&breaks.example);
                 ui.label(format!("{} ×", breaks.violations));
@@ -186,14 +186,14 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
             }
         });
     }
-    section(ui, context, "Slack used", "how far into its window each event came, 100 % is the latest moment");
+    section(ui, context, "Slack used", "position of each event in its window (100% = latest)");
     Grid::new("slack").num_columns(3).striped(true).show(ui, |ui| {
         structure::part(ui, accesskit::Role::Table, "Slack used");
-        heading(ui, context, ["Event", "mean", "most"]);
+        heading(ui, context, ["Event", "Mean", "Maximum"]);
         for (name, mean, most) in tally.tightest_events().into_iter().take(MAX_LISTED) {
             ui.label(cut_to(ui, name, names_width)).on_hover_text(name.as_str());
-            ui.label(format!("{:.0} %", mean * 100.0));
-            ui.label(format!("{:.0} %", most * 100.0));
+            ui.label(format!("{:.0}%", mean * 100.0));
+            ui.label(format!("{:.0}%", most * 100.0));
             ui.end_row();
         }
     });

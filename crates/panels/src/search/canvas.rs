@@ -651,11 +651,11 @@ pub fn short_label(network: &Network, choice: Option<TreeChoice>) -> String {
         }
         Some(TreeChoice::Link(link)) => format!("← {}", owner(link.tell)),
         Some(TreeChoice::Order(order)) => ordered(order).join(" ≺ "),
-        Some(TreeChoice::NoLink { ask }) => format!("{} ← nothing", condition(ask)),
+        Some(TreeChoice::NoLink { ask }) => format!("{} ← no support", condition(ask)),
         Some(TreeChoice::UseOrder(order)) => format!("{} ≺ {}", user(order.first), user(order.then)),
         Some(TreeChoice::Start { used, by }) => format!("{} by {by}", user(used)),
         Some(TreeChoice::Later { used, than }) => format!("{} after {than}", user(used)),
-        Some(TreeChoice::Apart) => "keeping all gaps".to_owned(),
+        Some(TreeChoice::Apart) => "all gaps kept".to_owned(),
         Some(TreeChoice::Departure(it)) => format!("{} → {}", owner(it.before), owner(it.movement)),
     }
 }

@@ -39,11 +39,11 @@ fn show_steps(ui: &mut Ui, context: &Context<'_>, recordings: &[Recording], comm
         if search.is_playing { (Icon::Pause, "Stop (Space)") } else { (Icon::Play, "Play (Space)") };
     for (sign, name, command) in [
         (Icon::ToStart, "First step (Home)", SearchCommand::GoTo(0)),
-        (Icon::RunBack, "Back to the breakpoint before ([)", SearchCommand::Run(false)),
+        (Icon::RunBack, "Previous breakpoint ([)", SearchCommand::Run(false)),
         (Icon::StepBack, "Step back (,)", SearchCommand::Step(-1)),
         (sign, play, SearchCommand::TogglePlaying),
         (Icon::StepForward, "Step forward (.)", SearchCommand::Step(1)),
-        (Icon::Run, "Run to the next breakpoint (])", SearchCommand::Run(true)),
+        (Icon::Run, "Next breakpoint (])", SearchCommand::Run(true)),
         (Icon::ToEnd, "Last step (End)", SearchCommand::GoTo(usize::MAX)),
     ] {
         if icon::toggle(ui, tokens, sign, name, sign == Icon::Pause).clicked() {
@@ -64,13 +64,12 @@ fn show_steps(ui: &mut Ui, context: &Context<'_>, recordings: &[Recording], comm
     }
     let room = if rest < 140.0 { ui.available_width() } else { rest };
     ui.spacing_mut().slider_width = (room - 80.0).clamp(60.0, 180.0);
-    let slider = ui.add(Slider::new(&mut step, 1..=steps)).accessible_name("Step of the search");
+    let slider = ui.add(Slider::new(&mut step, 1..=steps)).accessible_name("Search step");
     if slider.changed() {
         commands.send(Command::Search(SearchCommand::GoTo(step - 1)));
     }
     if search.step().is_some() {
-        let close =
-            ui.button("Show the plan").on_hover_text("Leaves the search and shows the plan again (Esc)");
+        let close = ui.button("Show plan").on_hover_text("Close the search and show the plan (Esc)");
         if close.clicked() {
             commands.send(Command::Search(SearchCommand::Close));
         }
@@ -85,7 +84,7 @@ fn show_speed(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
         .width(58.0)
         .show_ui(ui, |ui| {
             for choice in SPEEDS {
-                ui.selectable_value(&mut speed, choice, format!("{choice} steps a second"));
+                ui.selectable_value(&mut speed, choice, format!("{choice} steps per second"));
             }
         })
         .response
@@ -103,30 +102,27 @@ fn show_choices(
 ) {
     let search = &context.state.search;
     let mut only_key = search.only_key();
-    ui.toggle_value(&mut only_key, "Key steps only").on_hover_text(
-        "Steps and plays from choice to failure to choice, and passes over what only prepares them",
-    );
+    ui.toggle_value(&mut only_key, "Key steps only").on_hover_text("Step only through choices and failures");
     if only_key != search.only_key() {
         commands.send(Command::Search(SearchCommand::OnlyKey(only_key)));
     }
     let mut compares = search.compares();
     if compares {
         let mut is_linked = search.is_linked();
-        ui.toggle_value(&mut is_linked, "Together").on_hover_text("Both searches step together");
+        ui.toggle_value(&mut is_linked, "Step together").on_hover_text("Step both searches together");
         if is_linked != search.is_linked() {
             commands.send(Command::Search(SearchCommand::Link(is_linked)));
         }
-        ui.toggle_value(merges, "Merged")
-            .on_hover_text("Both trees as one: what both searches entered is drawn once");
+        ui.toggle_value(merges, "Merge trees")
+            .on_hover_text("Draw both trees as one; shared states appear once");
     } else {
         show_kind(ui, context, commands);
     }
-    ui.toggle_value(&mut compares, "Compare").on_hover_text("Shows both searches side by side");
+    ui.toggle_value(&mut compares, "Compare").on_hover_text("Show both searches side by side");
     if compares != search.compares() {
         commands.send(Command::Search(SearchCommand::Compare(compares)));
     }
-    ui.toggle_value(folds_failed, "Fold failures")
-        .on_hover_text("Hides what is below states in which all fails");
+    ui.toggle_value(folds_failed, "Collapse failed branches").on_hover_text("Collapse branches that fail");
 }
 
 fn show_breakpoints(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -135,10 +131,10 @@ fn show_breakpoints(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSe
     ui.label(RichText::new("Stop at").color(context.tokens.text_muted));
     let mut breakpoints = search.breakpoints;
     for (value, name, help) in [
-        (&mut breakpoints.decision, "decisions", "Run and Play stop where an alternative is taken"),
-        (&mut breakpoints.failure, "failures", "Run and Play stop at failures"),
-        (&mut breakpoints.threat, "threats", "Run and Play stop where conflicting intervals may overlap"),
-        (&mut breakpoints.solution, "plans", "Run and Play stop at plans"),
+        (&mut breakpoints.decision, "decisions", "Stop at decisions"),
+        (&mut breakpoints.failure, "failures", "Stop at failures"),
+        (&mut breakpoints.threat, "threats", "Stop at threats (conflicting intervals that may overlap)"),
+        (&mut breakpoints.solution, "plans", "Stop at plans"),
     ] {
         let button = ui.add(Button::selectable(*value, name)).on_hover_text(help);
         if button.accessible_name(format!("Stop at {name}")).clicked() {

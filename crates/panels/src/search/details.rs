@@ -77,7 +77,7 @@ fn show_learned(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
     for (step, choices) in learned.into_iter().rev().take(MAX_LEARNED) {
         let text = wording::learned(recording.network(), choices);
         let button = egui::Button::new(RichText::new(text).small()).frame_when_inactive(false).wrap();
-        if ui.add(button).on_hover_text("Goes to the step that taught it").clicked() {
+        if ui.add(button).on_hover_text("Go to the step that learned it").clicked() {
             commands.send(Command::Search(SearchCommand::GoTo(step)));
         }
     }
@@ -97,11 +97,11 @@ fn show_state(ui: &mut Ui, context: &Context<'_>, told: Told<'_>, state: TreeNod
             ("waiting", tokens.text_muted)
         }
         TreeStatus::Unexplored => ("not tried", tokens.text_muted),
-        TreeStatus::Excluded => ("excluded", tokens.failure),
-        TreeStatus::Decision if index.is_left(state, step) => ("left", tokens.text_muted),
+        TreeStatus::Excluded => ("ruled out", tokens.failure),
+        TreeStatus::Decision if index.is_left(state, step) => ("not entered yet", tokens.text_muted),
         TreeStatus::Decision => ("open", tokens.decision),
         TreeStatus::Failed => ("failed", tokens.failure),
-        TreeStatus::Solution => ("a plan", tokens.solution),
+        TreeStatus::Solution => ("plan", tokens.solution),
     };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
@@ -126,13 +126,13 @@ fn show_state(ui: &mut Ui, context: &Context<'_>, told: Told<'_>, state: TreeNod
     if let Some(exclusion) = index.exclusion(state, step) {
         let text = exclusion_text(recording, &exclusion);
         ui.label(RichText::new(text).small().color(tokens.failure));
-    } else if what == "excluded" {
+    } else if what == "ruled out" {
         let text = match (own_failure(trace, index, state), index.excluded_by(trace, state)) {
             (Some(closed), _) => wording::event(recording.network(), trace, closed),
             (None, Some(step)) => {
-                format!("Not tried: the failure of step {} does not depend on this choice.", step + 1)
+                format!("Skipped: the failure at step {} doesn't depend on this choice.", step + 1)
             }
-            (None, None) => "Not tried: what failed does not depend on this choice.".to_owned(),
+            (None, None) => "Skipped: the failure doesn't depend on this choice.".to_owned(),
         };
         ui.label(RichText::new(text).small().color(tokens.failure));
     }
@@ -146,8 +146,8 @@ fn show_state(ui: &mut Ui, context: &Context<'_>, told: Told<'_>, state: TreeNod
 fn exclusion_text(recording: &Recording, exclusion: &Exclusion) -> String {
     let conflict = wording::never(recording.network(), exclusion.conflict(recording.trace()));
     match exclusion.taught {
-        Some(step) => format!("Excluded by what step {} taught: {conflict}.", step + 1),
-        None => format!("Excluded by what was learned: {conflict}."),
+        Some(step) => format!("Ruled out by the conflict learned at step {}: {conflict}.", step + 1),
+        None => format!("Ruled out by a learned conflict: {conflict}."),
     }
 }
 
@@ -181,7 +181,7 @@ fn show_changes(ui: &mut Ui, context: &Context<'_>, recording: &Recording, comma
         return;
     }
     ui.add_space(3.0);
-    ui.label(RichText::new("Windows that this step changed").small().color(tokens.text_muted));
+    ui.label(RichText::new("Windows changed by this step").small().color(tokens.text_muted));
     for change in named.iter().take(MAX_CHANGES) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = 6.0;

@@ -218,7 +218,7 @@ fn legend(ui: &mut Ui, context: &Context<'_>, drawn: &Drawn) {
         ui.spacing_mut().item_spacing.x = space::S;
         ui.label(RichText::new("States entered").small().color(tokens.text_muted));
         for (share, text) in [
-            (Share::Both, format!("by both: {}", counts.both)),
+            (Share::Both, format!("both: {}", counts.both)),
             (Share::Only(0), format!("only {}: {}", name(0), counts.only[0])),
             (Share::Only(1), format!("only {}: {}", name(1), counts.only[1])),
         ] {

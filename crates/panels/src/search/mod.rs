@@ -333,11 +333,9 @@ fn kind_name(kind: SearchKind) -> &'static str {
 /// What a search does, in a sentence.
 fn kind_help(kind: SearchKind) -> &'static str {
     match kind {
-        SearchKind::Chronological => "On failure it undoes the last choice",
-        SearchKind::ConflictDirected => "It learns from each failure, and jumps back to what caused it",
-        SearchKind::BestFirst => {
-            "It goes on where the objective may still become best (A*); without an objective as Conflict-directed"
-        }
+        SearchKind::Chronological => "Undo the last choice after each failure",
+        SearchKind::ConflictDirected => "Learn from each failure and jump back to its cause",
+        SearchKind::BestFirst => "Expand the state with the best bound first (A*)",
     }
 }
 
@@ -345,14 +343,13 @@ fn show_unrecorded(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     ui.vertical_centered(|ui| {
         ui.add_space(space::XL * 2.0);
         if context.state.settings.plan.trace {
-            ui.label(RichText::new("There is no search to show yet.").color(context.tokens.text_muted));
+            ui.label(RichText::new("No search recorded yet.").color(context.tokens.text_muted));
             return;
         }
-        let text =
-            "The search is not recorded. Recording it lets you step through every decision and failure.";
+        let text = "This search was not recorded. Record it to step through every decision and failure.";
         ui.label(RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);
-        if ui.button("Record the search").clicked() {
+        if ui.button("Record search").clicked() {
             commands.send(Command::Settings(SettingsCommand::SetTrace(true)));
         }
     });

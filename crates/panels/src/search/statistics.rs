@@ -32,14 +32,14 @@ pub fn show(
             let color = if is_active { tokens.text } else { tokens.text_muted };
             let text = theme::strong(name).color(color);
             let button = ui.add(egui::Button::selectable(is_active, text));
-            if button.on_hover_text("The other panels show this search").clicked() {
+            if button.on_hover_text("Show this search in the other panels").clicked() {
                 commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
                 commands.send(Command::Search(SearchCommand::Turn(side)));
             }
             let (text, color) = match searched.status {
                 Status::Plan => ("plan found", tokens.solution),
                 Status::NoPlan => ("no plan", tokens.failure),
-                Status::Limit => ("stopped: too long", tokens.warning),
+                Status::Limit => ("time limit reached", tokens.warning),
                 Status::Error => ("times too large", tokens.error),
             };
             ui.label(RichText::new(text).small().color(color));
@@ -50,7 +50,7 @@ pub fn show(
             ("steps", step.unwrap_or(recording.steps()) as u64, recording.steps() as u64),
             ("states", now.states.into(), all.states.into()),
             ("propagations", now.propagations.into(), all.propagations.into()),
-            ("returns", now.backtracks.into(), all.backtracks.into()),
+            ("backtracks", now.backtracks.into(), all.backtracks.into()),
             ("failures", now.failures.into(), all.failures.into()),
             ("learned", learned(step.unwrap_or(usize::MAX)), learned(usize::MAX)),
         ];
@@ -68,7 +68,7 @@ pub fn show(
             let millis = searched.millis;
             let time = if millis >= 100.0 { format!("{millis:.0} ms") } else { format!("{millis:.1} ms") };
             ui.label(RichText::new(format!("time {time}")).small().color(tokens.text_muted))
-                .on_hover_text("With recording, in this page");
+                .on_hover_text("Run time in this window, including recording");
         });
     });
 }

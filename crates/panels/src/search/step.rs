@@ -14,8 +14,8 @@ pub fn show(ui: &mut egui::Ui, context: &Context<'_>, recording: &Recording) {
     let Some(view) = context.state.search.shown() else {
         let more = match (trace.is_truncated, trace.is_conflict_driven()) {
             (false, _) => "",
-            (true, false) => "; the plan comes from a search that was not recorded",
-            (true, true) => "; the search went on without a record",
+            (true, false) => "; the search that found the plan was not recorded",
+            (true, true) => "; later steps were not recorded",
         };
         let text = format!(
             "{} steps recorded{more}. Press . to step, or click a state of the tree.",

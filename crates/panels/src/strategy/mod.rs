@@ -25,19 +25,20 @@ pub struct StrategyPanel {
     ends: BTreeMap<ArcId, f64>,
 }
 
-const EXPLANATION: &str = "You are nature: let time pass, and end what has begun when you like. The executive acts as \
-                           early as it may and waits where it must. What you do not end lasts as long as it can.";
+const EXPLANATION: &str = "You play the environment. Advance time, and end an uncontrolled activity \
+                           whenever you like; the executive reacts. Anything you don't end runs to its \
+                           maximum duration.";
 
 impl Panel for StrategyPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let plan = context.snapshot.and_then(|it| Some((it.network.as_deref()?, it.plan()?)));
         let Some((network, plan)) = plan else {
-            show_empty(ui, context, "There is no plan to run against nature. The plan panel says why.");
+            show_empty(ui, context, "No plan to run. The Plan panel explains why.");
             return;
         };
         if !plan.has_natures_choice(network) {
-            let text = "Nature chooses nothing in this plan: the executive may choose all times. Durations marked \
-                        contingent are nature's.";
+            let text = "This plan has no uncontrolled durations. Mark a duration contingent to let the \
+                        environment choose it.";
             show_empty(ui, context, text);
             return;
         }
@@ -68,10 +69,10 @@ impl StrategyPanel {
         course: &Course,
         commands: &mut CommandSender,
     ) {
-        section(ui, context, "Nature chooses", "");
+        section(ui, context, "Uncontrolled activities", "");
         self.ends.retain(|arc, _| course.under_way.iter().any(|it| it.natures == *arc));
         if course.under_way.is_empty() {
-            let text = "Nothing of nature's is under way.";
+            let text = "No uncontrolled activity is in progress.";
             ui.label(RichText::new(text).color(context.tokens.text_muted));
         }
         for under_way in &course.under_way {
@@ -96,7 +97,7 @@ impl StrategyPanel {
         let selection = arc.occurrence.map_or(Selection::Arc(under_way.natures), Selection::Occurrence);
         selectable_row(ui, context, &selection, RichText::new(&name).color(tokens.nature), commands);
         let range = format!(
-            "has lasted {} of {}, ends at {}",
+            "elapsed {} of {}, ends at {}",
             time_text::short(lasted),
             time_text::interval(arc.lower, arc.upper),
             time_text::interval(under_way.window.earliest, under_way.window.latest)
@@ -107,10 +108,10 @@ impl StrategyPanel {
             *end = end.clamp(from, to);
             if from < to {
                 let slider = Slider::new(end, from..=to).show_value(false);
-                ui.add(slider).accessible_name(format!("When nature ends {name}"));
+                ui.add(slider).accessible_name(format!("End time of {name}"));
             }
             let time = Time::from_f64_nearest(*end, 10).unwrap_or(under_way.window.earliest);
-            let button = ui.button(format!("End it at {}", time_text::short(time)));
+            let button = ui.button(format!("End at {}", time_text::short(time)));
             if button.accessible_name(format!("End {name} at {}", time_text::short(time))).clicked() {
                 commands.send(Command::Pins(PinCommand::Pin(arc.to, time)));
             }
@@ -124,8 +125,8 @@ fn controls(ui: &mut Ui, context: &Context<'_>, course: Option<&Course>, command
         let begun = course.is_some();
         let is_over = course.is_some_and(|course| course.next.is_none());
         let buttons = [
-            (Icon::ToStart, "Back to the start", PinCommand::ReleaseAll, begun),
-            (Icon::StepBack, "Take the last step back", PinCommand::TakeBack, begun),
+            (Icon::ToStart, "Restart", PinCommand::ReleaseAll, begun),
+            (Icon::StepBack, "Undo last step", PinCommand::TakeBack, begun),
         ];
         for (sign, name, command, is_enabled) in buttons {
             ui.add_enabled_ui(is_enabled, |ui| {
@@ -134,9 +135,9 @@ fn controls(ui: &mut Ui, context: &Context<'_>, course: Option<&Course>, command
                 }
             });
         }
-        let go_on = if begun { "Let time pass" } else { "Begin the run" };
+        let go_on = if begun { "Advance time" } else { "Start run" };
         let button = ui.add_enabled(!is_over, egui::Button::new(go_on));
-        if button.on_hover_text("To the next thing that happens, if nature ends nothing before").clicked() {
+        if button.on_hover_text("Advance to the next event").clicked() {
             commands.send(Command::Pins(PinCommand::GoOn));
         }
         if let Some(course) = course {
@@ -155,10 +156,10 @@ fn executives(
     commands: &mut CommandSender,
 ) {
     let tokens = context.tokens;
-    section(ui, context, "The executive", "");
+    section(ui, context, "Executive", "");
     for waiting in &course.waiting {
         let text = format!(
-            "{} waits for the end of {}, until {} at most",
+            "{} waits for the end of {}, at the latest until {}",
             event_name(network, waiting.event),
             duration_name(network, waiting.natures),
             time_text::short(waiting.until)
@@ -167,12 +168,10 @@ fn executives(
     }
     match &course.next {
         None => {
-            ui.label(
-                strong("Everything has happened: the plan withstood nature in this run.").color(tokens.good),
-            );
+            ui.label(strong("Run complete: the plan held.").color(tokens.good));
         }
         Some(next) => {
-            let text = format!("next, if nature ends nothing before: {}", act_text(network, next));
+            let text = format!("next, unless an activity ends first: {}", act_text(network, next));
             ui.label(RichText::new(text).color(tokens.text_muted));
         }
     }
@@ -186,7 +185,7 @@ fn happened(
     course: &Course,
     commands: &mut CommandSender,
 ) {
-    section(ui, context, "What happened", "the latest first");
+    section(ui, context, "History", "latest first");
     for act in course.acts.iter().rev().filter(|act| is_told(network, act)) {
         let color = match act.actor {
             Actor::Nature(_) => context.tokens.nature,
@@ -209,7 +208,7 @@ fn act_text(network: &Network, act: &Act) -> String {
         let ended = duration_name(network, arc);
         let end = format!("{ended}.end");
         names.retain(|name| *name != end);
-        names.insert(0, format!("nature ends {ended}"));
+        names.insert(0, format!("the environment ends {ended}"));
     }
     format!("{time}  {}", names.join(", "))
 }

@@ -128,9 +128,9 @@ pub fn path_rows(
     if let Some((leg, figures)) = parts {
         let unit = time_text::unit(unit(context));
         rows.push(("This leg", format!("to {}, {}", leg.to, metres(figures.length_m))));
-        rows.push(("Its clearance", room(figures.min_clearance_m)));
-        rows.push(("Its steepest slope", format!("{:.0}°", figures.max_slope_deg)));
-        rows.push(("Its least duration", format!("{} {unit}", time_text::short(figures.least_duration))));
+        rows.push(("Leg clearance", room(figures.min_clearance_m)));
+        rows.push(("Leg steepest slope", format!("{:.0}°", figures.max_slope_deg)));
+        rows.push(("Leg minimum duration", format!("{} {unit}", time_text::short(figures.least_duration))));
     }
     rows
 }
@@ -156,7 +156,7 @@ fn time_rows(context: &Context<'_>, traverse: &Traverse) -> Vec<(&'static str, S
     let name = time_text::unit(unit);
     let mut rows = vec![
         ("Duration", format!("{} {name}", time_text::slack(start, exact::Bound::Finite(end)))),
-        ("From and to", format!("{} to {} {name}", time_text::short(start), time_text::short(end))),
+        ("Start and end", format!("{} to {} {name}", time_text::short(start), time_text::short(end))),
     ];
     let seconds = (end.to_f64() - start.to_f64()) * unit.seconds() as f64;
     if seconds > 0.0 {
@@ -182,7 +182,7 @@ pub fn show_path(
     let is_closed = show(ui, context, image, (anchor, path), title, |ui| {
         show_rows(ui, context.tokens, &rows);
         if context.is_stale {
-            ui.label(RichText::new("of the text before").small().color(context.tokens.warning));
+            ui.label(RichText::new("from the previous text").small().color(context.tokens.warning));
         }
     });
     if is_closed {

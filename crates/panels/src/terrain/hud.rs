@@ -209,7 +209,7 @@ impl Overlay<'_> {
             }
         };
         let room = clearance_of.map(|model| {
-            (format!("Room of {model}"), "0 m".to_owned(), format!("{AMPLE_M:.0} m or more"), true)
+            (format!("Clearance for {model}"), "0 m".to_owned(), format!("{AMPLE_M:.0} m or more"), true)
         });
         for (title, low, high, has_none) in own.into_iter().chain(room) {
             left += self.legend(left, &title, &low, &high, has_none) + MARGIN;
@@ -218,7 +218,7 @@ impl Overlay<'_> {
 
     /// A colour ramp with its ends named; answers how wide it is. `has_none` adds the colour of places without room.
     fn legend(&self, left: f32, title: &str, low: &str, high: &str, has_none: bool) -> f32 {
-        const NONE: &str = "no room";
+        const NONE: &str = "no clearance";
         let tokens = self.tokens();
         let font = FontId::proportional(size::SMALL);
         let galley = |text: &str| self.painter.layout_no_wrap(text.to_owned(), font.clone(), tokens.text);

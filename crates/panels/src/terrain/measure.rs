@@ -38,10 +38,10 @@ impl Measurement {
         let profile = &self.profile;
         let [up, down] = profile.climb_m;
         vec![
-            ("On the ground", metres(profile.ground_m)),
-            ("Straight", metres(profile.straight_m)),
-            ("Up and down", format!("{up:.1} m, {down:.1} m")),
-            ("Steepest", format!("{:.0}°", profile.slope_max_rad.to_degrees())),
+            ("Surface distance", metres(profile.ground_m)),
+            ("Straight-line distance", metres(profile.straight_m)),
+            ("Ascent, descent", format!("{up:.1} m, {down:.1} m")),
+            ("Steepest slope", format!("{:.0}°", profile.slope_max_rad.to_degrees())),
             ("Line of sight", self.sight_words()),
         ]
     }
@@ -175,8 +175,8 @@ mod tests {
         let measured =
             Measurement::new(&map, [Point2::new(20.5, 50.5), Point2::new(80.5, 50.5)]).expect("on the map");
         let rows = measured.rows();
-        assert!(rows.contains(&("Straight", "60.0 m".to_owned())), "{rows:?}");
-        assert!(rows.contains(&("Up and down", "10.0 m, 10.0 m".to_owned())), "{rows:?}");
+        assert!(rows.contains(&("Straight-line distance", "60.0 m".to_owned())), "{rows:?}");
+        assert!(rows.contains(&("Ascent, descent", "10.0 m, 10.0 m".to_owned())), "{rows:?}");
         let (_, sight) = rows.last().expect("the view");
         assert!(sight.starts_with("blocked after 27") || sight.starts_with("blocked after 28"), "{sight}");
         let beside =

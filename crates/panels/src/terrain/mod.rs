@@ -73,11 +73,11 @@ const MARGIN: f32 = space::M;
 impl Panel for TerrainPanel {
     fn show(&mut self, ui: &mut egui::Ui, context: &Context<'_>, commands: &mut CommandSender) {
         if context.state.automaton.program().is_some() {
-            show_empty(ui, context, "A control program has no ground. Open a mission to see one.");
+            show_empty(ui, context, "A control program has no terrain. Open a mission to see one.");
             return;
         }
         let Some(snapshot) = context.snapshot else {
-            show_empty(ui, context, "The ground appears when the mission has been read.");
+            show_empty(ui, context, "Loading the terrain…");
             return;
         };
         if snapshot.map.is_none() {
@@ -327,7 +327,7 @@ fn describe(context: &Context<'_>, snapshot: &Snapshot, measured: Option<&Measur
         for (vehicle, frame) in driving::under_way(run, time) {
             let vehicle = snapshot.program.world.vehicles.get(vehicle as usize);
             if let Some((vehicle, away_m)) = vehicle.zip(driving::nearest_seen_m(frame)) {
-                text.push_str(&format!(" {} sees something {away_m:.1} m away.", vehicle.name.text));
+                text.push_str(&format!(" {} detects an obstacle {away_m:.1} m away.", vehicle.name.text));
             }
         }
     }
@@ -358,10 +358,10 @@ fn show_without_world(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut C
     ui.vertical_centered(|ui| {
         ui.add_space((ui.available_height() * 0.3).max(space::L));
         ui.set_max_width(ui.available_width().min(380.0));
-        let text = "This mission has no places. With a terrain and a location, its world appears here.";
+        let text = "This mission has no places. Add a terrain and a location to see its map.";
         ui.label(RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);
-        if ui.button("Add a terrain and a location").clicked() {
+        if ui.button("Add terrain and location").clicked() {
             let offset = workbench::state::placing::first_code(context.state.document.text()) as u32;
             let edit = rmpl::Edit { span: rmpl::Span::new(offset, offset), text: WORLD.to_owned() };
             commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Single });

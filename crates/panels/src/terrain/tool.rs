@@ -189,22 +189,20 @@ pub fn hint(tool: &Tool, points: usize) -> Option<String> {
     Some(match tool {
         Tool::Look => return None,
         Tool::Measure => match points {
-            0 => "Click where the measurement begins".to_owned(),
-            1 => "Click where it ends".to_owned(),
-            _ => "Click to measure anew · Esc to stop".to_owned(),
+            0 => "Click the start point".to_owned(),
+            1 => "Click the end point".to_owned(),
+            _ => "Click to measure again · Esc to stop".to_owned(),
         },
-        Tool::Location => "Click where the location is · Shift for several".to_owned(),
-        Tool::Circle => "Drag from the centre outwards · Shift for several".to_owned(),
-        Tool::Appear => {
-            "Drag from the centre of the obstacle that appears now · Shift for several".to_owned()
-        }
+        Tool::Location => "Click to place a location · Shift for several".to_owned(),
+        Tool::Circle => "Drag from the center outwards · Shift for several".to_owned(),
+        Tool::Appear => "Drag from the center of the new obstacle · Shift for several".to_owned(),
         Tool::Wall => "Drag from one end of the wall to the other · Shift for several".to_owned(),
         Tool::Polygon => match points {
             0 => "Click the first corner".to_owned(),
             1 | 2 => "Click the next corner".to_owned(),
-            _ => "Click the next corner · Enter closes it".to_owned(),
+            _ => "Click the next corner · Enter to finish".to_owned(),
         },
-        Tool::Vehicle(model) => format!("Click where the {model} starts"),
+        Tool::Vehicle(model) => format!("Click the start position of the {model}"),
     })
 }
 

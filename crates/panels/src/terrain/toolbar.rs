@@ -35,15 +35,15 @@ pub fn show(
                 }
             })
             .response
-            .accessible_name("Colours of the ground")
-            .on_hover_text("What the colours of the ground mean");
+            .accessible_name("Terrain colors")
+            .on_hover_text("Color the terrain by height or slope");
         ui.menu_button("Show", |ui| show_menu(ui, view));
         ui.menu_button("Camera", |ui| camera_menu(ui, context, snapshot, follow, commands));
         tools(ui, context, commands);
         let has_paths = !snapshot.traverses.is_empty();
         let is_growing = context.state.terrain.growth.shown().is_some();
         let grow = egui::Button::new("Search tree").selected(is_growing);
-        let help = "Grow the search tree that found the path of the selected traverse, sample by sample (T)";
+        let help = "Grow the path's search tree sample by sample (T)";
         if ui.add_enabled(has_paths, grow).on_hover_text(help).clicked() {
             commands.send(Command::Terrain(TerrainCommand::Growth(GrowthCommand::Toggle)));
         }
@@ -53,22 +53,22 @@ pub fn show(
 
 fn show_menu(ui: &mut Ui, view: &mut TerrainView) {
     for (value, name, help) in [
-        (&mut view.paths, "Paths", "The paths of the plan's traverses"),
-        (&mut view.trees, "Search trees", "The trees that found the paths"),
-        (&mut view.rays, "Laser rays", "What the laser range finders of vehicles see, in a run"),
-        (&mut view.sights, "Lines of sight", "From where vehicles see what the mission asks them to see"),
+        (&mut view.paths, "Paths", "Paths of the plan's traverses"),
+        (&mut view.trees, "Search trees", "Search trees of the paths"),
+        (&mut view.rays, "Laser rays", "Range sensor readings during a run"),
+        (&mut view.sights, "Lines of sight", "Positions with the required line of sight"),
         (&mut view.names, "Names", "Names of places and vehicles"),
         (&mut view.obstacles, "Obstacles", "Declared obstacles"),
-        (&mut view.clearance, "Clearance map", "How much room a vehicle has everywhere (C)"),
-        (&mut view.contours, "Contours", "Lines of equal height"),
+        (&mut view.clearance, "Clearance map", "Distance to the nearest obstacle (C)"),
+        (&mut view.contours, "Contours", "Contour lines"),
         (&mut view.grid, "Grid", "A grid in mission coordinates"),
     ] {
         ui.checkbox(value, name).on_hover_text(help);
     }
     ui.separator();
     let (mut scale, [least, most]) = (view.height_scale, HEIGHT_SCALES);
-    let slider = egui::Slider::new(&mut scale, least..=most).step_by(0.5).text("heights ×");
-    if ui.add(slider).on_hover_text("How much heights are exaggerated; 1 is true to scale").changed() {
+    let slider = egui::Slider::new(&mut scale, least..=most).step_by(0.5).text("Vertical exaggeration");
+    if ui.add(slider).on_hover_text("Scale of heights (1 is true to scale)").changed() {
         view.height_scale = scale;
     }
 }
@@ -82,10 +82,10 @@ fn camera_menu(
 ) {
     let is_selected = !context.state.selection.is_none();
     let can_fly = is_selected || context.state.terrain.growth.last_sample().is_some();
-    let flight = if is_selected || !can_fly { "Fly to the selection" } else { "Fly to the last sample" };
+    let flight = if is_selected || !can_fly { "Zoom to selection" } else { "Zoom to last sample" };
     for (name, action, is_enabled) in [
         ("Whole map", ViewAction::Fit, true),
-        ("Straight down", ViewAction::TopView, true),
+        ("Top-down view", ViewAction::TopView, true),
         (flight, ViewAction::FitSelection, can_fly),
     ] {
         if ui.add_enabled(is_enabled, egui::Button::new(name)).clicked() {
@@ -112,7 +112,7 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tool = &context.state.terrain.tool;
     let mut take = |tool| commands.send(Command::Terrain(TerrainCommand::Take(tool)));
     let measure = ui.add(egui::Button::new("Measure").selected(*tool == Tool::Measure));
-    let help = "Distance, height profile and line of sight between two clicks (M)";
+    let help = "Measure distance, height profile and line of sight (M)";
     if measure.on_hover_text(help).clicked() {
         take(Tool::Measure);
     }
@@ -125,17 +125,17 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
                 ui.close();
             }
         };
-        item(ui, "Location".into(), "A click declares a place", Tool::Location);
-        item(ui, "Round obstacle".into(), "Drag from the centre outwards, or click", Tool::Circle);
+        item(ui, "Location".into(), "Click to declare a location", Tool::Location);
+        item(ui, "Round obstacle".into(), "Drag from the center outwards, or click", Tool::Circle);
         item(ui, "Wall".into(), "Drag from one end to the other", Tool::Wall);
         if context.state.is_executing() {
-            let help = "Drag from the centre outwards, or click: it stands there from the time shown on";
+            let help = "Drag from the center outwards; it appears at the current time";
             item(ui, "Obstacle in this run".into(), help, Tool::Appear);
         }
-        let help = "Click its corners; double-click or Enter closes it";
-        item(ui, "Obstacle with corners".into(), help, Tool::Polygon);
+        let help = "Click each corner; double-click or press Enter to finish";
+        item(ui, "Polygon obstacle".into(), help, Tool::Polygon);
         for model in &motion::VEHICLE_MODELS {
-            let help = "A click on a location starts it there; elsewhere it gets a location of its own";
+            let help = "Click a location, or anywhere to declare a new one";
             item(ui, format!("Vehicle {}", model.name), help, Tool::Vehicle(model.name.into()));
         }
     });

@@ -51,18 +51,17 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
         if icon::button(ui, tokens, Icon::ToStart, "Before the first sample").clicked() {
             send(GrowthCommand::GoTo(0));
         }
-        if icon::button(ui, tokens, Icon::StepBack, "One sample back").clicked() {
+        if icon::button(ui, tokens, Icon::StepBack, "Previous sample").clicked() {
             send(GrowthCommand::Step(-1));
         }
-        let (sign, name) =
-            if growth.is_playing { (Icon::Pause, "Stop growing") } else { (Icon::Play, "Let the tree grow") };
+        let (sign, name) = if growth.is_playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
         if icon::button(ui, tokens, sign, name).clicked() {
             send(GrowthCommand::TogglePlaying);
         }
-        if icon::button(ui, tokens, Icon::StepForward, "One sample more").clicked() {
+        if icon::button(ui, tokens, Icon::StepForward, "Next sample").clicked() {
             send(GrowthCommand::Step(1));
         }
-        if icon::button(ui, tokens, Icon::ToEnd, "To the end of the search").clicked() {
+        if icon::button(ui, tokens, Icon::ToEnd, "Go to last sample").clicked() {
             send(GrowthCommand::GoTo(shown.total()));
         }
         let mut samples = shown.samples();
@@ -72,7 +71,7 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
             send(GrowthCommand::GoTo(samples));
         }
         // Before the words, which may have no room in this row: alone in the next one nobody would know what it closes.
-        if icon::button(ui, tokens, Icon::Close, "Hide the search tree").clicked() {
+        if icon::button(ui, tokens, Icon::Close, "Hide search tree").clicked() {
             send(GrowthCommand::Close);
         }
         let words = in_one_line(ui, RichText::new(shown.words()).color(tokens.text_muted));
@@ -126,7 +125,7 @@ fn race(ui: &mut Ui, context: &Context<'_>, shown: &Shown, commands: &mut Comman
                     let planners = search.planner.map_or(Planners::AsPlanned, Planners::One);
                     ui.horizontal(|ui| {
                         swatch(ui, at);
-                        if ui.link(planners.title()).on_hover_text("Show this one alone").clicked() {
+                        if ui.link(planners.title()).on_hover_text("Show only this planner").clicked() {
                             let command = TerrainCommand::Growth(GrowthCommand::Choose(planners));
                             commands.send(Command::Terrain(command));
                         }
@@ -143,7 +142,7 @@ fn race(ui: &mut Ui, context: &Context<'_>, shown: &Shown, commands: &mut Comman
                     ui.label(checks.to_string());
                     ui.label(match length_m {
                         Some(length_m) => format!("{length_m:.1} m"),
-                        None if is_over => "none found".to_owned(),
+                        None if is_over => "not found".to_owned(),
                         None => "not yet".to_owned(),
                     });
                     ui.label(match search.whole_millis() {
@@ -160,12 +159,12 @@ fn race(ui: &mut Ui, context: &Context<'_>, shown: &Shown, commands: &mut Comman
 
 /// The columns of a race, and what they count.
 const HEADS: [(&str, &str); 6] = [
-    ("Planner", "All search on the same ground, between the same ends, from the same seed"),
-    ("Samples", "Places drawn by chance so far"),
-    ("Vertices", "Places that the trees have reached so far"),
-    ("Checks", "Straight pieces of ground that were checked for obstacles so far: what costs most"),
-    ("Path", "The length of the best path so far, before it is shortened"),
-    ("Whole search", "How long the whole search took, in this machine's time"),
+    ("Planner", "Same terrain, start, goal and seed for all planners"),
+    ("Samples", "Random samples drawn"),
+    ("Vertices", "Vertices in the search trees"),
+    ("Checks", "Segments collision-checked (the dominant cost)"),
+    ("Path", "Length of the best path so far, before smoothing"),
+    ("Search time", "Total run time on this machine"),
 ];
 
 /// The line of a planner's path as it is on the ground, which is as dark in both themes.

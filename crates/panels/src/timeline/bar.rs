@@ -26,7 +26,7 @@ pub(super) fn words(bar: &Bar, plan: &Plan) -> String {
     let windows = format!("starts {}, ends {}", interval(bar.events[0]), interval(bar.events[1]));
     match bar.natures {
         Some([least, greatest]) => {
-            format!("{windows}; how long it takes, {least} to {greatest}, is nature's choice")
+            format!("{windows}; uncontrolled duration, {least} to {greatest}")
         }
         None => windows,
     }

@@ -83,7 +83,7 @@ pub(super) fn show(
         let id = ui.scope_id().with(("bound", is_upper));
         let response = ui.interact(area.intersect(painting.visible), id, Sense::click_and_drag());
         response.widget_info(|| {
-            let side = if is_upper { "greatest" } else { "least" };
+            let side = if is_upper { "maximum" } else { "minimum" };
             let label = format!("Change the {side} duration of {}", bar.name);
             WidgetInfo::slider(true, value.map_or(0.0, number), label)
         });
@@ -99,7 +99,7 @@ pub(super) fn show(
             && let Some(pointer) = response.interact_pointer_pos()
         {
             drag.follow(painting, pointer.x, commands);
-            let text = format!("{} {}", if is_upper { "at most" } else { "at least" }, drag.text);
+            let text = format!("{} {}", if is_upper { "maximum" } else { "minimum" }, drag.text);
             note(&painter, context, pos2(x + 8.0, y - 24.0), &text, tokens.text_muted);
         }
         if is_dragged && response.drag_stopped() {
@@ -109,7 +109,7 @@ pub(super) fn show(
         let fill = if is_strong { tokens.accent } else { tokens.surface };
         let square = Rect::from_center_size(pos2(x, y), vec2(2.0 * HALF - 1.0, 2.0 * HALF - 1.0));
         painter.rect(square, 1.0, fill, Stroke::new(1.5, tokens.text_muted), StrokeKind::Middle);
-        let side = if is_upper { "Greatest" } else { "Least" };
+        let side = if is_upper { "Maximum" } else { "Minimum" };
         let text = value.map(workbench::time_text::time).unwrap_or_default();
         response
             .on_hover_cursor(CursorIcon::ResizeHorizontal)

@@ -47,8 +47,8 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, comman
 fn pins(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let Some(text) = handle::summary(context) else { return };
     ui.label(RichText::new(text).small().color(context.tokens.accent));
-    let button = ui.button(RichText::new("Release").small());
-    if button.on_hover_text("Give all pinned events their windows back (Escape)").clicked() {
+    let button = ui.button(RichText::new("Unpin").small());
+    if button.on_hover_text("Unpin all events (Esc)").clicked() {
         commands.send(Command::Pins(PinCommand::ReleaseAll));
     }
 }
@@ -65,16 +65,16 @@ fn range(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut C
         counts[1] += usize::from(start[1] <= to && end[0] >= from);
     }
     let text = format!(
-        "{from} to {to} ({}): {} activities for certain, {} at most",
+        "{from} to {to} ({}): at least {} activities, at most {}",
         ((to - from) * 1000.0).round() / 1000.0,
         counts[1],
         counts[0]
     );
     ui.label(RichText::new(text).small().color(context.tokens.accent));
-    if ui.button(RichText::new("Zoom").small()).on_hover_text("Show just this range").clicked() {
+    if ui.button(RichText::new("Zoom").small()).on_hover_text("Zoom to this range").clicked() {
         commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Timeline, ViewAction::FitSelection)));
     }
-    if ui.button(RichText::new("Clear").small()).on_hover_text("Select no range (Escape)").clicked() {
+    if ui.button(RichText::new("Clear").small()).on_hover_text("Clear the range (Esc)").clicked() {
         commands.send(Command::SelectTimes(None));
     }
 }
@@ -94,7 +94,7 @@ fn grouping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             }
         })
         .response
-        .accessible_name("Grouping of the timeline");
+        .accessible_name("Group rows by");
 }
 
 /// The buttons that move time.
@@ -102,11 +102,11 @@ pub(crate) fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut Command
     let playback = *context.state.playback;
     let (sign, name) = if playback.is_playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
     let buttons = [
-        (Icon::ToStart, "To the start", Command::Seek(0.0)),
+        (Icon::ToStart, "Go to start", Command::Seek(0.0)),
         (Icon::StepBack, "Previous event", Command::Transport(TransportCommand::Step(false))),
         (sign, name, Command::Transport(TransportCommand::TogglePlaying)),
         (Icon::StepForward, "Next event", Command::Transport(TransportCommand::Step(true))),
-        (Icon::ToEnd, "To the end", Command::Seek(playback.end)),
+        (Icon::ToEnd, "Go to end", Command::Seek(playback.end)),
     ];
     for (sign, name, command) in buttons {
         let is_on = sign == Icon::Pause;
@@ -150,11 +150,7 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         && context.state.review.record().last_approval().is_some();
     if has_approved {
         let button = Button::selectable(view.approved, RichText::new("Approved").small());
-        if ui
-            .add(button)
-            .on_hover_text("Where things were in the plan that was last approved, here and on the network")
-            .clicked()
-        {
+        if ui.add(button).on_hover_text("Show the last approved plan here and on the network").clicked() {
             view.approved = !view.approved;
             changed = true;
         }
@@ -179,9 +175,9 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 
 fn zoom(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let buttons = [
-        (Icon::Fit, "Fit the timeline", ViewAction::Fit),
-        (Icon::Plus, "Zoom into the timeline", ViewAction::ZoomIn),
-        (Icon::Minus, "Zoom out of the timeline", ViewAction::ZoomOut),
+        (Icon::Fit, "Zoom timeline to fit", ViewAction::Fit),
+        (Icon::Plus, "Zoom in on timeline", ViewAction::ZoomIn),
+        (Icon::Minus, "Zoom out of timeline", ViewAction::ZoomOut),
     ];
     // They stay together where the row is broken.
     let width = buttons.len() as f32 * (space::ROW + ui.spacing().item_spacing.x);

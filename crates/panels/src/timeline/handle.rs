@@ -72,11 +72,9 @@ pub(super) fn show(
         }
         let is_natures = bar.natures.is_some() && side == 1;
         let hint = match (is_pinned, is_natures) {
-            (true, _) => "Double click releases it.",
-            (false, true) => {
-                "Nature ends it. Drag to choose for nature, and see what the executive does then."
-            }
-            (false, false) => "Drag to see what moves along.",
+            (true, _) => "Double-click to unpin.",
+            (false, true) => "Uncontrolled. Drag to choose its duration and see how the executive reacts.",
+            (false, false) => "Drag to see which events move with it.",
         };
         response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_ui_at_pointer(|ui| {
             ui.label(theme::strong(name));
@@ -101,7 +99,7 @@ pub(super) fn show_held(ui: &Ui, painting: &Painting<'_>, pinned: &Pinned) {
     let x = painting.x(number(time));
     painter.vline(x, band.y_range(), Stroke::new(1.5, tokens.accent));
     let text = format!(
-        "{} at {}, may be {}",
+        "{} at {}, window {}",
         event_name(painting.network, node),
         time_text::time(time),
         time_text::interval(window.earliest, window.latest)
@@ -124,7 +122,7 @@ pub(super) fn round_time(view: &TimeView, time: f64) -> Time {
 fn in_words(window: [f64; 2], is_pinned: bool) -> String {
     let [from, to] =
         window.map(|time| if time.is_finite() { format!("{}", round3(time)) } else { "∞".to_owned() });
-    if is_pinned { format!("pinned at {from}") } else { format!("may happen from {from} to {to}") }
+    if is_pinned { format!("pinned at {from}") } else { format!("window {from} to {to}") }
 }
 
 fn round3(time: f64) -> f64 {
@@ -209,7 +207,7 @@ fn paint(ui: &Ui, painting: &Painting<'_>, x: f32, row: Rect, is_pinned: bool, i
 /// What the timeline says of the pins: how many there are, or which event is held.
 pub(super) fn summary(context: &Context<'_>) -> Option<String> {
     match context.state.pins.all().len() {
-        0 if !context.state.pins.is_empty() => Some("in a run against nature".to_owned()),
+        0 if !context.state.pins.is_empty() => Some("controllability run in progress".to_owned()),
         0 => None,
         1 => Some("1 event pinned".to_owned()),
         count => Some(format!("{count} events pinned")),

@@ -103,10 +103,8 @@ impl Panel for TimelinePanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let (Some(snapshot), Some((network, plan))) = (context.snapshot, context.plan()) else {
             let text = match context.state.status() {
-                Status::Broken | Status::Empty => {
-                    crate::empty::missing(context, "its plan is shown over time here")
-                }
-                _ => "There is no plan to show over time.".to_owned(),
+                Status::Broken | Status::Empty => crate::empty::missing(context, "its timeline appears here"),
+                _ => "No plan to show. The Plan panel explains why.".to_owned(),
             };
             show_empty(ui, context, &text);
             return;
@@ -339,7 +337,7 @@ impl TimelinePanel {
         };
         let response = ui.interact(area, ui.scope_id().with(("open", key)), Sense::click());
         response.widget_info(|| {
-            let act = if shown.is_closed { "Open" } else { "Close" };
+            let act = if shown.is_closed { "Expand" } else { "Collapse" };
             WidgetInfo::labeled(egui::Role::Button, true, format!("{act} {} on the timeline", shown.name))
         });
         if response.clicked() && !self.closed.remove(key) {
