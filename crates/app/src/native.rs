@@ -356,11 +356,11 @@ fn panic_message(cause: &(dyn std::any::Any + Send)) -> String {
         .downcast_ref::<&str>()
         .map(|message| (*message).to_owned())
         .or_else(|| cause.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "the planning core stopped without saying why".to_owned())
+        .unwrap_or_else(|| "the planning core stopped for an unknown reason".to_owned())
 }
 
 fn no_folder() -> StorageError {
-    StorageError::Unavailable { reason: "this system has no folder for a program's data".to_owned() }
+    StorageError::Unavailable { reason: "this system has no folder for application data".to_owned() }
 }
 
 fn keep(file: &Path, bytes: &[u8]) -> Result<(), StorageError> {

@@ -309,7 +309,7 @@ impl PanelTiles<'_> {
         let tab = bar::tab::show(&mut bar_ui, self.context, Some(panel), id, &state);
         self.follow_tab(&tab, panel);
         bar_ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon::button(ui, tokens, Icon::Restore, "Put the panels back").clicked() {
+            if icon::button(ui, tokens, Icon::Restore, "Restore panels").clicked() {
                 self.commands.send(Command::Window(WindowCommand::Maximize(None)));
             }
         });
@@ -414,14 +414,14 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
     ) {
         let panel = tabs.active.and_then(|tile| tiles.get_pane(&tile)).copied();
         let Some(panel) = panel else { return };
-        let name = format!("Give {} the whole window", panel.title());
+        let name = format!("Maximize {}", panel.title());
         if icon::button(ui, self.context.tokens, Icon::Maximize, &name).clicked() {
             self.commands.send(Command::Window(WindowCommand::Maximize(Some(panel))));
         }
         if panel == PanelKind::Manual {
             return;
         }
-        let name = format!("The manual about {}", panel.title());
+        let name = format!("Help: {}", panel.title());
         if icon::button(ui, self.context.tokens, Icon::Help, &name).clicked() {
             self.commands.send(Command::Manual(ManualCommand::About(panel)));
         }

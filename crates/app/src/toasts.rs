@@ -29,7 +29,7 @@ pub fn show(egui: &egui::Context, context: &Context<'_>, commands: &mut CommandS
                     ui.set_max_width(360.0);
                     ui.horizontal(|ui| {
                         icon::label(ui, sign, color);
-                        ui.add(egui::Label::new(&toast.text).wrap());
+                        ui.add(egui::Label::new(panels::without_backticks(&toast.text)).wrap());
                         if icon::button(ui, tokens, Icon::Close, "Dismiss message").clicked() {
                             commands.send(Command::Window(WindowCommand::DismissToast(index)));
                         }

@@ -26,19 +26,19 @@ pub fn look(tokens: &Tokens, status: Status, is_stale: bool, verdict: Option<boo
     let (sign, text, color, fill, panel) = match (status, verdict) {
         (Status::Working, _) => (Icon::Working, "Planning", tokens.info, info, PanelKind::Plan),
         (Status::Broken, _) if is_stale => {
-            (Icon::Error, "Errors · earlier text shown", tokens.error, error, PanelKind::Problems)
+            (Icon::Error, "Errors · showing last valid version", tokens.error, error, PanelKind::Problems)
         }
         (Status::Broken, _) => (Icon::Error, "Errors", tokens.error, error, PanelKind::Problems),
         (Status::NoPlan, _) => (Icon::Warning, "No plan", tokens.warning, warning, PanelKind::Plan),
         (Status::Empty, _) => (Icon::Nothing, "Nothing to plan", tokens.text, plain, PanelKind::Problems),
         (Status::Undecided, _) if is_stale => {
-            (Icon::Changed, "Stale · of an earlier text", tokens.text_muted, plain, PanelKind::Plan)
+            (Icon::Changed, "Out of date", tokens.text_muted, plain, PanelKind::Plan)
         }
-        (Status::Undecided, _) => (Icon::Changed, "Not decided", tokens.text_muted, plain, PanelKind::Plan),
+        (Status::Undecided, _) => (Icon::Changed, "Undecided", tokens.text_muted, plain, PanelKind::Plan),
         (Status::Program, _) => (Icon::Play, "Program", tokens.good, good, PanelKind::Automaton),
         (Status::Plan, Some(true)) => (Icon::Check, "Plan · verified", tokens.good, good, PanelKind::Plan),
         (Status::Plan, Some(false)) => {
-            (Icon::Error, "Plan · refused by the checker", tokens.error, error, PanelKind::Plan)
+            (Icon::Error, "Plan · failed verification", tokens.error, error, PanelKind::Plan)
         }
         (Status::Plan, None) => (Icon::Info, "Plan · not checked", tokens.info, info, PanelKind::Plan),
     };

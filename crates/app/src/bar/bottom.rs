@@ -69,11 +69,11 @@ fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let (text, reason, color) = match &context.state.library.keeping {
         Keeping::Kept | Keeping::Opening => return,
-        Keeping::LatestOnly(reason) => ("Only the latest text is kept", reason, tokens.warning),
-        Keeping::Nothing(reason) => ("Not kept", reason, tokens.error),
+        Keeping::LatestOnly(reason) => ("Only the latest text is saved", reason, tokens.warning),
+        Keeping::Nothing(reason) => ("Not saved", reason, tokens.error),
     };
     let button = Button::new(RichText::new(text).color(color));
-    if ui.add(button).on_hover_text(format!("{reason}. Click to save the mission as a file.")).clicked() {
+    if ui.add(button).on_hover_text(format!("{reason}. Click to save the mission to a file.")).clicked() {
         commands.send(Command::Library(LibraryCommand::SaveWhole));
     }
 }

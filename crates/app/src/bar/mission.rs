@@ -52,7 +52,7 @@ fn name(ui: &mut Ui, context: &Context<'_>, width: f32, commands: &mut CommandSe
         let kind = egui::StrokeKind::Outside;
         ui.painter().rect_stroke(field.rect, 4.0, egui::Stroke::new(1.0, stroke), kind);
     }
-    let field = field.on_hover_text("The name of this mission; click to change it");
+    let field = field.on_hover_text("Rename this mission");
     if field.changed() {
         ui.data_mut(|data| data.insert_temp(id, text.clone()));
     }
@@ -80,7 +80,7 @@ fn menu(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         });
     });
     icon::paint(ui.painter(), Icon::ChevronDown, response.rect, 12.0, tokens.text_muted);
-    response.on_hover_text("Other missions").accessible_name("Mission");
+    response.on_hover_text("Other missions").accessible_name("Switch mission");
 }
 
 fn entries(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

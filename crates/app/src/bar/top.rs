@@ -154,7 +154,7 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
     let fill = if is_open { tokens.pressed } else { tokens.background };
     let lessons =
         Button::new(RichText::new("Lessons").color(color)).fill(fill).stroke(Stroke::NONE).selected(is_open);
-    if ui.add(lessons).on_hover_text("A course beside live drawings (L)").clicked() {
+    if ui.add(lessons).on_hover_text("Open the guided course (L)").clicked() {
         commands.send(Command::Lesson(LessonCommand::Show));
     }
     ui.spacing_mut().item_spacing.x = space::M;
@@ -207,7 +207,7 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if has_room {
         ui.painter().galley(at, galley, color);
     }
-    if response.on_hover_text("Show the details").clicked() {
+    if response.on_hover_text("Show details").clicked() {
         commands.send(Command::Window(WindowCommand::ShowPanel(panel)));
     }
 }
@@ -215,12 +215,12 @@ fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 fn status_name(context: &Context<'_>) -> &'static str {
     match context.state.status() {
         Status::Working => "Status: planning",
-        Status::Broken => "Status: the text has errors",
+        Status::Broken => "Status: errors",
         Status::Empty => "Status: nothing to plan",
-        Status::Program => "Status: a control program",
+        Status::Program => "Status: control program",
         Status::Plan => "Status: plan found",
         Status::NoPlan => "Status: no plan",
-        Status::Undecided => "Status: not decided, planning was stopped",
+        Status::Undecided => "Status: undecided, planning was stopped",
     }
 }
 

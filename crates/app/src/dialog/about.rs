@@ -11,16 +11,16 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     ui.set_width(380.0);
     theme::structure::mark_heading(&ui.heading(concat!("Enroute ", env!("CARGO_PKG_VERSION"))), 2);
     ui.label(
-        "Mission plans for cooperative vehicles: written in RMPL, planned as temporal plan networks, checked \
-              by an independent verifier, and driven over terrain.",
+        "Plan missions for cooperating vehicles: write RMPL, plan with temporal plan networks, verify \
+         each plan independently, and simulate the drive over terrain.",
     );
     ui.add_space(space::S);
     ui.label(
-        RichText::new("Everything runs in this window; nothing is sent anywhere.")
+        RichText::new("Enroute runs entirely in this window and sends no data.")
             .color(context.tokens.text_muted),
     );
     if !context.state.frame.renderer.is_empty() {
-        let drawn = format!("Drawn by {}.", context.state.frame.renderer);
+        let drawn = format!("Renderer: {}", context.state.frame.renderer);
         ui.label(RichText::new(drawn).color(context.tokens.text_muted));
     }
     ui.add_space(space::M);

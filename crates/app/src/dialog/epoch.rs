@@ -20,11 +20,11 @@ pub(super) fn show(
 ) {
     ui.set_width(340.0);
     theme::structure::mark_heading(&ui.heading(form.title()), 2);
-    ui.label("When does the mission start?");
+    ui.label("Mission start date");
     let mut text = epoch.to_owned();
     let field =
         TextEdit::singleline(&mut text).hint_text("2004-01-25T05:05:00Z").desired_width(f32::INFINITY);
-    let field = ui.add(field).accessible_name("Start of the mission");
+    let field = ui.add(field).accessible_name("Mission start date");
     let enter = ui.input(|input| input.key_pressed(Key::Enter));
     if !enter {
         field.request_focus();
@@ -32,11 +32,11 @@ pub(super) fn show(
     let is_left_out = text.trim().is_empty() && !form.needs_epoch();
     let is_date = is_left_out || Calendar::new(text.trim(), TimeUnit::Second).is_some();
     let (note, color) = if is_left_out {
-        ("Without a date, times count from the start of the mission alone.", context.tokens.text_muted)
+        ("Leave empty to export times relative to mission start.", context.tokens.text_muted)
     } else if is_date || text.is_empty() {
-        ("A date or a date with time; without an offset it is in UTC.", context.tokens.text_muted)
+        ("Enter a date, or a date and time (UTC unless you give an offset).", context.tokens.text_muted)
     } else {
-        ("Not a date such as 2004-01-25 or 2004-01-25T05:05:00Z", context.tokens.error)
+        ("Invalid date. Enter a date such as 2004-01-25 or 2004-01-25T05:05:00Z.", context.tokens.error)
     };
     ui.label(RichText::new(note).color(color));
     ui.add_space(space::M);

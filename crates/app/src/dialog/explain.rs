@@ -14,7 +14,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
     let tokens = context.tokens;
     ui.set_width(560.0);
     let Some(page) = rmpl::explain(code) else {
-        ui.label(format!("There is no page about {code}."));
+        ui.label(format!("No help available for {code}."));
         close(ui, commands);
         return;
     };
@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
     ui.add_space(space::S);
     ScrollArea::vertical().max_height(420.0).auto_shrink([false, true]).show(ui, |ui| {
         show_markdown(ui, tokens, page.meaning);
-        for (title, text) in [("Example", page.example), ("Mended", page.mended)] {
+        for (title, text) in [("Example", page.example), ("Fixed", page.mended)] {
             ui.add_space(space::S);
             ui.label(theme::strong(title));
             Frame::new().fill(tokens.sunken).corner_radius(4.0).inner_margin(Margin::same(8)).show(
@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, code: &str, commands: &mu
     ui.add_space(space::M);
     ui.horizontal(|ui| {
         close(ui, commands);
-        if ui.button("In the manual").clicked()
+        if ui.button("Open in manual").clicked()
             && let Some(section) = manual::section_of_code(code)
         {
             commands.send(Command::Window(WindowCommand::CloseDialog));

@@ -14,8 +14,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mu
     let file = document.file_lines(document.line_at(document.caret().head));
     let lines = file.len();
     let mut text = line.to_owned();
-    let field =
-        TextEdit::singleline(&mut text).hint_text(format!("Line, 1 to {lines}")).desired_width(f32::INFINITY);
+    let field = TextEdit::singleline(&mut text)
+        .hint_text(format!("Line number (1 to {lines})"))
+        .desired_width(f32::INFINITY);
     let field = ui.add(field).accessible_name("Line number");
     let enter = ui.input(|input| input.key_pressed(Key::Enter));
     if !enter {
@@ -23,7 +24,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, line: &str, commands: &mu
     }
     let wanted = text.trim().parse::<usize>().ok().filter(|line| (1..=lines).contains(line));
     if !text.is_empty() && wanted.is_none() {
-        let note = format!("Not a line from 1 to {lines}");
+        let note = format!("Enter a line number from 1 to {lines}");
         ui.label(RichText::new(note).color(context.tokens.error));
     }
     match wanted.filter(|_| enter) {

@@ -11,18 +11,18 @@ use crate::chord;
 
 /// What the editor does with keys that are no commands.
 const EDITOR_KEYS: [(&str, &str); 12] = [
-    ("Arrows, Home, End, Page Up, Page Down", "Move the caret; with Shift, select"),
-    ("Ctrl+Left, Ctrl+Right", "Move by words"),
-    ("Ctrl+Home, Ctrl+End", "To the start or the end of the text"),
-    ("Ctrl+A", "Select everything"),
-    ("Ctrl+X, Ctrl+C, Ctrl+V", "Cut, copy, paste; without a selection, the line"),
-    ("Tab, Shift+Tab", "Next place of a template, or indent and outdent"),
+    ("Arrows, Home, End, Page Up, Page Down", "Move the cursor (with Shift: select)"),
+    ("Ctrl+Left, Ctrl+Right", "Move by word"),
+    ("Ctrl+Home, Ctrl+End", "Go to the start or end of the text"),
+    ("Ctrl+A", "Select all"),
+    ("Ctrl+X, Ctrl+C, Ctrl+V", "Cut, copy, paste (the whole line without a selection)"),
+    ("Tab, Shift+Tab", "Next placeholder, or indent / outdent"),
     ("Ctrl+Backspace, Ctrl+Delete", "Delete a word"),
-    ("Alt+click", "Another caret, or one less"),
-    ("Double click, triple click", "Select the word or the line"),
-    ("Up, Down, Enter, Tab", "In a list at the caret: choose and take"),
-    ("Escape", "Close the list at the caret, leave one caret, leave a template"),
-    ("Double click on a tab", "Give the panel the whole window, or put it back"),
+    ("Alt+click", "Add or remove a cursor"),
+    ("Double-click, triple-click", "Select a word or a line"),
+    ("Up, Down, Enter, Tab", "Choose and accept a suggestion"),
+    ("Esc", "Close suggestions, collapse to one cursor, leave snippet"),
+    ("Double-click a tab", "Maximize or restore panel"),
 ];
 
 /// Shows the list.
@@ -37,8 +37,8 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             if ui.button("Close").clicked() {
                 commands.send(Command::Window(WindowCommand::CloseDialog));
             }
-            let field = TextEdit::singleline(&mut query).hint_text("Find a key or what it does");
-            let field = ui.add(field.desired_width(240.0)).accessible_name("Find a key or what it does");
+            let field = TextEdit::singleline(&mut query).hint_text("Search shortcuts");
+            let field = ui.add(field.desired_width(240.0)).accessible_name("Search shortcuts");
             if ui.memory(|memory| memory.focused().is_none()) {
                 field.request_focus();
             }
@@ -82,7 +82,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
             ui.add_space(space::M);
         }
         if is_empty {
-            ui.label(RichText::new("No key does that.").color(context.tokens.text_muted));
+            ui.label(RichText::new("No matching shortcuts").color(context.tokens.text_muted));
         }
     });
 }

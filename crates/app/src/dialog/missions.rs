@@ -43,7 +43,7 @@ pub(super) fn show(
     area.auto_shrink([false, true]).show(ui, |ui| {
         let missions = context.state.library.missions();
         if missions.is_empty() {
-            let text = "No missions of your own yet. An example becomes one as soon as you edit it.";
+            let text = "You have no missions yet. Edit an example to save it as your own.";
             ui.label(RichText::new(text).color(context.tokens.text_muted));
         }
         for mission in missions.into_iter().filter(|mission| found(&mission.name)) {
@@ -88,11 +88,11 @@ fn heading(ui: &mut Ui, query: &mut String, commands: &mut CommandSender) {
                 }
             }
         });
-        if ui.button("Open a file…").clicked() {
+        if ui.button("Open file…").clicked() {
             commands.send(Command::Window(WindowCommand::OpenFile(FileKind::Mission)));
         }
-        let field = TextEdit::singleline(query).hint_text("Find a mission").desired_width(f32::INFINITY);
-        ui.add(field).accessible_name("Find a mission");
+        let field = TextEdit::singleline(query).hint_text("Search missions").desired_width(f32::INFINITY);
+        ui.add(field).accessible_name("Search missions");
     });
 }
 
@@ -101,20 +101,16 @@ fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let (text, color) = match &context.state.library.keeping {
         Keeping::Kept => return,
-        Keeping::Opening => {
-            ("The missions kept in this browser are still being read.".to_owned(), tokens.info)
-        }
+        Keeping::Opening => ("Loading your missions…".to_owned(), tokens.info),
         Keeping::LatestOnly(reason) => {
-            (format!("Only your latest text is kept, without maps and versions: {reason}."), tokens.warning)
+            (format!("Only your latest text is saved, without maps and versions: {reason}."), tokens.warning)
         }
-        Keeping::Nothing(reason) => (format!("Nothing is kept when this closes: {reason}."), tokens.error),
+        Keeping::Nothing(reason) => (format!("Closing this window loses your work: {reason}."), tokens.error),
     };
     ui.add_space(space::S);
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(text).color(color));
-        if context.state.library.keeping != Keeping::Opening
-            && ui.button("Save the mission as a file").clicked()
-        {
+        if context.state.library.keeping != Keeping::Opening && ui.button("Save mission to file").clicked() {
             commands.send(Command::Library(LibraryCommand::SaveWhole));
         }
     });
@@ -166,7 +162,7 @@ fn row(
         match renaming.clone().filter(|(id, _)| *id == mission.id) {
             Some((id, mut name)) => {
                 let field = ui.add(TextEdit::singleline(&mut name).desired_width(f32::INFINITY));
-                let field = field.accessible_name("New name of the mission");
+                let field = field.accessible_name("New mission name");
                 let enter = ui.input(|input| input.key_pressed(Key::Enter));
                 if enter || field.lost_focus() {
                     commands.send(Command::Library(LibraryCommand::Rename { id: Some(id), name }));
@@ -192,8 +188,8 @@ fn about(context: &Context<'_>, mission: &Mission) -> String {
     let kind = mission.kind.title();
     let parts = [
         (!kind.is_empty()).then(|| kind.to_owned()),
-        Some(format!("changed {changed}")),
-        Some(format!("begun {}", when(mission.created_millis, context.state.frame.unix_millis))),
+        Some(format!("modified {changed}")),
+        Some(format!("created {}", when(mission.created_millis, context.state.frame.unix_millis))),
         count(mission.maps.len(), "map"),
         count(mission.versions.len(), "version"),
     ];
@@ -240,7 +236,7 @@ fn versions(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     section(ui, context, &format!("Versions of {}", open.name));
     for (index, version) in open.versions.iter().enumerate().rev() {
         ui.horizontal(|ui| {
-            let back = ui.button("Go back to it").accessible_name(format!("Go back to {}", version.name));
+            let back = ui.button("Restore").accessible_name(format!("Restore {}", version.name));
             if back.clicked() {
                 commands.send(Command::Library(LibraryCommand::RestoreVersion(index)));
             }
@@ -249,7 +245,7 @@ fn versions(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             ui.label(RichText::new(kept).small().color(context.tokens.text_muted));
         });
     }
-    if ui.button("Keep a version…").clicked() {
+    if ui.button("Save version…").clicked() {
         commands
             .send(Command::Window(WindowCommand::ShowDialog(Dialog::VersionName { name: String::new() })));
     }
@@ -273,10 +269,10 @@ fn deleted(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if deleted.is_empty() {
         return;
     }
-    section(ui, context, "Deleted in the last 30 days");
+    section(ui, context, "Recently deleted (30 days)");
     for mission in deleted {
         ui.horizontal(|ui| {
-            let back = ui.button("Bring back").accessible_name(format!("Bring back {}", mission.name));
+            let back = ui.button("Restore").accessible_name(format!("Restore {}", mission.name));
             if back.clicked() {
                 commands.send(Command::Library(LibraryCommand::Restore(Some(mission.id.clone()))));
             }
@@ -290,10 +286,10 @@ fn unreadable(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
     if unreadable.is_empty() {
         return;
     }
-    section(ui, context, "Kept, but not readable here");
+    section(ui, context, "Saved, but can't be opened");
     for (index, one) in unreadable.iter().enumerate() {
         ui.horizontal(|ui| {
-            if ui.button("Save as a file").clicked() {
+            if ui.button("Save to file").clicked() {
                 commands.send(Command::Library(LibraryCommand::SaveUnreadable(index)));
             }
             ui.add(egui::Label::new(format!("{}: {}", one.key, one.reason)).truncate());

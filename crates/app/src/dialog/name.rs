@@ -22,10 +22,10 @@ pub(super) enum Named {
 pub(super) fn show(ui: &mut Ui, named: Named, name: &str, commands: &mut CommandSender) {
     ui.set_width(320.0);
     let (question, label, done) = match named {
-        Named::Mission => ("Rename the mission", "Name of the mission", "Rename"),
-        Named::Version => ("Keep the text as a version", "Name of the version", "Keep"),
-        Named::File => ("Rename the file, where it is imported, too", "Name of the file", "Rename"),
-        Named::NewFile => ("Add a file to the mission, and import it", "Name of the file", "Add"),
+        Named::Mission => ("Rename mission", "Mission name", "Rename"),
+        Named::Version => ("Save a version", "Version name", "Save"),
+        Named::File => ("Rename file and update imports", "File name", "Rename"),
+        Named::NewFile => ("Add file and import it", "File name", "Add"),
     };
     ui.label(question);
     let mut text = name.to_owned();

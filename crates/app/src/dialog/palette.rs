@@ -49,7 +49,7 @@ pub(super) fn show(
 
     let mut text = query.to_owned();
     let field = TextEdit::singleline(&mut text)
-        .hint_text("Type a command, a panel or a mission")
+        .hint_text("Search commands, panels and missions")
         .desired_width(f32::INFINITY);
     let field = ui.add(field).accessible_name("Command palette");
     field.request_focus();
@@ -70,7 +70,7 @@ pub(super) fn show(
             }
         }
         if entries.is_empty() {
-            ui.label(RichText::new("Nothing is called that.").color(context.tokens.text_muted));
+            ui.label(RichText::new("No matching commands").color(context.tokens.text_muted));
         }
     });
     commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::Palette { query: text, chosen })));

@@ -10,7 +10,7 @@ use workbench::state::window::WindowCommand;
 /// Shows the question.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, old: &str, name: &str, commands: &mut CommandSender) {
     ui.set_width(300.0);
-    ui.label(format!("Rename {old} everywhere"));
+    ui.label(format!("Rename all occurrences of {old}"));
     let mut text = name.to_owned();
     let field =
         ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY)).accessible_name("New name");

@@ -20,7 +20,7 @@ pub(super) fn png(svg: &str, [width, height]: [u32; 2]) -> Result<Vec<u8>, Strin
     let options = Options { fontdb: Arc::new(fonts), font_family: "Inter".to_owned(), ..Options::default() };
     let tree = Tree::from_str(svg, &options).map_err(|reason| reason.to_string())?;
     let mut pixels = Pixmap::new(width, height)
-        .ok_or_else(|| format!("a picture of {width} × {height} pixels cannot be made"))?;
+        .ok_or_else(|| format!("cannot create an image of {width} × {height} pixels"))?;
     let size = tree.size();
     let scale = Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
     resvg::render(&tree, scale, &mut pixels.as_mut());

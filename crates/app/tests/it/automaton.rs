@@ -34,7 +34,7 @@ fn marked(app: &support::App) -> Vec<String> {
     let buttons = app.harness.query_all_by_role(Role::Button);
     let mut names: Vec<String> = buttons
         .filter_map(|node| node.accesskit_node().label())
-        .filter_map(|label| label.strip_suffix(", marked").map(str::to_owned))
+        .filter_map(|label| label.strip_suffix(", active").map(str::to_owned))
         .collect();
     names.sort();
     names
@@ -120,7 +120,7 @@ fn the_modes_of_a_component_tell_how_likely_they_are() {
     let mut app = orbit_insertion();
     (0..3).for_each(|_| press(&mut app, "Step"));
     app.harness.get_by_label("EngineA: Standby, 99.75 %, most likely, true");
-    app.harness.get_by_label("EngineA: Failed, 0.25 %");
+    app.harness.get_by_label("EngineA: Failed, 0.25%");
     app.harness.get_by_label("Camera: Off, 100 %, most likely, true");
 }
 
@@ -131,7 +131,7 @@ fn another_observation_changes_the_diagnosis_and_the_plants_own_brings_it_back()
     let conflicts = |app: &support::App| app.json()["hca"]["plant"]["conflicts"].clone();
     let believed = |app: &support::App| app.json()["hca"]["plant"]["belief"][0]["state"]["EngineA"].clone();
     assert_eq!(conflicts(&app), json!([]));
-    let observed = "EngineA.thrust was observed to be";
+    let observed = "Observed value of EngineA.thrust";
     app.harness.get_by_role_and_label(Role::ComboBox, observed).scroll_to_me();
     app.settle();
     app.harness.get_by_role_and_label(Role::ComboBox, observed).click();
@@ -139,7 +139,7 @@ fn another_observation_changes_the_diagnosis_and_the_plants_own_brings_it_back()
     press(&mut app, "zero");
     assert!(conflicts(&app).to_string().contains("EngineA=Firing contradicts"), "{}", conflicts(&app));
     assert_eq!(believed(&app), "Failed");
-    press(&mut app, "as shown");
+    press(&mut app, "Reset");
     assert_eq!(conflicts(&app), json!([]));
     assert_eq!(believed(&app), "Firing");
 }
@@ -163,8 +163,8 @@ fn many_runs_tell_how_likely_the_program_is_to_reach_its_end() {
     (0..2).for_each(|_| press(&mut app, "Step"));
     app.harness.get_by_label_contains("EngineA: Failed").click();
     app.settle();
-    press(&mut app, "Many runs");
-    press(&mut app, "Run with chance");
+    press(&mut app, "Monte Carlo");
+    press(&mut app, "Run Monte Carlo");
     for _ in 0..200 {
         app.settle();
     }
@@ -186,12 +186,12 @@ fn many_runs_tell_how_likely_the_program_is_to_reach_its_end() {
 #[test]
 fn runs_stop_when_asked_to_and_belong_to_the_text_they_were_made_of() {
     let mut app = orbit_insertion();
-    press(&mut app, "Many runs");
+    press(&mut app, "Monte Carlo");
     app.world.is_deaf.set(true);
-    press(&mut app, "Run with chance");
-    press(&mut app, "Stop the runs");
+    press(&mut app, "Run Monte Carlo");
+    press(&mut app, "Stop runs");
     app.world.is_deaf.set(false);
-    press(&mut app, "Run with chance");
+    press(&mut app, "Run Monte Carlo");
     for _ in 0..200 {
         app.settle();
     }
@@ -205,7 +205,7 @@ fn runs_stop_when_asked_to_and_belong_to_the_text_they_were_made_of() {
 #[test]
 fn components_fail_by_chance_from_the_same_fault_seed_again_and_again() {
     let mut app = orbit_insertion();
-    app.harness.get_by_label("Components fail by chance").click();
+    app.harness.get_by_label("Random component faults").click();
     app.settle();
     let states = |app: &mut support::App| {
         let mut states = Vec::new();
@@ -226,5 +226,5 @@ fn a_control_program_has_the_window_to_itself() {
     let app = orbit_insertion();
     let automaton = app.harness.get_by_label_contains("Automaton. ").rect();
     assert!(automaton.height() > 450.0 && automaton.width() > 500.0, "{automaton}");
-    assert!(app.harness.query_by_label("There is no plan to show over time.").is_none());
+    assert!(app.harness.query_by_label("No plan to show. The Plan panel explains why.").is_none());
 }

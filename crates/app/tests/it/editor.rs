@@ -239,9 +239,9 @@ fn find_goes_from_match_to_match_and_replaces_all() {
     app.harness.get_by_label("Match case").click();
     app.settle();
     app.harness.get_by_label("1 of 2");
-    app.harness.get_by_label("Replace row").click();
+    app.harness.get_by_label("Toggle replace").click();
     app.settle();
-    app.harness.get_by_role_and_label(Role::TextInput, "Replace by").focus();
+    app.harness.get_by_role_and_label(Role::TextInput, "Replace with").focus();
     app.settle();
     app.harness.event(Event::Text("wait".to_owned()));
     app.settle();

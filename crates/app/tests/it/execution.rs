@@ -65,7 +65,7 @@ fn withdrawing_the_window_of_path_1_while_the_rovers_wait_takes_two_presses_and_
     dispatch(&mut app, "play.end", &Value::Null);
     assert_eq!(app.json()["execution"]["status"], "finished");
     dispatch(&mut app, "play.seek", &json!({ "time": 0 }));
-    press(&mut app, "Take back: Tell(PATH1=OK)#1 is withdrawn at 0");
+    press(&mut app, "Remove: Tell(PATH1=OK)#1 ends at 0");
     assert_eq!(app.json()["plan"]["choices"], json!({ "D1": 0 }), "what is taken back did not happen");
 }
 
@@ -119,10 +119,10 @@ fn a_saved_run_replays_exactly_and_a_changed_log_is_told() {
         app.world.news.borrow_mut().push_back(event);
         app.settle();
     };
-    press(&mut app, "Start over");
+    press(&mut app, "Restart");
     assert_eq!(app.json()["execution"]["disturbances"], json!([]));
     open(&mut app, bytes.clone());
-    assert!(last_toast(&app).starts_with("Replayed exactly"), "{}", last_toast(&app));
+    assert!(last_toast(&app).starts_with("Replay matches"), "{}", last_toast(&app));
     assert_eq!(app.json()["plan"]["choices"], json!({ "D1": 1 }));
     let mut changed: Value = serde_json::from_slice(&bytes).expect("JSON");
     changed["log"].as_array_mut().expect("a log").pop();
@@ -189,11 +189,11 @@ fn the_next_fault_of_the_plant_is_offered_and_sends_the_mission_to_the_other_cam
     assert_eq!(app.json()["plan"]["choices"], json!({ "D1": 0 }));
     dispatch(&mut app, "play.seek", &json!({ "time": 1 }));
     // The component and the mode that it can come into by a fault stand first in the lists.
-    let mut nodes = app.harness.get_all_by_role_and_label(Role::Button, "Let it happen");
+    let mut nodes = app.harness.get_all_by_role_and_label(Role::Button, "Inject");
     nodes.next().expect("it can happen").scroll_to_me();
     drop(nodes);
     app.settle();
-    let mut nodes = app.harness.get_all_by_role_and_label(Role::Button, "Let it happen");
+    let mut nodes = app.harness.get_all_by_role_and_label(Role::Button, "Inject");
     nodes.next().expect("it can happen").click();
     drop(nodes);
     app.settle();
@@ -227,12 +227,12 @@ fn a_component_fails_while_its_activity_runs_its_program() {
     let nominal = end(&mut app);
     dispatch(&mut app, "play.seek", &json!({ "time": 0 }));
     let fault = json!({ "kind": "fault", "activity": "Insert#1", "step": 3, "component": "EngineA", "mode": "Failed" });
-    assert!(app.harness.query_by_label_contains("of the plant that Insert#1 commands").is_some());
+    assert!(app.harness.query_by_label_contains("of the plant controlled by Insert#1").is_some());
     dispatch(&mut app, "execute.disturb", &fault);
     assert_eq!(app.json()["execution"]["disturbances"], json!([fault]));
     let seen = end(&mut app);
     let log = app.json()["execution"]["log"].to_string();
-    assert!(log.contains("EngineA comes into Failed"), "{log}");
+    assert!(log.contains("EngineA enters Failed"), "{log}");
     assert!(seen >= nominal, "{seen} after {nominal}");
 }
 
@@ -249,7 +249,7 @@ fn stepping_goes_from_event_to_event_of_the_run() {
 fn runs_with_chance_are_made_in_the_background_and_end_in_a_probability() {
     let mut app = executing("threats");
     dispatch(&mut app, "view.panel", &json!({ "name": "robustness" }));
-    press(&mut app, "Run with chance");
+    press(&mut app, "Run Monte Carlo");
     for _ in 0..40 {
         app.settle();
     }

@@ -46,7 +46,7 @@ fn next_and_previous_bring_step_and_selection_along_and_answers_are_judged() {
         app.settle();
         assert_eq!(lesson(&app)["question"]["isRight"], is_right, "{typed}");
     }
-    app.harness.get_by_label("Right.");
+    app.harness.get_by_label("Correct.");
     assert_eq!(app.json()["lesson"]["learned"], json!(["negative-cycle/3"]));
     click(&mut app, Role::Button, "Previous");
     assert_eq!(app.json()["search"]["step"], decided);
@@ -57,9 +57,9 @@ fn next_and_previous_bring_step_and_selection_along_and_answers_are_judged() {
 fn an_answer_is_typed_and_a_choice_is_clicked() {
     let mut app = opened("lesson=first-line&stop=1", [1280.0, 800.0]);
     click(&mut app, Role::Button, "Once");
-    app.harness.get_by_label("Not yet.");
+    app.harness.get_by_label("Incorrect. Try again.");
     click(&mut app, Role::Button, "Twice: when it starts and when it ends");
-    app.harness.get_by_label("Right.");
+    app.harness.get_by_label("Correct.");
     click(&mut app, Role::Button, "Next");
     app.harness.get_by_role_and_label(Role::TextInput, "Number").focus();
     app.harness.step();
@@ -78,7 +78,7 @@ fn a_task_is_seen_to_be_done_and_the_text_can_be_taken_back() {
     app.settle();
     assert_eq!(app.json()["status"], "no-plan");
     assert_eq!(lesson(&app)["question"]["isRight"], true);
-    click(&mut app, Role::Button, "Text as it was");
+    click(&mut app, Role::Button, "Reset text");
     assert_eq!((app.harness.state().source(), app.json()["status"].clone()), (before, json!("plan")));
 }
 
@@ -143,7 +143,7 @@ fn a_file_becomes_the_lesson_and_its_mistakes_are_told_by_line() {
 #[test]
 fn the_manual_is_searched_and_a_panel_leads_to_its_page() {
     let mut app = opened("mission=enroute&workspace=author", [1280.0, 800.0]);
-    click(&mut app, Role::Button, "The manual about Timeline");
+    click(&mut app, Role::Button, "Help: Timeline");
     assert_eq!(app.json()["manual"]["page"], "timeline");
     app.harness.get_by_role_and_label(Role::Heading, "States and resources on the timeline");
     app.harness.state_mut().dispatch("help.search", &json!({ "words": "negative cycle" })).expect("a search");
@@ -181,7 +181,7 @@ fn the_hover_of_a_term_has_a_link_that_leads_into_the_manual() {
         app.settle();
     }
     assert_eq!(app.json()["manual"]["page"], "language");
-    app.harness.get_by_role_and_label(Role::Heading, "A first mission");
+    app.harness.get_by_role_and_label(Role::Heading, "First mission");
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn nothing_of_a_lesson_is_wider_than_its_panel() {
 
 /// Where the lesson's panel ends: the button at its right edge is there at every stop.
 fn panel_right(app: &App) -> f64 {
-    let button = app.harness.get_by_role_and_label(Role::Button, "Text as it was");
+    let button = app.harness.get_by_role_and_label(Role::Button, "Reset text");
     f64::from(button.rect().right()) + 14.0
 }
 
@@ -253,8 +253,8 @@ fn a_best_first_search_shows_what_each_state_may_lead_to() {
     assert!(shown(3, "D1=1 · 10") && !shown(3, "D2=0 · 12"));
     assert!(shown(5, "D1=0 · 9") && shown(5, "D2=0 · 12") && shown(5, "2 other states are open"));
     // A step of the search is not worth anything yet.
-    assert!(shown(6, "3 of 3 decisions reached") && !shown(6, "Worth"));
-    assert!(shown(7, "cost 10") && shown(7, "Worth"));
+    assert!(shown(6, "3 of 3 decisions made") && !shown(6, "Objective"));
+    assert!(shown(7, "cost 10") && shown(7, "Objective"));
 }
 
 /// Texts on screen that are smaller than 11 points, or end before their end.

@@ -65,13 +65,13 @@ fn the_name_on_the_bar_is_edited_in_place() {
 fn the_menu_beside_the_name_lists_the_missions_and_the_examples() {
     let mut app = start();
     edit(&mut app, "// mine\n");
-    click(&mut app, "Mission");
+    click(&mut app, "Switch mission");
     click(&mut app, "Threats");
     assert_eq!(app.json()["mission"], "threats");
-    click(&mut app, "Mission");
+    click(&mut app, "Switch mission");
     click(&mut app, "Enroute (copy)");
     assert_eq!(app.harness.state().source(), "// mine\n");
-    click(&mut app, "Mission");
+    click(&mut app, "Switch mission");
     click(&mut app, "New mission");
     assert_eq!(app.harness.state().source(), "");
 }
@@ -98,7 +98,7 @@ fn the_list_opens_renames_duplicates_deletes_and_brings_back() {
         (app.json()["dialog"].clone(), app.json()["mission"].clone()),
         (json!("missions"), json!("Enroute (copy)"))
     );
-    click(&mut app, "Bring back Twin");
+    click(&mut app, "Restore Twin");
     assert_eq!(names(&app).len(), 2);
     list(&mut app);
     click(&mut app, "Open Enroute (copy)");
@@ -111,7 +111,7 @@ fn escape_closes_a_menu_and_nothing_else() {
     let mut app = start();
     app.harness.state_mut().dispatch("edit.find", &json!(null)).expect("the find bar");
     app.settle();
-    click(&mut app, "Mission");
+    click(&mut app, "Switch mission");
     app.harness.get_by_label("New mission");
     app.harness.key_press(Key::Escape);
     app.settle();
@@ -124,7 +124,7 @@ fn versions_are_kept_and_taken_back_in_the_list() {
     let mut app = start();
     edit(&mut app, "// one\n");
     list(&mut app);
-    click(&mut app, "Keep a version…");
+    click(&mut app, "Save version…");
     app.harness.event(Event::Text("first".to_owned()));
     app.settle();
     app.harness.key_press(Key::Enter);
@@ -132,7 +132,7 @@ fn versions_are_kept_and_taken_back_in_the_list() {
     assert_eq!(app.json()["library"]["missions"][0]["versions"], json!(["first"]));
     edit(&mut app, "// two\n");
     list(&mut app);
-    click(&mut app, "Go back to first");
+    click(&mut app, "Restore first");
     assert_eq!(app.json()["dialog"], json!(null), "{}", app.json()["toasts"]);
     assert_eq!(app.harness.state().source(), "// one\n");
 }
@@ -144,7 +144,7 @@ fn what_is_not_kept_is_said_on_the_bar_and_can_be_saved() {
     let mut app = support::start_in(world, |builder| builder);
     app.settle();
     edit(&mut app, "// mine\n");
-    click(&mut app, "Not kept");
+    click(&mut app, "Not saved");
     let saved = app.world.saved.borrow();
     assert_eq!(saved.first().map(|(name, _)| name.as_str()), Some("Enroute (copy).enroute"));
 }

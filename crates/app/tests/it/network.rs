@@ -49,10 +49,10 @@ fn clicking_an_activity_selects_it_everywhere() {
 #[test]
 fn searching_selects_one_match_after_the_other() {
     let mut app = started();
-    let field = app.harness.get_by_role_and_label(egui::Role::TextInput, "Find in the network");
+    let field = app.harness.get_by_role_and_label(egui::Role::TextInput, "Search the network");
     field.focus();
     app.settle();
-    app.harness.get_by_role_and_label(egui::Role::TextInput, "Find in the network").type_text("traverse");
+    app.harness.get_by_role_and_label(egui::Role::TextInput, "Search the network").type_text("traverse");
     app.settle();
     app.harness.key_press(Key::Enter);
     app.settle();
@@ -72,7 +72,7 @@ fn a_text_with_errors_keeps_the_last_network_and_says_so() {
     let says_so = app.harness.query_all_by_role(egui::Role::Image).any(|node| {
         node.accesskit_node()
             .label()
-            .is_some_and(|label| label.starts_with("Network of the last text without errors"))
+            .is_some_and(|label| label.starts_with("Network of the last valid version"))
     });
     assert!(says_so);
 }
@@ -224,7 +224,7 @@ fn long(app: &mut support::App, steps: usize) {
 fn folded(app: &support::App) -> Vec<String> {
     let buttons = app.harness.query_all_by_role(egui::Role::Button);
     let labels = buttons.filter_map(|node| node.accesskit_node().label());
-    labels.filter(|label| label.ends_with(", folded, in the network")).collect()
+    labels.filter(|label| label.ends_with(", collapsed, in the network")).collect()
 }
 
 #[test]

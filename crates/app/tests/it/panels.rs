@@ -259,9 +259,9 @@ fn a_mission_that_is_being_written_is_told_what_is_missing_and_a_button_writes_i
     let source = "location BASE (24, 52);\nvehicle Scout : ATRV at BASE;\n";
     app.harness.state_mut().run(Command::OpenSource { name: "test".into(), source: source.to_owned() });
     app.settle();
-    app.harness.get_by_label("This mission has no scenario yet. With one, it is planned.");
-    app.harness.get_by_label("This mission has no scenario yet. With one, its plan is shown over time here.");
-    app.harness.get_by_label("Add a scenario").click();
+    app.harness.get_by_label("This mission has no scenario yet. With one, its plan appears here.");
+    app.harness.get_by_label("This mission has no scenario yet. With one, its timeline appears here.");
+    app.harness.get_by_label("Add scenario").click();
     app.settle();
     assert_eq!(app.json()["status"], "plan", "{}", app.json());
     assert!(app.harness.state().source().starts_with(source));
@@ -269,24 +269,25 @@ fn a_mission_that_is_being_written_is_told_what_is_missing_and_a_button_writes_i
         .state_mut()
         .run(Command::OpenSource { name: "other".into(), source: "scenario (".to_owned() });
     app.settle();
-    app.harness.get_by_label("The text has errors: see the problems. Without them, it is planned.");
+    app.harness
+        .get_by_label("The text has errors: see the Problems panel. Without them, its plan appears here.");
 }
 
 #[test]
 fn what_is_of_an_earlier_text_is_marked_and_says_nothing_good_of_the_present_one() {
     let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 1200.0]));
     app.settle();
-    app.harness.get_by_label("The independent checker accepts this plan.");
+    app.harness.get_by_label("Verified by the independent checker.");
     let source = app.harness.state().source();
     app.harness.state_mut().set_source(&source.replace("vehicle Rover1 :", "vehicle ((Rover1 :"));
     app.settle();
     assert_eq!(app.json()["status"], "broken");
-    let marks = app.harness.query_all_by_label("Of an earlier text: what is written now has errors").count();
+    let marks = app.harness.query_all_by_label("Out of date: the current text has errors").count();
     assert_eq!(marks, 3, "plan, timeline and terrain");
-    assert!(app.harness.query_by_label("The independent checker accepts this plan.").is_none());
-    app.harness.get_by_label("The independent checker accepted this plan of an earlier text.");
+    assert!(app.harness.query_by_label("Verified by the independent checker.").is_none());
+    app.harness.get_by_label("The independent checker verified this plan of a previous version.");
     app.harness.state_mut().set_source(&source);
     app.settle();
-    assert!(app.harness.query_by_label_contains("Of an earlier text").is_none());
-    app.harness.get_by_label("The independent checker accepts this plan.");
+    assert!(app.harness.query_by_label_contains("Out of date").is_none());
+    app.harness.get_by_label("Verified by the independent checker.");
 }

@@ -89,7 +89,7 @@ fn the_checklist_is_computed_when_the_reviewer_comes() {
     // SPEC 3.6: the drive is over 0 to 45 minutes before path 1 closes. A margin that may be 0 has not passed.
     assert!(has(
         &app,
-        "attention: Tell(PATH1=OK)#1 provides PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
+        "needs attention: Tell(PATH1=OK)#1 provides PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
     ));
     assert!(has(&app, "Causal links, attention, 1 attention"));
     assert!(has(&app, "Robustness, not run yet"));
@@ -118,10 +118,10 @@ fn one_edit_makes_the_review_stale_and_undoing_it_makes_it_current_again() {
     assert_eq!(stale["stale"], true);
     assert_eq!(stale["hash"], before["hash"]);
     assert_ne!(stale["currentHash"], before["hash"]);
-    app.harness.get_by_label("Stale");
+    app.harness.get_by_label("Out of date");
     undo(&mut app);
     assert_eq!(review(&app), before);
-    assert!(app.harness.query_by_label("Stale").is_none());
+    assert!(app.harness.query_by_label("Out of date").is_none());
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn nothing_of_a_stale_review_has_passed() {
         app.settle();
         assert!(!has(&app, "passed: ") && !has(&app, "Choices, passed"), "{text}");
         assert!(has(&app, "had passed: ") && has(&app, "Choices, had passed"), "{text}");
-        app.harness.get_by_label("Stale");
+        app.harness.get_by_label("Out of date");
     }
     undo(&mut app);
     undo(&mut app);
@@ -143,14 +143,14 @@ fn nothing_of_a_stale_review_has_passed() {
 #[test]
 fn a_step_of_the_search_beside_the_review_is_said_to_be_one() {
     let mut app = reviewing();
-    let note = "The drawings show step 1 of the search, and not the plan that was reviewed.";
+    let note = "The panels show step 1 of the search, not the reviewed plan.";
     assert!(app.harness.query_by_label(note).is_none());
     app.harness.state_mut().run(Command::Settings(SettingsCommand::SetTrace(true)));
     app.settle();
     app.harness.state_mut().run(Command::Search(SearchCommand::GoTo(0)));
     app.settle();
     app.harness.get_by_label(note);
-    click(&mut app, "Show the plan");
+    click(&mut app, "Show plan");
     assert!(app.harness.query_by_label(note).is_none());
 }
 
@@ -202,7 +202,7 @@ fn an_approval_is_for_one_content_and_stays_with_it() {
             node.accesskit_node().label().filter(|label| label.starts_with("Acknowledge… "))
         });
         click(&mut app, &label.expect("a line to acknowledge"));
-        type_into(&mut app, "Why may it be so?", "As meant.");
+        type_into(&mut app, "Why is this acceptable?", "As meant.");
         app.harness.key_press(egui::Key::Enter);
         app.settle();
         assert_eq!(left(&app), lines - done);
@@ -229,11 +229,11 @@ fn an_approval_is_for_one_content_and_stays_with_it() {
     assert!(!has(&app, "Since the last approval, text 1"));
     app.world.is_slow.set(false);
     app.settle();
-    assert!(has(&app, "Since the last approval, nothing differs"));
+    assert!(has(&app, "Since the last approval, no differences"));
     // Taking it back is an entry of the history.
-    click(&mut app, "Take back… Ada Lovelace");
-    type_into(&mut app, "Why is it taken back?", "Too early.");
-    click_exactly(&mut app, "Take back");
+    click(&mut app, "Withdraw… Ada Lovelace");
+    type_into(&mut app, "Reason for withdrawing", "Too early.");
+    click_exactly(&mut app, "Withdraw");
     assert_eq!(review(&app)["planStatus"], "in-review");
     let last = review(&app)["history"].as_array().and_then(|all| all.last().cloned()).expect("an entry");
     assert_eq!((&last["act"], &last["text"]), (&json!("took back"), &json!("Too early.")));
@@ -248,11 +248,11 @@ fn a_comment_is_resolved_and_opened_again_by_name() {
     assert!(has(&app, "Comments, 1 open of 1"));
     type_into(&mut app, "Your name", "Ada");
     click(&mut app, "Resolve… Why so long?");
-    type_into(&mut app, "How is it resolved?", "It waits for light.");
+    type_into(&mut app, "How was it resolved?", "It waits for light.");
     click_exactly(&mut app, "Resolve");
     assert!(has(&app, "Comments, 0 open of 1"));
-    click(&mut app, "Open again… Why so long?");
-    click_exactly(&mut app, "Open again");
+    click(&mut app, "Reopen… Why so long?");
+    click_exactly(&mut app, "Reopen");
     assert_eq!(review(&app)["comments"][0]["open"], true);
     assert_eq!(review(&app)["history"].as_array().map(Vec::len), Some(3));
 }
@@ -260,9 +260,9 @@ fn a_comment_is_resolved_and_opened_again_by_name() {
 #[test]
 fn the_board_is_part_of_the_flight_rules() {
     let mut app = reviewing();
-    click(&mut app, "Add a role");
+    click(&mut app, "Add role");
     type_into(&mut app, "Role 2", "Mobility");
-    click(&mut app, "Use these rules");
+    click(&mut app, "Apply rules");
     let board = review(&app)["rules"]["board"].clone();
     assert_eq!(board[1], json!({ "role": "Mobility", "approvals": 1 }));
     assert!(has(&app, "Approval, Reviewer 0 of 1, Mobility 0 of 1"));
@@ -283,7 +283,7 @@ fn a_mission_without_a_plan_cannot_be_approved() {
 #[test]
 fn a_line_leads_to_its_place_in_every_panel() {
     let mut app = reviewing();
-    click(&mut app, "attention: Tell(PATH1=OK)#1 provides");
+    click(&mut app, "needs attention: Tell(PATH1=OK)#1 provides");
     let state = app.json();
     assert_eq!(state["selection"]["kind"], "link");
     let source = app.harness.state().source();
@@ -332,7 +332,7 @@ fn comments_are_about_what_is_selected_and_are_found_in_the_next_run() {
     let field = app.harness.get_by_role_and_label(Role::MultilineTextInput, "Comment");
     field.type_text("Is such a long wait intended?");
     app.settle();
-    click(&mut app, "Add the comment");
+    click(&mut app, "Add comment");
     let comments = review(&app)["comments"].clone();
     assert_eq!(comments[0]["about"], "Group-Wait#1");
     assert_eq!(comments[0]["author"], "Grace");
@@ -355,8 +355,8 @@ fn a_full_storage_is_said_and_loses_nothing() {
         .dispatch("review.comment", &json!({ "author": "Grace", "text": "second" }))
         .expect("a comment");
     app.settle();
-    assert!(review(&app)["unkept"].as_str().is_some_and(|reason| reason.contains("no room")));
-    app.harness.get_by_label("The history of the review is not kept");
+    assert!(review(&app)["unkept"].as_str().is_some_and(|reason| reason.contains("no space")));
+    app.harness.get_by_label("Review history not saved");
     let key = "enroute/review-1/enroute";
     assert_eq!(app.world.storage.borrow().get(key), kept.get(key), "what was kept is unharmed");
     // Another mission and back: what could not be kept is still there.
@@ -434,7 +434,7 @@ fn the_review_fits_into_a_narrow_panel() {
 fn the_report_is_written_with_the_review_that_is_shown() {
     let mut app = reviewing();
     approve(&mut app, "Ada <A>");
-    click(&mut app, "Write the report");
+    click(&mut app, "Write report");
     let (name, bytes) = app.world.saved.borrow().last().cloned().expect("a file");
     assert_eq!(name, "enroute.report.html");
     let page = String::from_utf8(bytes).expect("UTF-8");
@@ -463,7 +463,7 @@ fn schedules_are_written_from_the_menu_once_the_start_is_known() {
     app.harness.state_mut().dispatch("export.icalendar", &json!(null)).expect("a plan");
     app.settle();
     assert_eq!(app.json()["dialog"], "epoch");
-    type_into(&mut app, "Start of the mission", "2004-01-25T05:05:00Z");
+    type_into(&mut app, "Mission start date", "2004-01-25T05:05:00Z");
     click(&mut app, "Export");
     assert_eq!(app.json()["dialog"], Value::Null);
     let open_mct = json!({ "as": "open-mct", "epoch": "2004-01-25T05:05:00Z" });
@@ -486,7 +486,7 @@ fn a_pinned_plan_shows_what_an_edit_changes() {
     let mut app = reviewing();
     app.harness.state_mut().run(Command::Compare(CompareCommand::Pin));
     app.settle();
-    app.harness.get_by_label("The plans do not differ");
+    app.harness.get_by_label("The plans are identical");
     edit(&mut app);
     assert!(has(
         &app,
@@ -494,7 +494,7 @@ fn a_pinned_plan_shows_what_an_edit_changes() {
     ));
     assert!(has(&app, "Group-Traverse-Path#1, moved: "));
     undo(&mut app);
-    app.harness.get_by_label("The plans do not differ");
+    app.harness.get_by_label("The plans are identical");
 }
 
 /// What is written on the drawings, which no role tells.
@@ -563,7 +563,7 @@ fn a_saved_plan_and_another_mission_can_be_compared_with() {
     assert_eq!(app.json()["compare"]["with"], "saved.json");
     app.harness.state_mut().dispatch("view.panel", &json!("compare")).expect("a panel");
     app.settle();
-    app.harness.get_by_label("The plans do not differ");
+    app.harness.get_by_label("The plans are identical");
     let both = include_str!("../../../../assets/missions/both-paths.rmpl");
     open(&mut app, "both-paths.rmpl", both);
     assert_eq!(app.json()["compare"]["with"], "both-paths.rmpl");

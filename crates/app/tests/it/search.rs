@@ -257,7 +257,7 @@ fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_want
         let text = shown.iter().find_map(|(text, _)| text.strip_prefix(words));
         text.and_then(|count| count.parse::<u64>().ok()).unwrap_or_else(|| panic!("no {words} in {shown:?}"))
     };
-    let both = count("by both: ");
+    let both = count("both: ");
     assert_eq!(both + count("only Chronological: "), states(&app, 0));
     assert_eq!(both + count("only Conflict-directed: "), states(&app, 1));
     let trees = |app: &App| {
@@ -277,7 +277,7 @@ fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_want
             assert!(!place.intersects(*at), "{one} covers {other}");
         }
     }
-    app.harness.get_by_label("Merged").click();
+    app.harness.get_by_label("Merge trees").click();
     app.settle();
     assert_eq!(trees(&app).len(), 2, "{:?}", trees(&app));
 }

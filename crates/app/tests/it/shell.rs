@@ -105,7 +105,7 @@ fn the_key_list_names_every_shortcut_of_the_registry() {
 fn the_mission_picker_opens_another_example() {
     let mut app = support::start();
     app.settle();
-    app.harness.get_by_label("Mission").click();
+    app.harness.get_by_label("Switch mission").click();
     app.settle();
     app.harness.get_by_label("Threats").click();
     app.settle();

@@ -32,12 +32,12 @@ fn the_user_ends_what_nature_chooses_and_the_executive_follows() {
     app.harness.state_mut().dispatch("view.panel", &json!({ "name": "strategy" })).expect("a panel");
     app.settle();
     assert_eq!(run(&app), Value::Null);
-    click(&mut app, "Begin the run");
+    click(&mut app, "Start run");
     for _ in 0..20 {
         if run(&app)["underWay"]["Drive#1"] != Value::Null {
             break;
         }
-        click(&mut app, "Let time pass");
+        click(&mut app, "Advance time");
     }
     let before = run(&app);
     assert_eq!(before["now"], json!(0.0));
@@ -55,19 +55,19 @@ fn the_user_ends_what_nature_chooses_and_the_executive_follows() {
     };
     assert_eq!(starts(&after, "Survey#1.start"), Some(json!(20.0)), "the executive goes on at once: {after}");
     assert_eq!(app.json()["pinned"]["windows"]["Survey#1.start"], json!([20, 20]));
-    click(&mut app, "Take the last step back");
+    click(&mut app, "Undo last step");
     assert_eq!(run(&app)["now"], json!(0.0));
     assert_eq!(starts(&run(&app), "Survey#1.start"), None);
     for _ in 0..40 {
         if run(&app)["next"] == Value::Null {
             break;
         }
-        click(&mut app, "Let time pass");
+        click(&mut app, "Advance time");
     }
-    app.harness.get_by_label_contains("the plan withstood nature");
+    app.harness.get_by_label_contains("the plan held");
     let over = run(&app);
     assert_eq!(starts(&over, "Survey#1.start"), Some(json!(40.0)), "the drive lasted as long as it can");
-    click(&mut app, "Back to the start");
+    click(&mut app, "Restart");
     assert_eq!(run(&app), Value::Null);
 }
 
@@ -80,6 +80,6 @@ fn a_mission_that_nature_breaks_shows_the_run_in_which_it_fails() {
     app.settle();
     let state = app.json();
     assert_eq!(state["status"], json!("no-plan"), "{state}");
-    app.harness.get_by_label_contains("The run in which it fails");
-    app.harness.get_by_label_contains("nature ends Drive");
+    app.harness.get_by_label_contains("Counterexample");
+    app.harness.get_by_label_contains("ends Drive");
 }

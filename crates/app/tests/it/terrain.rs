@@ -80,7 +80,7 @@ fn a_click_on_a_path_selects_it_everywhere_and_says_what_is_known_of_it() {
     app.harness.get_by_label("to THERE, 80.0 m");
     app.harness.get_by_label("Duration");
     app.harness.get_by_label("Steepest slope");
-    app.harness.get_by_label("Its clearance");
+    app.harness.get_by_label("Leg clearance");
     app.harness.get_by_label("Close Go#1").click();
     app.settle();
     assert_eq!(app.json()["selection"], json!(null));
@@ -93,7 +93,7 @@ fn two_clicks_measure_and_a_third_begins_anew() {
     dispatch(&mut app, "terrain.measure", &json!(null));
     let (here, there) = (place(&app, "HERE"), place(&app, "THERE"));
     click(&mut app, here);
-    app.harness.get_by_label("Click where it ends");
+    app.harness.get_by_label("Click the end point");
     click(&mut app, there);
     let found = std::cell::RefCell::new(String::new());
     app.harness.get_by(|node| {
@@ -105,7 +105,7 @@ fn two_clicks_measure_and_a_third_begins_anew() {
         is_measured
     });
     let label = found.into_inner();
-    let ground = label.split("On the ground ").nth(1).and_then(|rest| rest.split(" m").next());
+    let ground = label.split("Surface distance ").nth(1).and_then(|rest| rest.split(" m").next());
     let metres: f64 = ground.and_then(|text| text.parse().ok()).expect("a distance");
     assert!((metres - 80.0).abs() < 2.5, "{label}");
     app.harness.get_by_label("Line of sight");
@@ -213,7 +213,7 @@ fn a_race_is_a_table_and_a_click_shows_one_of_its_planners_alone() {
     dispatch(&mut app, "terrain.growth", &json!(null));
     dispatch(&mut app, "terrain.growBy", &json!({ "planner": "race" }));
     dispatch(&mut app, "terrain.growTo", &json!({ "samples": 1_000_000 }));
-    for name in ["Planner", "Vertices", "Checks", "Path", "Whole search"] {
+    for name in ["Planner", "Vertices", "Checks", "Path", "Search time"] {
         app.harness.get_by_label(name);
     }
     let searches = app.json()["terrain"]["growth"]["searches"].clone();
@@ -223,7 +223,7 @@ fn a_race_is_a_table_and_a_click_shows_one_of_its_planners_alone() {
     app.harness.get_by_label("RRT*").click();
     app.settle();
     assert_eq!(app.json()["terrain"]["growth"]["planner"], "RRT*");
-    assert!(app.harness.query_by_label("Whole search").is_none());
+    assert!(app.harness.query_by_label("Search time").is_none());
     app.harness.get_by_label("Before the first sample.");
 }
 
@@ -312,7 +312,7 @@ fn the_search_tree_grows_by_samples_and_goes_back() {
         app.settle();
     }
     assert!(growth(&app)["samples"].as_u64() > Some(0));
-    app.harness.get_by_label("Hide the search tree").click();
+    app.harness.get_by_label("Hide search tree").click();
     app.settle();
     assert_eq!(growth(&app), json!(null));
 }
@@ -325,11 +325,11 @@ fn a_mission_without_places_gets_a_world_by_a_click() {
     let source = "scenario S[0,60] = { Wait()[0,10] }\n";
     app.harness.state_mut().run(Command::OpenSource { name: "bare".into(), source: source.to_owned() });
     app.settle();
-    app.harness.get_by_label("Add a terrain and a location").click();
+    app.harness.get_by_label("Add terrain and location").click();
     app.settle();
     app.settle();
     assert!(app.harness.state().source().starts_with("terrain \"tai-plain\";\nlocation BASE"));
-    assert!(app.harness.query_by_label("Add a terrain and a location").is_none());
+    assert!(app.harness.query_by_label("Add terrain and location").is_none());
     dispatch(&mut app, "edit.undo", &json!(null));
     assert_eq!(app.harness.state().source(), source);
 }
@@ -355,7 +355,7 @@ fn an_imported_map_is_found_by_the_text_that_names_it_and_a_broken_one_is_explai
     assert_eq!(app.json()["diagnostics"][0]["code"], "E-UNDEF");
     open(&mut app, "broken.pgm", b"P5 3 3 255\n..");
     let toasts = app.json()["toasts"].to_string();
-    assert!(toasts.contains("broken.pgm cannot be used"), "{toasts}");
+    assert!(toasts.contains("import map broken.pgm"), "{toasts}");
     let mut map = b"P5 30 30 255\n".to_vec();
     map.extend([7; 900]);
     open(&mut app, "hill.pgm", &map);
@@ -375,7 +375,7 @@ fn the_panel_is_usable_at_a_width_of_300_points() {
     }
     dispatch(&mut app, "terrain.growth", &json!(null));
     dispatch(&mut app, "go.select", &json!("Go#1"));
-    for name in ["Measure", "Place", "Camera", "Hide the search tree", "Close Go#1"] {
+    for name in ["Measure", "Place", "Camera", "Hide search tree", "Close Go#1"] {
         let rect = app.harness.get_by_label(name).rect();
         assert!(rect.left() >= 0.0 && rect.right() <= 300.0 && rect.bottom() <= 420.0, "{name} at {rect:?}");
     }

@@ -126,7 +126,7 @@ fn dragging_a_bound_rewrites_its_number_as_one_step_of_the_history() {
     let source = app.harness.state().source();
     app.harness.state_mut().dispatch("go.select", &json!("Group-Enroute#1")).expect("an occurrence");
     app.settle();
-    let from = app.harness.get_by_label("Change the greatest duration of Group-Enroute#1").rect().center();
+    let from = app.harness.get_by_label("Change the maximum duration of Group-Enroute#1").rect().center();
     drag(&mut app, from, from + vec2(-40.0 * scale, 0.0));
     let changed = app.harness.state().source();
     let at = changed.find("Group-Enroute()[450,").expect("the call") + "Group-Enroute()[450,".len();
