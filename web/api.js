@@ -26,7 +26,7 @@ export function createApi(loaded) {
     dispatch: (command, args = {}) => running().dispatch(String(command), JSON.stringify(args)),
     state: () => JSON.parse(running().state()),
     subscribe(callback) {
-      if (typeof callback !== "function") throw refusal("bad-arguments", "subscribe wants a function");
+      if (typeof callback !== "function") throw refusal("bad-arguments", "subscribe expects a function");
       const entry = { callback };
       subscribers.add(entry);
       return () => subscribers.delete(entry);

@@ -31,7 +31,7 @@ function hold(life) {
 function fail(error) {
   // The module stops without a panic where it asked for memory that there is not.
   const isFull = error instanceof WebAssembly.RuntimeError && /unreachable/i.test(error.message);
-  const fault = isFull ? "its memory is full" : String(error?.message ?? error);
+  const fault = isFull ? "out of memory" : String(error?.message ?? error);
   self.postMessage({ kind: "failed", payload: panicMessage ?? fault });
   // What a panic leaves behind is not to be trusted: the front end starts a new worker.
   self.close();

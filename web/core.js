@@ -18,7 +18,7 @@ export function startCore(tell) {
   // The worker holds this lock for as long as it lives, however it ends; whoever waits for it is told then.
   const life = `enroute/core/${performance.now()}/${Math.random()}`;
   const watch = new AbortController();
-  const isGone = () => setTimeout(() => watch.signal.aborted || tell("failed", "it ended without a word"), LAST_WORD_MILLIS);
+  const isGone = () => setTimeout(() => watch.signal.aborted || tell("failed", "the planner ended for an unknown reason"), LAST_WORD_MILLIS);
 
   worker.onmessage = ({ data: { kind, payload } }) => {
     if (kind === "held") navigator.locks.request(life, { signal: watch.signal }, isGone).catch(() => {});
@@ -26,7 +26,7 @@ export function startCore(tell) {
   };
   worker.onerror = (event) => {
     event.preventDefault();
-    tell("failed", event.message || "the planning core could not be loaded");
+    tell("failed", event.message || "the planner couldn't be loaded");
   };
   worker.postMessage({ superseded, life });
 

@@ -12,10 +12,10 @@ const isWhole = (name) => /\.(enroute|json)$/i.test(name) && !/\.tpn\.json$/i.te
 /** What goes wrong on the disk, in words for the person who saves. */
 const REASONS = {
   NotAllowedError:
-    "the browser was not allowed to write it. Save again and allow it, or choose another place with Save as…",
-  NotFoundError: "it is not there any more: it was moved, renamed or deleted. Save as… says where it goes now",
-  NoModificationAllowedError: "another program holds it, or it cannot be written. Try again, or choose Save as…",
-  QuotaExceededError: "the disk is full. Save as… can choose another one",
+    "the browser denied write access. Save again and allow access, or choose Save as…",
+  NotFoundError: "file not found; it was moved, renamed or deleted. Choose Save as… to save it again",
+  NoModificationAllowedError: "the file is read-only or in use. Try again, or choose Save as…",
+  QuotaExceededError: "the disk is full. Choose Save as… to use another disk",
 };
 
 /** What can be done with files on the disk. */
@@ -69,7 +69,7 @@ async function save(handles, mission, asks, forms) {
   if (file && !forms.some((form) => isWhole(form.name) === isWhole(file.handle.name))) file = undefined;
   if (!file) {
     const types = forms.map(({ name }) => ({
-      description: isWhole(name) ? "The whole mission" : "The text of the mission",
+      description: isWhole(name) ? "Mission with maps and versions" : "Mission text",
       accept: { "text/plain": [name.slice(name.lastIndexOf("."))] },
     }));
     const chosen = showSaveFilePicker({ id: "missions", suggestedName: forms[0].name, types });
@@ -89,8 +89,7 @@ async function save(handles, mission, asks, forms) {
       if (lastModified !== file.modified) {
         await handles.keep(mission, { handle, modified: lastModified });
         throw new Error(
-          "another program has changed it since it was opened or saved here. Save again to write over that, or choose " +
-            "another place with Save as…",
+          "another program changed this file. Save again to overwrite it, or choose Save as…",
         );
       }
     }

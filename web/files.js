@@ -2,7 +2,7 @@
 
 /** The bytes of a file, unless it has more than `most`: then it may not fit into the memory. */
 export async function bytesOf(file, most) {
-  if (file.size > most) throw new Error(`it has ${Math.round(file.size / 2 ** 20)} MB, and at most ${most / 2 ** 20} are read`);
+  if (file.size > most) throw new Error(`the size is ${Math.round(file.size / 2 ** 20)} MB, and the limit is ${most / 2 ** 20} MB`);
   return new Uint8Array(await file.arrayBuffer());
 }
 

@@ -26,12 +26,12 @@ export function showFailure(title, explanation, error, mission = null) {
   const details = document.createElement("pre");
   details.textContent = error?.stack?.includes(error.message) ? error.stack : String(error);
   const again = document.createElement("button");
-  again.textContent = "Load again";
+  again.textContent = "Reload";
   again.addEventListener("click", () => location.reload());
   const buttons = [again];
   if (mission !== null) {
     const save = document.createElement("button");
-    save.textContent = "Save the text";
+    save.textContent = "Save text";
     save.addEventListener("click", () => saveFile("mission.rmpl", new TextEncoder().encode(mission)));
     buttons.push(save);
   }

@@ -76,7 +76,7 @@ function done(database, mode, act) {
   return new Promise((resolve, reject) => {
     const transaction = database.transaction(STORE, mode, { durability: "strict" });
     transaction.oncomplete = () => resolve();
-    transaction.onabort = () => reject(transaction.error ?? new Error("the browser broke off"));
+    transaction.onabort = () => reject(transaction.error ?? new Error("the browser canceled the transaction"));
     act(transaction.objectStore(STORE));
   });
 }

@@ -18,11 +18,11 @@ import { noteTyping } from "./typed.js";
 const SHELF_PATIENCE_MILLIS = 1500;
 
 async function load() {
-  showStep("Loading");
+  showStep("Loading…");
   findAddress();
   const shelf = openShelf();
   const module = await fetchWithProgress(new URL("../wasm/page_bg.wasm", import.meta.url));
-  showStep("Starting");
+  showStep("Starting…");
   await init({ module_or_path: module });
   await shelf.patience(SHELF_PATIENCE_MILLIS);
   const typing = noteTyping(window);
@@ -75,7 +75,7 @@ async function load() {
       await frontEnd.drawOn(fresh);
       nameKeyboard();
     },
-    (reason) => showLoss("The graphics were lost", "The browser has taken the graphics card away.", reason),
+    (reason) => showLoss("Graphics device lost", "The browser withdrew access to the graphics card.", reason),
   );
   mirror.onAct((element, act) => frontEnd.act(element, JSON.stringify(act)));
   api.connect(frontEnd, mirror);
@@ -92,7 +92,7 @@ function nameKeyboard() {
 // A panic of the front end surfaces here, from whichever event led to it.
 window.addEventListener("error", ({ error }) => {
   if (error instanceof WebAssembly.RuntimeError) {
-    showLoss("Enroute has stopped", "This is a fault in Enroute.", error);
+    showLoss("Enroute has stopped", "This is a bug in Enroute.", error);
   }
 });
 
@@ -100,20 +100,20 @@ window.addEventListener("error", ({ error }) => {
 function showLoss(title, cause, error) {
   const { text, isKept } = latestText();
   const advice = isKept
-    ? "Your text is kept; loading the page again brings it back."
-    : "This browser keeps nothing for the page: save your text before you load it again.";
+    ? "Your text is saved. Reload the page to continue."
+    : "This browser stores nothing for this page. To keep your work, save your text before you reload.";
   showFailure(title, `${cause} ${advice}`, error, text);
 }
 
 const loaded = load();
 const api = createApi(loaded);
 window.enroute = api.enroute;
-loaded.catch((error) => showFailure("Enroute cannot start", explain(error), error));
+loaded.catch((error) => showFailure("Enroute couldn't start", explain(error), error));
 
 // Published pages say their version and keep a copy of themselves; a page that is being developed does neither.
 if (document.documentElement.dataset.version) {
   navigator.serviceWorker?.register("service-worker.js").then(announceNewVersion, (reason) => {
-    console.warn(`The page will not open offline: ${reason.message}`);
+    console.warn(`Offline use is not available: ${reason.message}`);
   });
 }
 
@@ -132,13 +132,13 @@ function announceNewVersion(registration) {
 
 function explain(error) {
   if (typeof WebAssembly !== "object") {
-    return "This browser cannot run WebAssembly. Any current version of Chrome, Edge, Firefox or Safari can.";
+    return "This browser cannot run WebAssembly. Use a current version of Chrome, Edge, Firefox or Safari.";
   }
   if (error?.code === "no-graphics") {
     return (
-      "Enroute draws with WebGPU or WebGL2, and this browser offers neither. Turn on hardware acceleration in its " +
-      "settings, or try a current version of Chrome, Edge, Firefox or Safari."
+      "Enroute needs WebGPU or WebGL2, and this browser offers neither. Turn on hardware acceleration in the browser " +
+      "settings, or use a current version of Chrome, Edge, Firefox or Safari."
     );
   }
-  return "A part of the page could not be loaded. Loading the page again may help.";
+  return "Part of the page couldn't be loaded. Try to reload the page.";
 }

@@ -85,7 +85,7 @@ fn a_file_that_was_opened_is_saved_and_never_over_what_another_program_wrote() -
         "new Promise((done) => setTimeout(done, 5)).then(() => writeOnDisk('own.rmpl', '// theirs'))",
     )?;
     page.tab.evaluate("enroute.dispatch('file.save')")?;
-    page.wait_for("state.toasts.join().includes('own.rmpl: another program has changed it')")?;
+    page.wait_for("state.toasts.join().includes('own.rmpl: another program changed this file')")?;
     assert_eq!(page.tab.evaluate("onDisk('own.rmpl')")?, json!("// theirs"));
     page.tab.evaluate("enroute.dispatch('file.save')")?;
     page.tab.wait_until("onDisk('own.rmpl').then((text) => text === '// mine')")?;
@@ -103,14 +103,14 @@ fn a_file_that_is_gone_or_forbidden_is_said_plainly_and_the_text_stays() -> Resu
     page.wait_for("state.toasts.includes('Saved to gone.rmpl')")?;
     page.tab.evaluate("navigator.storage.getDirectory().then((root) => root.removeEntry('gone.rmpl'))")?;
     page.tab.evaluate("enroute.dispatch('file.save')")?;
-    page.wait_for("state.toasts.join().includes('gone.rmpl: it is not there any more')")?;
+    page.wait_for("state.toasts.join().includes('gone.rmpl: file not found')")?;
     page.tab.evaluate(
         "FileSystemHandle.prototype.queryPermission = async () => 'prompt';
          FileSystemHandle.prototype.requestPermission = async () => 'denied';
          choose('closed.rmpl')",
     )?;
     page.tab.evaluate("enroute.dispatch('file.saveAs')")?;
-    page.wait_for("state.toasts.join().includes('closed.rmpl: the browser was not allowed to write it')")?;
+    page.wait_for("state.toasts.join().includes('closed.rmpl: the browser denied write access')")?;
     assert_eq!(page.tab.evaluate("onDisk('closed.rmpl')")?, json!(""));
     assert_eq!(page.tab.evaluate("enroute.source()")?, json!("// kept"));
     page.wait_for("state.library.keeping === 'kept'")?;

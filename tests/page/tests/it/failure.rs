@@ -64,7 +64,7 @@ fn a_core_that_dies_without_a_word_is_noticed_at_once_and_its_work_done_again() 
         "(async () => {{
             const begun = performance.now();
             enroute.setSource('{STUMBLING_BLOCK}');
-            while (!enroute.state().toasts.some((toast) => toast.includes('has begun again'))) {{
+            while (!enroute.state().toasts.some((toast) => toast.includes('and restarted'))) {{
                 await new Promise((done) => setTimeout(done, 10));
             }}
             return (performance.now() - begun) / 1000;
@@ -126,7 +126,7 @@ fn a_front_end_that_stops_gives_the_text_back_when_the_page_is_loaded_again() ->
         "window.dispatchEvent(new ErrorEvent('error', { error: new WebAssembly.RuntimeError('unreachable') }))",
     )?;
     page.tab.wait_until(
-        "document.querySelector('#loading[role=alert]')?.innerText.includes('Your text is kept')",
+        "document.querySelector('#loading[role=alert]')?.innerText.includes('Your text is saved')",
     )?;
     page.tab.evaluate("window.isOldPage = true; document.querySelector('#loading button').click()")?;
     page.tab.wait_until("!('isOldPage' in window) && 'enroute' in window")?;
@@ -154,7 +154,7 @@ fn a_full_storage_hides_neither_the_failure_nor_the_text() -> Result<()> {
     page.tab
         .wait_until("document.querySelector('#loading[role=alert]')?.innerText.includes('save your text')")?;
     page.tab.evaluate(
-        "[...document.querySelectorAll('#loading button')].find((it) => it.innerText === 'Save the text').click()",
+        "[...document.querySelectorAll('#loading button')].find((it) => it.innerText === 'Save text').click()",
     )?;
     assert_eq!(page.tab.evaluate("saved.join()")?, "3000003");
     Ok(())
@@ -226,7 +226,7 @@ fn graphics_that_never_come_back_are_told_with_a_way_to_keep_the_text() -> Resul
     page.tab.evaluate("navigator.gpu && (navigator.gpu.requestAdapter = async () => null)")?;
     page.tab.evaluate("document.getElementById('canvas').dispatchEvent(new Event('webglcontextlost', { cancelable: true }))")?;
     page.tab.wait_until(
-        "document.querySelector('#loading[role=alert]')?.innerText.includes('graphics were lost')",
+        "document.querySelector('#loading[role=alert]')?.innerText.includes('Graphics device lost')",
     )?;
     Ok(())
 }

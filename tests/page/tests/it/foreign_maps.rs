@@ -23,13 +23,13 @@ fn ros() -> [(&'static str, Vec<u8>); 2] {
 fn a_description_and_its_image_that_are_dropped_together_are_one_map() -> Result<()> {
     let page = Opened::planned()?;
     for (files, said) in
-        [(pds(), "HILL.IMG is a map of 3 × 2 cells"), (ros(), "yard.yaml is a map of 3 × 1 cells")]
+        [(pds(), "Imported map HILL.IMG: 3 × 2 cells"), (ros(), "Imported map yard.yaml: 3 × 1 cells")]
     {
         page.tab.drop_files(&files.each_ref().map(|(name, bytes)| (*name, bytes.as_slice())))?;
         page.wait_for(&format!("state.toasts.some((toast) => toast.includes('{said}'))"))?;
         page.settle()?;
         let toasts = page.state()?["toasts"].to_string();
-        assert!(!toasts.contains("cannot be used"), "{toasts}");
+        assert!(!toasts.contains("Couldn't import"), "{toasts}");
     }
     // Nothing of them is a map by itself, and nothing waits for another file.
     let maps = page.state()?["library"]["missions"][0]["maps"].clone();

@@ -72,7 +72,7 @@ fn without_any_storage_the_page_says_so_and_works() -> Result<()> {
     })?;
     page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
     page.wait_for("state.library.keeping === 'nothing'")?;
-    page.tab.wait_until("enroute.widgets('button', 'Not kept').length > 0")?;
+    page.tab.wait_until("enroute.widgets('button', 'Not saved').length > 0")?;
     assert_eq!(page.tab.evaluate("enroute.source()")?, "A()[l,u] = { Work()[1,2] }");
     Ok(())
 }

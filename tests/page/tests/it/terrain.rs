@@ -37,7 +37,7 @@ fn the_search_tree_grows_and_the_clearance_map_covers_the_ground() -> Result<()>
     assert!(covered.difference(&bare) > 0.05, "only {}", covered.difference(&bare));
     page.tab.evaluate("enroute.dispatch('terrain.growth')")?;
     page.wait_for("state.terrain.growth?.total > 0")?;
-    page.tab.click_widget("button", "To the end of the search")?;
+    page.tab.click_widget("button", "Go to last sample")?;
     page.wait_for("state.terrain.growth.samples === state.terrain.growth.total")?;
     assert!(page.state()?["terrain"]["growth"]["length"].as_f64() > Some(0.0));
     Ok(())
@@ -47,7 +47,7 @@ fn the_search_tree_grows_and_the_clearance_map_covers_the_ground() -> Result<()>
 fn a_map_file_dropped_on_the_page_is_read_and_a_broken_one_is_explained() -> Result<()> {
     let page = Opened::planned()?;
     page.tab.drop_file("broken.pgm", b"P5 30 30 255 ")?;
-    page.wait_for("state.toasts.some((toast) => toast.includes('broken.pgm cannot be used'))")?;
+    page.wait_for("state.toasts.some((toast) => toast.includes('import map broken.pgm'))")?;
     page.tab.drop_file("level.pgm", &[b"P5 30 30 255 ".as_slice(), &[b'x'; 900]].concat())?;
     page.wait_for("state.toasts.some((toast) => toast.includes('30 × 30 cells'))")?;
     let text = "terrain \"level.pgm\" cell 10;\\nprimitive Wait()[0,5];\\nscenario S = { Wait() }";
