@@ -6,3 +6,4 @@ mod documentation;
 mod names;
 mod policy;
 mod repository;
+mod wording;
