@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use exact::{Bound, Overflow, Time};
 use executive::model_based::{
-    ClosedLoop, Estimator, Knowledge, LoopStep, ProgramExecution, StepInput, StepOutcome, System,
+    ClosedLoop, Estimator, LoopStep, ProgramExecution, StepInput, StepOutcome, System,
 };
 use executive::{
     ActivityExecution, ActivityExecutor, Contact, Disturbance, Ends, Entry, Happening, PlantReading, Revision,
@@ -129,7 +129,8 @@ impl<'run> ProgramExecutor<'run> {
             Some(moment) => moment.waiting.push(active),
             None => {
                 let random = self.chance.as_mut().map(|chance| Random::new(chance.next_bits()));
-                let closed = ClosedLoop::new(system, Knowledge::MostLikely, random);
+                let estimator = self.estimator.get_or_insert_with(|| Estimator::new(system, None));
+                let closed = ClosedLoop::new(system, estimator, random);
                 let (running, waiting) = (Vec::new(), vec![active]);
                 self.moments.push(Moment { time: start, closed, running, waiting });
             }
@@ -292,14 +293,16 @@ impl<'run> ProgramExecutor<'run> {
             variables.filter_map(|variable| Some((&variable.name, variable.component()?))).collect();
         let mut readings = Vec::new();
         let moments = self.moments.get(first..).unwrap_or_default();
-        for pair in moments.windows(2) {
+        for (at, pair) in (first..).zip(moments.windows(2)) {
             let [before, after] = pair else { continue };
             let Some(active) = before.active().next().filter(|_| after.time > now) else { continue };
             let model = &active.program.system.model;
             for &(variable, component) in &read {
                 let Some(id) = model.component_named(component) else { continue };
                 let mode = |moment: &Moment| moment.closed.belief().most_likely().mode(id);
-                if mode(before) != mode(after) {
+                // Before the first step the mission takes each component by itself to be in its most likely mode.
+                let initial = model.component(id).filter(|_| at == 0).map(|component| component.initial);
+                if initial.unwrap_or_else(|| mode(before)) != mode(after) {
                     let value = SmolStr::new(model.mode_name(id, mode(after)));
                     readings.push(PlantReading { at: after.time, variable: variable.clone(), value });
                 }

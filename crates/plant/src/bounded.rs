@@ -55,7 +55,8 @@ pub enum Effort {
     Most,
 }
 
-/// The belief after `commands` and `observation`, with at most `most` states.
+/// The belief after `commands` and `observation`, with at most `most` states. More states are kept until `decides` holds
+/// of it, too: whether it decides what is asked of it.
 pub fn update_bounded(
     model: &Model,
     belief: &Belief,
@@ -63,6 +64,7 @@ pub fn update_bounded(
     observation: &Observation,
     most: usize,
     effort: Effort,
+    decides: &dyn Fn(&Belief) -> bool,
 ) -> Result<BoundedUpdate, EstimateError> {
     let prior: Vec<&State> = belief.entries().iter().map(|(state, _)| state).collect();
     let choices = distributions(model, &prior, commands)?;
@@ -75,8 +77,8 @@ pub fn update_bounded(
     let found = tried.iter().find_map(|&(threshold, sets)| Some((threshold, step.expand(threshold, sets)?)));
     let (threshold, mut best) =
         found.unwrap_or_else(|| (COARSE, step.expand(COARSE, u64::MAX).unwrap_or_default()));
-    if threshold == 0.0 || effort == Effort::AsNeeded && best.is_settled() {
-        return Ok(best.into_update());
+    if threshold == 0.0 || effort == Effort::AsNeeded && best.is_settled(decides) {
+        return Ok(best.into_update(decides));
     }
     let mut merged = None;
     for threshold in MERGED {
@@ -92,14 +94,14 @@ pub fn update_bounded(
     } else if effort == Effort::AsNeeded {
         for &finer in FINER.iter().filter(|finer| **finer < threshold) {
             // Where as many states are kept as may be, only heavier ones could take the place of others.
-            if best.is_settled() || best.belief.as_ref().is_some_and(|belief| belief.len() >= most) {
+            if best.is_settled(decides) || best.belief.as_ref().is_some_and(|belief| belief.len() >= most) {
                 break;
             }
             let Some(expansion) = step.expand(finer, MAX_SETS) else { break };
             best = expansion;
         }
     }
-    Ok(best.into_update())
+    Ok(best.into_update(decides))
 }
 
 /// What the enumeration with one threshold came to.
@@ -111,8 +113,9 @@ struct Expansion {
 }
 
 impl Expansion {
-    fn is_settled(&self) -> bool {
-        self.belief.as_ref().map_or(self.dropped.is_zero(), Belief::is_settled)
+    fn is_settled(&self, decides: &dyn Fn(&Belief) -> bool) -> bool {
+        let is_enough = |belief: &Belief| belief.is_settled() && (belief.is_exact() || decides(belief));
+        self.belief.as_ref().map_or(self.dropped.is_zero(), is_enough)
     }
 
     /// ε as a part of all, roughly.
@@ -121,8 +124,8 @@ impl Expansion {
         1.0 - Interval::certain(belief.kept()).to_f64().0
     }
 
-    fn into_update(self) -> BoundedUpdate {
-        let is_uncertain = !self.is_settled();
+    fn into_update(self, decides: &dyn Fn(&Belief) -> bool) -> BoundedUpdate {
+        let is_uncertain = !self.is_settled(decides);
         let is_open = self.belief.is_none() && !self.dropped.is_zero();
         BoundedUpdate { belief: self.belief, is_open, is_uncertain }
     }

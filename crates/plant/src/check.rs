@@ -258,7 +258,7 @@ impl Checker<'_, '_> {
                     Some("give it at least one, such as `(MODE Present true)`".into()),
                 );
             }
-            if let Some(initial) = &instance.initial {
+            for initial in instance.initial.modes() {
                 self.check_mode(class, &instance.class.text, initial);
             }
             self.check_ports(instance, class);

@@ -3,10 +3,13 @@
 use std::collections::BTreeMap;
 
 use num_integer::lcm;
-use rmpl::control::{Constraint, ConstraintKind, ControlFile, MergedClass, MergedVariable, Name, merge_all};
+use rmpl::control::{
+    Constraint, ConstraintKind, ControlFile, Initial, Instance, MergedClass, MergedVariable, Name, merge_all,
+};
 use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::{SmolStr, ToSmolStr as _, format_smolstr};
 
+use crate::belief::Belief;
 use crate::check::check;
 use crate::formula::Formula;
 use crate::guard_check::check_guards;
@@ -15,6 +18,10 @@ use crate::model::{
     Transition, VariableId,
 };
 use crate::probability;
+
+/// Of the states in which a plant may start so many are looked at for one whose modes can hold together, before it is
+/// searched for.
+const CHECKED_STATES: usize = 1000;
 
 /// Compiles the classes and components of a file that parsed without errors.
 ///
@@ -33,6 +40,24 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
     compiler.fill();
     let mut model = compiler.model;
     model.prepare();
+    if Belief::initial(&model, CHECKED_STATES).is_none() {
+        let with_prior = file
+            .instances
+            .iter()
+            .find(|instance| matches!(instance.initial, Initial::Prior(_) | Initial::AnyMode));
+        let span = with_prior.map_or(Span::default(), |instance| instance.span);
+        diagnostics.push(
+            Diagnostic::error(
+                Code("E-CONSTRAINT"),
+                span,
+                "the modes in which the components may start contradict each other",
+            )
+            .with_hint(
+                "in at least one combination of these modes, all of their constraints must hold together",
+            ),
+        );
+        return (None, diagnostics);
+    }
     check_guards(&model, &mut diagnostics);
     if let Some(cycle) = crate::order::cycle(&model) {
         let names: Vec<&str> =
@@ -61,6 +86,21 @@ const fn empty() -> Model {
         led_by_commands: Vec::new(),
         full: Vec::new(),
     }
+}
+
+/// The modes in which a component may start, in the order of its class, with their weights.
+fn prior(instance: &Instance, class: &MergedClass<'_>) -> Vec<(u8, u64)> {
+    let mut prior: Vec<(u8, u64)> = match &instance.initial {
+        Initial::FirstMode => vec![(0, 1)],
+        Initial::Mode(mode) => vec![(class.mode(&mode.text).unwrap_or(0) as u8, 1)],
+        Initial::AnyMode => (0..class.modes.len() as u8).map(|mode| (mode, 1)).collect(),
+        Initial::Prior(_) => {
+            let weights = instance.prior().into_iter();
+            weights.filter_map(|(mode, weight)| Some((class.mode(mode)? as u8, weight))).collect()
+        }
+    };
+    prior.sort_unstable();
+    prior
 }
 
 struct Compiler<'file> {
@@ -103,11 +143,14 @@ impl Compiler<'_> {
                 let at = self.file.instances.iter().position(|known| known.name.text == component.text)?;
                 Some((port.text.clone(), ComponentId(at as u32)))
             });
+            let prior = prior(instance, class);
             self.model.components.push(Component {
                 name: instance.name.text.clone(),
                 class: instance.class.text.clone(),
                 modes: Vec::new(),
-                initial: instance.initial.as_ref().and_then(|mode| class.mode(&mode.text)).unwrap_or(0) as u8,
+                // Of several greatest ones the last is taken.
+                initial: prior.iter().rev().max_by_key(|(_, weight)| weight).map_or(0, |(mode, _)| *mode),
+                prior,
                 ports: ports.collect(),
                 commands: (first..self.model.command_variables.len() as u32).map(CommandVariableId).collect(),
                 span: instance.span,

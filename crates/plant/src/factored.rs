@@ -76,9 +76,25 @@ impl FactoredBelief {
         self.probability(&vec![0; self.parts.len()])
     }
 
+    /// The states that differ from the most likely one only in some groups, with their weights, in the same order.
+    pub(crate) fn states_of(&self, groups: &[usize]) -> impl Iterator<Item = (State, BigUint)> + use<'_> {
+        let mut ranking = Ranking::new(self, groups.to_vec());
+        std::iter::from_fn(move || ranking.next().map(|next| (next.state, next.weight)))
+    }
+
+    /// The same beliefs, but for one group.
+    #[must_use]
+    pub fn with(&self, groups: &[Group], at: usize, belief: Arc<Belief>) -> Self {
+        let mut beliefs: Vec<Arc<Belief>> = self.beliefs().cloned().collect();
+        if let Some(slot) = beliefs.get_mut(at) {
+            *slot = belief;
+        }
+        Self::new(groups, beliefs)
+    }
+
     /// The states with their probabilities, most likely first; equally likely ones in the order of their modes.
     pub fn states(&self) -> impl Iterator<Item = (State, Interval)> + '_ {
-        let mut ranking = Ranking::new(self);
+        let mut ranking = Ranking::new(self, (0..self.parts.len()).collect());
         std::iter::from_fn(move || {
             let next = ranking.next()?;
             Some((next.state, self.probability(&next.ranks)))
@@ -122,7 +138,7 @@ struct Ranked {
     state: State,
     /// Of each group, which of its states it is.
     ranks: Vec<usize>,
-    /// The last group that is not in its most likely state; only from there on others follow it.
+    /// The place of the last group that is not in its most likely state; only from there on others follow it.
     last: usize,
 }
 
@@ -144,13 +160,15 @@ impl PartialOrd for Ranked {
 /// next of its states. They come later in the order of modes where they are as likely.
 struct Ranking<'belief> {
     belief: &'belief FactoredBelief,
+    /// The groups that may be in other states than their most likely ones, in order.
+    groups: Vec<usize>,
     waiting: BinaryHeap<Ranked>,
 }
 
 impl<'belief> Ranking<'belief> {
-    fn new(belief: &'belief FactoredBelief) -> Self {
+    fn new(belief: &'belief FactoredBelief, groups: Vec<usize>) -> Self {
         let ranks = vec![0; belief.parts.len()];
-        let mut ranking = Self { belief, waiting: BinaryHeap::new() };
+        let mut ranking = Self { belief, groups, waiting: BinaryHeap::new() };
         let first = ranking.ranked(ranks, 0);
         ranking.waiting.push(first);
         ranking
@@ -158,11 +176,12 @@ impl<'belief> Ranking<'belief> {
 
     fn next(&mut self) -> Option<Ranked> {
         let next = self.waiting.pop()?;
-        for at in next.last..self.belief.parts.len() {
+        for place in next.last..self.groups.len() {
+            let at = self.groups[place];
             if next.ranks[at] + 1 < self.belief.parts[at].belief.len() {
                 let mut ranks = next.ranks.clone();
                 ranks[at] += 1;
-                let following = self.ranked(ranks, at);
+                let following = self.ranked(ranks, place);
                 self.waiting.push(following);
             }
         }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A constraint over symbols: the modes of components, then plant variables, then command variables.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Formula {
     /// Always or never true.
     Constant(bool),
@@ -46,6 +46,39 @@ impl Formula {
             Self::Member { symbol, set } => Self::Member { symbol, set: full(symbol) & !set },
             Self::All(parts) => Self::Any(parts.into_iter().map(|part| part.negated(full)).collect()),
             Self::Any(parts) => Self::All(parts.into_iter().map(|part| part.negated(full)).collect()),
+        }
+    }
+
+    /// What is left to hold when some symbols have these values, without parts that are decided or repeated.
+    pub(crate) fn given(&self, value_of: &impl Fn(u32) -> Option<u8>) -> Self {
+        let joined = |parts: &[Self], is_all: bool| {
+            let mut left: Vec<Self> = Vec::with_capacity(parts.len());
+            for part in parts {
+                match part.given(value_of) {
+                    Self::Constant(value) if value == is_all => {}
+                    Self::Constant(value) => return Self::Constant(value),
+                    Self::All(inner) if is_all => left.extend(inner),
+                    Self::Any(inner) if !is_all => left.extend(inner),
+                    other => left.push(other),
+                }
+            }
+            left.sort_unstable();
+            left.dedup();
+            match (left.len(), is_all) {
+                (0, value) => Self::Constant(value),
+                (1, _) => left.swap_remove(0),
+                (_, true) => Self::All(left),
+                (_, false) => Self::Any(left),
+            }
+        };
+        match self {
+            Self::Constant(value) => Self::Constant(*value),
+            Self::Member { symbol, set } => match value_of(*symbol) {
+                Some(value) => Self::Constant(set >> value & 1 == 1),
+                None => self.clone(),
+            },
+            Self::All(parts) => joined(parts, true),
+            Self::Any(parts) => joined(parts, false),
         }
     }
 

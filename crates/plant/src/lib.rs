@@ -19,6 +19,7 @@ mod guard_check;
 pub mod interval;
 mod island;
 mod island_core;
+pub mod knowledge;
 pub mod likelihood;
 mod merged;
 pub mod model;
@@ -28,6 +29,7 @@ mod odds;
 pub mod order;
 pub mod policy;
 mod prepared;
+mod prior;
 pub mod probability;
 pub mod reconfigure;
 pub mod simulate;
@@ -42,14 +44,17 @@ pub use compile::compile;
 pub use diagnosis::{Conflict, conflicts};
 pub use exact::update_exact;
 pub use factored::FactoredBelief;
+pub use formula::Formula;
 pub use group::{Group, groups};
 pub use interval::Interval;
+pub use knowledge::{Known, Situation};
 pub use model::{
     CommandVariable, CommandVariableId, Commands, Component, ComponentId, Fault, Mode, Model, Observation,
     PlantVariable, Transition, VariableId,
 };
 pub use order::CausalOrder;
 pub use policy::Planner;
+pub use prior::draw_initial;
 pub use probability::Probability;
 pub use reconfigure::{Command, Goal, NextCommands, Plan, Unreachable};
 pub use simulate::{Random, SimulatedPlant};

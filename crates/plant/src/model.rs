@@ -29,8 +29,10 @@ pub struct Component {
     pub class: SmolStr,
     /// Its modes; a state gives each component the index of its mode.
     pub modes: Vec<Mode>,
-    /// The mode in which it starts.
+    /// The mode in which it most likely starts; of equally likely ones the first.
     pub initial: u8,
+    /// The modes in which it may start, in their order, with their weights.
+    pub prior: Vec<(u8, u64)>,
     pub ports: Vec<(SmolStr, ComponentId)>,
     pub commands: Vec<CommandVariableId>,
     /// Where it is declared.
@@ -153,7 +155,7 @@ impl Model {
         mode.map_or("?", |mode| mode.name.as_str())
     }
 
-    /// The modes in which all components start.
+    /// The modes in which the components most likely start, each by itself.
     pub fn initial_state(&self) -> crate::State {
         crate::State(self.components.iter().map(|component| component.initial).collect())
     }

@@ -53,6 +53,18 @@ impl Random {
             }
         }
     }
+
+    /// One of some modes, each with its weight of `total`. A mode that stands alone takes no draw.
+    pub(crate) fn weighted(&mut self, weights: &[(u8, u64)], total: u64) -> u8 {
+        let mut left = if weights.len() > 1 { self.below(total) } else { 0 };
+        for &(mode, weight) in weights {
+            if left < weight {
+                return mode;
+            }
+            left -= weight;
+        }
+        weights.first().map_or(0, |(mode, _)| *mode)
+    }
 }
 
 /// The simulated plant.
@@ -99,7 +111,7 @@ impl SimulatedPlant {
             .collect::<Result<Vec<_>, _>>()?;
         for _ in 0..100 {
             let drawn =
-                choices.iter().map(|(weights, denominator)| draw(weights, *denominator, random)).collect();
+                choices.iter().map(|(weights, denominator)| random.weighted(weights, *denominator)).collect();
             if self.enter(State(drawn), injected).is_ok() {
                 return Ok(());
             }
@@ -171,15 +183,4 @@ pub fn observation_of(model: &Model, state: &State) -> Observation {
         }
     }
     observation
-}
-
-fn draw(weights: &[(u8, u64)], denominator: u64, random: &mut Random) -> u8 {
-    let mut left = if weights.len() > 1 { random.below(denominator) } else { 0 };
-    for &(mode, weight) in weights {
-        if left < weight {
-            return mode;
-        }
-        left -= weight;
-    }
-    weights.first().map_or(0, |(mode, _)| *mode)
 }

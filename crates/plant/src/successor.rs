@@ -4,9 +4,9 @@ use num_integer::lcm;
 use thiserror::Error;
 
 use crate::belief::State;
-use crate::consistency::Assumed;
 use crate::domains::Domains;
 use crate::formula::{Formula, Truth};
+use crate::knowledge::is_entailed_by_search;
 use crate::model::{CommandVariableId, Commands, Component, ComponentId, Mode, Model, Observation};
 
 /// What can go wrong in a step of estimation or simulation.
@@ -213,7 +213,7 @@ pub(crate) fn is_entailed(model: &Model, guard: &Formula, state: &State, command
     match direct(model, guard, state, commands) {
         Truth::True => true,
         Truth::False => false,
-        Truth::Open => is_entailed_by_search(model, guard, state, commands),
+        Truth::Open => is_entailed_with(model, guard, state, commands),
     }
 }
 
@@ -257,9 +257,7 @@ fn direct(model: &Model, guard: &Formula, state: &State, commands: &Commands) ->
 }
 
 /// For guards over plant variables: no way to hold the modes without the guard.
-fn is_entailed_by_search(model: &Model, guard: &Formula, state: &State, commands: &Commands) -> bool {
-    let full = |symbol: u32| model.full.get(symbol as usize).copied().unwrap_or(0);
-    let Some(alternatives) = guard.clone().negated(&full).alternatives(4096) else { return false };
+fn is_entailed_with(model: &Model, guard: &Formula, state: &State, commands: &Commands) -> bool {
     let mut start = Domains::observed(model, &Observation::default());
     for (at, &command) in commands.0.iter().enumerate() {
         let symbol = model.command_symbol(CommandVariableId(at as u32)) as usize;
@@ -272,16 +270,5 @@ fn is_entailed_by_search(model: &Model, guard: &Formula, state: &State, commands
             *set = 1_u64.checked_shl(u32::from(state.mode(component))).unwrap_or(0);
         }
     }
-    !alternatives.iter().any(|alternative| {
-        let mut domains = start.clone();
-        for (symbol, set) in alternative {
-            if let Some(domain) = domains.sets.get_mut(*symbol as usize) {
-                *domain &= set;
-                if *domain == 0 {
-                    return false;
-                }
-            }
-        }
-        model.islands.iter().all(|island| Assumed::all(model, island, &state.0).satisfy(&mut domains).is_ok())
-    })
+    is_entailed_by_search(model, guard, state, &start)
 }

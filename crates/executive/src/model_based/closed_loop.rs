@@ -1,20 +1,23 @@
 //! The closed loop of one step: goals, commands, what nature answers, what is observed, what is believed then (SPEC 9.3).
 //!
-//! One plant may be under several programs at once: each step commands it towards the goals of all of them, and all move on
+//! What a program knows is what its estimate entails: in the most likely state or, where the program says so, with a
+//! probability (SPEC3 17.4). One plant may be under several programs at once: each step commands it towards the goals of all of them, and all move on
 //! by the same estimate.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hca::{Stepper, TraceStep};
+use hca::{Stepper, TestId, TraceStep};
 use plant::successor::nominal;
 use plant::{
-    Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Goal, Observation, Random,
-    SimulatedPlant, State,
+    Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Formula, Goal, Interval, Known,
+    Observation, Random, SimulatedPlant, Situation, State, draw_initial,
 };
-use smol_str::SmolStr;
+use serde::{Deserialize, Serialize};
+use smol_str::{SmolStr, ToSmolStr as _};
 
-use super::estimator::{Believed, Estimator, StepOutcome};
-use super::run::{Knowledge, StepInput};
+use super::estimator::{Believed, Estimator, StepOutcome, Threshold};
+use super::run::StepInput;
 use super::system::System;
 
 /// A program under way.
@@ -38,6 +41,64 @@ impl ProgramExecution {
     pub fn upcoming(&self) -> TraceStep {
         TraceStep::at(&self.stepper, self.steps + 1)
     }
+
+    /// The conditions that the next step may ask for, in order, each with what the plant has to make true for it.
+    fn asked(&self) -> Vec<(TestId, Formula)> {
+        let settings: Vec<_> = self.stepper.settings().collect();
+        let condition = |test| (test, self.system.condition(test, settings.clone()));
+        self.stepper.asked().into_iter().map(condition).collect()
+    }
+
+    /// Moves on by what is entailed of what was `asked`.
+    fn step(
+        &mut self,
+        asked: &[(TestId, Formula)],
+        known: Known<'_>,
+        trace: &mut TraceStep,
+    ) -> Vec<AskedCondition> {
+        let system = Arc::clone(&self.system);
+        let mut situation = Situation::new(&system.model, known.belief.most_likely(), known.observation);
+        // A condition is asked for with a bar and without.
+        let mut answers: BTreeMap<&Formula, (bool, Option<Interval>)> = BTreeMap::new();
+        let mut shown: Vec<AskedCondition> = Vec::new();
+        let mut entailed = Vec::with_capacity(asked.len());
+        for (test, condition) in asked {
+            let answer = answers.entry(condition).or_insert_with(|| match &system.entailment {
+                None => (situation.entails(condition), None),
+                Some(entailed_from) => {
+                    let probability = known.probability(condition);
+                    (probability.low >= *entailed_from, Some(probability))
+                }
+            });
+            entailed.push(answer.0);
+            let is_of_plant = !known.groups_of(condition).is_empty();
+            if let (Some(guard), (is_entailed, Some(probability)), true) =
+                (system.automaton.guard(*test), answer, is_of_plant)
+            {
+                let condition = guard.constraint.to_smolstr();
+                if shown.iter().all(|known| known.condition != condition) {
+                    let (probability, is_entailed) = (probability.clone(), *is_entailed);
+                    shown.push(AskedCondition { condition, probability, is_entailed });
+                }
+            }
+        }
+        let is_entailed = |test: TestId| {
+            let place = asked.binary_search_by_key(&test, |(asked, _)| *asked);
+            place.is_ok_and(|place| entailed[place])
+        };
+        self.stepper.step_told(&is_entailed, trace);
+        shown
+    }
+}
+
+/// A condition about its plant that a program asked for, and how probable it was.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AskedCondition {
+    /// As it is written in labels.
+    pub condition: SmolStr,
+    pub probability: Interval,
+    /// Whether it is at least as probable as the program demands.
+    pub is_entailed: bool,
 }
 
 /// A plant under control, with what is believed of it.
@@ -45,10 +106,11 @@ impl ProgramExecution {
 pub struct ClosedLoop {
     plant: SimulatedPlant,
     believed: Believed,
+    /// What was observed in the last step.
+    observation: Observation,
     /// How the last step came out: after one that is not explained there is no further one.
     outcome: StepOutcome,
     random: Option<Random>,
-    knowledge: Knowledge,
 }
 
 /// What happened in one step.
@@ -58,6 +120,8 @@ pub struct LoopStep {
     pub traces: Vec<TraceStep>,
     /// The commands given.
     pub commands: Commands,
+    /// The state that they were planned from, if that is not the most likely one.
+    pub planned_from: Option<State>,
     /// Goals that are not pursued, each with the reason.
     pub unachievable: Vec<(SmolStr, String)>,
     /// Components that chance brought into another mode than the commanded one, with that mode.
@@ -66,21 +130,31 @@ pub struct LoopStep {
     pub observation: Observation,
     /// Whether the observation can be explained. If not, the programs stay where they were, and so does the belief.
     pub outcome: StepOutcome,
-    /// Whether the limit of states kept the estimate's dropped measure from becoming small.
+    /// What each program asked for, if it names a probability from which on conditions are entailed.
+    pub asked: Vec<Vec<AskedCondition>>,
+    /// Whether limits kept the estimate's dropped measure from becoming small, or leave open whether something asked for is
+    /// entailed.
     pub is_uncertain: bool,
     /// Which mode assumptions the observation contradicts.
     pub conflicts: Vec<Conflict>,
 }
 
 impl ClosedLoop {
-    /// A plant in its initial state, which is known. With a source of chance components fail with their probabilities.
-    pub fn new(system: &System, knowledge: Knowledge, random: Option<Random>) -> Self {
+    /// A plant in its most likely first state. With a source of chance the first state is drawn, and components fail with
+    /// their probabilities.
+    pub fn new(system: &System, estimator: &mut Estimator, mut random: Option<Random>) -> Self {
+        let believed = estimator.initial();
+        let likeliest = believed.belief.most_likely();
+        let state = match &mut random {
+            Some(random) => draw_initial(&system.model, likeliest, random),
+            None => likeliest.clone(),
+        };
         Self {
-            plant: SimulatedPlant::new(&system.model, None),
-            believed: Believed::certain(&system.groups, &system.model.initial_state()),
+            plant: SimulatedPlant::new(&system.model, Some(state)),
+            believed,
+            observation: Observation::default(),
             outcome: StepOutcome::Explained,
             random,
-            knowledge,
         }
     }
 
@@ -128,7 +202,9 @@ impl ClosedLoop {
         input: &StepInput,
     ) -> Result<LoopStep, EstimateError> {
         let mut traces: Vec<TraceStep> = programs.iter().map(|program| program.upcoming()).collect();
-        let (commands, unachievable) = self.command(programs, estimator);
+        let planned_from = self.planning_state(system, programs);
+        let state = planned_from.as_ref().unwrap_or_else(|| self.belief().most_likely());
+        let (commands, unachievable) = command(programs, estimator, state);
         let mut failed = Vec::new();
         match &mut self.random {
             Some(random) => {
@@ -145,78 +221,102 @@ impl ClosedLoop {
         }
         let mut observation = self.plant.observation();
         observation.0.extend(&input.observed);
-        let update = estimator.estimate(&self.believed, &commands, &observation)?;
+        let asked: Vec<Vec<(TestId, Formula)>> = programs.iter().map(|program| program.asked()).collect();
+        let thresholds: Vec<Threshold<'_>> = programs
+            .iter()
+            .zip(&asked)
+            .filter_map(|(program, asked)| Some((program.system.entailment.as_ref()?, asked)))
+            .flat_map(|(entailed_from, asked)| {
+                asked.iter().map(move |(_, condition)| Threshold { condition, entailed_from })
+            })
+            .collect();
+        let update = estimator.estimate(&self.believed, &commands, &observation, &thresholds)?;
         let is_explained = update.believed.is_some();
         self.outcome = update.outcome;
         if let Some(believed) = update.believed {
             self.believed = believed;
         }
-        let most = match self.knowledge {
-            Knowledge::MostLikely => 1,
-            Knowledge::CommonTo(most) => most.max(1),
-        };
-        for (program, trace) in programs.iter_mut().zip(&mut traces) {
+        self.observation.clone_from(&observation);
+        let known = self.known(system);
+        let mut shown = vec![Vec::new(); traces.len()];
+        for (at, (program, trace)) in programs.iter_mut().zip(&mut traces).enumerate() {
             // Under a refuted belief no guard holds, and no goal is achieved.
             if is_explained {
-                let likely = self.likely_states(most);
-                let estimates: Vec<hca::Estimate> =
-                    likely.iter().map(|state| program.system.estimate(state, &observation)).collect();
-                program.stepper.step_observed(&estimates, trace);
+                shown[at] = program.step(&asked[at], known, trace);
             }
             program.steps += 1;
         }
         Ok(LoopStep {
             traces,
             commands,
+            planned_from,
             unachievable,
             failed,
             observation,
             outcome: self.outcome.clone(),
+            asked: shown,
             is_uncertain: update.is_uncertain,
             conflicts: update.conflicts,
         })
     }
 
-    /// The `most` most likely states.
-    fn likely_states(&self, most: usize) -> Vec<State> {
-        if most == 1 {
-            return vec![self.belief().most_likely().clone()];
-        }
-        self.belief().states().take(most).map(|(state, _)| state).collect()
+    fn known<'known>(&'known self, system: &'known System) -> Known<'known> {
+        Known { groups: &system.groups, belief: self.belief(), observation: &self.observation }
     }
 
-    /// The commands towards the goals of the marked locations, from the most likely state.
-    fn command(
-        &self,
-        programs: &[&mut ProgramExecution],
-        estimator: &mut Estimator,
-    ) -> (Commands, Vec<(SmolStr, String)>) {
-        let state = self.belief().most_likely();
-        let mut goals: Vec<Goal> = Vec::new();
-        let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
+    /// The state that commands are planned from, if it is not the most likely one: where that satisfies goals that are not
+    /// entailed, it is the most likely state that does not satisfy one of them.
+    fn planning_state(&self, system: &System, programs: &[&mut ProgramExecution]) -> Option<State> {
+        let known = self.known(system);
+        let mut satisfied = Vec::new();
         for program in programs {
-            let system = &program.system;
-            for location in program.stepper.marking().iter() {
-                let Some(configurations) = system.goal_configurations(location) else { continue };
-                if let Some(found) = configurations.goals(estimator.planner(), state) {
-                    goals.extend(found);
-                } else {
-                    let label = system.automaton.location(location).map(|location| location.label.clone());
-                    let label = label.unwrap_or_default();
-                    let goal = SmolStr::new(label.trim_start_matches("assert "));
-                    unachievable.push((goal, "no mode of the plant makes it true".into()));
+            let Some(entailed_from) = &program.system.entailment else { continue };
+            let settings: Vec<_> = program.stepper.settings().collect();
+            let marked = program.stepper.marking().iter();
+            let marked = marked.filter_map(|location| program.system.automaton.location(location));
+            for goal in marked.filter_map(|location| location.assertion.as_ref()) {
+                let goal = program.system.condition(goal.test, settings.clone());
+                let mut likeliest =
+                    Situation::new(&system.model, known.belief.most_likely(), known.observation);
+                if likeliest.entails(&goal) && known.probability(&goal).low < *entailed_from {
+                    satisfied.push(goal);
                 }
             }
         }
-        goals.sort_unstable();
-        goals.dedup();
-        let next = estimator.plan(state, &goals);
-        let model = estimator.planner().model();
-        let described =
-            next.unreachable.iter().map(|failed| (failed.goal.describe(model).into(), failed.reason.clone()));
-        unachievable.extend(described);
-        unachievable.sort();
-        unachievable.dedup();
-        (next.commands, unachievable)
+        known.likeliest_without(&system.model, &satisfied)
     }
+}
+
+/// The commands from a state towards the goals of the marked locations.
+fn command(
+    programs: &[&mut ProgramExecution],
+    estimator: &mut Estimator,
+    state: &State,
+) -> (Commands, Vec<(SmolStr, String)>) {
+    let mut goals: Vec<Goal> = Vec::new();
+    let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
+    for program in programs {
+        let system = &program.system;
+        for location in program.stepper.marking().iter() {
+            let Some(configurations) = system.goal_configurations(location) else { continue };
+            if let Some(found) = configurations.goals(estimator.planner(), state) {
+                goals.extend(found);
+            } else {
+                let label = system.automaton.location(location).map(|location| location.label.clone());
+                let label = label.unwrap_or_default();
+                let goal = SmolStr::new(label.trim_start_matches("assert "));
+                unachievable.push((goal, "no mode of the plant makes it true".into()));
+            }
+        }
+    }
+    goals.sort_unstable();
+    goals.dedup();
+    let next = estimator.plan(state, &goals);
+    let model = estimator.planner().model();
+    let described =
+        next.unreachable.iter().map(|failed| (failed.goal.describe(model).into(), failed.reason.clone()));
+    unachievable.extend(described);
+    unachievable.sort();
+    unachievable.dedup();
+    (next.commands, unachievable)
 }

@@ -1,15 +1,16 @@
 //! The estimator: belief updates and the commands that follow, remembered so that many runs share them.
 //!
 //! Each group of components has a belief of its own (SPEC3 17.2). If no state that was kept explains an observation, the
-//! history is expanded again from the last step at which nothing had been dropped (17.3; Kurien and Nayak 2000).
+//! history is expanded again from the last step at which nothing had been dropped (17.3; Kurien and Nayak 2000). Where a
+//! program names a probability from which on conditions are entailed, more states are kept until that is decided.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use plant::bounded::MAX_STATES;
 use plant::{
-    Belief, BoundedUpdate, Commands, Conflict, Effort, EstimateError, FactoredBelief, Goal, Group,
-    NextCommands, Observation, Planner, State, conflicts, update_bounded,
+    Belief, BoundedUpdate, Commands, Conflict, Effort, EstimateError, FactoredBelief, Formula, Goal, Group,
+    Known, NextCommands, Observation, Planner, Probability, State, conflicts, update_bounded,
 };
 use serde::{Deserialize, Serialize};
 
@@ -72,11 +73,24 @@ impl Drop for TakenStep {
 }
 
 impl Believed {
-    /// Certainty of one state.
-    pub(super) fn certain(groups: &[Group], state: &State) -> Self {
-        let belief = FactoredBelief::certain(groups, state);
+    /// What is believed before the first step.
+    fn initial(belief: FactoredBelief) -> Self {
         let histories = belief.beliefs().map(|belief| History { complete: Arc::clone(belief), since: None });
         Self { histories: histories.collect(), belief }
+    }
+}
+
+/// A condition of which a belief has to decide whether it is at least as probable as a program demands.
+pub(super) struct Threshold<'asked> {
+    pub(super) condition: &'asked Formula,
+    pub(super) entailed_from: &'asked Probability,
+}
+
+impl Threshold<'_> {
+    /// Whether what was dropped leaves open on which side of the threshold the condition is.
+    fn is_open(&self, known: Known<'_>) -> bool {
+        let probability = known.probability(self.condition);
+        probability.low < *self.entailed_from && *self.entailed_from <= probability.high
     }
 }
 
@@ -86,7 +100,7 @@ pub(super) struct BeliefUpdate {
     /// `None` if it is not known to be explained.
     pub(super) believed: Option<Believed>,
     pub(super) outcome: StepOutcome,
-    /// Whether the limit of states kept the dropped measure from becoming small.
+    /// Whether limits kept the dropped measure from becoming small, or a threshold from being decided.
     pub(super) is_uncertain: bool,
     pub(super) conflicts: Vec<Conflict>,
 }
@@ -100,6 +114,7 @@ pub struct Estimator {
     planner: Arc<Planner>,
     groups: Arc<Vec<Group>>,
     most_states: usize,
+    initial: Option<FactoredBelief>,
     updates: BTreeMap<GroupQuestion, BoundedUpdate>,
     diagnoses: BTreeMap<(State, Commands, Observation), Vec<Conflict>>,
     plans: BTreeMap<(State, Vec<Goal>), NextCommands>,
@@ -123,6 +138,7 @@ impl Estimator {
             planner: Arc::clone(&system.planner),
             groups: Arc::clone(&system.groups),
             most_states: most_states.unwrap_or(MAX_STATES).clamp(1, MAX_STATES),
+            initial: None,
             updates: BTreeMap::new(),
             diagnoses: BTreeMap::new(),
             plans: BTreeMap::new(),
@@ -134,18 +150,25 @@ impl Estimator {
         &self.planner
     }
 
+    /// What is believed before the first step.
+    pub(super) fn initial(&mut self) -> Believed {
+        let belief =
+            self.initial.get_or_insert_with(|| FactoredBelief::initial(&self.groups, self.most_states));
+        Believed::initial(belief.clone())
+    }
+
     pub(super) fn estimate(
         &mut self,
         believed: &Believed,
         commands: &Commands,
         observation: &Observation,
+        asked: &[Threshold<'_>],
     ) -> Result<BeliefUpdate, EstimateError> {
         let conflicts = self.diagnose(believed.belief.most_likely(), commands, observation)?;
         let groups = Arc::clone(&self.groups);
         let mut is_uncertain = false;
         let mut is_limited = false;
         let mut beliefs = Vec::with_capacity(groups.len());
-        let mut histories = Vec::with_capacity(groups.len());
         let mut refuted: BTreeMap<usize, Arc<Belief>> = BTreeMap::new();
         let each = believed.belief.beliefs().zip(&believed.histories).zip(groups.iter()).enumerate();
         for (at, ((belief, history), group)) in each {
@@ -153,11 +176,6 @@ impl Estimator {
             match self.update_group(at, belief, history, &commands, &observation)? {
                 GroupUpdate::Explained { belief, is_uncertain: one } => {
                     is_uncertain |= one;
-                    let since = (!belief.is_exact()).then(|| {
-                        Arc::new(TakenStep { commands, observation, before: history.since.clone() })
-                    });
-                    let complete = if since.is_some() { &history.complete } else { &belief };
-                    histories.push(History { complete: Arc::clone(complete), since });
                     beliefs.push(belief);
                 }
                 GroupUpdate::Refuted(prior) => {
@@ -175,8 +193,57 @@ impl Estimator {
             let outcome = StepOutcome::LimitReached;
             return Ok(BeliefUpdate { believed: None, outcome, is_uncertain: true, conflicts });
         }
-        let believed = Some(Believed { belief: FactoredBelief::new(&groups, beliefs), histories });
+        let mut belief = FactoredBelief::new(&groups, beliefs);
+        is_uncertain |= self.decide(&believed.belief, &mut belief, commands, observation, asked)?;
+        let histories = belief.beliefs().zip(&believed.histories).zip(groups.iter());
+        let histories = histories.map(|((belief, history), group)| {
+            if belief.is_exact() {
+                return History { complete: Arc::clone(belief), since: None };
+            }
+            let (commands, observation) = (group.commands(commands), group.observation(observation));
+            let taken = TakenStep { commands, observation, before: history.since.clone() };
+            History { complete: Arc::clone(&history.complete), since: Some(Arc::new(taken)) }
+        });
+        let histories = histories.collect();
+        let believed = Some(Believed { belief, histories });
         Ok(BeliefUpdate { believed, outcome: StepOutcome::Explained, is_uncertain, conflicts })
+    }
+
+    /// Keeps more states of the groups that thresholds depend on, as long as these are open; returns whether one stays so.
+    fn decide(
+        &self,
+        before: &FactoredBelief,
+        belief: &mut FactoredBelief,
+        commands: &Commands,
+        observation: &Observation,
+        asked: &[Threshold<'_>],
+    ) -> Result<bool, EstimateError> {
+        let groups = &*self.groups;
+        let is_open =
+            |belief: &FactoredBelief, one: &Threshold<'_>| one.is_open(Known { groups, belief, observation });
+        let mut open: Vec<&Threshold<'_>> = asked.iter().filter(|one| is_open(belief, one)).collect();
+        for (at, (group, prior)) in groups.iter().zip(before.beliefs()).enumerate() {
+            let known = Known { groups, belief, observation };
+            let has_dropped = belief.beliefs().nth(at).is_some_and(|belief| !belief.is_exact());
+            let depends = |one: &&&Threshold<'_>| known.groups_of(one.condition).contains(&at);
+            let depending: Vec<&Threshold<'_>> = open.iter().filter(depends).copied().collect();
+            if !has_dropped || depending.is_empty() {
+                continue;
+            }
+            let decides = |candidate: &Belief| {
+                let with = belief.with(groups, at, Arc::new(candidate.clone()));
+                depending.iter().all(|one| !is_open(&with, one))
+            };
+            let (commands, seen) = (group.commands(commands), group.observation(observation));
+            let most = self.most_states;
+            let update =
+                update_bounded(&group.model, prior, &commands, &seen, most, Effort::AsNeeded, &decides)?;
+            if let Some(found) = update.belief {
+                *belief = belief.with(groups, at, Arc::new(found));
+                open.retain(|one| is_open(belief, one));
+            }
+        }
+        Ok(!open.is_empty())
     }
 
     fn update_group(
@@ -270,7 +337,8 @@ impl Estimator {
             return Ok(known.clone());
         }
         let model = &self.groups[at].model;
-        let update = update_bounded(model, belief, commands, observation, self.most_states, effort)?;
+        let most = self.most_states;
+        let update = update_bounded(model, belief, commands, observation, most, effort, &|_| true)?;
         let states = belief.len() + update.belief.as_ref().map_or(0, Belief::len);
         if effort == Effort::AsNeeded && states <= MAX_REMEMBERED_STATES {
             if self.updates.len() >= MAX_REMEMBERED {

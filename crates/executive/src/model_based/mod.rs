@@ -1,9 +1,10 @@
 //! The model-based executive: a control program in a closed loop with a plant (SPEC 9.3).
 //!
 //! Each step asserts goals, commands the plant towards them, lets nature answer, observes, updates the belief, and
-//! moves the automaton by the most likely state.
+//! moves the automaton by what is entailed: by the most likely state, or from a probability on that the program names.
 
 mod closed_loop;
+mod conditions;
 mod estimator;
 mod goal;
 mod liveness;
@@ -11,9 +12,9 @@ mod monte_carlo;
 mod run;
 mod system;
 
-pub use closed_loop::{ClosedLoop, LoopStep, ProgramExecution};
+pub use closed_loop::{AskedCondition, ClosedLoop, LoopStep, ProgramExecution};
 pub use estimator::{Estimator, StepOutcome};
 pub use liveness::waits_forever;
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
-pub use run::{Knowledge, Options, Run, RunStatus, StepInput, StepRecord};
+pub use run::{Options, Run, RunStatus, StepInput, StepRecord};
 pub use system::{ControlledPlant, System, SystemCompilation};

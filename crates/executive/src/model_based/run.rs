@@ -10,25 +10,13 @@ use plant::{
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use super::closed_loop::{ClosedLoop, ProgramExecution};
+use super::closed_loop::{AskedCondition, ClosedLoop, ProgramExecution};
 use super::estimator::{Estimator, StepOutcome};
 use super::system::System;
-
-/// What the automaton takes for known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Knowledge {
-    /// The most likely state.
-    #[default]
-    MostLikely,
-    /// What is true in all of this many of the most likely states.
-    CommonTo(usize),
-}
 
 /// How a run is made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// What the automaton takes for known.
-    pub knowledge: Knowledge,
     /// How many states the belief of a group of components keeps at most; as many as the estimator allows if not said.
     pub most_states: Option<usize>,
     /// With a seed, components fail by chance with their probabilities; without, only what is injected fails.
@@ -53,6 +41,8 @@ pub struct StepRecord {
     pub input: StepInput,
     /// The commands given.
     pub commands: Commands,
+    /// The state that the commands were planned from, if that is not the most likely one of the belief before.
+    pub planned_from: Option<State>,
     /// Goals that are not pursued, in the form `EngineA=Standby`, each with the reason.
     pub unachievable: Vec<(SmolStr, String)>,
     /// Components that chance brought into another mode than the commanded one, with that mode.
@@ -65,7 +55,10 @@ pub struct StepRecord {
     pub belief: FactoredBelief,
     /// Whether the observation can be explained.
     pub outcome: StepOutcome,
-    /// Whether the limit of states kept the estimate's dropped measure from becoming small.
+    /// What the automaton asked for at the step's end, if the program names a probability from which on it is entailed.
+    pub asked: Vec<AskedCondition>,
+    /// Whether limits kept the estimate's dropped measure from becoming small, or leave open whether something asked for is
+    /// entailed.
     pub is_uncertain: bool,
     /// Which mode assumptions the observation contradicts, when not all went as expected.
     pub conflicts: Vec<Conflict>,
@@ -102,17 +95,17 @@ pub struct Run {
 }
 
 impl Run {
-    /// Starts with the plant in its initial state, which is known.
+    /// Starts with the plant in its most likely first state or, with a seed, in one that is drawn.
     pub fn new(system: &Arc<System>, options: Options) -> Self {
         let estimator = Estimator::new(system, options.most_states);
         Self::with_estimator(system, options, estimator)
     }
 
     /// The same with an estimator that remembers what earlier runs asked.
-    pub fn with_estimator(system: &Arc<System>, options: Options, estimator: Estimator) -> Self {
+    pub fn with_estimator(system: &Arc<System>, options: Options, mut estimator: Estimator) -> Self {
         Self {
+            closed: ClosedLoop::new(system, &mut estimator, options.seed.map(Random::new)),
             estimator,
-            closed: ClosedLoop::new(system, options.knowledge, options.seed.map(Random::new)),
             program: ProgramExecution::new(system),
             records: Vec::new(),
             before: Vec::new(),
@@ -204,12 +197,14 @@ impl Run {
             trace,
             input: input.clone(),
             commands: step.commands,
+            planned_from: step.planned_from,
             unachievable: step.unachievable,
             failed: step.failed,
             true_state: self.closed.true_state().clone(),
             observation: step.observation,
             belief: self.closed.belief().clone(),
             outcome: step.outcome,
+            asked: step.asked.into_iter().next().unwrap_or_default(),
             is_uncertain: step.is_uncertain,
             conflicts: step.conflicts,
         });

@@ -1,10 +1,10 @@
 //! A control program bound to the plant that it controls.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use hca::{Automaton, Estimate, VariableId as ProgramVariableId, Vocabulary};
-use plant::{ComponentId, Group, Model, Observation, Planner, State, VariableId};
+use hca::{Automaton, TestId, VariableId as ProgramVariableId, Vocabulary};
+use plant::{ComponentId, Formula, Group, Model, Planner, Probability, VariableId};
 use rmpl::control::{
     Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Name,
     expand_main, nearest,
@@ -12,11 +12,12 @@ use rmpl::control::{
 use rmpl::{Code, Diagnostic, Severity};
 use smol_str::SmolStr;
 
+use super::conditions::Asker;
 use super::goal::{GoalConfigurations, goal_configurations};
 
 /// What a variable of the program stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Binding {
+pub(super) enum Binding {
     Mode(ComponentId),
     Plant(VariableId),
     /// A variable that only the program sets.
@@ -32,6 +33,9 @@ pub struct System {
     pub planner: Arc<Planner>,
     /// The components of the plant, by what ties them together.
     pub groups: Arc<Vec<Group>>,
+    /// From which probability on the program takes a condition for known; `None` if it does so when the condition holds in
+    /// the most likely state.
+    pub entailment: Option<Probability>,
     bindings: Vec<Binding>,
     /// Per location, the configurations of the plant that satisfy what it asserts.
     goal_configurations: Vec<Option<GoalConfigurations>>,
@@ -146,25 +150,12 @@ impl System {
         bind(&file, plant)
     }
 
-    /// What the program knows when the plant is in `state` and shows `observation`.
-    pub fn estimate(&self, state: &State, observation: &Observation) -> Estimate {
-        let mut estimate = Estimate::unknown(self.automaton.variables.len());
-        let entailed: BTreeMap<VariableId, u8> =
-            if self.bindings.iter().any(|binding| matches!(binding, Binding::Plant(_))) {
-                self.model.entailed_values(state, observation).into_iter().collect()
-            } else {
-                BTreeMap::new()
-            };
-        for (at, binding) in self.bindings.iter().enumerate() {
-            // Closed domains are numbered as in the model.
-            let value = match binding {
-                Binding::Mode(component) => Some(u32::from(state.mode(*component))),
-                Binding::Plant(variable) => entailed.get(variable).map(|value| u32::from(*value)),
-                Binding::Program => None,
-            };
-            estimate.set(ProgramVariableId(at as u32), value);
-        }
-        estimate
+    /// What the plant has to make true for a condition of the automaton to hold, where the program's own variables have
+    /// these values.
+    pub(super) fn condition(&self, test: TestId, settings: Vec<(ProgramVariableId, u32)>) -> Formula {
+        let asker =
+            Asker { automaton: &self.automaton, model: &self.model, bindings: &self.bindings, settings };
+        self.automaton.guard(test).map_or(Formula::Constant(true), |guard| asker.condition(&guard.constraint))
     }
 
     /// The components that the program commands: those that its goals speak of, and those that these rest on.
@@ -232,7 +223,9 @@ fn bind(file: &ControlFile, plant: &ControlledPlant) -> (Option<Arc<System>>, Ve
         })
         .collect();
     let (model, planner, groups) = (Arc::clone(model), Arc::clone(planner), Arc::clone(groups));
-    let system = System { automaton, model, planner, groups, bindings, goal_configurations };
+    let entailment =
+        file.entailment().map(|given| Probability::new(given.numerator().into(), given.denominator().into()));
+    let system = System { automaton, model, planner, groups, entailment, bindings, goal_configurations };
     (Some(Arc::new(system)), diagnostics)
 }
 

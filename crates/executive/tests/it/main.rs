@@ -1,5 +1,6 @@
 //! The integration tests of `executive`, in one program: each module is about one thing.
 
+mod entailment;
 mod instants;
 mod model_based;
 mod pinned;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use executive::model_based::{
-    Knowledge, Options, ProgramTally, Run, RunStatus, StepInput, StepOutcome, StepRecord, System, Trials,
-    run_seed, sample, wilson_interval,
+    Options, ProgramTally, Run, RunStatus, StepInput, StepOutcome, StepRecord, System, Trials, run_seed,
+    sample, wilson_interval,
 };
 use plant::Observation;
 use serde_json::Value;
@@ -235,17 +235,6 @@ fn stepping_back_and_replaying_the_log_give_the_same_run() {
     assert_eq!(run.records(), records);
     let again = Run::replay(&system, options, &run.log()).expect("replay");
     assert_eq!(again.records(), records);
-}
-
-#[test]
-fn what_is_known_in_several_states_is_less_than_in_the_most_likely_one() {
-    let system = orbit();
-    let mut careful = Run::new(&system, Options { knowledge: Knowledge::CommonTo(3), ..Options::default() });
-    for _ in 0..4 {
-        careful.step(&StepInput::default()).expect("step");
-    }
-    assert!(!careful.is_done(), "of the three most likely states one has engine A failed");
-    assert!(run_with(&system, &[], 4).is_done());
 }
 
 #[test]

@@ -167,3 +167,24 @@ fn a_disjunction_over_the_whole_of_a_closed_domain_is_known_without_knowing_the_
         assert_eq!(automaton.labels(stepper.marking()) == ["assert x=a"], known, "{text}");
     }
 }
+
+#[test]
+fn a_step_asks_for_what_is_waited_for_and_watched_and_goes_by_what_it_is_told() {
+    let text = "(DO-WATCHING (s = on) (SEQUENCE (WHEN-DONEXT (x = a) (y = b)) (z = c)))";
+    let automaton = compile_text(text, &Vocabulary::default()).automaton.expect("compiles");
+    let guard = |test: hca::TestId| automaton.guard(test).expect("its own");
+    let asked = |stepper: &hca::Stepper| -> Vec<String> {
+        stepper.asked().into_iter().map(|test| guard(test).to_string()).collect()
+    };
+    let mut stepper = hca::Stepper::new(&automaton);
+    for (before, entailed, after) in [
+        (&["~s=on", "x=a", "~x=a"][..], "", &["when x=a"][..]),
+        (&["~s=on", "x=a", "~x=a"][..], "x=a", &["assert y=b"][..]),
+        (&["~s=on", "y=b"][..], "y=b", &["assert z=c"][..]),
+        (&["~s=on", "z=c"][..], "s=on", &[][..]),
+    ] {
+        assert_eq!(asked(&stepper), before);
+        stepper.step_told(&|test| guard(test).constraint.to_string() == entailed, &mut hca::Unobserved);
+        assert_eq!(automaton.labels(stepper.marking()), after, "{entailed}");
+    }
+}

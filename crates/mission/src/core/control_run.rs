@@ -103,7 +103,8 @@ impl Session {
 fn is_same(one: &Control, other: &Control) -> bool {
     match (one, other) {
         (Control::Bound(one), Control::Bound(other)) => {
-            Arc::ptr_eq(one, other) || one.automaton == other.automaton && one.model == other.model
+            let is_equal = one.automaton == other.automaton && one.model == other.model;
+            Arc::ptr_eq(one, other) || is_equal && one.entailment == other.entailment
         }
         (Control::Unbound(one), Control::Unbound(other)) => Arc::ptr_eq(one, other) || one == other,
         (Control::Plant(one), Control::Plant(other)) => Arc::ptr_eq(one, other) || one == other,
@@ -118,6 +119,7 @@ fn is_elsewhere(one: &Control, other: &Control) -> bool {
         (Control::Bound(one), Control::Bound(other)) => {
             one.automaton.without_places() == other.automaton.without_places()
                 && one.model.without_places() == other.model.without_places()
+                && one.entailment == other.entailment
         }
         (Control::Unbound(one), Control::Unbound(other)) => one.without_places() == other.without_places(),
         _ => false,

@@ -349,6 +349,27 @@ fn an_effect_that_the_estimate_denies_is_none_and_the_mission_plans_again() {
     assert!(said.iter().any(|(_, text)| text.contains(word)), "{said:?}");
 }
 
+/// An engine that fires already, though nobody is sure of it.
+#[test]
+fn priors_and_thresholds_of_the_control_block_count_for_the_programs_of_a_mission() {
+    let mission = "state EngineA.mode from plant;
+        primitive Start()[1,9] runs Fire(EngineA);
+        scenario S[0,20] = { Start() }";
+    let text = engines(mission).replace("EngineA Engine INIT Off", "EngineA Engine INIT Warm 0.1 Firing 0.9");
+    let initial = rmpl::parse(&text).program().variables[0].initial.clone();
+    assert_eq!(initial.as_ref().map(|name| name.text.as_str()), Some("Firing"), "the likeliest mode");
+    let strict = text.replace("control {", "control {\n  (DEFOPTION entailment 0.95)");
+    for (text, step) in [(&text, "Start#1 step 1: no command"), (&strict, "Start#1 step 1: EngineA.on")] {
+        assert_eq!(diagnostics(text), Vec::<String>::new());
+        let (_, ran) = execute(text, &[]);
+        assert_eq!(ran.outcome.ending, Ending::Finished, "{:?}", ran.outcome.log);
+        assert_eq!(progress(&ran), [(1, step.to_owned())]);
+    }
+    let wrong = strict.replace("entailment 0.95", "entailment 95");
+    let found = diagnostics(&wrong);
+    assert!(found.len() == 1 && found[0].starts_with("E-PROBABILITY"), "{found:?}");
+}
+
 /// What a mission relies on may be lost to a program that it did not expect to.
 #[test]
 fn a_mode_that_a_program_changes_is_missed_by_what_needs_it() {

@@ -118,7 +118,10 @@ fn compare(seed: u64, most: usize, steps: u32, comparison: &mut Comparison) {
             // Groups that exact inference cannot follow are no test.
             let Ok(next) = update_exact(&part.model, &exact[at], &commands, &seen) else { return };
             exact[at] = next;
-            let update = update_bounded(&part.model, &bounded[at], &commands, &seen, most, Effort::AsNeeded)
+            let update =
+                update_bounded(&part.model, &bounded[at], &commands, &seen, most, Effort::AsNeeded, &|_| {
+                    true
+                })
                 .expect("deterministic");
             let Some(belief) = update.belief else {
                 assert!(update.is_open, "{about}: refuted, though a state explains it");
@@ -208,6 +211,7 @@ fn what_is_dropped_of_many_unseen_failures_is_within_the_interval() {
             &Observation::default(),
             MAX_STATES,
             Effort::AsNeeded,
+            &|_| true,
         );
         belief = update.expect("deterministic").belief.expect("nothing is observed");
         let bounds = belief.marginal(&model, ComponentId(1)).swap_remove(0);
@@ -253,7 +257,10 @@ fn an_interval_is_as_wide_as_what_was_dropped() {
         "(DEFCLASS Valve () (MODE Ok true) (MODE Stuck true) (FAULT Ok Stuck 0.1)) (DEFINSTANCE V Valve INIT Ok)",
     );
     let start = Belief::certain(model.initial_state());
-    let update = update_bounded(&model, &start, &model.idle(), &Observation::default(), 1, Effort::AsNeeded);
+    let update =
+        update_bounded(&model, &start, &model.idle(), &Observation::default(), 1, Effort::AsNeeded, &|_| {
+            true
+        });
     let belief = update.expect("deterministic").belief.expect("nothing is observed");
     let nine_tenths = BigRational::new(9.into(), 10.into());
     assert_eq!(belief.highest_probability(), Interval { low: nine_tenths, high: BigRational::one() });

@@ -3,4 +3,5 @@
 mod bounded;
 mod checks;
 mod estimation;
+mod knowledge;
 mod planning;

@@ -276,7 +276,7 @@ fn kept_on_first_line(inner: &[Piece]) -> usize {
     let extra = match upper.as_str() {
         "PARALLEL" | "SEQUENCE" | "ALWAYS" | "AND" | "OR" => 0,
         _ if keyword::EXPRESSION_KEYWORDS.contains(&upper.as_str()) => 1,
-        "DEFCLASS" | "DEFINSTANCE" | "VAR" | "TRANSITION" | "FAULT" => 2,
+        "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" | "VAR" | "TRANSITION" | "FAULT" => 2,
         "MODE" | "COMMAND" | "PORT" => 1,
         _ => 0,
     };

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use smol_str::SmolStr;
 
 use super::suggest::nearest;
-use super::syntax::{Class, Constraint, ControlFile, FieldKind, Instance, Name};
+use super::syntax::{Class, Constraint, ControlFile, FieldKind, Initial, Instance, Name};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 
@@ -77,7 +77,7 @@ pub struct ComponentModes {
     pub name: SmolStr,
     /// Its modes, in the order of its class.
     pub modes: Vec<SmolStr>,
-    /// The mode that it begins in.
+    /// The mode that it begins in; of a prior the most likely one, and of those that are equally likely the first.
     pub initial: SmolStr,
 }
 
@@ -87,12 +87,26 @@ pub fn component_modes(file: &ControlFile) -> Vec<ComponentModes> {
     let of = |instance: &Instance| {
         let class = classes.get(&instance.class.text)?;
         let modes: Vec<SmolStr> = class.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
-        let first = modes.first()?;
-        let named = instance.initial.as_ref().filter(|initial| modes.contains(&initial.text));
-        let initial = named.map_or_else(|| first.clone(), |initial| initial.text.clone());
+        let initial = likeliest(instance, &modes)?;
         Some(ComponentModes { name: instance.name.text.clone(), modes, initial })
     };
     file.instances.iter().filter_map(of).collect()
+}
+
+/// The most likely first mode of a component, of equally likely ones the first; `modes` are those of its class.
+fn likeliest(instance: &Instance, modes: &[SmolStr]) -> Option<SmolStr> {
+    let named = match &instance.initial {
+        Initial::Mode(mode) => modes.iter().find(|known| **known == mode.text),
+        Initial::FirstMode | Initial::AnyMode => None,
+        Initial::Prior(_) => {
+            let prior = instance.prior();
+            let weight =
+                |mode: &SmolStr| prior.iter().find(|(known, _)| known == mode).map(|(_, weight)| *weight);
+            // Of several greatest ones the last is taken.
+            modes.iter().rev().filter(|mode| weight(mode).is_some()).max_by_key(|mode| weight(mode))
+        }
+    };
+    named.or_else(|| modes.first()).cloned()
 }
 
 struct Merger<'file> {

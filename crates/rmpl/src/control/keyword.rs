@@ -18,8 +18,9 @@ pub const EXPRESSION_KEYWORDS: [&str; 9] = [
     "DO-WATCHING",
 ];
 
-/// The heads of the model part and the words inside its fields.
-pub const MODEL_KEYWORDS: [&str; 11] = [
+/// The heads of options and of the model part, and the words inside its fields.
+pub const MODEL_KEYWORDS: [&str; 12] = [
+    "DEFOPTION",
     "DEFCLASS",
     "DEFINSTANCE",
     "VAR",

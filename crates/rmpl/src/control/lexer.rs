@@ -29,6 +29,8 @@ pub enum TokenKind {
     DoubleColon,
     /// `,`, which separates nothing here but is often written between arguments.
     Comma,
+    /// `*`, which stands for all modes.
+    Star,
     /// Characters that mean nothing in this notation.
     Unknown,
 }
@@ -87,6 +89,7 @@ fn kind_at(rest: &str, first: char) -> TokenKind {
         '=' => TokenKind::Equals,
         '~' | '\u{223c}' | '\u{2dc}' => TokenKind::Tilde,
         ',' => TokenKind::Comma,
+        '*' => TokenKind::Star,
         '\u{2237}' => TokenKind::DoubleColon,
         ':' if rest.starts_with("::") => TokenKind::DoubleColon,
         _ if first.is_whitespace() || first == '\u{feff}' => TokenKind::Whitespace,

@@ -11,6 +11,7 @@ mod highlight;
 mod inherit;
 mod keyword;
 mod lexer;
+mod probabilities;
 mod read_constraint;
 mod read_model;
 mod read_program;
@@ -29,7 +30,7 @@ pub use lexer::{Token, TokenKind, lex};
 pub use suggest::nearest;
 pub use syntax::{
     Argument, Class, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Field,
-    FieldKind, Guard, Instance, Name,
+    FieldKind, Guard, Initial, Instance, Name, ProgramOption,
 };
 pub use tree::{List, Node, Tree};
 
@@ -62,6 +63,7 @@ pub fn parse(text: &str) -> ParsedControl {
     let (file, found) = read_program::read(text, &tree);
     diagnostics.extend(found);
     diagnostics.extend(check::check(&file));
+    diagnostics.extend(probabilities::check(&file));
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
     ParsedControl { tokens, tree, file, diagnostics: crate::diagnostic::listed(diagnostics) }
 }

@@ -1,11 +1,12 @@
-//! Reading the model part: classes with their fields, and components (SPEC 2.2).
+//! Reading the model part: classes with their fields, components, and options (SPEC 2.2).
 
 use crate::span::Span;
 
 use super::keyword;
+use super::lexer::TokenKind;
 use super::read_program::Reader;
 use super::suggest::nearest;
-use super::syntax::{Class, Field, FieldKind, Instance, Name};
+use super::syntax::{Class, Field, FieldKind, Initial, Instance, Name, ProgramOption};
 use super::tree::{List, Node};
 
 const FIELD_KEYWORDS: [&str; 6] = ["VAR", "COMMAND", "PORT", "MODE", "TRANSITION", "FAULT"];
@@ -28,7 +29,7 @@ impl Reader<'_> {
         Some(Class { name, supers, fields, span: list.span })
     }
 
-    /// Reads `(DEFINSTANCE name class (port component)… [INIT mode])`.
+    /// Reads `(DEFINSTANCE name class (port component)… [INIT initial])`.
     pub(super) fn instance(&mut self, list: &List) -> Option<Instance> {
         let [_, name, class, rest @ ..] = list.items.as_slice() else {
             self.shape(
@@ -41,9 +42,11 @@ impl Reader<'_> {
         };
         let name = self.required_name(name, "the name of a component")?;
         let class = self.required_name(class, "the name of a class")?;
-        let mut instance = Instance { name, class, ports: Vec::new(), initial: None, span: list.span };
-        let mut rest = rest.iter();
-        while let Some(node) = rest.next() {
+        let mut instance =
+            Instance { name, class, ports: Vec::new(), initial: Initial::FirstMode, span: list.span };
+        let mut rest = rest;
+        while let [node, after @ ..] = rest {
+            rest = after;
             match node {
                 Node::List(port) => {
                     if let [port, component] = port.items.as_slice() {
@@ -59,12 +62,12 @@ impl Reader<'_> {
                         );
                     }
                 }
-                Node::Leaf(_) if self.is_word(node, "INIT") => match rest.next() {
-                    Some(mode) => instance.initial = self.required_name(mode, "a mode"),
-                    None => {
-                        self.error("E-ARITY", node.span(), "a mode is missing after INIT");
-                    }
-                },
+                Node::Leaf(_) if self.is_word(node, "INIT") => {
+                    let length = rest.iter().take_while(|node| matches!(node, Node::Leaf(_))).count();
+                    let (given, after) = rest.split_at(length);
+                    instance.initial = self.initial(node, given);
+                    rest = after;
+                }
                 Node::Leaf(_) => {
                     self.error(
                         "E-SYNTAX",
@@ -75,6 +78,42 @@ impl Reader<'_> {
             }
         }
         Some(instance)
+    }
+
+    /// Reads what stands after `INIT`: a mode, `*`, or modes with their probabilities.
+    fn initial(&mut self, init: &Node, given: &[Node]) -> Initial {
+        match given {
+            [] => {
+                self.error("E-ARITY", init.span(), "a mode is missing after INIT");
+                Initial::FirstMode
+            }
+            [Node::Leaf(token)] if token.kind == TokenKind::Star => Initial::AnyMode,
+            [mode] => self.required_name(mode, "a mode").map_or(Initial::FirstMode, Initial::Mode),
+            _ => {
+                let pairs = given.chunks(2).map(|pair| self.mode_with_probability(pair));
+                pairs.collect::<Option<Vec<_>>>().map_or(Initial::FirstMode, Initial::Prior)
+            }
+        }
+    }
+
+    fn mode_with_probability(&mut self, pair: &[Node]) -> Option<(Name, Name)> {
+        let mode = self.required_name(pair.first()?, "a mode")?;
+        let Some(probability) = pair.get(1) else {
+            self.error("E-ARITY", mode.span, "the probability of this mode is missing").hint =
+                Some("a prior reads `INIT Off 0.9 Idle 0.1`".into());
+            return None;
+        };
+        Some((mode, self.required_name(probability, "a probability")?))
+    }
+
+    /// Reads `(DEFOPTION name value)`.
+    pub(super) fn option(&mut self, list: &List) -> Option<ProgramOption> {
+        let [_, name, value] = list.items.as_slice() else {
+            self.shape("E-ARITY", list, "DEFOPTION takes a name and a value", "(DEFOPTION entailment 0.95)");
+            return None;
+        };
+        let name = self.required_name(name, "the name of an option")?;
+        Some(ProgramOption { name, value: self.required_name(value, "a value")? })
     }
 
     fn field(&mut self, node: &Node) -> Option<Field> {
@@ -219,7 +258,7 @@ impl Reader<'_> {
     fn names(&mut self, items: &[Node], what: &str) -> Vec<Name> {
         items
             .iter()
-            .filter(|node| !matches!(node, Node::Leaf(token) if token.kind == super::lexer::TokenKind::Comma))
+            .filter(|node| !matches!(node, Node::Leaf(token) if token.kind == TokenKind::Comma))
             .filter_map(|node| self.required_name(node, what))
             .collect()
     }

@@ -89,6 +89,7 @@ impl Reader<'_> {
             match head.upper.as_str() {
                 "DEFCLASS" => return file.classes.extend(self.class(list)),
                 "DEFINSTANCE" => return file.instances.extend(self.instance(list)),
+                "DEFOPTION" => return file.options.extend(self.option(list)),
                 _ => {}
             }
         }
@@ -158,7 +159,7 @@ impl Reader<'_> {
         let diagnostic =
             self.error("E-SYNTAX", token.span, format!("`{word}` stands alone outside any form"));
         diagnostic.hint = Some(
-            "a text is made of definitions `Name ():: expression`, classes `(DEFCLASS …)` and components `(DEFINSTANCE …)`"
+            "a text is made of definitions `Name ():: expression`, classes `(DEFCLASS …)`, components `(DEFINSTANCE …)` and options `(DEFOPTION …)`"
                 .into(),
         );
     }
@@ -239,9 +240,9 @@ impl Reader<'_> {
                     Some("it is a guard of IF, UNLESS, WHEN, WHENEVER or DO-WATCHING; to assert the opposite of c write `(NOT c)`".into());
                 ExpressionKind::Unreadable
             }
-            "DEFCLASS" | "DEFINSTANCE" => {
+            "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" => {
                 self.error("E-FORM", head.span, format!("{} stands inside an expression", head.upper)).hint =
-                    Some("classes and components stand beside the definitions".into());
+                    Some("classes, components and options stand beside the definitions".into());
                 ExpressionKind::Unreadable
             }
             keyword if EXPRESSION_KEYWORDS.contains(&keyword) => self.form(keyword, head.span, arguments),

@@ -22,6 +22,8 @@ pub struct ControlFile {
     pub classes: Vec<Class>,
     /// The components in textual order.
     pub instances: Vec<Instance>,
+    /// The options in textual order.
+    pub options: Vec<ProgramOption>,
 }
 
 impl ControlFile {
@@ -29,6 +31,14 @@ impl ControlFile {
     pub fn main(&self) -> Option<&Definition> {
         self.definitions.iter().rev().find(|definition| definition.parameters.is_empty())
     }
+}
+
+/// `(DEFOPTION name value)`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ProgramOption {
+    /// What it is called.
+    pub name: Name,
+    pub value: Name,
 }
 
 /// `NAME (parameters):: body`.
@@ -234,7 +244,7 @@ pub enum FieldKind {
     },
 }
 
-/// `(DEFINSTANCE name class (port component)… [INIT mode])`.
+/// `(DEFINSTANCE name class (port component)… [INIT initial])`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Instance {
     /// What it is called.
@@ -242,8 +252,34 @@ pub struct Instance {
     pub class: Name,
     /// The components at its ports.
     pub ports: Vec<(Name, Name)>,
-    /// Its first mode; the class's first mode if not said.
-    pub initial: Option<Name>,
+    /// The modes in which it may start.
+    pub initial: Initial,
     /// Where it is written.
     pub span: Span,
+}
+
+/// The modes in which a component may start.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Initial {
+    /// Not said: it starts in the first mode of its class.
+    #[default]
+    FirstMode,
+    /// `INIT mode`: it starts in this one.
+    Mode(Name),
+    /// `INIT *`: all modes are equally likely.
+    AnyMode,
+    /// `INIT mode probability …`: modes with their probabilities as written.
+    Prior(Vec<(Name, Name)>),
+}
+
+impl Initial {
+    /// The modes that are named.
+    pub fn modes(&self) -> impl Iterator<Item = &Name> {
+        let (one, several) = match self {
+            Self::FirstMode | Self::AnyMode => (None, &[][..]),
+            Self::Mode(mode) => (Some(mode), &[][..]),
+            Self::Prior(prior) => (None, prior.as_slice()),
+        };
+        one.into_iter().chain(several.iter().map(|(mode, _)| mode))
+    }
 }

@@ -62,6 +62,20 @@ fn each_mistake_gives_one_diagnostic_with_its_code() {
         ("P (c):: (WHEN-DONEXT c (x = a))\nM ():: (P (ALWAYS true))", "E-CONSTRAINT"),
         ("(WHEN-DONEXT (x = a) @ (y = b))", "E-LEX"),
         ("(WHEN-DONEXT () (y = b))", "E-SYNTAX"),
+        ("(DEFOPTION entailment 0.5) (x = a)", "E-PROBABILITY"),
+        ("(DEFOPTION entailment 1.01) (x = a)", "E-PROBABILITY"),
+        ("(DEFOPTION entailment most) (x = a)", "E-PROBABILITY"),
+        ("(DEFOPTION entailment) (x = a)", "E-ARITY"),
+        ("(DEFOPTION entailment 0.9) (DEFOPTION entailment 0.8) (x = a)", "E-DUP"),
+        ("(DEFOPTION entialment 0.9) (x = a)", "W-OPTION"),
+        ("(PARALLEL (DEFOPTION entailment 0.9))", "E-FORM"),
+        ("(DEFINSTANCE P Pump INIT) (x = a)", "E-ARITY"),
+        ("(DEFINSTANCE P Pump INIT Off 0.9 Idle) (x = a)", "E-ARITY"),
+        ("(DEFINSTANCE P Pump INIT Off 0.9 Idle 0.2) (x = a)", "E-PROBABILITY"),
+        ("(DEFINSTANCE P Pump INIT Off 0.9) (x = a)", "E-PROBABILITY"),
+        ("(DEFINSTANCE P Pump INIT Off 1 Idle 0) (x = a)", "E-PROBABILITY"),
+        ("(DEFINSTANCE P Pump INIT Off 0.5 Off 0.5) (x = a)", "E-DUP"),
+        ("(DEFINSTANCE P Pump INIT * Off) (x = a)", "E-SYNTAX"),
         ("", "E-UNDEF"),
     ] {
         assert_eq!(codes(text), [code], "{text}");
@@ -178,4 +192,43 @@ fn outline(file: &ControlFile) -> String {
         rest = after.split_once('}').map_or("", |(_, rest)| rest);
     }
     bare + rest
+}
+
+#[test]
+fn a_prior_and_a_threshold_are_read_exactly_wherever_they_stand() {
+    let text = "(DEFINSTANCE P Pump INIT Off 0.9 Idle 1/10 (feed Q)) (DEFINSTANCE Q Pump INIT *)
+(DEFINSTANCE R Pump INIT Idle) (DEFINSTANCE S Pump) (DEFOPTION entailment 19/20) (x = a)";
+    let parsed = parse(text);
+    assert_eq!(parsed.diagnostics, []);
+    assert_eq!(parsed.file.entailment().map(|threshold| threshold.to_string()).as_deref(), Some("0.95"));
+    let [p, q, r, s] = parsed.file.instances.as_slice() else { panic!("four components") };
+    let prior: Vec<String> = p.prior().into_iter().map(|(mode, weight)| format!("{mode} {weight}")).collect();
+    assert_eq!(prior, ["Off 9", "Idle 1"]);
+    assert_eq!(p.ports[0].1.text, "Q", "a port may stand after the prior");
+    assert_eq!((&q.initial, &s.initial), (&Initial::AnyMode, &Initial::FirstMode));
+    assert!(matches!(&r.initial, Initial::Mode(mode) if mode.text == "Idle"));
+    assert_eq!(parse("(x = a)").file.entailment(), None);
+}
+
+#[test]
+fn the_first_value_of_a_mode_is_the_likeliest_of_its_prior() {
+    let class = "(DEFCLASS Pump () (MODE Off true) (MODE Idle true) (MODE On true))";
+    for (init, first) in [
+        ("", "Off"),
+        ("INIT *", "Off"),
+        ("INIT Idle", "Idle"),
+        ("INIT On 0.5 Idle 0.3 Off 0.2", "On"),
+        ("INIT On 0.4 Idle 0.4 Off 0.2", "Idle"),
+    ] {
+        let parsed = parse(&format!("{class} (DEFINSTANCE P Pump {init})"));
+        assert_eq!(component_modes(&parsed.file)[0].initial, first, "{init}");
+    }
+}
+
+#[test]
+fn options_and_priors_are_laid_out_on_their_lines() {
+    let text = "(defoption entailment\n 0.95)\n(DEFINSTANCE P Pump INIT Off 0.9\n Idle 0.1)\n(DEFINSTANCE Q Pump INIT *)\n";
+    let laid_out = "(defoption entailment 0.95)\n(DEFINSTANCE P Pump INIT Off 0.9 Idle 0.1)\n(DEFINSTANCE Q Pump INIT *)\n";
+    assert_eq!(format(text), laid_out);
+    assert_eq!(format(laid_out), laid_out);
 }

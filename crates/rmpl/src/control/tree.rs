@@ -188,7 +188,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Whether `NAME (…) ::`, `(DEFCLASS` or `(DEFINSTANCE` starts at token `at`, at a line's beginning.
+    /// Whether `NAME (…) ::`, `(DEFCLASS`, `(DEFINSTANCE` or `(DEFOPTION` starts at token `at`, at a line's beginning.
     fn starts_definition(&self, at: usize) -> bool {
         let Some(token) = self.tokens.get(at) else { return false };
         let at_line_start =
@@ -200,7 +200,7 @@ impl Builder<'_> {
         match token.kind {
             TokenKind::Open => following.nth(1).is_some_and(|word| {
                 let word = self.text.get(word.span.range()).unwrap_or("");
-                word.eq_ignore_ascii_case("DEFCLASS") || word.eq_ignore_ascii_case("DEFINSTANCE")
+                ["DEFCLASS", "DEFINSTANCE", "DEFOPTION"].iter().any(|head| word.eq_ignore_ascii_case(head))
             }),
             TokenKind::Word => {
                 following.next();

@@ -25,6 +25,17 @@ scenario Day[0,60] = { Drive() }",
 scenario Day[0,60] = { Drive() }",
 };
 
+/// An option of a control program that is set twice.
+pub(crate) fn program_option(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("the option `{name}` is set before"))
+}
+
+/// A mode to which one prior gives two probabilities.
+pub(crate) fn mode_of_prior(mode: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("the mode `{mode}` is named before in this prior"))
+        .with_hint("give each mode one probability")
+}
+
 /// A declaration whose name is taken.
 pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagnostic {
     let message = match namespace {

@@ -18,6 +18,7 @@ pub mod network;
 pub mod no_scenario;
 pub mod option;
 pub mod plant;
+pub mod probability;
 pub mod recursion;
 pub mod resource;
 pub mod similar;
@@ -46,6 +47,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &bounds::EXPLANATION,
     &contingent::EXPLANATION,
     &value::EXPLANATION,
+    &probability::EXPLANATION,
     &recursion::EXPLANATION,
     &no_scenario::EXPLANATION,
     &limit::EXPLANATION,

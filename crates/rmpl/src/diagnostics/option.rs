@@ -5,6 +5,7 @@ use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
 use crate::parser::replacement;
 use crate::program::Name;
+use crate::span::Span;
 
 pub const CODE: Code = Code("W-OPTION");
 
@@ -14,7 +15,7 @@ pub const EXPLANATION: Explanation = Explanation {
     severity: Severity::Warning,
     title: "an unknown option",
     meaning: "The option is kept, but nothing reads it. The options are `threat_gap`, `strict`, `time_unit`,
-`control_step` and `controllability`.",
+`control_step` and `controllability`, and `entailment` in a control program.",
     example: "option threat_gpa = 2;
 scenario Day[0,60] = { LIGHT [10,20] }",
     fix: "Correct its name, or remove it.",
@@ -33,6 +34,16 @@ pub(crate) fn unknown(name: &Name) -> Diagnostic {
         Some((_, known)) => {
             diagnostic.with_fix(replacement(format!("Change to `{known}`"), name.span, *known))
         }
+        None => diagnostic,
+    }
+}
+
+/// An option that no control program has; `known` is the one that it may have.
+pub(crate) fn unknown_of_program(name: &str, span: Span, known: &str) -> Diagnostic {
+    let diagnostic = Diagnostic::warning(CODE, span, format!("a control program has no option `{name}`"))
+        .with_hint(format!("the option of a control program is {known}"));
+    match edit_distance_at_most(name, known, 3) {
+        Some(_) => diagnostic.with_fix(replacement(format!("Change to `{known}`"), span, known)),
         None => diagnostic,
     }
 }

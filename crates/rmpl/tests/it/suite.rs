@@ -124,6 +124,7 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "E-RESOURCE",
         "E-FORM",
         "E-CONSTRAINT",
+        "E-PROBABILITY",
         "W-ENCOUNTER",
         "W-EXOGENOUS",
         "W-PLANT",

@@ -1,6 +1,6 @@
 //! Control programs and models.
 
-use executive::model_based::{Knowledge, Options, Run, RunStatus, StepInput, StepOutcome};
+use executive::model_based::{Options, Run, RunStatus, StepInput, StepOutcome};
 use plant::{ComponentId, Model, VariableId};
 
 use super::{Outcome, Reader, magnitude, nothing, read, refused, text_of};
@@ -9,6 +9,9 @@ use crate::mutation::Random;
 const WORDS: &[&str] = &[
     "(DEFCLASS C ()",
     "(DEFINSTANCE I C INIT On)",
+    "(DEFOPTION entailment 0.9)",
+    "INIT On 0.5 Off 0.5",
+    "INIT *",
     "(MODE On true)",
     "(COMMAND cmd {none go})",
     "(VAR v {a b} OBSERVABLE SHOWS a)",
@@ -113,8 +116,7 @@ fn run(input: &[u8]) -> Outcome {
     };
     let mut random =
         Random::new(input.iter().fold(1, |sum: u64, &byte| sum.wrapping_mul(31) + u64::from(byte)));
-    let knowledge = if random.below(2) == 0 { Knowledge::MostLikely } else { Knowledge::CommonTo(2) };
-    let options = Options { seed: Some(1), knowledge, most_states: None };
+    let options = Options { seed: Some(1), most_states: None };
     let mut run = Run::new(&system, options);
     let mut led = String::new();
     while run.status() == RunStatus::Running && run.records().len() < MAX_STEPS {

@@ -1,0 +1,43 @@
+//! `E-PROBABILITY`: a probability outside what is allowed. The prefix notation reports it.
+
+use crate::diagnostic::{Code, Diagnostic, Severity};
+use crate::explanation::Explanation;
+use crate::span::Span;
+
+pub const CODE: Code = Code("E-PROBABILITY");
+
+/// What it means, with an example.
+pub const EXPLANATION: Explanation = Explanation {
+    code: CODE,
+    severity: Severity::Error,
+    title: "a probability outside what is allowed",
+    meaning: "Each probability of a prior is above 0 and at most 1, and all of one component sum to 1. The option `entailment` of a
+control program is above 0.5 and at most 1, so that a condition and its opposite are never both known.",
+    example: "(DEFOPTION entailment 0.5)
+(WHEN-DONEXT (EngineA = Standby) (Camera = Off))",
+    fix: "Write a probability in this range, as a decimal or a fraction.",
+    mended: "(DEFOPTION entailment 0.95)
+(WHEN-DONEXT (EngineA = Standby) (Camera = Off))",
+};
+
+/// An option `entailment` that is no probability above one half.
+pub(crate) fn not_an_entailment(text: &str, span: Span) -> Diagnostic {
+    let message = format!("`entailment` must be a probability above 0.5 and at most 1, not `{text}`");
+    Diagnostic::error(CODE, span, message)
+        .with_hint("write a decimal or a fraction, such as `0.95` or `19/20`")
+}
+
+/// A part of a prior that is no probability above zero.
+pub(crate) fn outside(text: &str, span: Span) -> Diagnostic {
+    let message = format!("the probability of a mode must be above 0 and at most 1, not `{text}`");
+    Diagnostic::error(CODE, span, message).with_hint("write a decimal or a fraction, such as `0.1` or `1/3`")
+}
+
+/// A prior whose parts do not sum to one; `sum` is `None` if they have too many digits to be summed.
+pub(crate) fn sum(component: &str, sum: Option<&str>, span: Span) -> Diagnostic {
+    let message = match sum {
+        Some(sum) => format!("the probabilities of the modes of `{component}` must sum to 1, not to {sum}"),
+        None => format!("the probabilities of the modes of `{component}` have too many digits to be summed"),
+    };
+    Diagnostic::error(CODE, span, message).with_hint("name every mode in which the component may start")
+}
