@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context as _, anyhow};
+use plant::bounded::MAX_STATES;
 use plant::{Belief, EstimateError, Model, State, conflicts, update_best, update_exact};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -23,9 +24,9 @@ const MAX_NODES: u32 = 1_000_000;
 pub struct Args {
     /// The plant's model; `-` is standard input.
     model: PathBuf,
-    /// The belief before: `[{"state":{component:mode…},"probability":"p/q"}…]`.
+    /// The belief before: `[{"state":{component:mode…},"probability":"p/q"}…]`; without it, what the model's INIT says.
     #[arg(long, value_name = "P.json")]
-    prior: PathBuf,
+    prior: Option<PathBuf>,
     /// The commands: `{component:command}`; a component left out gets its idle command.
     #[arg(long, value_name = "C.json")]
     commands: PathBuf,
@@ -56,8 +57,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let Some((model, problems)) = load_model(&args.model, args.format, "estimate")? else {
         return Ok(exit(WRONG));
     };
-    let prior = prior(&model, &read_json::<Vec<Believed>>(&args.prior)?)
-        .with_context(|| format!("{} is no belief about this plant", args.prior.display()))?;
+    let prior = match &args.prior {
+        Some(path) => prior(&model, &read_json::<Vec<Believed>>(path)?)
+            .with_context(|| format!("{} is no belief about this plant", path.display()))?,
+        None => Belief::initial(&model, MAX_STATES).filter(Belief::is_exact).with_context(|| {
+            format!("the plant may start in more than {MAX_STATES} states: name the likely ones with --prior")
+        })?,
+    };
     let given: BTreeMap<String, Option<String>> = read_json(&args.commands)?;
     let commands = model.commands_from_names(names(&given)).map_err(|error| anyhow!(error))?;
     let given: BTreeMap<String, Option<String>> = read_json(&args.observations)?;

@@ -221,6 +221,19 @@ fn step_json(system: &System, record: &StepRecord) -> Value {
     };
     if let Value::Object(step) = &mut step {
         step.extend(members.map(|(name, value)| (name.to_owned(), value)));
+        if let Some(state) = &record.planned_from {
+            step.insert("planned_from".to_owned(), json!(model.state_names(state)));
+        }
+        if system.entailment.is_some() {
+            let asked = record.asked.iter().map(|asked| {
+                json!({
+                    "condition": asked.condition,
+                    "probability": probability_json(&asked.probability),
+                    "entailed": asked.is_entailed,
+                })
+            });
+            step.insert("asked".to_owned(), asked.collect());
+        }
     }
     step
 }
@@ -262,6 +275,9 @@ fn run_text(system: &System, run: &Run) -> String {
         out.push_str(&format!("step {}\n", record.trace.step));
         record.trace.labels.iter().for_each(|label| out.push_str(&format!("  marked    {label}\n")));
         out.push_str(&format!("  commands  {}\n", listed(model.command_names(&record.commands), ".")));
+        if let Some(state) = &record.planned_from {
+            out.push_str(&format!("  planned   from {}\n", listed(model.state_names(state), "=")));
+        }
         for &(id, mode) in &record.failed {
             out.push_str(&format!("  by chance {}\n", failed_text(system, id, mode)));
         }
@@ -282,6 +298,10 @@ fn run_text(system: &System, run: &Run) -> String {
             StepOutcome::LimitReached => {
                 out.push_str("  limit     no state that was kept explains what is observed\n");
             }
+        }
+        for asked in &record.asked {
+            let word = if asked.is_entailed { "known    " } else { "not known" };
+            out.push_str(&format!("  {word} {} ({})\n", asked.condition, asked.probability));
         }
         if record.is_uncertain {
             out.push_str("  uncertain more states are possible than the estimator keeps\n");

@@ -518,6 +518,67 @@ fn with_too_few_states_a_run_ends_at_their_limit() {
 }
 
 #[test]
+fn a_threshold_says_what_was_asked_and_where_commands_were_planned_from() {
+    let lamp = "(DEFOPTION entailment 0.95) (L = Lit)
+(DEFCLASS Lamp () (COMMAND cmd {none on}) (MODE Dark true) (MODE Lit true) (TRANSITION Dark Lit (cmd = on)))
+(DEFINSTANCE L Lamp INIT Lit 0.9 Dark 0.1)\n";
+    let program = written("threshold.rmpl", lamp);
+    let answer = enroute(&["run", &program, "--format", "json"]);
+    assert_eq!((answer.status, answer.errors.as_str()), (0, ""), "{answer}");
+    let step = &answer.json()["steps"][0];
+    assert_eq!(step["planned_from"], json!({ "L": "Dark" }), "{answer}");
+    assert_eq!(step["commands"], json!({ "L": "on" }), "{answer}");
+    assert_eq!(
+        step["asked"],
+        json!([{ "condition": "L=Lit", "probability": "1", "entailed": true }]),
+        "{answer}"
+    );
+    let answer = enroute(&["run", &program]);
+    for line in ["  planned   from L=Dark\n", "  known     L=Lit (1)\n"] {
+        assert!(answer.output.contains(line), "{answer}");
+    }
+    let program = written("no-threshold.rmpl", &lamp.replace("(DEFOPTION entailment 0.95)", ""));
+    let step = &enroute(&["run", &program, "--format", "json"]).json()["steps"][0];
+    assert_eq!((step.get("asked"), step.get("planned_from"), &step["commands"]), (None, None, &json!({})));
+}
+
+#[test]
+fn estimate_begins_with_the_prior_of_the_model() {
+    let model = written(
+        "prior.rmpl",
+        "(DEFCLASS Tank () (VAR gauge {low high} OBSERVABLE) (MODE Empty (gauge = low)) (MODE Full (gauge = high))
+  (MODE Leaking true))
+(DEFINSTANCE T Tank INIT Empty 0.5 Full 0.3 Leaking 0.2)\n",
+    );
+    let (commands, seen) = (written("prior-c.json", "{}"), written("prior-o.json", "{\"T.gauge\":\"low\"}"));
+    let call = ["estimate", &model, "--commands", &commands, "--observations", &seen, "--format", "json"];
+    let answer = enroute(&call);
+    assert_eq!((answer.status, answer.errors.as_str()), (0, ""), "{answer}");
+    // 0.5 that is empty, and half of the 0.2 that leaks and shows either.
+    let expected = json!([
+        { "state": { "T": "Empty" }, "probability": "5/6" },
+        { "state": { "T": "Leaking" }, "probability": "1/6" }
+    ]);
+    assert_eq!(answer.json()["posterior"], expected, "{answer}");
+}
+
+#[test]
+fn check_finds_wrong_thresholds_and_priors_at_their_places() {
+    let text = "(DEFOPTION entailment 0.4)
+(L = Lit)
+(DEFCLASS Lamp () (MODE Dark true) (MODE Lit true))
+(DEFINSTANCE L Lamp INIT Lit 0.9 Dark 0.2)\n";
+    let answer = enroute(&["check", &written("wrong-prior.rmpl", text), "--format", "json"]);
+    assert_eq!(answer.status, 2, "{answer}");
+    let found = answer.json();
+    let found: Vec<_> = list(&found["diagnostics"])
+        .iter()
+        .map(|found| (self::text(&found["code"]), found["span"]["line"].as_u64(), found["hint"].is_string()))
+        .collect();
+    assert_eq!(found, [("E-PROBABILITY", Some(1), true), ("E-PROBABILITY", Some(4), true)], "{answer}");
+}
+
+#[test]
 fn check_finds_in_programs_and_plants_what_run_refuses() {
     let plant = "(DEFCLASS Lamp () (COMMAND cmd {none on}) (MODE Off true) (MODE On true) (TRANSITION Off On (cmd = on)))
 (DEFINSTANCE L Lamp INIT Off)\n";
