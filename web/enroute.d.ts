@@ -636,6 +636,8 @@ export type PlantState = {
   commands: { [key in string]: string } | null;
   nextCommands: { [key in string]: string } | null;
   unachievable: Array<Unachievable>;
+  /** The conditions that the program asked for in the last step; empty without the option `entailment`. */
+  asked: Array<Asked>;
   /** Whether no state explains the observations, so that the run ends here. */
   isUnexplained: boolean;
   /** Whether more states are possible than the estimator keeps, so that probabilities are known less well. */
@@ -657,6 +659,14 @@ export type StateProbability = string | [string, string];
 export type Unachievable = {
   goal: string;
   reason: string;
+};
+
+/** A condition that a program asked for. */
+export type Asked = {
+  condition: string;
+  probability: StateProbability;
+  /** Whether it is as probable as the program demands. */
+  isKnown: boolean;
 };
 
 /** What a call refuses with. */

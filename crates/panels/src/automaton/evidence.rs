@@ -34,6 +34,7 @@ pub(super) fn show(
 ) {
     belief(ui, context, model, plant);
     history(ui, context, commands);
+    asked(ui, context, plant);
     observations(ui, context, model, plant, commands);
     let place = ui.scope(|ui| diagnosis(ui, context, model, plant)).response;
     ui.add_space(space::L);
@@ -145,6 +146,21 @@ fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
     }
     response.on_hover_text("Most likely states before each step. Click a step to open it.");
+}
+
+/// What the program asked for in the last step, if it names a probability from which on conditions are known.
+fn asked(ui: &mut Ui, context: &Context<'_>, plant: &PlantMoment) {
+    let Some(record) = plant.record.as_ref().filter(|record| !record.asked.is_empty()) else { return };
+    title(ui, context, "Known", "conditions that the program asked for");
+    for asked in &record.asked {
+        let (word, color) = if asked.is_entailed {
+            ("known", context.tokens.text)
+        } else {
+            ("not known", context.tokens.text_muted)
+        };
+        let share = percent_between(&asked.probability, 2);
+        ui.label(RichText::new(format!("{}: {share}, {word}", asked.condition)).color(color));
+    }
 }
 
 fn observations(

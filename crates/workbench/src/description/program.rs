@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use executive::model_based::StepOutcome;
+use executive::model_based::{AskedCondition, StepOutcome};
 use hca::Automaton;
 use plant::{Interval, Model};
 use serde::Serialize;
@@ -74,6 +74,8 @@ pub struct PlantState {
     pub commands: Option<BTreeMap<String, String>>,
     pub next_commands: Option<BTreeMap<String, String>>,
     pub unachievable: Vec<Unachievable>,
+    /// The conditions that the program asked for in the last step; empty without the option `entailment`.
+    pub asked: Vec<Asked>,
     /// Whether no state explains the observations, so that the run ends here.
     pub is_unexplained: bool,
     /// Whether more states are possible than the estimator keeps, so that probabilities are known less well.
@@ -99,6 +101,17 @@ pub enum StateProbability {
     Exact(String),
     /// At least and at most so likely, as decimals.
     Between([String; 2]),
+}
+
+/// A condition that a program asked for.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Asked {
+    pub condition: String,
+    pub probability: StateProbability,
+    /// Whether it is as probable as the program demands.
+    pub is_known: bool,
 }
 
 /// A goal that cannot be reached.
@@ -160,6 +173,14 @@ fn state_probability(probability: &Interval) -> StateProbability {
     StateProbability::Between([low, high])
 }
 
+fn asked(asked: &AskedCondition) -> Asked {
+    Asked {
+        condition: asked.condition.to_string(),
+        probability: state_probability(&asked.probability),
+        is_known: asked.is_entailed,
+    }
+}
+
 fn plant_state(model: &Model, moment: &PlantMoment) -> PlantState {
     let record = moment.record.as_ref();
     PlantState {
@@ -181,6 +202,7 @@ fn plant_state(model: &Model, moment: &PlantMoment) -> PlantState {
             .iter()
             .map(|(goal, reason)| Unachievable { goal: goal.to_string(), reason: reason.clone() })
             .collect(),
+        asked: record.map_or_else(Vec::new, |record| record.asked.iter().map(asked).collect()),
         is_unexplained: record.is_some_and(|record| record.outcome != StepOutcome::Explained),
         is_uncertain: record.is_some_and(|record| record.is_uncertain),
         conflicts: record
