@@ -24,8 +24,9 @@ function hold(life) {
     self.postMessage({ kind: "held" });
     return new Promise(() => {});
   };
-  // Where there are no locks, a worker that says nothing for long is taken for dead.
-  navigator.locks?.request(life, forever).catch(() => {});
+  // Where there are no locks, or none are given, a worker that says nothing for long is taken for dead.
+  const ask = async () => navigator.locks?.request(life, forever);
+  ask().catch(() => {});
 }
 
 function fail(error) {

@@ -11,9 +11,13 @@ const LAST_WORD_MILLIS = 100;
  * with what is known about it; after "failed" nothing more comes.
  */
 export function startCore(tell) {
-  const worker = new Worker(new URL("core-worker.js", import.meta.url), { type: "module", name: "planning core" });
-  // Shared memory needs a page that is isolated from others; without it a core is stopped instead of asked to stop.
-  const superseded = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
+  let worker;
+  try {
+    worker = new Worker(new URL("core-worker.js", import.meta.url), { type: "module", name: "planning core" });
+  } catch (error) {
+    return coreWithout(error, tell);
+  }
+  const superseded = sharedFlag();
 
   // The worker holds this lock for as long as it lives, however it ends; whoever waits for it is told then.
   const life = `enroute/core/${performance.now()}/${Math.random()}`;
@@ -21,9 +25,11 @@ export function startCore(tell) {
   const isGone = () => setTimeout(() => watch.signal.aborted || tell("failed", "the planner ended for an unknown reason"), LAST_WORD_MILLIS);
 
   worker.onmessage = ({ data: { kind, payload } }) => {
-    if (kind === "held") navigator.locks.request(life, { signal: watch.signal }, isGone).catch(() => {});
+    if (kind === "held") watchLife().catch(() => {});
     else tell(kind, payload);
   };
+  // A browser that has no locks, or refuses them, leaves a core that says nothing for long to be taken for dead.
+  const watchLife = async () => navigator.locks.request(life, { signal: watch.signal }, isGone);
   worker.onerror = (event) => {
     event.preventDefault();
     tell("failed", event.message || "the planner couldn't be loaded");
@@ -50,4 +56,21 @@ export function startCore(tell) {
       worker.terminate();
     },
   };
+}
+
+/** A flag in memory that the worker sees, where there is such memory: without it a core is stopped instead of asked to stop. */
+function sharedFlag() {
+  // Some browsers call a page isolated and have no shared memory all the same.
+  if (!globalThis.crossOriginIsolated || typeof SharedArrayBuffer !== "function") return null;
+  try {
+    return new Int32Array(new SharedArrayBuffer(4));
+  } catch {
+    return null;
+  }
+}
+
+/** A core in a browser that starts no worker: it fails at once, and the text can be edited. */
+function coreWithout(error, tell) {
+  const failing = setTimeout(() => tell("failed", `the browser starts no worker: ${error.message}`));
+  return { patienceMillis: 0, send() {}, supersede() {}, stop: () => clearTimeout(failing) };
 }

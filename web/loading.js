@@ -16,8 +16,8 @@ export function hideLoading() {
   screen.hidden = true;
 }
 
-/** Replaces everything by an explanation of a failure; `mission` is the text that the user may save, if there is one. */
-export function showFailure(title, explanation, error, mission = null) {
+/** Replaces everything by an explanation of a failure; `file` is what the user may save, with `name` and `text`, if there is any. */
+export function showFailure(title, explanation, error, file = null) {
   console.error(error);
   const heading = document.createElement("h1");
   heading.textContent = title;
@@ -29,10 +29,10 @@ export function showFailure(title, explanation, error, mission = null) {
   again.textContent = "Reload";
   again.addEventListener("click", () => location.reload());
   const buttons = [again];
-  if (mission !== null) {
+  if (file !== null) {
     const save = document.createElement("button");
     save.textContent = "Save text";
-    save.addEventListener("click", () => saveFile("mission.rmpl", new TextEncoder().encode(mission)));
+    save.addEventListener("click", () => saveFile(file.name, new TextEncoder().encode(file.text)));
     buttons.push(save);
   }
   screen.replaceChildren(heading, paragraph, ...buttons, details);

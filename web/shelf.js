@@ -47,11 +47,22 @@ export function openShelf() {
   };
 }
 
-/** Tells and hears other tabs; where browsers have no channels, each tab is alone. */
+/** Tells and hears other tabs; where browsers have no channels, or refuse them, each tab is alone. */
 export function joinTabs() {
-  const channel = globalThis.BroadcastChannel ? new BroadcastChannel("enroute") : null;
+  let channel = null;
+  try {
+    channel = new BroadcastChannel("enroute");
+  } catch {
+    // A browser that blocks the data of sites refuses channels too.
+  }
   return {
-    tellTabs: (message) => channel?.postMessage(message),
+    tellTabs(message) {
+      try {
+        channel?.postMessage(message);
+      } catch {
+        // The page is being closed.
+      }
+    },
     onTabSaid(hear) {
       if (channel) channel.onmessage = ({ data }) => hear(String(data));
     },

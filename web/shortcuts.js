@@ -9,11 +9,14 @@ export function keepShortcutsFromBrowser(target, usesKey) {
     "keydown",
     (event) => {
       const control = event.ctrlKey || event.metaKey;
-      const { key, altKey, shiftKey } = event;
+      const { key, code, altKey, shiftKey } = event;
+      // Alt alone would give the keyboard to the menu bar of the browser.
+      if (key === "Alt") event.preventDefault();
       const held = [control && "Control", altKey && "Alt", shiftKey && "Shift"].filter(Boolean);
       const spelled = [...held, key.length === 1 ? key.toUpperCase() : key].join("+");
-      if (EDITOR_KEYS.has(spelled) || usesKey(key, control, altKey, shiftKey)) event.preventDefault();
+      if (EDITOR_KEYS.has(spelled) || usesKey(key, code, control, altKey, shiftKey)) event.preventDefault();
     },
     true,
   );
+  target.addEventListener("keyup", (event) => event.key === "Alt" && event.preventDefault(), true);
 }

@@ -3,13 +3,15 @@
 import init, { start, usesKey } from "../wasm/page.js";
 import { findAddress, noteAddress } from "./address.js";
 import { createApi } from "./api.js";
+import { ensureClipboard, readClipboard } from "./clipboard.js";
 import { startCore } from "./core.js";
 import { openDisk } from "./disk.js";
 import { chooseFile, saveFile, savePicture } from "./files.js";
-import { canvas, watchGraphics } from "./graphics.js";
+import { canvas, keepGraphics, whyNothingIsDrawn } from "./graphics.js";
 import { fetchWithProgress, hideLoading, showFailure, showStep } from "./loading.js";
 import { createMirror } from "./mirror.js";
-import { latestText, remember } from "./rescue.js";
+import { isPrivateWindow } from "./private.js";
+import { keptMission, latestText, remember } from "./rescue.js";
 import { joinTabs, openShelf } from "./shelf.js";
 import { keepShortcutsFromBrowser } from "./shortcuts.js";
 import { noteTyping } from "./typed.js";
@@ -17,10 +19,18 @@ import { noteTyping } from "./typed.js";
 // Opening the page does not wait longer than this for the missions; they come later then.
 const SHELF_PATIENCE_MILLIS = 1500;
 
+// What throws while the page starts may be harmless; a page that is not ready so long afterwards has failed.
+const START_PATIENCE_MILLIS = 3000;
+
+let shelf = null;
+let isReady = false;
+let hasFailed = false;
+
 async function load() {
   showStep("Loading…");
   findAddress();
-  const shelf = openShelf();
+  ensureClipboard();
+  shelf = openShelf();
   const module = await fetchWithProgress(new URL("../wasm/page_bg.wasm", import.meta.url));
   showStep("Starting…");
   await init({ module_or_path: module });
@@ -40,6 +50,8 @@ async function load() {
     ...openDisk(),
     ...shelf,
     ...joinTabs(),
+    readClipboard,
+    isPrivateWindow,
     // Called while a frame is being drawn. What it leads to must wait until the frame is done.
     frameDrawn: () => {
       typing.taken();
@@ -68,18 +80,28 @@ async function load() {
     if (api.frameDrawn(frontEnd.stateVersion())) remember(() => frontEnd.source());
   }
 
-  frontEnd = await start(canvas(), glue);
-  nameKeyboard();
-  watchGraphics(
-    async (fresh) => {
-      await frontEnd.drawOn(fresh);
+  const graphics = keepGraphics({
+    async drawOn(fresh, turn, avoidsWebGpu) {
+      if (frontEnd) await frontEnd.drawOn(fresh, turn, avoidsWebGpu);
+      else frontEnd = await start(fresh, glue, turn, avoidsWebGpu);
       nameKeyboard();
     },
-    (reason) => showLoss("Graphics device lost", "The browser withdrew access to the graphics card.", reason),
-  );
+    pause() {
+      // What was typed last would be lost with the canvas that it was typed on.
+      if (frontEnd) keepNow(typing.waiting());
+      typing.taken();
+      frontEnd?.pause();
+    },
+    isWebGpu: () => frontEnd?.renderer() === "webgpu",
+    giveUp: (reason) =>
+      showLoss("Graphics device lost", "The browser withdrew access to the graphics card.", reason),
+  });
+  await graphics();
   mirror.onAct((element, act) => frontEnd.act(element, JSON.stringify(act)));
   api.connect(frontEnd, mirror);
   keepShortcutsFromBrowser(window, usesKey);
+  // A page that was only slow hides the failure that it was taken for.
+  isReady = true;
   hideLoading();
   performance.mark("enroute ready");
 }
@@ -89,12 +111,25 @@ function nameKeyboard() {
   document.querySelector("body > input")?.setAttribute("aria-label", "Keyboard");
 }
 
-// A panic of the front end surfaces here, from whichever event led to it.
-window.addEventListener("error", ({ error }) => {
-  if (error instanceof WebAssembly.RuntimeError) {
+// A panic of the front end surfaces here, from whichever event or promise led to it; and whatever else throws while the
+// page starts, which nobody waits for.
+window.addEventListener("error", ({ error, message }) => hearError(error ?? new Error(message)));
+window.addEventListener("unhandledrejection", ({ reason }) => hearError(reason));
+
+function hearError(error) {
+  if (!isReady) {
+    setTimeout(() => isReady || failToStart(error), START_PATIENCE_MILLIS);
+  } else if (error instanceof WebAssembly.RuntimeError) {
     showLoss("Enroute has stopped", "This is a bug in Enroute.", error);
   }
-});
+}
+
+/** The page cannot start, for the first reason that was told. What was kept can be saved. */
+function failToStart(error) {
+  if (hasFailed) return;
+  hasFailed = true;
+  showFailure("Enroute couldn't start", explain(error), error, keptMission(shelf?.shelfContent()));
+}
 
 /** The front end cannot go on; the text does. */
 function showLoss(title, cause, error) {
@@ -102,24 +137,27 @@ function showLoss(title, cause, error) {
   const advice = isKept
     ? "Your text is saved. Reload the page to continue."
     : "This browser stores nothing for this page. To keep your work, save your text before you reload.";
-  showFailure(title, `${cause} ${advice}`, error, text);
+  showFailure(title, `${cause} ${advice}`, error, text === null ? null : { name: "mission.rmpl", text });
 }
 
 const loaded = load();
 const api = createApi(loaded);
 window.enroute = api.enroute;
-loaded.catch((error) => showFailure("Enroute couldn't start", explain(error), error));
+loaded.catch(failToStart);
 
 // Published pages say their version and keep a copy of themselves; a page that is being developed does neither.
 if (document.documentElement.dataset.version) {
-  navigator.serviceWorker?.register("service-worker.js").then(announceNewVersion, (reason) => {
-    console.warn(`Offline use is not available: ${reason.message}`);
-  });
+  keepCopy().catch((reason) => console.warn(`Offline use is not available: ${reason.message}`));
 }
 
-/** Says once that a newer version is kept. It takes over when no tab shows this one any more. */
+async function keepCopy() {
+  const registration = await navigator.serviceWorker?.register("service-worker.js");
+  if (registration) announceNewVersion(registration);
+}
+
+/** Says once that a newer version is kept. It takes over when this page is loaded again and no other tab shows it. */
 function announceNewVersion(registration) {
-  const say = () => loaded.then(() => api.enroute.dispatch("help.newVersion", null));
+  const say = () => loaded.then(() => api.enroute.dispatch("help.newVersion", null)).catch(() => {});
   if (registration.waiting) say();
   registration.addEventListener("updatefound", () => {
     const next = registration.installing;
@@ -135,10 +173,7 @@ function explain(error) {
     return "This browser cannot run WebAssembly. Use a current version of Chrome, Edge, Firefox or Safari.";
   }
   if (error?.code === "no-graphics") {
-    return (
-      "Enroute needs WebGPU or WebGL2, and this browser offers neither. Turn on hardware acceleration in the browser " +
-      "settings, or use a current version of Chrome, Edge, Firefox or Safari."
-    );
+    return whyNothingIsDrawn(error);
   }
   return "Part of the page couldn't be loaded. Try to reload the page.";
 }

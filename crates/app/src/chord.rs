@@ -2,6 +2,8 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 use workbench::command::chord::{self, Chord};
+use workbench::registry::{CommandSpec, all_commands};
+use workbench::state::AppState;
 
 /// The chord as egui's shortcut.
 pub fn shortcut(chord: Chord) -> KeyboardShortcut {
@@ -11,8 +13,60 @@ pub fn shortcut(chord: Chord) -> KeyboardShortcut {
     KeyboardShortcut::new(modifiers.fold(Modifiers::NONE, |all, one| all | one), key(chord.key))
 }
 
+/// Whether a press of `key`, which lies where `place` does on an American keyboard, has a chord's key. With Shift, some
+/// signs are called by what they type: Shift and `[` is `{`.
+pub(crate) fn is_pressed(chord: Chord, key: Option<Key>, place: Option<Key>) -> Press {
+    let wanted = self::key(chord.key);
+    let shifted = match chord.key {
+        chord::Key::OpenBracket => Some(Key::OpenCurlyBracket),
+        chord::Key::CloseBracket => Some(Key::CloseCurlyBracket),
+        chord::Key::Backslash => Some(Key::Pipe),
+        _ => None,
+    };
+    let is_held = chord.modifiers.command || chord.modifiers.alt;
+    let is_digit = matches!(wanted, Key::Num0 | Key::Num1 | Key::Num2 | Key::Num3 | Key::Num4);
+    if key == Some(wanted) || chord.modifiers.shift && is_held && shifted.is_some() && key == shifted {
+        Press::Named
+    } else if is_held && (shifted.is_some() || is_digit) && place == Some(wanted) {
+        Press::Placed
+    } else {
+        Press::Other
+    }
+}
+
+/// How a press fits a chord's key, worst first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Press {
+    Other,
+    /// It lies where the key does on an American keyboard: others type brackets with AltGr, and some digits with Shift.
+    Placed,
+    /// It is what the keyboard calls the key.
+    Named,
+}
+
+/// Whether a key press may be one of a command's.
+pub fn is_of_command(key: Option<Key>, place: Option<Key>, pressed: Modifiers) -> bool {
+    all_commands().flat_map(|command| command.keys).any(|&keys| {
+        is_pressed(keys, key, place) != Press::Other && pressed.matches_logically(shortcut(keys).modifiers)
+    })
+}
+
+/// Ctrl+Shift+P, with which Firefox opens a private window.
+const CTRL_SHIFT_P: Chord = Chord {
+    modifiers: chord::Modifiers { command: true, shift: true, alt: false },
+    key: chord::Key::P,
+};
+
+/// The command's keys as menus and lists write them, those first that the browser does not keep for itself. A menu shows
+/// the first.
+pub fn texts(egui: &egui::Context, spec: &CommandSpec, state: &AppState) -> Vec<String> {
+    let is_kept = |chord: &Chord| state.system.is_firefox && *chord == CTRL_SHIFT_P;
+    let (kept, ours): (Vec<Chord>, Vec<Chord>) = spec.keys.iter().partition(|chord| is_kept(chord));
+    ours.into_iter().chain(kept).map(|chord| text(egui, chord)).collect()
+}
+
 /// The chord as menus and lists write it on this system.
-pub fn text(egui: &egui::Context, chord: Chord) -> String {
+fn text(egui: &egui::Context, chord: Chord) -> String {
     let shortcut = shortcut(chord);
     let name = printed(chord.key).map_or_else(|| shortcut.logical_key.name().to_owned(), str::to_owned);
     let mut held = egui::ModifierNames::NAMES.format(&shortcut.modifiers, egui.os().is_mac());

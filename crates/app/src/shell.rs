@@ -36,6 +36,9 @@ pub struct Enroute {
     egui: egui::Context,
 }
 
+/// How far a wheel scrolls that turns by lines, as in Firefox: as far as one that turns by pixels.
+const POINTS_PER_LINE: f32 = 40.0;
+
 /// Begins to read a file that was dropped on the app.
 type ReadDropped = Box<dyn Fn(egui::DroppedFileHandle)>;
 
@@ -198,6 +201,7 @@ impl Enroute {
         for effect in self.session.take_window_effects() {
             match effect {
                 WindowEffect::Copy(text) => self.egui.copy_text(text),
+                WindowEffect::Paste => self.egui.send_viewport_cmd(egui::ViewportCommand::RequestPaste),
                 WindowEffect::Restyle => self.restyle(),
             }
         }
@@ -208,6 +212,7 @@ impl Enroute {
         let system = System {
             is_light: self.egui.system_theme() == Some(egui::Theme::Light),
             reduces_motion: self.session.host().reduces_motion(),
+            is_firefox: self.session.host().is_firefox(),
         };
         if self.app_state().system != system {
             self.session.state_mut().system = system;
@@ -220,6 +225,7 @@ impl Enroute {
         let state = self.app_state();
         let motion = state.system.reduces_motion;
         theme::apply(&self.egui, panels::tokens(state), state.settings.text_scale, motion);
+        self.egui.options_mut(|options| options.input_options.line_scroll_speed = POINTS_PER_LINE);
     }
 
     fn wake_after(&self, seconds: Option<f64>) {

@@ -16,6 +16,8 @@ pub enum EditorAction {
         /// Whether it leaves the text.
         cut: bool,
     },
+    /// An entry of the menu that a right click opens, counted from 0.
+    Menu(usize),
     /// An assistive technology gives the editor the keyboard.
     Focus,
     /// The pointer went down in the text.

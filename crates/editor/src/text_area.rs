@@ -8,7 +8,7 @@ use crate::geometry::{Geometry, LONGEST_ROW_BYTES, ShownRows};
 use crate::painting::Painting;
 use crate::pointer::Drag;
 use crate::{
-    EditorAction, EditorView, LanguageService, Reveal, caret, gutter, hover, keyboard, pointer, popup,
+    EditorAction, EditorView, LanguageService, Reveal, caret, gutter, hover, keyboard, menu, pointer, popup,
 };
 
 /// The text with its gutter.
@@ -100,6 +100,7 @@ impl TextArea {
             follow_focus(ui, view, &response, self.popup.take());
             let shown = ShownRows::new(ui, view, language, &geometry, first.min(last)..last);
             self.drag.follow(ui, view, language, &geometry, &response, &shown, actions);
+            menu::show(view, &response, actions);
             paint(ui, view, language, &geometry, &response, &shown);
             describe(ui, view, &response);
             let offset = pointer::offset_under(view, &geometry, &response, &shown);

@@ -28,6 +28,8 @@ pub struct EditorView<'a> {
     pub find: Option<&'a Find>,
     /// The list at the caret, when it is open.
     pub popup: Option<&'a Popup<'a>>,
+    /// The menu that a right click opens, in groups.
+    pub menu: &'a [&'a [MenuEntry<'a>]],
     /// What is wrong with the text, in the order in which it is told where several things are wrong at one place.
     pub diagnostics: &'a [Diagnostic<'a>],
     /// Places that are marked, the lowest first.
@@ -106,6 +108,16 @@ pub struct Mark {
 pub struct Highlight {
     pub bytes: Range<usize>,
     pub color: Color32,
+}
+
+/// An entry of the menu that a right click opens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MenuEntry<'a> {
+    pub label: &'a str,
+    /// The keys that do the same.
+    pub keys: &'a str,
+    /// Why it cannot be chosen now, if so.
+    pub unavailable: Option<&'a str>,
 }
 
 /// A list at the caret.

@@ -5,7 +5,7 @@ use std::{cell::RefCell, rc::Rc};
 use app::{
     Enroute,
     accessibility::{AccessibilityMirror, Act},
-    chord::shortcut,
+    chord,
 };
 use eframe::WebRunner;
 use egui::{Key, Modifiers};
@@ -13,7 +13,6 @@ use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 use workbench::host::RefusalCode;
 use workbench::outside::Remote;
-use workbench::registry::all_commands;
 
 use crate::{
     core_link::CoreLink,
@@ -23,11 +22,16 @@ use crate::{
     refusal::{from_remote, refusal, words},
 };
 
-/// Starts the front end on a canvas. Rejects with the code `no-graphics` when the browser cannot draw.
+/// Starts the front end on a canvas, as [`FrontEnd::draw_on`] goes on on another one.
 #[wasm_bindgen]
-pub async fn start(canvas: HtmlCanvasElement, glue: Glue) -> Result<FrontEnd, JsValue> {
+pub async fn start(
+    canvas: HtmlCanvasElement,
+    glue: Glue,
+    turn: u32,
+    avoids_webgpu: bool,
+) -> Result<FrontEnd, JsValue> {
     let front_end = FrontEnd { runner: WebRunner::new(), glue, page: Rc::default() };
-    front_end.draw_on(canvas).await?;
+    front_end.draw_on(canvas, turn, avoids_webgpu).await?;
     Ok(front_end)
 }
 
@@ -73,18 +77,14 @@ impl eframe::App for PageApp {
     }
 }
 
-/// Whether a key press is one of Enroute's commands, so that the browser should leave it alone. `key` is what
-/// JavaScript calls it. Keys that type are nobody's business here.
+/// Whether a key press is one of Enroute's commands, so that the browser should leave it alone. `key` and `code` are what
+/// JavaScript calls it and its place on the keyboard. Keys that type are nobody's business here.
 #[wasm_bindgen(js_name = usesKey)]
-pub fn uses_key(key: &str, control: bool, alt: bool, shift: bool) -> bool {
-    let Some(key) = Key::from_name(key) else { return false };
-    let pressed = Modifiers { alt, shift, ctrl: control, command: control, ..Modifiers::NONE };
-    let is_function_key = key.name().len() > 1 && key.name().starts_with('F');
+pub fn uses_key(key: &str, code: &str, control: bool, alt: bool, shift: bool) -> bool {
+    let is_function_key = key.len() > 1 && key.starts_with('F');
     let types = !control && !alt && !is_function_key;
-    let belongs = |shortcut: egui::KeyboardShortcut| {
-        shortcut.logical_key == key && pressed.matches_logically(shortcut.modifiers)
-    };
-    !types && all_commands().flat_map(|command| command.keys).map(|&keys| shortcut(keys)).any(belongs)
+    let modifiers = Modifiers { alt, shift, ctrl: control, command: control, ..Modifiers::NONE };
+    !types && chord::is_of_command(Key::from_name(key), Key::from_name(code), modifiers)
 }
 
 /// Something typed that no frame has taken in.
@@ -121,17 +121,25 @@ pub struct FrontEnd {
 #[wasm_bindgen]
 impl FrontEnd {
     /// Goes on on another canvas, when the browser has taken the graphics of the one before away. Rejects with the code
-    /// `no-graphics` when it cannot draw there; the state stays, and another try may do.
+    /// `no-graphics` when it cannot draw there; the state stays, and another try may do. `globalThis.graphicsLost` is told
+    /// this `turn` when a WebGPU device is lost; `avoids_webgpu` asks for WebGL2.
     #[wasm_bindgen(js_name = drawOn)]
-    pub async fn draw_on(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
+    pub async fn draw_on(
+        &self,
+        canvas: HtmlCanvasElement,
+        turn: u32,
+        avoids_webgpu: bool,
+    ) -> Result<(), JsValue> {
         let (page, glue) = (Rc::clone(&self.page), self.glue.clone());
+        let limited = canvas.clone();
         let started = self.runner.start(
             canvas,
-            painter::options(),
+            painter::options(avoids_webgpu),
             Box::new(move |creation| {
                 let egui = &creation.egui_ctx;
                 egui.add_plugin(AccessibilityMirror::default());
-                painter::survive_errors(creation.wgpu_render_state.as_ref());
+                painter::survive_errors(creation.wgpu_render_state.as_ref(), turn);
+                painter::limit_canvas(&limited, creation.wgpu_render_state.as_ref());
                 let renderer = painter::name(creation.wgpu_render_state.as_ref());
                 let mut kept = page.borrow_mut();
                 if let Some(page) = kept.as_mut() {
@@ -144,6 +152,17 @@ impl FrontEnd {
             }),
         );
         started.await.map_err(|reason| refusal(RefusalCode::NoGraphics, &words(&reason)))
+    }
+
+    /// Draws nothing from here on until [`FrontEnd::draw_on`] is called: what it draws on is gone.
+    pub fn pause(&self) {
+        self.runner.destroy();
+    }
+
+    /// What draws: `webgpu` or `webgl2`; empty if that is not known.
+    pub fn renderer(&self) -> String {
+        let page = self.page.borrow();
+        page.as_ref().map(|page| page.app.app_state().frame.renderer.clone()).unwrap_or_default()
     }
 
     /// Opens an example mission.

@@ -34,6 +34,14 @@ extern "C" {
     #[wasm_bindgen(method, js_name = saveInPlace)]
     pub(crate) fn save_in_place(this: &Glue, mission: &str, asks: bool, forms: js_sys::Array) -> Promise;
 
+    /// Reads the text on the clipboard: a promise that fails with what to do instead. See `web/clipboard.js`.
+    #[wasm_bindgen(method, js_name = readClipboard)]
+    pub(crate) fn read_clipboard(this: &Glue) -> Promise;
+
+    /// Whether the window forgets everything when it is closed, as a promise. See `web/private.js`.
+    #[wasm_bindgen(method, js_name = isPrivateWindow)]
+    pub(crate) fn is_private_window(this: &Glue) -> Promise;
+
     /// Lets the user save a file.
     #[wasm_bindgen(method, js_name = saveFile)]
     pub(crate) fn save_file(this: &Glue, name: &str, bytes: Uint8Array);

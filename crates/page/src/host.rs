@@ -47,6 +47,13 @@ impl PageHost {
             move |message| link.happened(HostEvent::TabSaid(message))
         });
         glue.on_tab_said(&tab_listener);
+        let (private, news) = (glue.is_private_window(), link.clone());
+        wasm_bindgen_futures::spawn_local(async move {
+            let answer = wasm_bindgen_futures::JsFuture::from(private).await;
+            if answer.is_ok_and(|is_private| is_private.is_truthy()) {
+                news.happened(HostEvent::PrivateWindow);
+            }
+        });
         let listeners = (listener, tab_listener);
         let reduces_motion = window.match_media("(prefers-reduced-motion: reduce)").ok().flatten();
         Some(Self {
@@ -197,6 +204,10 @@ impl Host for PageHost {
         self.reduces_motion.as_ref().is_some_and(MediaQueryList::matches)
     }
 
+    fn is_firefox(&self) -> bool {
+        self.window.navigator().user_agent().is_ok_and(|agent| agent.contains("Firefox/"))
+    }
+
     fn random(&mut self) -> u64 {
         // Two halves of 32 bits; the sum of both fits.
         let half = || (js_sys::Math::random() * f64::from(u32::MAX)) as u64;
@@ -239,6 +250,17 @@ impl Host for PageHost {
 
     fn keep_file(&mut self, mission: &str, token: u32) {
         self.glue.keep_file(mission, token);
+    }
+
+    fn read_clipboard(&mut self) -> bool {
+        let (read, link) = (self.glue.read_clipboard(), self.link.clone());
+        wasm_bindgen_futures::spawn_local(async move {
+            link.happened(match wasm_bindgen_futures::JsFuture::from(read).await {
+                Ok(text) => HostEvent::ClipboardRead(text.as_string().unwrap_or_default()),
+                Err(thrown) => HostEvent::ClipboardRefused { reason: words(&thrown) },
+            });
+        });
+        true
     }
 
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {

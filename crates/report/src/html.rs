@@ -42,7 +42,10 @@ pub fn html(document: &Document<'_>) -> String {
     let title = format!("Mission review: {}", document.name);
     let nothing = Record::default();
     let record = document.record.unwrap_or(&nothing);
-    let style = format!("{STYLE}{}", page_margins(&document.review.content_hash));
+    let hash = &document.review.content_hash;
+    let content = content(document, record);
+    let sheets = most_sheets(&content);
+    let style = format!("{STYLE}{}{}", page_margins(hash), sheet_rules(sheets));
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{1}\">\n\
@@ -51,7 +54,15 @@ pub fn html(document: &Document<'_>) -> String {
         escaped(&title),
         policy(&style)
     );
-    out.push_str(&facts(document, record));
+    out.push_str(&in_content(hash, sheets));
+    out.push_str(&content);
+    out.push_str("</body>\n</html>\n");
+    out
+}
+
+/// What is below the title.
+fn content(document: &Document<'_>, record: &Record) -> String {
+    let mut out = facts(document, record);
     out.push_str(&tables::summary(document.review, document.record));
     out.push_str(&board::signatures(record, document.review));
     out.push_str(&board::changes(document, record));
@@ -62,7 +73,6 @@ pub fn html(document: &Document<'_>) -> String {
     out.push_str(&figures(document));
     out.push_str("<h2 class=\"page\">Program</h2>\n");
     out.push_str(&listing::listing(&document.snapshot.source));
-    out.push_str("</body>\n</html>\n");
     out
 }
 
@@ -73,6 +83,26 @@ fn page_margins(content_hash: &str) -> String {
     format!(
         "@page {{ @bottom-left {{ content: \"Content {hash}\"; font-size: 6.5pt; color: #4e5b6a; }} \
          @bottom-right {{ content: \"Page \" counter(page) \" of \" counter(pages); font-size: 8pt; color: #4e5b6a; }} }}\n"
+    )
+}
+
+/// How many pages the report has at most: a page holds more rows, lines and drawings than are counted here.
+fn most_sheets(content: &str) -> usize {
+    let count = |element: &str| content.matches(element).count();
+    20 + count("<tr") / 6 + count("<figure") + count("class=\"line\"") / 15 + content.len() / 20_000
+}
+
+/// Where the number of each page lies, for browsers that put nothing into the margins of pages.
+fn sheet_rules(sheets: usize) -> String {
+    (1..=sheets).map(|sheet| format!(".sheets :nth-child({sheet}) {{ --sheet: {sheet}; }}\n")).collect()
+}
+
+/// The hash and the numbers of pages for these browsers. They are no part of what is read aloud.
+fn in_content(hash: &str, sheets: usize) -> String {
+    let numbers: String = (1..=sheets).map(|sheet| format!("<i>Page {sheet}</i>")).collect();
+    format!(
+        "<p class=\"foot\" aria-hidden=\"true\">Content {}</p>\n<div class=\"sheets\" aria-hidden=\"true\">{numbers}</div>\n",
+        escaped(hash)
     )
 }
 

@@ -96,6 +96,10 @@ fn the_summary_comes_first_and_each_page_has_its_number_and_the_hash() {
     let hash = planned(SCENARIO).review.content_hash;
     assert!(page.contains(&format!("@bottom-left {{ content: \"Content {hash}\"")));
     assert!(page.contains("\"Page \" counter(page) \" of \" counter(pages)"));
+    // The same in the page's own content, for browsers without margins.
+    assert!(page.contains(&format!("<p class=\"foot\" aria-hidden=\"true\">Content {hash}</p>")));
+    let sheets = page.matches("<i>Page ").count();
+    assert!(sheets >= 20 && page.contains(&format!(".sheets :nth-child({sheets}) {{ --sheet: {sheets}; }}")));
     let summary = &page[at("<h2>Summary</h2>")..at("<h2>Signatures</h2>")];
     assert!(summary.contains("outlasts it by 0 to 45 min") && summary.contains("margin more than 0 min"));
     let fine = report("primitive A()[1,2]; scenario S[0,9] = { A() }", "fine.rmpl");

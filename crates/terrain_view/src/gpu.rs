@@ -115,13 +115,7 @@ impl TerrainImage {
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: view_buffer.as_entire_binding() }],
         });
         let (corners, indices) = patch_mesh();
-        let buffer = |contents: &[u8], usage| {
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("terrain patch"),
-                contents,
-                usage,
-            })
-        };
+        let buffer = |contents: &[u8], usage| filled_buffer(state, "terrain patch", contents, usage);
         Self {
             pipelines,
             grid: buffer(bytemuck::cast_slice(&corners), wgpu::BufferUsages::VERTEX),
@@ -136,8 +130,17 @@ impl TerrainImage {
         }
     }
 
-    /// Uploads the ground, with nothing lying on it.
+    /// Whether the graphics card holds a ground of this size: some browsers allow textures of 2048 a side only.
+    pub fn holds(state: &RenderState, ground: &Ground) -> bool {
+        ground.width.max(ground.height) <= max_side(state)
+    }
+
+    /// Uploads the ground, with nothing lying on it; none if the graphics card does not hold it.
     pub fn set_ground(&mut self, state: &RenderState, ground: &Ground) {
+        if !Self::holds(state, ground) {
+            (self.ground, self.ground_group, self.drawn) = (None, None, None);
+            return;
+        }
         let normals: Vec<[u8; 4]> = (0..ground.height)
             .flat_map(|row| (0..ground.width).map(move |column| (column, row)))
             .map(|(column, row)| {
@@ -193,7 +196,7 @@ impl TerrainImage {
 
     /// Draws `frame` in an image of `size` pixels, unless it already shows just that, and gives egui's name of it.
     pub fn draw(&mut self, state: &RenderState, size: [u32; 2], frame: Frame) -> egui::TextureId {
-        let size = size.map(|side| side.clamp(1, 4096));
+        let size = size.map(|side| side.clamp(1, max_side(state).min(4096)));
         if self.targets.as_ref().is_none_or(|targets| targets.size != size) {
             if let Some(old) = self.targets.take() {
                 state.renderer.write().free_texture(&old.texture);
@@ -215,9 +218,7 @@ impl TerrainImage {
         let device = &state.device;
         state.queue.write_buffer(&self.view_buffer, 0, bytemuck::bytes_of(&frame.view));
         let vertex_buffer = |contents: &[u8]| {
-            let usage = wgpu::BufferUsages::VERTEX;
-            let label = Some("terrain shapes");
-            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label, contents, usage })
+            filled_buffer(state, "terrain shapes", contents, wgpu::BufferUsages::VERTEX)
         };
         let patches: Vec<[u32; 4]> =
             frame.patches.iter().map(|patch| [patch.cell[0], patch.cell[1], patch.stride, 0]).collect();
@@ -249,6 +250,36 @@ impl TerrainImage {
         }
         state.queue.submit([encoder.finish()]);
     }
+}
+
+/// The largest side of a texture.
+fn max_side(state: &RenderState) -> u32 {
+    state.device.limits().max_texture_dimension_2d
+}
+
+/// A buffer with this content. It is filled by the queue: a buffer that is mapped at its creation throws in a browser
+/// whose device is lost.
+fn filled_buffer(
+    state: &RenderState,
+    label: &str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let padded_bytes = contents.len().next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT as usize);
+    let buffer = state.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: padded_bytes.max(wgpu::COPY_BUFFER_ALIGNMENT as usize) as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    if padded_bytes == contents.len() {
+        state.queue.write_buffer(&buffer, 0, contents);
+    } else {
+        let mut padded = contents.to_vec();
+        padded.resize(padded_bytes, 0);
+        state.queue.write_buffer(&buffer, 0, &padded);
+    }
+    buffer
 }
 
 fn texture(

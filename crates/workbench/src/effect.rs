@@ -12,6 +12,8 @@ use crate::library::MissionId;
 pub enum Effect {
     /// Put text on the clipboard.
     Copy(String),
+    /// Paste what is on the clipboard into the text.
+    Paste,
     /// Let the user choose a file.
     OpenFile(FileKind),
     /// Save the open mission to its file, or these files where the host cannot do that.

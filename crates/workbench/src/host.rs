@@ -63,6 +63,11 @@ pub trait Host {
         false
     }
 
+    /// Whether this is a page in Firefox, which keeps some keys for itself.
+    fn is_firefox(&self) -> bool {
+        false
+    }
+
     /// A number that no other run has drawn.
     fn random(&mut self) -> u64;
 
@@ -82,6 +87,13 @@ pub trait Host {
 
     /// From now on a mission is saved to the file that was opened with this token.
     fn keep_file(&mut self, _mission: &str, _token: u32) {}
+
+    /// Reads the text on the clipboard; [`HostEvent::ClipboardRead`] or [`HostEvent::ClipboardRefused`] answers. As
+    /// [`Host::open_file`], only while handling a click or a key press. Returns whether the host can do that: in others
+    /// the window around the app pastes.
+    fn read_clipboard(&mut self) -> bool {
+        false
+    }
 
     /// Lets the user save `bytes` as a file.
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>);
@@ -150,6 +162,15 @@ pub enum HostEvent {
     Shelf(ShelfNews),
     /// Another tab said this by [`Host::tell_tabs`].
     TabSaid(String),
+    /// The window is a private one: all that is kept is deleted when it closes.
+    PrivateWindow,
+    /// The text on the clipboard, to be pasted into the mission's text.
+    ClipboardRead(String),
+    /// The clipboard could not be read.
+    ClipboardRefused {
+        /// Why, and what to do instead.
+        reason: String,
+    },
 }
 
 /// Keys of a shelf with what is kept under them.

@@ -36,6 +36,8 @@ pub struct Session {
 pub enum WindowEffect {
     /// Put text on the clipboard.
     Copy(String),
+    /// Paste what is on the clipboard.
+    Paste,
     /// The appearance changed.
     Restyle,
 }
@@ -62,7 +64,9 @@ impl Session {
         state.frame.unix_millis = host.unix_millis();
         let mut keeper = Keeper::start(&mut state, host.as_mut());
         let is_named = outside::open_fragment(&mut state, &host.fragment());
-        if !is_named {
+        if is_named {
+            keeper.mention_last(&mut state, host.as_ref());
+        } else {
             keeper.reopen(&mut state, host.as_ref());
         }
         let stored = state.settings.clone();
@@ -112,6 +116,7 @@ impl Session {
                     outside::open_fragment(&mut self.state, &fragment);
                 }
                 HostEvent::Shelf(news) => self.keeper.hear(&mut self.state, self.host.as_mut(), news),
+                HostEvent::PrivateWindow => self.keeper.note_private(&mut self.state),
                 HostEvent::TabSaid(message) => self.keeper.hear_tab(&mut self.state, &message),
                 event => self.state.receive(event),
             }
@@ -203,6 +208,11 @@ impl Session {
         for effect in self.state.window.take_effects() {
             match effect {
                 Effect::Copy(text) => self.window_effects.push(WindowEffect::Copy(text)),
+                Effect::Paste => {
+                    if !self.host.read_clipboard() {
+                        self.window_effects.push(WindowEffect::Paste);
+                    }
+                }
                 Effect::OpenFile(kind) => self.host.open_file(kind),
                 Effect::Save(save, _) if self.host.saves_in_place() => self.host.save_in_place(save),
                 Effect::Save(_, downloads) => {

@@ -64,13 +64,17 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
+/// What a private window does with missions.
+const PRIVATE: &str = "The browser deletes the missions when this window closes";
+
 /// Says when something is not kept; that everything is, nobody needs to be told.
 fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let (text, reason, color) = match &context.state.library.keeping {
         Keeping::Kept | Keeping::Opening => return,
-        Keeping::LatestOnly(reason) => ("Only the latest text is saved", reason, tokens.warning),
-        Keeping::Nothing(reason) => ("Not saved", reason, tokens.error),
+        Keeping::UntilClosed => ("Private window", PRIVATE, tokens.warning),
+        Keeping::LatestOnly(reason) => ("Only the latest text is saved", reason.as_str(), tokens.warning),
+        Keeping::Nothing(reason) => ("Not saved", reason.as_str(), tokens.error),
     };
     let button = Button::new(RichText::new(text).color(color));
     if ui.add(button).on_hover_text(format!("{reason}. Click to save the mission to a file.")).clicked() {
@@ -95,16 +99,24 @@ fn selection(ui: &mut Ui, context: &Context<'_>) {
     let name = context.state.selection.name(network);
     if !name.is_empty() {
         ui.add_space(space::S);
-        ui.label(RichText::new(name).color(context.tokens.accent));
+        let name = egui::Label::new(RichText::new(name).color(context.tokens.accent));
+        ui.add(name.truncate());
     }
 }
 
 fn figures(ui: &mut Ui, context: &Context<'_>) {
     let tokens = context.tokens;
-    let faint = |text: String| RichText::new(text).color(tokens.text_faint);
+    // What has no room is left out, the last ones first.
+    let mut faint = |text: String| {
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        let galley = ui.painter().layout_no_wrap(text.clone(), font, tokens.text_faint);
+        if galley.size().x + space::S <= ui.available_width() {
+            ui.label(RichText::new(text).color(tokens.text_faint));
+        }
+    };
     let frame = &context.state.frame;
     if !frame.renderer.is_empty() {
-        ui.label(faint(frame.renderer.clone()));
+        faint(frame.renderer.clone());
     }
     let Some(snapshot) = context.snapshot else { return };
     let timings = snapshot.timings;
@@ -112,10 +124,9 @@ fn figures(ui: &mut Ui, context: &Context<'_>) {
         "parse {:.1}  compile {:.1}  plan {:.1} ms",
         timings.parse_millis, timings.compile_millis, timings.plan_millis
     );
-    ui.label(faint(text));
+    faint(text);
     if let Some(network) = &snapshot.network {
-        ui.label(faint(format!("{} events  {} constraints", network.nodes.len(), network.arcs.len())));
+        faint(format!("{} events  {} constraints", network.nodes.len(), network.arcs.len()));
     }
-    let revision = format!("revision {}", context.state.document.revision());
-    ui.label(faint(revision));
+    faint(format!("revision {}", context.state.document.revision()));
 }

@@ -29,24 +29,37 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     Panel::top("top-bar").exact_size(space::BAR).show_separator_line(false).frame(frame).show(ui, |ui| {
         structure::part(ui, accesskit::Role::Banner, "");
         ui.horizontal_centered(|ui| {
-            structure::heading(ui, RichText::new("Enroute").strong().size(15.0).color(tokens.text), 1);
-            ui.add_space(space::S);
+            if room(ui) >= ROOM_FOR_NAME {
+                structure::heading(ui, RichText::new("Enroute").strong().size(15.0).color(tokens.text), 1);
+                ui.add_space(space::S);
+            }
             // The menus stand close to each other, as one thing.
             ui.spacing_mut().item_spacing.x = 0.0;
             ui.scope(|ui| menus(ui, context, commands));
-            ui.spacing_mut().item_spacing.x = space::M;
+            ui.spacing_mut().item_spacing.x = if room(ui) < ROOM_FOR_SPACE { space::XS } else { space::M };
             ui.add_space(space::S);
             // The name has all the room that the frame before left over.
             let spare_id = ui.scope_id().with("spare");
             let (given, spare) = ui.data(|data| data.get_temp::<(f32, f32)>(spare_id)).unwrap_or_default();
             let wanted = mission::width(ui, context);
-            let width = wanted.min(given + spare).max(if is_narrow(ui) { 128.0 } else { 150.0 });
+            let least = if room(ui) < ROOM_FOR_SPACE {
+                64.0
+            } else if is_narrow(ui) {
+                128.0
+            } else {
+                150.0
+            };
+            let width = wanted.min(given + spare).max(least);
             mission::show(ui, context, width, commands);
-            ui.add_space(space::L);
+            if room(ui) >= ROOM_FOR_SPACE {
+                ui.add_space(space::L);
+            }
             workspaces(ui, context, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 tools(ui, context, commands);
-                ui.add_space(space::M);
+                if room(ui) >= ROOM_FOR_SPACE {
+                    ui.add_space(space::M);
+                }
                 status(ui, context, commands);
                 let left = (ui.available_width() - STATUS_ROOM).max(0.0);
                 if (given, spare) != (width, left) {
@@ -63,6 +76,11 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     });
 }
 
+/// A bar narrower than this goes without the name of the program.
+const ROOM_FOR_NAME: f32 = 560.0;
+/// A bar narrower than this has no space to spare, and the command palette alone of the buttons at its end: the menus have
+/// what the others do.
+const ROOM_FOR_SPACE: f32 = 640.0;
 /// A bar narrower than this has its workspaces in a list: the sign of the plan keeps its words.
 const ROOM_FOR_WORKSPACES: f32 = 880.0;
 /// Kept free between the workspaces and the sign of the plan, whose words change.
@@ -92,8 +110,12 @@ fn menus(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     structure::part_in(ui, ui.min_rect(), accesskit::Role::MenuBar, "Menus");
 }
 
+fn room(ui: &Ui) -> f32 {
+    ui.ctx().content_rect().width()
+}
+
 fn is_narrow(ui: &Ui) -> bool {
-    ui.ctx().content_rect().width() < ROOM_FOR_MENUS
+    room(ui) < ROOM_FOR_MENUS
 }
 
 fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut CommandSender) {
@@ -117,7 +139,7 @@ fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut Command
 }
 
 fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &mut CommandSender) {
-    let keys = spec.keys.first().map(|&keys| chord::text(ui.ctx(), keys)).unwrap_or_default();
+    let keys = chord::texts(ui.ctx(), spec, context.state).into_iter().next().unwrap_or_default();
     let availability = (spec.available)(context.state);
     let button = Button::new(spec.title).shortcut_text(keys);
     let mut response = ui.add_enabled(availability.is_ok(), button);
@@ -133,7 +155,7 @@ fn menu_item(ui: &mut Ui, context: &Context<'_>, spec: &CommandSpec, commands: &
 
 fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
-    if ui.ctx().content_rect().width() < ROOM_FOR_WORKSPACES {
+    if room(ui) < ROOM_FOR_WORKSPACES {
         return workspace_list(ui, context, commands);
     }
     ui.spacing_mut().item_spacing.x = space::XS;
@@ -227,6 +249,14 @@ fn status_name(context: &Context<'_>) -> &'static str {
 fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     ui.spacing_mut().item_spacing.x = space::XS;
+    let palette = |ui: &mut Ui, commands: &mut CommandSender| {
+        if icon::button(ui, tokens, Icon::Palette, "Command palette").clicked() {
+            commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::palette())));
+        }
+    };
+    if room(ui) < ROOM_FOR_SPACE {
+        return palette(ui, commands);
+    }
     if icon::button(ui, tokens, Icon::Help, "Keyboard shortcuts").clicked() {
         commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::Keys)));
     }
@@ -238,8 +268,6 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if icon::button(ui, tokens, sign, name).clicked() {
         commands.send(Command::Settings(SettingsCommand::SetTheme(other)));
     }
-    if icon::button(ui, tokens, Icon::Palette, "Command palette").clicked() {
-        commands.send(Command::Window(WindowCommand::ShowDialog(Dialog::palette())));
-    }
+    palette(ui, commands);
     ui.spacing_mut().item_spacing.x = space::M;
 }

@@ -52,8 +52,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     };
     let of_commands = Group::ALL.into_iter().map(|group| {
         let rows = all_commands().filter(|spec| spec.group == group && !spec.keys.is_empty()).map(|spec| {
-            let keys: Vec<String> = spec.keys.iter().map(|&keys| chord::text(ui.ctx(), keys)).collect();
-            (keys.join("  or  "), spec.title)
+            (chord::texts(ui.ctx(), spec, context.state).join("  or  "), spec.title)
         });
         (group.title(), rows.collect::<Vec<_>>())
     });

@@ -102,6 +102,10 @@ fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let (text, color) = match &context.state.library.keeping {
         Keeping::Kept => return,
         Keeping::Opening => ("Loading your missions…".to_owned(), tokens.info),
+        Keeping::UntilClosed => {
+            let text = "Private window: the browser deletes your missions when the window closes.";
+            (text.to_owned(), tokens.warning)
+        }
         Keeping::LatestOnly(reason) => {
             (format!("Only your latest text is saved, without maps and versions: {reason}."), tokens.warning)
         }

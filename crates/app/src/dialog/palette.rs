@@ -86,7 +86,7 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
         Some(Entry {
             group: spec.group.title(),
             title: spec.title.to_owned(),
-            keys: spec.keys.first().map(|&keys| chord::text(ui.ctx(), keys)).unwrap_or_default(),
+            keys: chord::texts(ui.ctx(), spec, context.state).into_iter().next().unwrap_or_default(),
             unavailable: (spec.available)(context.state).err(),
             command: spec.plain(context.state)?,
         })

@@ -101,6 +101,7 @@ fn open(told: Told) -> Window {
         let items = told.completions.iter().map(|label| PopupItem { label, detail: "", sign: None });
         let popup = Popup { items: items.collect(), chosen: 0, is_code: true, prefix: "Take: " };
         let view = EditorView {
+            menu: &[],
             manual_keys: Some("F10"),
             id,
             name: "Some text",

@@ -21,15 +21,16 @@ pub fn typed_text(context: &Context, state: &AppState) -> Vec<Command> {
         has_popup: state.editor.popup.is_some(),
         can_take_focus: state.window.dialog.is_none(),
     };
-    editor::typed(context, &keyboard).into_iter().map(command).collect()
+    editor::typed(context, &keyboard).into_iter().filter_map(|action| command(state, action)).collect()
 }
 
 /// The command for what the editor's user wants.
-pub(super) fn command(action: EditorAction) -> Command {
-    Command::Editor(match action {
-        EditorAction::Text(command) => return Command::Text(command),
-        EditorAction::SetText(text) => return Command::SetSource(text),
-        EditorAction::Press => return Command::Window(WindowCommand::Activate(PanelKind::Editor)),
+pub(super) fn command(state: &AppState, action: EditorAction) -> Option<Command> {
+    Some(Command::Editor(match action {
+        EditorAction::Menu(index) => return super::menu::command(state, index),
+        EditorAction::Text(command) => return Some(Command::Text(command)),
+        EditorAction::SetText(text) => return Some(Command::SetSource(text)),
+        EditorAction::Press => return Some(Command::Window(WindowCommand::Activate(PanelKind::Editor))),
         EditorAction::Compose(text) => EditorCommand::Compose(text),
         EditorAction::Copy { cut } => EditorCommand::CopySelection { cut },
         EditorAction::Focus => EditorCommand::Focus,
@@ -44,5 +45,5 @@ pub(super) fn command(action: EditorAction) -> Command {
         EditorAction::FindPrevious => EditorCommand::FindPrevious,
         EditorAction::ReplaceOne => EditorCommand::ReplaceOne,
         EditorAction::ReplaceAll => EditorCommand::ReplaceAll,
-    })
+    }))
 }

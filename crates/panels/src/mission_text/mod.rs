@@ -3,6 +3,7 @@
 mod files;
 mod keyboard;
 mod language;
+mod menu;
 
 use editor::{Diagnostic, Editor, EditorView, Mark, Popup, PopupItem, Reveal};
 use egui::Ui;
@@ -37,7 +38,10 @@ impl Panel for EditorPanel {
         let takes_focus = context.take_last(|effect| {
             (effect == PanelEffect::FocusEditor && state.window.dialog.is_none()).then_some(())
         });
+        let entries = menu::entries(state);
+        let (clipboard, place) = entries.split_at(menu::CLIPBOARD.min(entries.len()));
         let view = EditorView {
+            menu: &[clipboard, place],
             manual_keys: Some("Shift+F1"),
             id: editor_id(),
             name: "Mission text",
@@ -57,7 +61,9 @@ impl Panel for EditorPanel {
         };
         let mut language = language::Language { context, answers: &mut self.answers };
         for action in self.editor.show(ui, &view, &mut language) {
-            commands.send(keyboard::command(action));
+            if let Some(command) = keyboard::command(state, action) {
+                commands.send(command);
+            }
         }
     }
 }

@@ -149,6 +149,16 @@ impl TerrainPanel {
             sketch: &sketch,
         };
         match (context.render_state, &mut self.image) {
+            (Some(state), Some(_)) if !TerrainImage::holds(state, ground) => {
+                painter.rect_filled(rect, 0.0, context.tokens.sunken);
+                let words = format!(
+                    "The map has {} × {} cells, more than this browser's graphics can show. The plan is unaffected.",
+                    ground.width, ground.height
+                );
+                let font = egui::TextStyle::Body.resolve(ui.style());
+                let galley = painter.layout(words, font, context.tokens.text_muted, rect.width() - 2.0 * space::L);
+                painter.galley(rect.center() - galley.size() / 2.0, galley, context.tokens.text_muted);
+            }
             (Some(state), Some(image)) => {
                 frame::paint(&painter, rect, pixels_per_point, state, image, &input);
             }

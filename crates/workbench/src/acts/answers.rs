@@ -2,8 +2,10 @@
 
 use interchange::is_network_file;
 use link::Response;
+use text_editing::TextCommand;
 use review::rules::RULES_FORMAT;
 
+use crate::command::Command;
 use crate::effect::Effect;
 use crate::host::{FileKind, HostEvent};
 use crate::library::Mission;
@@ -20,7 +22,16 @@ impl AppState {
     fn take(&mut self, event: HostEvent) {
         match event {
             HostEvent::Answer(answer) => self.take_answer(answer),
-            HostEvent::FragmentChanged(_) | HostEvent::Shelf(_) | HostEvent::TabSaid(_) => {}
+            HostEvent::FragmentChanged(_)
+            | HostEvent::Shelf(_)
+            | HostEvent::TabSaid(_)
+            | HostEvent::PrivateWindow => {}
+            HostEvent::ClipboardRead(text) => {
+                if !text.is_empty() {
+                    self.apply(Command::Text(TextCommand::Paste(text.replace("\r\n", "\n"))));
+                }
+            }
+            HostEvent::ClipboardRefused { reason } => self.window.failed(format!("Couldn't paste: {reason}")),
             HostEvent::CoreFailed { message, revision } => {
                 self.give_up(revision);
                 self.window.failed(format!(

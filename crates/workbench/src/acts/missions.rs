@@ -234,7 +234,7 @@ impl AppState {
 
     /// Opens a file as a mission of its own, whatever is open; nothing is opened that does not read as one.
     pub(super) fn open_mission_file(&mut self, name: &str, bytes: Vec<u8>) {
-        let text = match String::from_utf8(bytes) {
+        let text = match String::from_utf8(without_mark(bytes)) {
             Ok(text) => text,
             Err(error) => return self.open_what_is_no_mission(name, error.into_bytes()),
         };
@@ -270,7 +270,8 @@ impl AppState {
         if FileFormat::detect(&bytes).is_some() {
             return self.maps.open_file(name, bytes, &mut self.window);
         }
-        let reason = refusal(&bytes).map_or_else(|| NO_MISSION.to_owned(), |reason| reason.to_string());
+        let known = refusal(&bytes).map(|reason| reason.to_string());
+        let reason = known.or_else(|| encoding_refusal(name, &bytes)).unwrap_or_else(|| NO_MISSION.to_owned());
         let text = format!("Couldn't open {name}: {reason}. Your current mission is unchanged.");
         self.window.failed(text);
     }
@@ -324,11 +325,30 @@ const NO_MISSION: &str = "unrecognized format. Supported: missions and control p
                           (PNG, PGM, TIFF, PDS3, ESRI ASCII grid, MovingAI, ROS), places (.geojson), \
                           lessons (.md), saved plans, runs and reviews (.json)";
 
+/// Without the mark that editors of other systems put before a text, which says nothing in UTF-8.
+fn without_mark(mut bytes: Vec<u8>) -> Vec<u8> {
+    if bytes.starts_with("\u{feff}".as_bytes()) {
+        bytes.drain(..'\u{feff}'.len_utf8());
+    }
+    bytes
+}
+
+/// Why a text in another encoding is not opened.
+fn encoding_refusal(name: &str, bytes: &[u8]) -> Option<String> {
+    let encoding = if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        "UTF-16"
+    } else if says_mission(name) {
+        "another encoding, such as Latin-1"
+    } else {
+        return None;
+    };
+    let first_bad = str::from_utf8(bytes).err()?.valid_up_to();
+    let line = bytes[..first_bad].iter().filter(|&&byte| byte == b'\n').count() + 1;
+    Some(format!("line {line} is not UTF-8; the text seems to be in {encoding}. Save it as UTF-8 in your editor"))
+}
+
 /// Whether a file is a mission: its name says so, or it reads as one.
 fn reads_as_mission(name: &str, text: &str) -> bool {
-    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
-    let says_so = FileKind::Mission.extensions().contains(&extension.as_str())
-        && !["txt", WHOLE_EXTENSION, "json", "edn", "tpn", "ptpn", "xml"].contains(&extension.as_str());
     let reads = || {
         let has_error = |all: &[rmpl::Diagnostic]| all.iter().any(|it| it.severity == rmpl::Severity::Error);
         if rmpl::control::is_control_text(text) {
@@ -337,5 +357,12 @@ fn reads_as_mission(name: &str, text: &str) -> bool {
             !text.trim().is_empty() && !has_error(&rmpl::parse(text).diagnostics())
         }
     };
-    says_so || reads()
+    says_mission(name) || reads()
+}
+
+/// Whether a file's name says that it is a mission's text.
+fn says_mission(name: &str) -> bool {
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension).to_ascii_lowercase();
+    FileKind::Mission.extensions().contains(&extension.as_str())
+        && !["txt", WHOLE_EXTENSION, "json", "edn", "tpn", "ptpn", "xml"].contains(&extension.as_str())
 }

@@ -20,7 +20,7 @@ pub struct Library {
     /// How many things are kept that cannot be read.
     pub unreadable: usize,
     /// Whether missions are kept beyond the end of this run.
-    #[cfg_attr(test, ts(type = "\"opening\" | \"kept\" | \"latest-only\" | \"nothing\""))]
+    #[cfg_attr(test, ts(type = "\"opening\" | \"kept\" | \"until-closed\" | \"latest-only\" | \"nothing\""))]
     pub keeping: &'static str,
 }
 
@@ -66,6 +66,7 @@ pub(super) fn library(state: &AppState) -> Library {
         keeping: match library.keeping {
             Keeping::Opening => "opening",
             Keeping::Kept => "kept",
+            Keeping::UntilClosed => "until-closed",
             Keeping::LatestOnly(_) => "latest-only",
             Keeping::Nothing(_) => "nothing",
         },

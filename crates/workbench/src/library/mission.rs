@@ -2,6 +2,7 @@
 //!
 //! Written as JSON (`enroute-mission/1`), both where missions are kept and as the one file that holds a whole mission.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use review::Record;
@@ -126,6 +127,23 @@ pub const MAIN_TEXT: &str = "mission.rmpl";
 /// What the JSON of a mission calls itself.
 pub const FORMAT: &str = "enroute-mission/1";
 
+/// What stands before the checksum at the end of the JSON.
+const CHECKSUM: &str = ",\"checksum\":\"";
+
+/// Whether the checksum is that of what stands before it, if there is one.
+fn fits_checksum(text: &str) -> bool {
+    let Some((body, end)) = text.rsplit_once(CHECKSUM) else { return true };
+    let checksum = end.strip_suffix("\"}").and_then(|digits| u64::from_str_radix(digits, 16).ok());
+    // What stands elsewhere is none.
+    checksum.is_none_or(|checksum| checksum == print(&format!("{body}}}")))
+}
+
+/// A number that tells texts apart (FNV-1a).
+pub(crate) fn print(text: &str) -> u64 {
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |print, byte| (print ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
 /// Why something cannot be read as a mission.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MissionError {
@@ -176,13 +194,23 @@ impl Mission {
         serde_json::to_string(&Written { format: FORMAT, mission: self }).unwrap_or_default()
     }
 
-    /// The mission as JSON with the names of its maps and without their content, which is kept beside it.
-    pub fn to_json_without_maps(&self) -> String {
+    /// The same JSON with a checksum as its last entry, by which [`Mission::from_json`] notices damage: what the library
+    /// keeps. A file that other programs may change goes without.
+    pub fn to_checked_json(&self) -> String {
+        let mut json = self.to_json();
+        let checksum = print(&json);
+        json.pop();
+        json.push_str(&format!("{CHECKSUM}{checksum:016x}\"}}"));
+        json
+    }
+
+    /// The mission with the names of its maps and without their content, which is kept beside it.
+    pub fn without_maps(&self) -> Cow<'_, Self> {
         if self.maps.iter().all(|map| map.bytes.is_none()) {
-            return self.to_json();
+            return Cow::Borrowed(self);
         }
         let maps = self.maps.iter().map(|map| MapFile { name: map.name.clone(), bytes: None }).collect();
-        Self { maps, ..self.clone() }.to_json()
+        Cow::Owned(Self { maps, ..self.clone() })
     }
 
     /// The same without what takes room and hardly changes: what is written down at each key press.
@@ -193,6 +221,9 @@ impl Mission {
 
     /// Reads a mission.
     pub fn from_json(text: &str) -> Result<Self, MissionError> {
+        if !fits_checksum(text) {
+            return Err(MissionError::Damaged("its checksum does not fit".to_owned()));
+        }
         let value: Value = serde_json::from_str(text).map_err(|error| {
             // What begins like one and ends too early is a mission that was cut off.
             let begins = text.trim_start().starts_with('{') && text.contains("\"enroute-mission/");

@@ -17,7 +17,7 @@ use smol_str::{SmolStr, format_smolstr};
 use text_editing::Document;
 
 pub use command::LibraryCommand;
-pub(crate) use mission::joined;
+pub(crate) use mission::{joined, print};
 pub use mission::{
     FORMAT, MAIN_TEXT, MapFile, Mission, MissionError, MissionId, MissionKind, TextFile, Version,
 };
@@ -61,6 +61,8 @@ pub enum Keeping {
     Opening,
     /// Everything is kept.
     Kept,
+    /// Everything is kept until the window is closed: it is a private one.
+    UntilClosed,
     /// Only the latest text is kept, in a small place beside; the reason.
     LatestOnly(String),
     /// Nothing is kept beyond the end of this run; the reason.

@@ -1,9 +1,11 @@
 //! Keeps the missions beyond the end of this run, so that nothing is ever lost.
 //!
-//! Each change is written twice. At once, at the end of the frame that made it, the mission's texts go to a small place
-//! that takes them synchronously (`writing`): a reload, a crash or a closed tab right after a key press finds them
-//! there. A little later the whole mission goes to the shelf, which is large and answers when it is done; only then is
-//! the small copy let go. A tab owns its small copies, and never touches those of another one that may be alive.
+//! Each change is written three times. At once, at the end of the frame that made it, the mission's texts go to a small
+//! place that takes them synchronously (`writing`): a reload or a closed tab right after a key press finds them there. A
+//! browser writes that place to its disk seconds later, so the texts go to the shelf at the same time, which is on the disk
+//! when it answers (`typed`): a killed browser finds them there. A little later the whole mission goes to the shelf; only
+//! then are the two copies let go. A tab owns its small copies, and never touches those of another one that may be alive.
+//! Which mission is open is kept in both places, too. What is kept carries a checksum.
 
 mod tabs;
 
@@ -16,21 +18,31 @@ use crate::library::{Change, Keeping, Mission, MissionError, MissionId, MissionK
 use crate::mission_file;
 use crate::state::AppState;
 
-/// The mission that was open last.
+/// The mission that was open last, and since when.
 const LAST_KEY: &str = "enroute/open-1";
+/// The same on the shelf.
+const LAST_ON_SHELF: &str = "open";
 /// Where the latest texts are written at once: by mission, and by the tab that writes.
 const WRITING: &str = "enroute/writing-1/";
 /// What the draft of earlier versions of this program was kept under.
 const DRAFTS: [&str; 2] = ["enroute/draft-1/earlier", "enroute/draft-1"];
 /// Where missions lie on the shelf.
 const MISSIONS: &str = "mission/";
+/// Where the latest texts of missions lie on the shelf until the whole mission is written.
+const TYPED: &str = "typed/";
+/// Where damaged missions are put whose texts were found elsewhere, before they are written again.
+const ASIDE: &str = "aside/";
 
-/// The shelf is not written more often than this, as long as the small place takes what is typed.
+/// Whole missions are not written to the shelf more often than this, as long as their texts are.
 const SECONDS_BETWEEN: f64 = 0.4;
+/// What is typed is written to the shelf as soon as it has answered, and after this even if it has not.
+const SECONDS_UNTIL_TYPED: f64 = 0.1;
 /// What could not be written is tried again after this.
 const SECONDS_UNTIL_AGAIN: f64 = 5.0;
-/// Longer texts are written at most so often: the small place is slow with them, and not much larger than they are.
+/// Longer texts are written at most ten times a second: the small place is slow with them, and not much larger than they are.
 const LONG_TEXT_BYTES: usize = 400_000;
+/// A mission that was changed longer ago than this is not mentioned.
+const MILLIS_UNTIL_OLD: i64 = 10 * 60 * 1000;
 
 /// Keeps the missions while they are edited.
 #[derive(Debug)]
@@ -48,6 +60,12 @@ pub struct Keeper {
     waiting_maps: BTreeSet<(MissionId, SmolStr)>,
     /// Missions that the shelf is writing.
     in_flight: BTreeSet<MissionId>,
+    /// Missions whose latest texts the shelf has not been told of.
+    typed: BTreeSet<MissionId>,
+    /// Latest texts that the shelf is writing: when it was asked, and when the mission was changed.
+    typed_in_flight: BTreeMap<MissionId, (f64, i64)>,
+    /// Missions of which the shelf may have the latest texts apart.
+    typed_on_shelf: BTreeSet<MissionId>,
     /// Small copies of this tab, with when the mission was changed that they hold.
     written: BTreeMap<MissionId, i64>,
     /// Small copies of earlier runs, as they were found.
@@ -57,10 +75,36 @@ pub struct Keeper {
     last_write_secs: f64,
     last_long_secs: f64,
     has_complained: bool,
+    /// Whether the window forgets everything when it is closed.
+    is_private: bool,
+    has_told_private: bool,
     /// The mission that was noted as the one that was open last.
     last: Option<MissionId>,
+    /// The mission that the shelf has noted so.
+    last_on_shelf: Option<MissionId>,
+    /// The one that was open last in earlier runs, as the shelf has it.
+    found_last: Option<Last>,
     /// Whether the open mission is to be the one of the last run as soon as it is known.
     wants_last: bool,
+}
+
+/// A mission that was open, and since when, in milliseconds since 1970.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Last {
+    id: MissionId,
+    since_millis: i64,
+}
+
+impl Last {
+    /// Earlier versions of this program wrote the id alone.
+    fn read(text: &str) -> Self {
+        let (id, since) = text.split_once(' ').unwrap_or((text, "0"));
+        Self { id: MissionId(id.into()), since_millis: since.parse().unwrap_or_default() }
+    }
+
+    fn write(&self) -> String {
+        format!("{} {}", self.id.0, self.since_millis)
+    }
 }
 
 /// How the shelf does.
@@ -84,41 +128,68 @@ impl Keeper {
             waiting: BTreeSet::new(),
             waiting_maps: BTreeSet::new(),
             in_flight: BTreeSet::new(),
+            typed: BTreeSet::new(),
+            typed_in_flight: BTreeMap::new(),
+            typed_on_shelf: BTreeSet::new(),
             written: BTreeMap::new(),
             found: BTreeMap::new(),
             small_refusal: None,
             last_write_secs: f64::NEG_INFINITY,
             last_long_secs: f64::NEG_INFINITY,
             has_complained: false,
+            is_private: false,
+            has_told_private: false,
             last: None,
+            last_on_shelf: None,
+            found_last: None,
             wants_last: false,
         };
         keeper.read_small_copies(state, host);
         keeper.take_drafts(state, host);
         if let Some(outcome) = host.open_shelf() {
-            keeper.opened(state, outcome);
+            keeper.opened(state, host, outcome);
         }
         keeper
     }
 
     /// Opens the mission of the last run, since nothing else was asked for.
     pub fn reopen(&mut self, state: &mut AppState, host: &dyn Host) {
-        let last = host.stored(LAST_KEY).map(|id| MissionId(id.into()));
-        match last.filter(|id| state.library.mission(id).is_some_and(|it| it.deleted_millis.is_none())) {
+        match self.last_mission(state, host) {
             Some(id) => {
                 self.wants_last = false;
                 state.open_mission(&id);
-                state.window.done("Restored your last session");
+                let name = state.mission.clone();
+                state.window.done(format!("Restored “{name}” from your last session"));
             }
             None => self.wants_last = self.shelf == Shelf::Opening,
         }
+    }
+
+    /// Tells of the mission of the last run where the address names another one: a browser that was killed may open an
+    /// address of before the edit that made the mission.
+    pub fn mention_last(&self, state: &mut AppState, host: &dyn Host) {
+        let last = self.last_mission(state, host).filter(|id| state.library.open_id() != Some(id));
+        let Some(mission) = last.and_then(|id| state.library.mission(&id)) else { return };
+        if state.frame.unix_millis - mission.changed_millis < MILLIS_UNTIL_OLD {
+            let text = format!("“{}”, which you edited last, is in File > Missions", mission.name);
+            state.window.info(&text);
+        }
+    }
+
+    /// The mission that was open last, if it is still there.
+    fn last_mission(&self, state: &AppState, host: &dyn Host) -> Option<MissionId> {
+        let small = host.stored(LAST_KEY).map(|text| Last::read(&text));
+        let is_there =
+            |last: &Last| state.library.mission(&last.id).is_some_and(|it| it.deleted_millis.is_none());
+        let all = [self.found_last.clone(), small].into_iter().flatten().filter(is_there);
+        all.max_by_key(|last| last.since_millis).map(|last| last.id)
     }
 
     /// Writes down what has changed. Returns after how many seconds it wants to be asked again, if it does.
     pub fn follow(&mut self, state: &mut AppState, host: &mut dyn Host, now_secs: f64) -> Option<f64> {
         let mut wait = None;
         let is_long = state.document.text().len() > LONG_TEXT_BYTES;
-        let long_wait = self.last_long_secs + SECONDS_BETWEEN - now_secs;
+        let long_wait = self.last_long_secs + SECONDS_UNTIL_TYPED - now_secs;
         if self.noted_revision != state.document.revision() {
             if is_long && long_wait > 0.0 {
                 wait = Some(long_wait);
@@ -128,9 +199,10 @@ impl Keeper {
             }
         }
         self.take_changes(state, host);
+        let typed_wait = self.write_typed(state, host, now_secs);
         let shelf_wait = self.write_to_shelf(state, host, now_secs);
         self.judge(state);
-        wait.into_iter().chain(shelf_wait).reduce(f64::min)
+        [wait, typed_wait, shelf_wait].into_iter().flatten().reduce(f64::min)
     }
 
     /// Writes everything down now: the page is about to close.
@@ -145,7 +217,7 @@ impl Keeper {
         match news {
             ShelfNews::Opened(outcome) => {
                 self.note(state, host);
-                self.opened(state, outcome);
+                self.opened(state, host, outcome);
                 // Another tab may have gone on with the mission that is open here.
                 let kept = state.library.open_mission().map(Mission::joined_text);
                 if let Some(kept) = kept.filter(|kept| kept != state.document.text()) {
@@ -177,6 +249,12 @@ impl Keeper {
         }
     }
 
+    /// The window forgets everything when it is closed.
+    pub fn note_private(&mut self, state: &mut AppState) {
+        self.is_private = true;
+        self.judge(state);
+    }
+
     /// Asks the shelf for a map.
     pub fn read_map(host: &mut dyn Host, id: &MissionId, name: &str) {
         host.use_shelf(ShelfRequest::Read { key: map_key(id, name) });
@@ -193,11 +271,13 @@ impl Keeper {
             match change {
                 Change::Typed(id) => {
                     self.write_small_copy(state, host, &id);
+                    self.typed.insert(id.clone());
                     self.waiting.insert(id);
                 }
                 Change::Kept(id) => {
                     self.write_small_copy(state, host, &id);
                     tabs::tell_mission(state, host, &id);
+                    self.typed.insert(id.clone());
                     self.waiting.insert(id);
                 }
                 Change::Map(id, name) => {
@@ -205,24 +285,71 @@ impl Keeper {
                 }
                 Change::Dropped(id) => {
                     host.use_shelf(ShelfRequest::Remove { key: mission_key(&id) });
+                    host.use_shelf(ShelfRequest::Remove { key: typed_key(&id) });
                     host.forget(&self.small_key(&id));
                 }
             }
         }
-        if let Some(id) = state.library.open_id().filter(|&id| self.last.as_ref() != Some(id)) {
+        self.note_open(state, host);
+    }
+
+    /// Notes which mission is open, in both places.
+    fn note_open(&mut self, state: &AppState, host: &mut dyn Host) {
+        let Some(id) = state.library.open_id() else {
+            // What is opened again later is the last one from then on.
+            self.last = None;
+            self.last_on_shelf = None;
+            return;
+        };
+        let last = Last { id: id.clone(), since_millis: state.frame.unix_millis };
+        if self.last.as_ref() != Some(id) {
             // Without it another mission is open at the next start, and nothing is lost.
-            let _ = host.store(LAST_KEY, &id.0);
+            let _ = host.store(LAST_KEY, &last.write());
             self.last = Some(id.clone());
+        }
+        if self.last_on_shelf.as_ref() != Some(id) && self.shelf == Shelf::Ready {
+            let bytes = last.write().into_bytes();
+            host.use_shelf(ShelfRequest::Write { key: LAST_ON_SHELF.to_owned(), bytes, token: 0 });
+            self.last_on_shelf = Some(id.clone());
         }
     }
 
     fn write_small_copy(&mut self, state: &AppState, host: &mut dyn Host, id: &MissionId) {
         let Some(mission) = state.library.mission(id) else { return };
-        let outcome = host.store(&self.small_key(id), &mission.latest().to_json());
+        let outcome = host.store(&self.small_key(id), &mission.latest().to_checked_json());
         if outcome.is_ok() {
             self.written.insert(id.clone(), mission.changed_millis);
         }
         self.small_refusal = outcome.err();
+    }
+
+    /// Writes the texts that the shelf does not have yet, each as soon as its last one is written.
+    fn write_typed(&mut self, state: &AppState, host: &mut dyn Host, now_secs: f64) -> Option<f64> {
+        if self.shelf != Shelf::Ready {
+            return None;
+        }
+        let mut wait: Option<f64> = None;
+        for id in std::mem::take(&mut self.typed) {
+            let Some(mission) = state.library.mission(&id) else { continue };
+            let busy_secs = self
+                .typed_in_flight
+                .get(&id)
+                .map(|(asked_secs, _)| asked_secs + SECONDS_UNTIL_TYPED - now_secs)
+                .filter(|&busy_secs| busy_secs > 0.0);
+            if let Some(busy_secs) = busy_secs {
+                wait = Some(wait.map_or(busy_secs, |wait| wait.min(busy_secs)));
+                self.typed.insert(id);
+                continue;
+            }
+            host.use_shelf(ShelfRequest::Write {
+                key: typed_key(&id),
+                bytes: mission.latest().to_checked_json().into_bytes(),
+                token: mission.changed_millis,
+            });
+            self.typed_in_flight.insert(id.clone(), (now_secs, mission.changed_millis));
+            self.typed_on_shelf.insert(id);
+        }
+        wait
     }
 
     fn write_to_shelf(&mut self, state: &AppState, host: &mut dyn Host, now_secs: f64) -> Option<f64> {
@@ -260,7 +387,7 @@ impl Keeper {
             if let Some(mission) = state.library.mission(&id) {
                 host.use_shelf(ShelfRequest::Write {
                     key: mission_key(&id),
-                    bytes: mission.to_json_without_maps().into_bytes(),
+                    bytes: mission.without_maps().to_checked_json().into_bytes(),
                     token: mission.changed_millis,
                 });
                 self.in_flight.insert(id);
@@ -278,6 +405,14 @@ impl Keeper {
         outcome: Result<(), StorageError>,
     ) {
         let map = map_of(key);
+        if let Some(id) = key.strip_prefix(TYPED).map(|id| MissionId(id.into())) {
+            if self.typed_in_flight.get(&id).is_some_and(|&(_, asked)| asked <= token) {
+                self.typed_in_flight.remove(&id);
+            }
+            if outcome.is_err() {
+                self.waiting.insert(id);
+            }
+        }
         let id = key.strip_prefix(MISSIONS).map(|id| MissionId(id.into()));
         if let Some(id) = &id {
             self.in_flight.remove(id);
@@ -289,6 +424,10 @@ impl Keeper {
                 if self.written.get(&id).is_some_and(|&changed| changed <= token) {
                     self.written.remove(&id);
                     host.forget(&self.small_key(&id));
+                }
+                let is_all = state.library.mission(&id).is_some_and(|it| it.changed_millis <= token);
+                if is_all && !self.typed_in_flight.contains_key(&id) && self.typed_on_shelf.remove(&id) {
+                    host.use_shelf(ShelfRequest::Remove { key: typed_key(&id) });
                 }
                 // What earlier runs left is on the shelf now, unless another tab goes on writing there.
                 for (key, value) in self.found.remove(&id).unwrap_or_default() {
@@ -306,7 +445,12 @@ impl Keeper {
         }
     }
 
-    fn opened(&mut self, state: &mut AppState, outcome: Result<ShelfContent, StorageError>) {
+    fn opened(
+        &mut self,
+        state: &mut AppState,
+        host: &mut dyn Host,
+        outcome: Result<ShelfContent, StorageError>,
+    ) {
         let content = match outcome {
             Ok(content) => content,
             Err(reason) => {
@@ -316,19 +460,40 @@ impl Keeper {
             }
         };
         self.shelf = Shelf::Ready;
+        let mut damaged = Vec::new();
         for (key, bytes) in content {
-            if let Some(id) = key.strip_prefix(MISSIONS) {
-                let read = str::from_utf8(&bytes)
-                    .map_err(|error| MissionError::Damaged(error.to_string()))
-                    .and_then(Mission::from_json);
-                match read {
-                    Ok(mission) if mission.id.0 == id => {
+            if key == LAST_ON_SHELF {
+                self.found_last = str::from_utf8(&bytes).ok().map(Last::read);
+            } else if key.starts_with(ASIDE) {
+                Self::set_aside(state, key, &bytes, "the file is damaged");
+            } else if let Some(id) = key.strip_prefix(MISSIONS).or_else(|| key.strip_prefix(TYPED)) {
+                match read_mission(&bytes, id) {
+                    Ok(mission) if key.starts_with(TYPED) => {
+                        let id = mission.id.clone();
+                        self.typed_on_shelf.insert(id.clone());
+                        if state.library.take_in(mission) {
+                            state.library.must_keep(&id);
+                        }
+                    }
+                    Ok(mission) => {
                         state.library.take_in(mission);
                     }
-                    Ok(_) => Self::set_aside(state, key, &bytes, "the identifiers differ"),
-                    Err(error) => Self::set_aside(state, key, &bytes, &error.to_string()),
+                    Err(reason) => damaged.push((key, bytes, reason)),
                 }
             }
+        }
+        for (key, bytes, reason) in damaged {
+            let id = key.split_once('/').map(|(_, id)| MissionId(id.into()));
+            // Another copy brings the texts, and writes them where this one lies.
+            let key = if id.is_some_and(|id| state.library.mission(&id).is_some()) {
+                let aside = format!("{ASIDE}{key}");
+                let write = ShelfRequest::Write { key: aside.clone(), bytes: bytes.clone(), token: 0 };
+                host.use_shelf(write);
+                aside
+            } else {
+                key
+            };
+            Self::set_aside(state, key, &bytes, &reason);
         }
         state.library.drop_old(state.frame.unix_millis);
         self.judge(state);
@@ -374,11 +539,12 @@ impl Keeper {
                 None => (MissionKind::File, name.to_owned()),
             };
             let id = state.library.add(&name, kind, source, state.frame.unix_millis);
-            let copy = state.library.mission(&id).map(|mission| mission.latest().to_json());
+            let copy = state.library.mission(&id).map(|mission| mission.latest().to_checked_json());
             let is_kept = copy.is_some_and(|copy| host.store(&self.small_key(&id), &copy).is_ok());
             if is_kept {
                 // A place that is read only keeps the draft, and it becomes another copy next time.
-                let _ = host.store(LAST_KEY, &id.0);
+                let last = Last { id, since_millis: state.frame.unix_millis };
+                let _ = host.store(LAST_KEY, &last.write());
                 host.forget(key);
             }
         }
@@ -388,6 +554,7 @@ impl Keeper {
     fn judge(&mut self, state: &mut AppState) {
         let keeping = match (&self.shelf, &self.small_refusal) {
             (Shelf::Opening, None) => Keeping::Opening,
+            (Shelf::Ready, _) if self.is_private => Keeping::UntilClosed,
             (Shelf::Ready, _) => Keeping::Kept,
             (Shelf::Failing(reason), None) => Keeping::LatestOnly(reason.to_string()),
             (Shelf::Opening, Some(reason)) | (Shelf::Failing(reason), Some(_)) => {
@@ -409,7 +576,11 @@ impl Keeper {
                     format!("Maps and versions can't be saved ({reason}). Save your mission to a file.");
                 state.window.failed(text);
             }
-            Keeping::Kept if std::mem::take(&mut self.has_complained) => {
+            Keeping::UntilClosed if !std::mem::replace(&mut self.has_told_private, true) => {
+                let text = "Private window: closing it deletes your missions. Save them to files.";
+                state.window.info(text);
+            }
+            Keeping::Kept | Keeping::UntilClosed if std::mem::take(&mut self.has_complained) => {
                 state.window.done("Saving works again");
             }
             _ => {}
@@ -424,6 +595,17 @@ impl Keeper {
 
 fn mission_key(id: &MissionId) -> String {
     format!("{MISSIONS}{}", id.0)
+}
+
+fn typed_key(id: &MissionId) -> String {
+    format!("{TYPED}{}", id.0)
+}
+
+/// Reads a mission that is kept under this id.
+fn read_mission(bytes: &[u8], id: &str) -> Result<Mission, String> {
+    let text = str::from_utf8(bytes).map_err(|error| MissionError::Damaged(error.to_string()).to_string())?;
+    let mission = Mission::from_json(text).map_err(|error| error.to_string())?;
+    if mission.id.0 == id { Ok(mission) } else { Err("the identifiers differ".to_owned()) }
 }
 
 fn map_key(id: &MissionId, name: &str) -> String {

@@ -9,6 +9,7 @@ use crate::command::Command;
 use crate::command::chord::Key;
 use crate::registry::spec::{CommandSpec, Group, Scope};
 use crate::state::editor::EditorCommand;
+use crate::state::window::WindowCommand;
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
@@ -29,6 +30,15 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         ),
         with_redo,
     ),
+    plain("edit.cut", "Cut", Group::Edit, &[], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::CopySelection { cut: true })
+    }),
+    plain("edit.copy", "Copy", Group::Edit, &[], Scope::Everywhere, |_| {
+        Command::Editor(EditorCommand::CopySelection { cut: false })
+    }),
+    plain("edit.paste", "Paste", Group::Edit, &[], Scope::Everywhere, |_| {
+        Command::Window(WindowCommand::Paste)
+    }),
     plain("edit.find", "Find…", Group::Edit, &[keys(CTRL, Key::F)], Scope::Everywhere, |_| {
         Command::Editor(EditorCommand::Find { replacing: false })
     }),

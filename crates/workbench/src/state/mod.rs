@@ -120,13 +120,15 @@ pub struct AppState {
     pub derived: derived::Derived,
 }
 
-/// What the user has asked of all programs.
+/// What the user has asked of all programs, and which one this runs in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct System {
     /// Dark on light.
     pub is_light: bool,
     /// Nothing moves by itself.
     pub reduces_motion: bool,
+    /// The page is in Firefox, which keeps some keys for itself.
+    pub is_firefox: bool,
 }
 
 /// How the last frame went.

@@ -62,6 +62,8 @@ pub enum WindowCommand {
     DismissToast(usize),
     /// Puts text on the clipboard.
     Copy(String),
+    /// Pastes what is on the clipboard into the text.
+    Paste,
     /// Puts a link to the mission on the clipboard.
     CopyLink,
     /// Lets the user choose a file.
@@ -139,6 +141,7 @@ impl Window {
             WindowCommand::Notify(kind, text) => self.toasts.add(kind, text),
             WindowCommand::DismissToast(index) => self.toasts.dismiss(index),
             WindowCommand::Copy(text) => self.ask(Effect::Copy(text)),
+            WindowCommand::Paste => self.ask(Effect::Paste),
             WindowCommand::CopyLink => self.ask(Effect::CopyLink),
             WindowCommand::OpenFile(kind) => self.ask(Effect::OpenFile(kind)),
             WindowCommand::SaveFile { name, bytes } => self.save_file(name, bytes),

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use serde_json::{Value, json};
 use workbench::command::Command;
-use workbench::host::{FileKind, HostEvent};
+use workbench::host::{FileKind, HostEvent, ShelfRequest};
 use workbench::library::LibraryCommand;
 use workbench::library::{Keeping, Mission};
 use workbench::outside::Remote as _;
@@ -135,12 +135,130 @@ fn without_the_small_place_the_shelf_keeps_what_is_typed() {
     wait(&mut app);
     world.storage.borrow_mut().clear();
     drop(app);
-    let mut app = start_in(Rc::clone(&world));
-    // Only which one was open is not known any more.
+    let app = start_in(Rc::clone(&world));
     assert_eq!(names(&app), ["Enroute (copy)"]);
-    let id = app.session.state().library.missions()[0].id.clone();
-    app.session.apply(vec![Command::Library(LibraryCommand::Open(id))]);
     assert_eq!(text_of(&app), EDITED);
+    assert!(toasts(&app).contains("“Enroute (copy)” is open again"), "{}", toasts(&app));
+}
+
+/// A browser writes the small place to its disk seconds later, and a kill takes what it has not written.
+#[test]
+fn a_killed_browser_finds_each_key_and_the_open_mission_on_the_shelf() {
+    let world = Rc::new(World::default());
+    let mut typed = String::new();
+    let mut app = start_in(Rc::clone(&world));
+    for letter in "abcdefghij".chars() {
+        typed.push(letter);
+        edit(&mut app, &typed);
+        world.storage.borrow_mut().clear();
+        drop(app);
+        app = start_in(Rc::clone(&world));
+        assert_eq!(text_of(&app), typed);
+    }
+    assert_eq!(names(&app), ["Enroute (copy)"]);
+}
+
+#[test]
+fn what_is_typed_waits_for_the_shelf_a_tenth_of_a_second_at_most() {
+    let world = Rc::new(World::default());
+    let mut app = start_in(Rc::clone(&world));
+    edit(&mut app, "a");
+    wait(&mut app);
+    world.shelf_does.set(Shelf::Slow);
+    let asked = || {
+        let waits = world.shelf_waits.borrow();
+        let keys = waits.iter().filter_map(|(_, request)| match request {
+            Some(ShelfRequest::Write { key, .. }) => Some(key.clone()),
+            _ => None,
+        });
+        keys.filter(|key| key.starts_with("typed/")).count()
+    };
+    // The first key at once, those after it not while it is being written.
+    edit(&mut app, "ab");
+    assert_eq!(asked(), 1);
+    edit(&mut app, "abc");
+    edit(&mut app, "abcd");
+    assert_eq!(asked(), 1);
+    world.now_secs.set(world.now_secs.get() + 0.1);
+    app.step();
+    assert_eq!(asked(), 2);
+    // As soon as the shelf has answered, the next one.
+    edit(&mut app, "abcde");
+    assert_eq!(asked(), 2);
+    world.let_shelf_answer();
+    app.step();
+    let kept = world.shelf.borrow();
+    let (_, typed) = kept.iter().find(|(key, _)| key.starts_with("typed/")).expect("the texts");
+    assert!(String::from_utf8_lossy(typed).contains("\"abcde\""));
+}
+
+#[test]
+fn damage_is_noticed_and_another_copy_leaves_it_aside() {
+    let world = Rc::new(World::default());
+    let mut app = start_in(Rc::clone(&world));
+    edit(&mut app, EDITED);
+    wait(&mut app);
+    drop(app);
+    world.storage.borrow_mut().clear();
+    let key = world.shelf.borrow().keys().find(|key| key.starts_with("mission/")).cloned().expect("a mission");
+    let whole = world.shelf.borrow()[&key].clone();
+    // One letter of the text is another one; the JSON is as good as before.
+    let damaged = String::from_utf8_lossy(&whole).replace("Sortie", "Sortje").into_bytes();
+    assert_ne!(damaged, whole);
+    world.shelf.borrow_mut().insert(key.clone(), damaged.clone());
+    let app = start_in(Rc::clone(&world));
+    assert_eq!(names(&app), Vec::<String>::new());
+    assert!(app.session.state().library.unreadable[0].reason.contains("checksum"));
+    drop(app);
+    // With its texts elsewhere the mission is there, and what was damaged is not written over.
+    world.shelf.borrow_mut().insert(key.replace("mission/", "typed/"), whole);
+    let mut app = start_in(Rc::clone(&world));
+    assert_eq!(text_of(&app), EDITED);
+    wait(&mut app);
+    assert_eq!(world.shelf.borrow()[&format!("aside/{key}")], damaged);
+    assert_eq!(app.json()["library"]["unreadable"], 1);
+    drop(app);
+    assert_eq!(text_of(&start_in(world)), EDITED);
+}
+
+#[test]
+fn a_private_window_says_that_missions_are_not_kept() {
+    let world = Rc::new(World::default());
+    let mut app = start_in(Rc::clone(&world));
+    world.news.borrow_mut().push_back(HostEvent::PrivateWindow);
+    app.step();
+    assert_eq!(app.json()["library"]["keeping"], "until-closed");
+    assert!(toasts(&app).contains("private window"), "{}", toasts(&app));
+}
+
+#[test]
+fn an_address_of_before_the_edit_leads_to_the_mission_all_the_same() {
+    let world = Rc::new(World::default());
+    let mut app = start_in(Rc::clone(&world));
+    edit(&mut app, EDITED);
+    drop(app);
+    // The browser was killed before it wrote the address down.
+    "mission=enroute".clone_into(&mut world.fragment.borrow_mut());
+    let app = start_in(Rc::clone(&world));
+    assert!(toasts(&app).contains("“Enroute (copy)”, which you edited last"), "{}", toasts(&app));
+    drop(app);
+    // A mission of long ago is not what was lost.
+    world.now_secs.set(world.now_secs.get() + 3600.0);
+    assert!(!toasts(&start_in(world)).contains("which you edited last"));
+}
+
+#[test]
+fn a_byte_order_mark_is_removed_and_another_encoding_is_named() {
+    let mut app = test_support::start();
+    drop_file(&mut app, "marked.rmpl", format!("\u{feff}{EDITED}").as_bytes());
+    assert_eq!(text_of(&app), EDITED);
+    drop_file(&mut app, "latin.rmpl", b"// one\n// M\xfcnchen\nA()[l,u] = { Scan()[1,2] }\n");
+    assert_eq!(text_of(&app), EDITED);
+    let told = toasts(&app);
+    assert!(told.contains("line 2 is not UTF-8") && told.contains("Latin-1"), "{told}");
+    let wide: Vec<u8> = "\u{feff}A()".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    drop_file(&mut app, "wide.rmpl", &wide);
+    assert!(toasts(&app).contains("UTF-16"), "{}", toasts(&app));
 }
 
 #[test]
@@ -152,7 +270,9 @@ fn what_the_shelf_has_is_not_kept_twice() {
     assert_eq!(small(), 1);
     wait(&mut app);
     assert_eq!(small(), 0);
-    assert_eq!(world.shelf.borrow().len(), 1);
+    let shelf = world.shelf.borrow();
+    let keys: Vec<&str> = shelf.keys().map(|key| key.split('/').next().unwrap_or_default()).collect();
+    assert_eq!(keys, ["mission", "open"]);
 }
 
 #[test]

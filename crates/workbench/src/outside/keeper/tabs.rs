@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::host::Host;
-use crate::library::{Mission, MissionId, Version};
+use crate::library::{Mission, MissionId, Version, print};
 use crate::outside::keeper::Keeper;
 use crate::state::AppState;
 
@@ -105,7 +105,7 @@ impl Keeper {
 /// Tells everything of a mission but its maps.
 pub(super) fn tell_mission(state: &AppState, host: &mut dyn Host, id: &MissionId) {
     if let Some(mission) = state.library.mission(id) {
-        tell(host, &Message::Mission { json: mission.to_json_without_maps() });
+        tell(host, &Message::Mission { json: mission.without_maps().to_json() });
     }
 }
 
@@ -113,10 +113,4 @@ fn tell(host: &mut dyn Host, message: &Message) {
     if let Ok(text) = serde_json::to_string(message) {
         host.tell_tabs(&text);
     }
-}
-
-/// A number that tells texts apart (FNV-1a).
-fn print(text: &str) -> u64 {
-    text.bytes()
-        .fold(0xcbf2_9ce4_8422_2325, |print, byte| (print ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
