@@ -48,10 +48,10 @@ impl Firefox {
         find_program(&NAMES)
     }
 
-    /// Starts Firefox with an empty page of this size, in CSS pixels.
-    pub fn start(program: &PathBuf, width: u32, height: u32) -> Result<Self> {
+    /// Starts Firefox with an empty page of this size, in CSS pixels, and with further settings: lines of a `user.js`.
+    pub fn start(program: &PathBuf, width: u32, height: u32, settings: &str) -> Result<Self> {
         let profile = fresh_profile()?;
-        fs::write(profile.join("user.js"), PREFERENCES)?;
+        fs::write(profile.join("user.js"), format!("{PREFERENCES}{settings}"))?;
         let mut command = Command::new(program);
         // Headless Firefox draws nothing in WebGL on most systems; a display in memory will do.
         let mut display = None;
@@ -167,6 +167,14 @@ impl Firefox {
         self.call("input.performActions", &all).map(|_| ())
     }
 
+    /// The page printed on A4, as a PDF.
+    pub fn print(&mut self) -> Result<Vec<u8>> {
+        let margin = json!({ "top": 1.6, "bottom": 1.8, "left": 1.5, "right": 1.5 });
+        let paper = json!({ "context": self.context, "margin": margin, "page": { "width": 21.0, "height": 29.7 } });
+        let answer = self.call("browsingContext.print", &paper)?;
+        Ok(BASE64.decode(answer["data"].as_str().unwrap_or_default().as_bytes())?)
+    }
+
     /// The page as pixels.
     pub fn screenshot(&mut self) -> Result<Picture> {
         let answer = self.call("browsingContext.captureScreenshot", &json!({ "context": self.context }))?;
@@ -193,7 +201,7 @@ impl Drop for Firefox {
 }
 
 /// A display in memory with its name, where there is a program for that.
-fn start_display() -> Result<Option<(Child, String)>> {
+pub(super) fn start_display() -> Result<Option<(Child, String)>> {
     let Some(program) = find_program(&["Xvfb"]) else { return Ok(None) };
     let mut server = Command::new(program)
         .args(["-displayfd", "1", "-screen", "0", "1400x1000x24", "-nolisten", "tcp"])

@@ -8,6 +8,7 @@ mod firefox;
 mod keys;
 mod picture;
 mod tab;
+mod webkit;
 
 use std::{
     fs,
@@ -33,6 +34,7 @@ pub use firefox::Firefox;
 pub use keys::{Key, Modifiers};
 pub use picture::Picture;
 pub use tab::{Tab, Widget};
+pub use webkit::{WebKit, WebKitPrograms};
 
 use devtools::Connection;
 

@@ -1,45 +1,206 @@
-//! The page in Firefox, where there is one: it starts, compiles, plans, draws, and is used by keyboard.
+//! The page in Firefox and in WebKit, where they are: it starts, plans, draws, is edited, loaded again, and opens without a
+//! network; in Firefox also with what its users block.
 
-use anyhow::Result;
-use xtask::{browser::Firefox, server::SiteServer};
+use std::path::PathBuf;
+
+use anyhow::{Result, ensure};
+use serde_json::Value;
+use xtask::{
+    browser::{Firefox, WebKit},
+    dist,
+    server::SiteServer,
+};
 
 use crate::opened::SITE;
 
 /// F6, as `WebDriver` spells it.
 const F6: &str = "\u{e036}";
 
-#[test]
+/// A browser that is driven.
+trait Driven {
+    fn open(&mut self, url: &str) -> Result<()>;
+    fn ask(&mut self, expression: &str) -> Result<Value>;
+    fn press(&mut self, keys: &str) -> Result<()>;
+    fn click(&mut self, x: f64, y: f64) -> Result<()>;
+
+    /// Waits until a JavaScript expression is true; one that throws is not.
+    fn wait_until(&mut self, expression: &str) -> Result<()> {
+        let came_true = self.ask(&format!(
+            "new Promise((resolve) => {{
+                const end = performance.now() + 90000;
+                const look = async () => {{
+                    let value = false;
+                    try {{ value = await ({expression}); }} catch {{}}
+                    if (value || performance.now() > end) resolve(Boolean(value));
+                    else setTimeout(look, 15);
+                }};
+                look();
+            }})"
+        ))?;
+        let state = self
+            .ask("window.enroute ? JSON.stringify(enroute.state()).slice(0, 1000) : document.body.innerText");
+        ensure!(came_true == true, "waiting for `{expression}`: it never came true; {state:?}");
+        Ok(())
+    }
+
+    /// Opens the page and waits until it can be driven. Answers why it cannot be drawn on this machine, if so.
+    fn open_page(&mut self, url: &str) -> Result<Option<String>> {
+        self.open("about:blank")?;
+        self.open(url)?;
+        self.wait_until("'enroute' in window")?;
+        let outcome = self.ask("enroute.ready.then(() => 'ready', (reason) => String(reason))")?;
+        let outcome = outcome.as_str().unwrap_or_default().to_owned();
+        if outcome.contains("webgl2 not available") {
+            return Ok(Some(outcome));
+        }
+        ensure!(outcome == "ready", "{outcome}");
+        Ok(None)
+    }
+
+    /// Clicks into the text and puts the caret at its start.
+    fn begin_typing(&mut self) -> Result<()> {
+        let text = self.ask("enroute.widgets('textbox', 'Mission text')[0]")?;
+        let middle = |from: &str, size: &str| -> f64 {
+            text[from].as_f64().unwrap_or_default() + text[size].as_f64().unwrap_or_default() / 2.0
+        };
+        self.click(middle("x", "width"), middle("y", "height"))?;
+        self.wait_until("document.querySelector('[aria-activedescendant]')")?;
+        self.ask("enroute.dispatch('edit.select', { start: 0 })")?;
+        Ok(())
+    }
+}
+
+impl Driven for Firefox {
+    fn open(&mut self, url: &str) -> Result<()> {
+        self.go_to(url)
+    }
+
+    fn ask(&mut self, expression: &str) -> Result<Value> {
+        self.evaluate(expression)
+    }
+
+    fn press(&mut self, keys: &str) -> Result<()> {
+        Self::press(self, keys)
+    }
+
+    fn click(&mut self, x: f64, y: f64) -> Result<()> {
+        Self::click(self, x, y)
+    }
+}
+
+impl Driven for WebKit {
+    fn open(&mut self, url: &str) -> Result<()> {
+        self.go_to(url)
+    }
+
+    fn ask(&mut self, expression: &str) -> Result<Value> {
+        self.evaluate(expression)
+    }
+
+    fn press(&mut self, keys: &str) -> Result<()> {
+        Self::press(self, keys)
+    }
+
+    fn click(&mut self, x: f64, y: f64) -> Result<()> {
+        Self::click(self, x, y)
+    }
+}
+
 #[expect(clippy::print_stdout, reason = "what was not tried is said")]
-fn firefox_starts_plans_draws_and_takes_keys() -> Result<()> {
+fn not_tried(what: &str) {
+    println!("not tried: {what}");
+}
+
+/// Firefox, or a word that there is none.
+fn firefox(settings: &str) -> Result<Option<Firefox>> {
     let Some(program) = Firefox::find() else {
-        println!("nothing was tried in Firefox: there is none (on Debian: apt-get install firefox-esr xvfb)");
+        not_tried("Firefox is not installed (on Debian: apt-get install firefox-esr xvfb)");
+        return Ok(None);
+    };
+    Firefox::start(&program, 1280, 800, settings).map(Some)
+}
+
+/// Starts, edits, undoes, loads again, and opens without a network. `name` tells the folders of tests apart.
+fn use_page(browser: &mut dyn Driven, name: &str) -> Result<()> {
+    let published = std::env::temp_dir().join(format!("enroute-{name}-{}", std::process::id()));
+    dist::pack(&SITE, &published)?;
+    let outcome = use_published(browser, &published);
+    std::fs::remove_dir_all(published)?;
+    outcome
+}
+
+fn use_published(browser: &mut dyn Driven, published: &PathBuf) -> Result<()> {
+    let server = SiteServer::start(published, 0, false)?;
+    let url = server.url().to_owned();
+    if let Some(reason) = browser.open_page(&url)? {
+        not_tried(&format!("this browser cannot draw on this machine: {reason}"));
+        return Ok(());
+    }
+    browser.wait_until("enroute.state().status === 'plan'")?;
+    assert_eq!(browser.ask("enroute.state().verdict.valid")?, true);
+    browser.wait_until("document.getElementById('announcements').textContent.includes('verified')")?;
+    browser.begin_typing()?;
+    browser.press("// once")?;
+    browser.wait_until("enroute.source().startsWith('// once')")?;
+    browser.press(F6)?;
+    browser.wait_until("enroute.state().activePanel !== 'editor'")?;
+    browser.ask("enroute.dispatch('edit.undo')")?;
+    browser.wait_until("!enroute.source().startsWith('// once')")?;
+    browser.ask("enroute.dispatch('edit.redo')")?;
+    browser.wait_until("enroute.source().startsWith('// once')")?;
+    browser.wait_until("enroute.state().library.keeping === 'kept'")?;
+    // The second visit is answered by the service worker, which isolates the page from others.
+    browser.wait_until("navigator.serviceWorker.ready.then(() => true)")?;
+    browser.open_page(&url)?;
+    assert_eq!(browser.ask("crossOriginIsolated")?, true);
+    browser.wait_until("enroute.source().startsWith('// once')")?;
+    browser.wait_until("enroute.state().status === 'plan'")?;
+    drop(server);
+    browser.open_page(&url)?;
+    browser.wait_until("enroute.source().startsWith('// once')")?;
+    browser.wait_until("enroute.state().status === 'plan'")
+}
+
+#[test]
+fn firefox_starts_plans_takes_keys_and_opens_again_without_a_network() -> Result<()> {
+    let Some(mut firefox) = firefox("")? else { return Ok(()) };
+    use_page(&mut firefox, "firefox")?;
+    assert!(firefox.screenshot()?.colours() > 20, "nothing is drawn");
+    Ok(())
+}
+
+#[test]
+fn webkit_starts_plans_takes_keys_and_opens_again_without_a_network() -> Result<()> {
+    let Some(programs) = WebKit::find() else {
+        not_tried("WebKit is not installed (on Debian: apt-get install webkit2gtk-driver xvfb)");
+        return Ok(());
+    };
+    use_page(&mut WebKit::start(&programs)?, "webkit")
+}
+
+#[test]
+fn firefox_that_blocks_cookies_and_site_data_starts_and_says_what_is_not_kept() -> Result<()> {
+    let blocks = "user_pref(\"network.cookie.cookieBehavior\", 2);\n";
+    let Some(mut firefox) = firefox(blocks)? else { return Ok(()) };
+    let server = SiteServer::start(&SITE, 0, false)?;
+    if let Some(reason) = firefox.open_page(server.url())? {
+        not_tried(&reason);
+        return Ok(());
+    }
+    Driven::wait_until(&mut firefox, "enroute.state().library.keeping === 'nothing'")?;
+    Driven::wait_until(&mut firefox, "enroute.widgets('button', 'Not kept').length > 0")
+}
+
+#[test]
+fn firefox_that_resists_fingerprinting_draws() -> Result<()> {
+    let Some(mut firefox) = firefox("user_pref(\"privacy.resistFingerprinting\", true);\n")? else {
         return Ok(());
     };
     let server = SiteServer::start(&SITE, 0, false)?;
-    let mut firefox = Firefox::start(&program, 1280, 800)?;
-    firefox.go_to(&format!("{}#mission=enroute", server.url()))?;
-    firefox.wait_until("'enroute' in window")?;
-    let outcome = firefox.evaluate("enroute.ready.then(() => 'ready', (reason) => String(reason))")?;
-    if outcome.as_str().is_some_and(|reason| reason.contains("webgl2 not available")) {
-        println!("Firefox has neither WebGPU nor WebGL2 on this machine; nothing more was tried: {outcome}");
+    if let Some(reason) = firefox.open_page(server.url())? {
+        not_tried(&reason);
         return Ok(());
     }
-    assert_eq!(outcome, "ready");
-    firefox.wait_until("enroute.state().status === 'plan'")?;
-    assert_eq!(firefox.evaluate("enroute.state().verdict.valid")?, true);
-    firefox.wait_until("document.getElementById('announcements').textContent.includes('verified')")?;
-    let picture = firefox.screenshot()?;
-    assert!(picture.colours() > 20, "nothing is drawn");
-    // A click into the text, letters, and on to the next panel by a key.
-    let text = firefox.evaluate("enroute.widgets('textbox', 'Mission text')[0]")?;
-    let middle = |from: &str, size: &str| -> f64 {
-        text[from].as_f64().unwrap_or_default() + text[size].as_f64().unwrap_or_default() / 2.0
-    };
-    firefox.click(middle("x", "width"), middle("y", "height"))?;
-    firefox.wait_until("document.querySelector('[aria-activedescendant]')")?;
-    firefox.evaluate("enroute.dispatch('edit.select', { start: 0 })")?;
-    firefox.press("// ")?;
-    firefox.wait_until("enroute.source().startsWith('// ')")?;
-    firefox.press(F6)?;
-    firefox.wait_until("enroute.state().activePanel !== 'editor'")
+    assert_eq!(firefox.evaluate("enroute.state().renderer")?, "webgl2");
+    Ok(())
 }
