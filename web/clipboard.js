@@ -7,6 +7,10 @@
 export function ensureClipboard() {
   try {
     if (navigator.clipboard) return;
+  } catch {
+    // What is refused is missing, too.
+  }
+  try {
     const writeText = async (text) => {
       const field = document.createElement("textarea");
       field.value = text;

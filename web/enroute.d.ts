@@ -397,7 +397,7 @@ export type Library = {
   /** How many things are kept that cannot be read. */
   unreadable: number;
   /** Whether missions are kept beyond the end of this run. */
-  keeping: "opening" | "kept" | "latest-only" | "nothing";
+  keeping: "opening" | "kept" | "until-closed" | "latest-only" | "nothing";
 };
 
 /** A mission of the library. */

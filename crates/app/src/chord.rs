@@ -38,7 +38,7 @@ pub(crate) fn is_pressed(chord: Chord, key: Option<Key>, place: Option<Key>) -> 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Press {
     Other,
-    /// It lies where the key does on an American keyboard: others type brackets with AltGr, and some digits with Shift.
+    /// It lies where the key does on an American keyboard: others type brackets with `AltGr`, and some digits with Shift.
     Placed,
     /// It is what the keyboard calls the key.
     Named,

@@ -36,8 +36,8 @@ pub struct Enroute {
     egui: egui::Context,
 }
 
-/// How far a wheel scrolls that turns by lines, as in Firefox: as far as one that turns by pixels.
-const POINTS_PER_LINE: f32 = 40.0;
+/// How far a line of the wheel scrolls in a page. A notch is six lines in Firefox and 120 pixels in other browsers.
+const POINTS_PER_LINE: f32 = 20.0;
 
 /// Begins to read a file that was dropped on the app.
 type ReadDropped = Box<dyn Fn(egui::DroppedFileHandle)>;
@@ -225,7 +225,9 @@ impl Enroute {
         let state = self.app_state();
         let motion = state.system.reduces_motion;
         theme::apply(&self.egui, panels::tokens(state), state.settings.text_scale, motion);
-        self.egui.options_mut(|options| options.input_options.line_scroll_speed = POINTS_PER_LINE);
+        if cfg!(target_arch = "wasm32") {
+            self.egui.options_mut(|options| options.input_options.line_scroll_speed = POINTS_PER_LINE);
+        }
     }
 
     fn wake_after(&self, seconds: Option<f64>) {

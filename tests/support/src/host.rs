@@ -66,6 +66,10 @@ pub struct World {
     pub news: RefCell<VecDeque<HostEvent>>,
     /// Whether nothing is to move by itself.
     pub reduces_motion: Cell<bool>,
+    /// Whether this is a page in Firefox.
+    pub is_firefox: Cell<bool>,
+    /// What is on the clipboard, if the page may read it.
+    pub clipboard: RefCell<Option<String>>,
     /// How many requests were posted.
     pub posted: Cell<usize>,
     /// How often everything was taken back.
@@ -243,6 +247,17 @@ impl Host for TestHost {
 
     fn reduces_motion(&self) -> bool {
         self.world.reduces_motion.get()
+    }
+
+    fn is_firefox(&self) -> bool {
+        self.world.is_firefox.get()
+    }
+
+    fn read_clipboard(&mut self) -> bool {
+        let text = self.world.clipboard.borrow().clone();
+        let refused = || HostEvent::ClipboardRefused { reason: "press Ctrl+V".to_owned() };
+        self.inbox.borrow_mut().push_back(text.map_or_else(refused, HostEvent::ClipboardRead));
+        true
     }
 
     fn open_file(&mut self, kind: FileKind) {

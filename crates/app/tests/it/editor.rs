@@ -356,3 +356,58 @@ fn long_lines_are_wrapped_at_the_panel_s_width_and_the_caret_goes_by_their_rows(
     app.settle();
     assert_eq!(app.harness.state().app_state().document.rows_of_line(0).len(), 1);
 }
+
+/// The middle of the first place on screen that says `word`.
+fn place_of(app: &App, word: &str) -> egui::Pos2 {
+    let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1440.0, 900.0));
+    let rows = app.texts(screen);
+    let (row, rect) = rows.iter().find(|(text, _)| text.contains(word)).expect("the word is drawn");
+    let width = rect.width() / row.chars().count() as f32;
+    let start = row[..row.find(word).expect("the word")].chars().count();
+    rect.left_center() + egui::vec2((start as f32 + word.chars().count() as f32 / 2.0) * width, 0.0)
+}
+
+fn click_with(app: &mut App, button: egui::PointerButton, pos: egui::Pos2) {
+    app.harness.event(Event::PointerMoved(pos));
+    app.settle();
+    for pressed in [true, false] {
+        app.harness.event(Event::PointerButton { pos, button, pressed, modifiers: Modifiers::NONE });
+        app.settle();
+    }
+}
+
+#[test]
+fn a_right_click_opens_a_menu_about_what_is_under_the_pointer() {
+    let mut app = editing("$0primitive Survey()[1,2];\nscenario S[0,9] = { Survey() }\n");
+    let at = place_of(&app, "primitive Survey") + egui::vec2(40.0, 0.0);
+    click_with(&mut app, egui::PointerButton::Secondary, at);
+    for entry in ["Cut", "Copy", "Paste", "Go to definition", "Rename", "Quick fix"] {
+        assert!(app.harness.query_all_by_label_contains(entry).next().is_some(), "{entry}");
+    }
+    app.harness.get_by_label_contains("Rename").click();
+    app.settle();
+    assert_eq!(app.json()["dialog"], "rename");
+}
+
+#[test]
+fn paste_in_the_menu_brings_the_clipboard_or_says_what_to_press() {
+    let mut app = editing("$0// first\n// second\n");
+    app.harness.state_mut().dispatch("edit.paste", &json!(null)).expect("it can be tried");
+    app.settle();
+    assert!(app.json()["toasts"].to_string().contains("Ctrl+V"));
+    *app.world.clipboard.borrow_mut() = Some("// pasted\r\n".to_owned());
+    app.harness.state_mut().dispatch("edit.paste", &json!(null)).expect("it can be used");
+    app.settle();
+    assert_eq!(app.text(), "// pasted\n$0// first\n// second\n");
+}
+
+#[test]
+fn the_middle_button_pastes_at_the_pointer() {
+    let mut app = editing("$0// first line\n// second line\n");
+    let at = place_of(&app, "// second line");
+    click_with(&mut app, egui::PointerButton::Middle, at);
+    app.harness.event(Event::Paste("X".to_owned()));
+    app.settle();
+    let text = app.harness.state().source();
+    assert!(text.starts_with("// first line\n// ") && text.contains('X'), "{text}");
+}

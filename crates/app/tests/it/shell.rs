@@ -44,6 +44,37 @@ fn nothing_on_the_bar_covers_the_workspaces_in_any_window() {
 }
 
 #[test]
+fn no_text_of_the_bars_lies_over_another_in_a_narrow_window() {
+    for width in [333.0, 426.0, 500.0, 560.0, 640.0] {
+        let mut app = support::start_in(Rc::default(), |builder| builder.with_size([width, 400.0]));
+        app.settle();
+        for bar in [egui::Rect::from_x_y_ranges(0.0..=2_000.0, 0.0..=40.0), egui::Rect::from_x_y_ranges(0.0..=2_000.0, 374.0..=402.0)] {
+            let texts = app.texts(bar);
+            assert!(!texts.is_empty(), "{width} points: nothing is in the bar");
+            for (at, (text, rect)) in texts.iter().enumerate() {
+                assert!(rect.right() <= width, "{width} points: {text} is cut off: {rect:?}");
+                for (other, beside) in &texts[at + 1..] {
+                    assert!(!rect.shrink(0.5).intersects(beside.shrink(0.5)), "{width} points: {text} and {other}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn firefox_is_shown_the_keys_that_it_leaves_to_the_page() {
+    for (is_firefox, keys) in [(false, "Ctrl+Shift+P  or  F1"), (true, "F1  or  Ctrl+Shift+P")] {
+        let world: Rc<support::World> = Rc::default();
+        world.is_firefox.set(is_firefox);
+        let mut app = support::start_in(world, |builder| builder);
+        app.settle();
+        app.harness.get_by_label("Keyboard shortcuts").click();
+        app.settle();
+        app.harness.get_by_label(keys);
+    }
+}
+
+#[test]
 fn the_workspace_tabs_switch_and_are_remembered_with_the_theme() {
     let mut app = support::start();
     app.settle();

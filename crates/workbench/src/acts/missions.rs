@@ -343,7 +343,7 @@ fn encoding_refusal(name: &str, bytes: &[u8]) -> Option<String> {
         return None;
     };
     let first_bad = str::from_utf8(bytes).err()?.valid_up_to();
-    let line = bytes[..first_bad].iter().filter(|&&byte| byte == b'\n').count() + 1;
+    let line = bytes[..first_bad].split(|&byte| byte == b'\n').count();
     Some(format!("line {line} is not UTF-8; the text seems to be in {encoding}. Save it as UTF-8 in your editor"))
 }
 

@@ -26,7 +26,7 @@ pub enum Key {
 
 /// Keys held down while another is pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Modifiers(pub(super) u8);
+pub struct Modifiers(pub u8);
 
 impl Modifiers {
     pub const NONE: Self = Self(0);

@@ -101,3 +101,47 @@ fn a_mission_of_two_files_is_written_with_real_keys_planned_and_there_after_a_re
     assert_eq!(page.tab.evaluate("enroute.source()")?, text);
     Ok(())
 }
+
+/// Presses a key of some keyboard with Ctrl and Shift: what the keyboard calls it, and its place.
+fn press_with_control_and_shift(page: &Opened, key: &str, code: &str, number: u32) -> Result<()> {
+    let modifiers = (Modifiers::CONTROL | Modifiers::SHIFT).0;
+    for kind in ["rawKeyDown", "keyUp"] {
+        page.tab.call(
+            "Input.dispatchKeyEvent",
+            &json!({
+                "type": kind, "key": key, "code": code, "windowsVirtualKeyCode": number, "modifiers": modifiers
+            }),
+        )?;
+    }
+    page.tab.next_frame()
+}
+
+#[test]
+fn brackets_with_control_and_shift_work_on_american_german_and_french_keyboards() -> Result<()> {
+    let page = Opened::planned()?;
+    let text = "primitive Go()[1,2];\nscenario S[0,9] = {\n  Go();\n  Go()\n}\n";
+    page.tab.evaluate(&format!("enroute.setSource({})", json!(text)))?;
+    page.settle()?;
+    let (open, close) = (text.find('{').unwrap_or_default(), text.find('}').unwrap_or_default());
+    for key in ["|", "'", "µ"] {
+        page.place_caret_after("[0,9] = ")?;
+        press_with_control_and_shift(&page, key, "Backslash", 220)?;
+        page.wait_for(&format!("[{close}, {}].includes(state.caret.head)", close + 1))
+            .map_err(|reason| reason.context(format!("`{key}`, from {open}")))?;
+    }
+    Ok(())
+}
+
+#[test]
+fn a_right_click_in_the_text_opens_a_menu() -> Result<()> {
+    let page = Opened::planned()?;
+    let text = page.tab.widget("textbox", "Mission text")?;
+    let (x, y) = (text.x + 120.0, text.y + 40.0);
+    for kind in ["mouseMoved", "mousePressed", "mouseReleased"] {
+        let press = json!({ "type": kind, "x": x, "y": y, "button": "right", "clickCount": 1 });
+        page.tab.call("Input.dispatchMouseEvent", &press)?;
+        page.tab.next_frame()?;
+    }
+    page.tab.wait_until("enroute.widgets('menuitem', 'Go to definition').length > 0")?;
+    Ok(())
+}

@@ -230,3 +230,127 @@ fn graphics_that_never_come_back_are_told_with_a_way_to_keep_the_text() -> Resul
     )?;
     Ok(())
 }
+
+/// A browser that says that a page is isolated from others, and has no shared memory.
+#[test]
+fn without_shared_memory_the_page_starts_although_it_is_isolated() -> Result<()> {
+    let page = Opened::after(
+        "Object.defineProperty(window, 'crossOriginIsolated', { value: true }); delete window.SharedArrayBuffer;",
+        Graphics::WebGl2,
+    )?;
+    page.tab.wait_until_ready()?;
+    page.wait_for("state.status === 'plan'")
+}
+
+#[test]
+fn what_throws_in_a_callback_while_the_page_starts_is_told_with_the_text_of_the_last_run() -> Result<()> {
+    let page = Opened::altered("web/core.js", |text| {
+        let start = "export function startCore(tell) {";
+        let throws = "if (localStorage.getItem('throws')) throw new ReferenceError('thrown while starting');";
+        text.replace(start, &format!("{start} {throws}"))
+    })?;
+    page.tab.evaluate("enroute.setSource('// kept')")?;
+    page.wait_for("state.library.keeping === 'kept'")?;
+    page.settle()?;
+    page.tab.evaluate("localStorage.setItem('throws', 'yes'); location.reload()")?;
+    page.tab.wait_until(
+        "document.querySelector('#loading[role=alert]')?.innerText.includes('thrown while starting')",
+    )?;
+    page.tab.evaluate("URL.createObjectURL = (blob) => { window.saved = blob; return 'blob:none'; }")?;
+    page.tab.evaluate(
+        "[...document.querySelectorAll('#loading button')].find((it) => it.innerText === 'Save the text').click()",
+    )?;
+    assert_eq!(page.tab.evaluate("window.saved.text()")?, "// kept");
+    Ok(())
+}
+
+/// Each of these throws in some browser with some settings.
+const REFUSED: &str = "
+    const refuse = () => { throw new DOMException('refused', 'SecurityError'); };
+    for (const [holder, names] of [
+        [window, ['indexedDB', 'localStorage', 'sessionStorage', 'caches']],
+        [navigator, ['locks', 'clipboard', 'storage', 'serviceWorker', 'gpu']],
+    ]) {
+        for (const name of names) Object.defineProperty(holder, name, { get: refuse, configurable: true });
+    }
+    window.BroadcastChannel = class { constructor() { refuse(); } };";
+
+#[test]
+fn whatever_the_browser_refuses_the_page_starts_plans_and_says_what_is_not_kept() -> Result<()> {
+    let page = Opened::after(REFUSED, Graphics::WebGl2)?;
+    page.tab.wait_until_ready()?;
+    page.wait_for("state.status === 'plan'")?;
+    page.wait_for("state.library.keeping === 'nothing'")?;
+    page.tab.wait_until("enroute.widgets('button', 'Not kept').length > 0")?;
+    // Copying and pasting fail in words.
+    page.tab.evaluate("enroute.dispatch('edit.copy')")?;
+    page.tab.evaluate("enroute.dispatch('edit.paste')")?;
+    page.wait_for("state.toasts.some((toast) => toast.includes('Ctrl+V'))")?;
+    page.tab.evaluate("enroute.setSource('// still here')")?;
+    page.tab.next_frame()?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, "// still here");
+    Ok(())
+}
+
+#[test]
+fn without_workers_the_text_can_be_edited() -> Result<()> {
+    let script = "window.Worker = class { constructor() { throw new DOMException('refused', 'SecurityError'); } };";
+    let page = Opened::after(script, Graphics::WebGl2)?;
+    page.tab.wait_until_ready()?;
+    page.wait_for("state.toasts.length > 0")?;
+    page.tab.evaluate("enroute.setSource('// still here')")?;
+    assert_eq!(page.tab.evaluate("enroute.source()")?, "// still here");
+    Ok(())
+}
+
+/// Firefox allows no larger textures where it resists fingerprinting.
+#[test]
+fn no_larger_texture_is_asked_for_than_there_is() -> Result<()> {
+    let script = "const get = WebGL2RenderingContext.prototype.getParameter;
+        WebGL2RenderingContext.prototype.getParameter = function (name) {
+            const value = get.call(this, name);
+            return name === this.MAX_TEXTURE_SIZE ? Math.min(value, 2048) : value;
+        };";
+    let page = Opened::after(script, Graphics::WebGl2)?;
+    page.tab.wait_until_ready()?;
+    page.wait_for("state.status === 'plan' && state.renderer === 'webgl2'")?;
+    let side = page.tab.evaluate("document.getElementById('canvas').style.getPropertyValue('--largest-side')")?;
+    assert_eq!(side, "2048");
+    Ok(())
+}
+
+/// Lets a test lose the devices of WebGPU: `devices` has a function for each.
+const LOSE_DEVICES: &str = "window.devices = [];
+    const ask = window.GPUAdapter?.prototype.requestDevice;
+    if (ask) GPUAdapter.prototype.requestDevice = async function (...all) {
+        const device = await ask.apply(this, all);
+        let lose;
+        const lost = new Promise((resolve) => (lose = resolve));
+        device.lost.then(lose);
+        Object.defineProperty(device, 'lost', { value: lost });
+        window.devices.push(() => lose({ reason: 'unknown', message: 'lost by a test' }));
+        return device;
+    };";
+
+#[test]
+#[expect(clippy::print_stdout, reason = "what was not tried is said")]
+fn a_lost_device_is_followed_by_another_and_the_second_within_a_minute_by_webgl2() -> Result<()> {
+    let page = Opened::after(LOSE_DEVICES, Graphics::WebGpu)?;
+    page.tab.wait_until_ready()?;
+    if page.tab.evaluate("devices.length")? == 0 {
+        println!("not tried: this Chromium has no WebGPU");
+        return Ok(());
+    }
+    page.tab.evaluate("enroute.setSource('// before')")?;
+    // A device that the browser loses by itself, as its software adapter does, counts as well.
+    page.tab.evaluate("window.lost = devices.length; devices.at(-1)()")?;
+    page.tab.wait_until("devices.length > lost || enroute.state().renderer === 'webgl2'")?;
+    page.tab.evaluate("devices.at(-1)()")?;
+    page.wait_for("state.renderer === 'webgl2'")?;
+    page.tab.next_frame()?;
+    let failure = page.tab.evaluate("document.querySelector('#loading[role=alert]')?.innerText ?? null")?;
+    assert!(failure.is_null(), "{failure}");
+    assert_eq!(page.tab.evaluate("enroute.source()")?, "// before");
+    page.tab.evaluate("enroute.setSource('// after')")?;
+    page.wait_for("state.answeredRevision === state.revision")
+}

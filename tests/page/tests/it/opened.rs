@@ -10,7 +10,7 @@ use std::{
 };
 
 use anyhow::{Context as _, Result, ensure};
-use serde_json::Value;
+use serde_json::{Value, json};
 use xtask::{
     browser::{Browser, Context, Graphics, Key, Modifiers, Picture, SharedBrowser, Tab},
     server::SiteServer,
@@ -77,6 +77,15 @@ impl Opened {
         let mut opened = Self::from_site(&copy, Graphics::WebGl2, "mission=enroute")?;
         opened.copy = Some(copy);
         opened.tab.wait_until_ready()?;
+        Ok(opened)
+    }
+
+    /// Goes to the page after a script has changed what its browser offers.
+    pub(crate) fn after(script: &str, graphics: Graphics) -> Result<Self> {
+        let opened = Self::from_site(&SITE, graphics, "mission=enroute")?;
+        opened.tab.call("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": script }))?;
+        opened.tab.go_to("about:blank")?;
+        opened.tab.go_to(&format!("{}#mission=enroute", opened.server.url()))?;
         Ok(opened)
     }
 
