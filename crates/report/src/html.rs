@@ -56,7 +56,7 @@ pub fn html(document: &Document<'_>) -> String {
     );
     out.push_str(&in_content(hash, sheets));
     out.push_str(&content);
-    out.push_str("</body>\n</html>\n");
+    out.push_str("<p class=\"end\">End of the report</p>\n</body>\n</html>\n");
     out
 }
 
@@ -155,5 +155,5 @@ fn figures(document: &Document<'_>) -> String {
         ("Map", figure::map(snapshot, document.ground).into_iter().collect()),
     ];
     let drawn = figures.iter().filter(|(_, figures)| !figures.is_empty());
-    drawn.map(|(heading, figures)| format!("<h2>{heading}</h2>\n{}", figure::html(figures))).collect()
+    drawn.map(|(heading, figures)| figure::html(heading, figures)).collect()
 }

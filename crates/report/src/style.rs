@@ -5,7 +5,8 @@
 ///
 /// Firefox and Safari put nothing into the margins of pages. There the hash stands at the foot of each page (`.foot`), and
 /// the numbers (`.sheets`) lie a page's height from each other over the whole length of the report: those behind its end
-/// have no height. They do not keep a heading with what follows, either: it asks for room for a few lines.
+/// have no height. The last page may have none: room that a page leaves free before a drawing does not count. It says that
+/// the report ends there. They do not keep a heading with what follows, either: it asks for room for a few lines.
 pub(crate) const STYLE: &str = "
 :root { color: #161d26; background: #fff; font: 10.5pt/1.45 'Ubuntu', 'Inter', 'Segoe UI', 'Helvetica Neue', Arial, sans-serif; }
 body { max-width: 62rem; margin: 2rem auto; padding: 0 1.5rem; }
@@ -24,7 +25,7 @@ td.figure, th.figure { text-align: right; font-variant-numeric: tabular-nums; }
 th { overflow-wrap: normal; vertical-align: bottom; }
 td.figure, td:last-child { white-space: nowrap; overflow-wrap: normal; }
 thead { display: table-header-group; }
-.in-print, .foot, .sheets { display: none; }
+.in-print, .foot, .sheets, .end { display: none; }
 del { background: #fbe4e1; text-decoration: none; }
 ins { background: #dff3e4; text-decoration: none; }
 .facts { display: grid; grid-template-columns: max-content 1fr; gap: .1em 1.2em; margin: 1em 0; }
@@ -71,15 +72,16 @@ figcaption { color: #4e5b6a; font-size: .9em; margin-top: .4em; }
   figure.in-print { display: block; }
   h2, h3 { break-after: avoid; break-inside: avoid; }
   h2::after, h3::after { content: ''; display: block; height: 7em; margin-bottom: -7em; }
-  tr, figure, .signatures { break-inside: avoid; }
+  tr, figure, .signatures, .together { break-inside: avoid; }
   figure svg { max-height: 225mm; }
   h2.page { break-before: page; }
   @supports (-moz-appearance: none) or (font: -apple-system-body) or (not (interpolate-size: allow-keywords)) {
     body { position: relative; padding-bottom: 2em; box-decoration-break: clone; -webkit-box-decoration-break: clone; }
     .foot { display: block; position: fixed; bottom: 0; left: 0; margin: 0; font-size: 6.5pt; color: #4e5b6a; }
-    .sheets { display: block; }
+    .sheets, .end { display: block; }
+    .end { text-align: right; font-size: 8pt; color: #4e5b6a; }
     .sheets i { position: absolute; right: 0; overflow: hidden; font: 8pt/1.2 inherit; font-style: normal; color: #4e5b6a;
-      top: min(var(--sheet) * 100vh, 100%); margin-top: -1.2em;
+      top: min(var(--sheet) * 100vh, 100%); margin-top: -2.6em;
       height: clamp(0px, 100% - (var(--sheet) - 1) * 100vh, 1.2em); }
   }
 }

@@ -269,7 +269,7 @@ const REFUSED: &str = "
     const refuse = () => { throw new DOMException('refused', 'SecurityError'); };
     for (const [holder, names] of [
         [window, ['indexedDB', 'localStorage', 'sessionStorage', 'caches']],
-        [navigator, ['locks', 'clipboard', 'storage', 'serviceWorker', 'gpu']],
+        [navigator, ['locks', 'clipboard', 'storage', 'serviceWorker']],
     ]) {
         for (const name of names) Object.defineProperty(holder, name, { get: refuse, configurable: true });
     }
