@@ -9,7 +9,7 @@
 //! let rule = rmpl::rule::read("never Drive while Mast=UP", &mission.program(), Default::default());
 //! assert!(rule.is_ok());
 //! let wrong = rmpl::rule::read("Battery >= 20 at end of Dirve", &mission.program(), Default::default());
-//! assert_eq!(wrong.unwrap_err()[0].message, "no activity `Dirve` is declared");
+//! assert_eq!(wrong.unwrap_err()[0].message, "unknown activity `Dirve`");
 //! ```
 
 use exact::{Bound, Rational, Time};
@@ -179,14 +179,14 @@ impl Reader<'_> {
                     Some(Moment::Within { from, to })
                 }
                 ((Some(Bound::Finite(_)), _), (Some(_), span)) => {
-                    self.report(syntax::CODE, span, "the end has to come after the beginning");
+                    self.report(syntax::CODE, span, "the end must be after the start");
                     None
                 }
                 ((_, span), (Some(_), _)) | (_, (_, span)) => {
                     self.report(
                         undefined::CODE,
                         span,
-                        "this is no time: a number, or a constant of the mission",
+                        "expected a time: a number, or a constant of the mission",
                     );
                     None
                 }
@@ -256,12 +256,12 @@ impl Reader<'_> {
             let written = name.map_or("this", |name| name.text);
             let place = name.map_or(span, |name| name.span);
             let nearest = nearest(written, resources());
-            self.unknown(format!("no resource `{written}` is declared"), place, nearest);
+            self.unknown(format!("unknown resource `{written}`"), place, nearest);
             return None;
         };
         let (amount, place) = amount?;
         let Some(Bound::Finite(amount)) = self.constants.evaluate(&amount, &|_| None) else {
-            self.report(undefined::CODE, place, "this is no amount: a number, or a constant of the mission");
+            self.report(undefined::CODE, place, "expected an amount: a number, or a constant of the mission");
             return None;
         };
         let order = match order.text {
@@ -308,7 +308,7 @@ impl Reader<'_> {
             }
             let nearest = nearest(name, self.activities().map(|(it, _)| it));
             let nearest = nearest.map(|it| if name == token.text { it } else { format!("\"{it}\"") });
-            self.unknown(format!("no activity `{name}` is declared"), token.span, nearest);
+            self.unknown(format!("unknown activity `{name}`"), token.span, nearest);
             return None;
         };
         let Some(arguments) = arguments else {
@@ -346,8 +346,8 @@ impl Reader<'_> {
             self.diagnostics.push(value::no_location(&location.text, location.span, nearest.as_deref()));
         } else {
             let message =
-                format!("nothing in the mission requires `{variable} in visible({})`", location.text);
-            let hint = "a rule can use a condition on what is in sight only if the mission uses the same one: no other is computed";
+                format!("the mission does not require `{variable} in visible({})` anywhere", location.text);
+            let hint = "a rule can use a visibility condition only if the mission requires the same one";
             self.diagnostics.push(Diagnostic::error(undefined::CODE, span, message).with_hint(hint));
         }
         None
@@ -381,13 +381,14 @@ impl Reader<'_> {
             return Some((written.into(), values_of(values)));
         }
         if self.program.resources.iter().any(|it| it.name.text == written) {
-            let message = format!("`{written}` is a resource: compare it, as in `{written} >= 20`");
+            let message =
+                format!("`{written}` is a resource: compare it with an amount, as in `{written} >= 20`");
             self.report(syntax::CODE, span, message);
             return None;
         }
         let declared = self.program.variables.iter().map(|it| it.name.text.as_str());
         let nearest = nearest(written, declared.chain(self.activities().map(|(it, _)| it)));
-        self.unknown(format!("the mission has no `{written}`"), span, nearest);
+        self.unknown(format!("unknown name `{written}`"), span, nearest);
         None
     }
 
@@ -507,10 +508,7 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
         assert_eq!(end, Moment::End(Some(Activity { name: "Go To(A)".into(), arguments: None })));
         assert_eq!(read("never GoTo(A)").expect("one").holds, Formula::Not(Box::new(underway("GoTo(A)"))));
         assert_eq!(read("\"Dig\"").expect("one").holds, underway("Dig"));
-        assert_eq!(
-            read("never \"Gone(B)\""),
-            Err(vec!["6 E-UNDEF: no activity `Gone(B)` is declared".to_owned()])
-        );
+        assert_eq!(read("never \"Gone(B)\""), Err(vec!["6 E-UNDEF: unknown activity `Gone(B)`".to_owned()]));
         assert!(read("\"Go To(A)").is_err(), "the quotation is not closed");
     }
 
@@ -548,14 +546,14 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
     fn what_is_wrong_is_told_with_its_place() {
         let wrong = |text: &str| read(text).expect_err("it is wrong");
         assert_eq!(wrong("Mast=UPP"), ["5 E-VALUE: `UPP` is not a value of `Mast`"]);
-        assert_eq!(wrong("Batery >= 2"), ["0 E-UNDEF: no resource `Batery` is declared"]);
-        assert_eq!(wrong("never Drvie"), ["6 E-UNDEF: the mission has no `Drvie`"]);
+        assert_eq!(wrong("Batery >= 2"), ["0 E-UNDEF: unknown resource `Batery`"]);
+        assert_eq!(wrong("never Drvie"), ["6 E-UNDEF: unknown name `Drvie`"]);
         assert_eq!(wrong("Drive(Rock, 2)"), ["5 E-ARITY: `Drive` has 1 argument"]);
         assert_eq!(
             wrong("Battery"),
-            ["0 E-SYNTAX: `Battery` is a resource: compare it, as in `Battery >= 20`"]
+            ["0 E-SYNTAX: `Battery` is a resource: compare it with an amount, as in `Battery >= 20`"]
         );
-        assert_eq!(wrong("Mast=IN from 9 to 3"), ["18 E-SYNTAX: the end has to come after the beginning"]);
+        assert_eq!(wrong("Mast=IN from 9 to 3"), ["18 E-SYNTAX: the end must be after the start"]);
         for text in ["", "Mast=IN and", "Mast=IN at noon", "Mast=IN; Comm=UP", "Battery >= ", "(Mast=IN"] {
             let found = wrong(text);
             assert!(found.len() == 1 && found[0].contains("E-SYNTAX"), "{text}: {found:?}");
@@ -571,12 +569,12 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
         let wrong = |text: &str| read(text).expect_err("it is wrong");
         assert_eq!(
             wrong("Rover1.at in visible(Rock)"),
-            ["0 E-UNDEF: nothing in the mission requires `Rover1.at in visible(Rock)`"]
+            ["0 E-UNDEF: the mission does not require `Rover1.at in visible(Rock)` anywhere"]
         );
-        assert_eq!(wrong("Rover1.at in visible(Bace)"), ["21 E-VALUE: no location `Bace` is declared"]);
+        assert_eq!(wrong("Rover1.at in visible(Bace)"), ["21 E-VALUE: unknown location `Bace`"]);
         assert_eq!(
             wrong("Mast in visible(Base)"),
-            ["0 E-VALUE: `Mast` is not the place of a vehicle, and only a vehicle sees a location"]
+            ["0 E-VALUE: `Mast` cannot be in `visible(…)`: only the place of a vehicle can, as in `V.at`"]
         );
     }
 

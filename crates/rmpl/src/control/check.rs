@@ -79,13 +79,13 @@ impl<'file> Checker<'file> {
             ConstraintKind::Parameter(name) if !is_parameter(name, within) => {
                 let hint = nearest(&name.text, within.parameters.iter().map(|known| known.text.as_str()))
                     .map_or_else(
-                        || "a constraint reads `(variable = value)`".into(),
+                        || "write a constraint as `(variable = value)`".into(),
                         |known| format!("did you mean the parameter `{known}`?"),
                     );
                 self.error(
                     "E-UNDEF",
                     name,
-                    format!("`{}` is no constraint and no parameter", name.text),
+                    format!("`{}` is neither a constraint nor a parameter", name.text),
                     Some(hint),
                 );
             }
@@ -126,7 +126,7 @@ impl<'file> Checker<'file> {
                 label: format!("Write `({})`", name.text),
                 edits: vec![Edit { span: name.span, text: format!("({})", name.text) }],
             };
-            let message = format!("a definition is called in parentheses: `({})`", name.text);
+            let message = format!("call a definition in parentheses: `({})`", name.text);
             self.diagnostics.push(Diagnostic::error(Code("E-FORM"), name.span, message).with_fix(fix));
             return;
         }
@@ -144,21 +144,13 @@ impl<'file> Checker<'file> {
 
     fn unknown(&mut self, name: &Name, arguments: &[Argument]) {
         if let Some(hint) = Reader::keyword_hint(&name.text) {
-            return self.error(
-                "E-FORM",
-                name,
-                format!("`{}` is no construct of the language", name.text),
-                Some(hint),
-            );
+            return self.error("E-FORM", name, format!("unknown construct `{}`", name.text), Some(hint));
         }
         let hint =
             nearest(&name.text, self.known.keys().copied()).map(|known| format!("did you mean `{known}`?"));
         let has_parts = arguments.iter().any(|argument| !matches!(argument, Argument::Word(_)));
         if has_parts && hint.is_none() {
-            let message = format!(
-                "`{}` is no construct of the language and no definition of that name exists",
-                name.text
-            );
+            let message = format!("`{}` is neither a construct of the language nor a definition", name.text);
             return self.error("E-FORM", name, message, None);
         }
         let hint = match (hint, arguments) {
@@ -167,7 +159,7 @@ impl<'file> Checker<'file> {
             }
             (hint, _) => hint,
         };
-        self.error("E-UNDEF", name, format!("no definition is called `{}`", name.text), hint);
+        self.error("E-UNDEF", name, format!("unknown definition `{}`", name.text), hint);
     }
 
     /// One diagnostic per cycle of calls, at the call that closes it.
@@ -194,7 +186,7 @@ impl<'file> Checker<'file> {
             };
             self.diagnostics.push(
                 Diagnostic::error(Code("E-RECURSION"), cycle.closing_call, message)
-                    .with_hint("an automaton is finite: repeat with ALWAYS or WHENEVER-DONEXT"),
+                    .with_hint("an automaton must be finite: to repeat, use ALWAYS or WHENEVER-DONEXT"),
             );
         }
     }

@@ -23,8 +23,8 @@ const DEEPEST: usize = 400;
 pub fn expand_main(file: &ControlFile) -> (Option<Expression>, Vec<Diagnostic>) {
     let Some(main) = file.main() else {
         let end = file.definitions.last().map_or(Span::default(), |definition| definition.name.span);
-        let message = "no definition without parameters can run";
-        let hint = "write a definition such as `Main ():: (PARALLEL …)`";
+        let message = "the program needs a definition without parameters to start from";
+        let hint = "add a definition such as `Main ():: (PARALLEL …)`";
         return (None, vec![Diagnostic::error(Code("E-UNDEF"), end, message).with_hint(hint)]);
     };
     let mut expander = Expander { file, diagnostics: Vec::new(), count: 0 };
@@ -59,7 +59,11 @@ impl Expander<'_> {
         let unreadable = Expression { kind: ExpressionKind::Unreadable, span: from.span };
         if self.count > MAX_EXPRESSIONS || depth > DEEPEST {
             if self.count <= MAX_EXPRESSIONS + 1 {
-                self.error("E-RECURSION", from.span, "the calls expand to too large a program".into());
+                self.error(
+                    "E-RECURSION",
+                    from.span,
+                    "the program is too large after its calls are expanded".into(),
+                );
                 self.count = MAX_EXPRESSIONS + 1;
             }
             return unreadable;
@@ -122,7 +126,7 @@ impl Expander<'_> {
         match scope.get(&name.text) {
             Some(Argument::Expression(expression)) => return expression.clone(),
             Some(Argument::Guard(guard)) => {
-                let message = "non-entailment can be asked for, but not asserted".into();
+                let message = "non-entailment can be a guard, but not an assertion".into();
                 self.error("E-CONSTRAINT", guard.span, message);
                 return unreadable;
             }
@@ -225,16 +229,19 @@ impl Expander<'_> {
             Some(Argument::Word(word)) => match truth(word) {
                 Some(kind) => return Constraint { kind, span: word.span },
                 None => {
-                    format!("`{}` is used as a constraint, but is given the word `{}`", name.text, word.text)
+                    format!(
+                        "`{}` is used as a constraint, but the call passes the word `{}`",
+                        name.text, word.text
+                    )
                 }
             },
             Some(Argument::Expression(_)) => {
-                format!("`{}` is used as a constraint, but is given an expression", name.text)
+                format!("`{}` is used as a constraint, but the call passes an expression", name.text)
             }
             Some(Argument::Guard(_)) => {
-                format!("`{}` is used inside a constraint, but is given `~…`", name.text)
+                format!("`{}` is used inside a constraint, but the call passes `~…`", name.text)
             }
-            None => format!("`{}` is no constraint and no parameter", name.text),
+            None => format!("`{}` is neither a constraint nor a parameter", name.text),
         };
         let code = if scope.contains_key(&name.text) { "E-CONSTRAINT" } else { "E-UNDEF" };
         let place = match scope.get(&name.text) {
@@ -256,7 +263,7 @@ impl Expander<'_> {
                 self.error(
                     "E-CONSTRAINT",
                     span,
-                    format!("`{}` is used as a name, but is given an expression", from.text),
+                    format!("`{}` is used as a name, but the call passes an expression", from.text),
                 );
                 from.clone()
             }

@@ -55,7 +55,7 @@ pub fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_>>, Vec
             merger.error(
                 "E-DUP",
                 class.name.span,
-                format!("the class `{}` is declared twice", class.name.text),
+                format!("the class `{}` is already declared", class.name.text),
             );
         }
     }
@@ -128,8 +128,7 @@ impl<'file> Merger<'file> {
             if !self.classes.contains_key(parent.text.as_str()) {
                 let hint = nearest(&parent.text, self.classes.keys().copied())
                     .map(|known| format!("did you mean `{known}`?"));
-                self.error("E-UNDEF", parent.span, format!("no class is called `{}`", parent.text)).hint =
-                    hint;
+                self.error("E-UNDEF", parent.span, format!("unknown class `{}`", parent.text)).hint = hint;
             }
         }
     }
@@ -165,7 +164,12 @@ impl<'file> Merger<'file> {
                 if culprit.name.text == class.name.text && !is_reported {
                     let name = &class.name.text;
                     let (code, message) = if path.is_empty() {
-                        ("E-FORM", format!("the classes that `{name}` extends cannot be put in one order"))
+                        (
+                            "E-FORM",
+                            format!(
+                                "the classes that `{name}` extends have contradictory inheritance orders"
+                            ),
+                        )
                     } else {
                         ("E-RECURSION", format!("`{name}` extends itself"))
                     };
@@ -289,7 +293,9 @@ impl<'file> Merger<'file> {
                 self.error(
                     "E-VALUE",
                     span,
-                    format!("no value of `{name}` is left: the classes that declare it share none"),
+                    format!(
+                        "`{name}` has no possible value: the classes that declare it have no value in common"
+                    ),
                 );
             }
         } else {

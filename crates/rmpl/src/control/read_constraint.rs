@@ -41,8 +41,8 @@ impl Reader<'_> {
         let kind = match node {
             Node::List(list) if !list.braced => return self.constraint_list(list),
             Node::List(_) => {
-                self.error("E-SYNTAX", span, "braces hold the values of a domain, not a constraint").hint =
-                    Some("use parentheses".into());
+                self.error("E-SYNTAX", span, "braces enclose the values of a domain, not a constraint")
+                    .hint = Some("use parentheses".into());
                 ConstraintKind::Unreadable
             }
             Node::Leaf(_) => match (self.upper(node).as_str(), self.name(node)) {
@@ -50,8 +50,8 @@ impl Reader<'_> {
                 ("FALSE", _) => ConstraintKind::False,
                 (_, Some(name)) => ConstraintKind::Parameter(name),
                 _ => {
-                    self.error("E-CONSTRAINT", span, "a constraint is expected here").hint =
-                        Some("a constraint reads `(variable = value)`, `true` or `false`".into());
+                    self.error("E-CONSTRAINT", span, "expected a constraint").hint =
+                        Some("write a constraint as `(variable = value)`, `true` or `false`".into());
                     ConstraintKind::Unreadable
                 }
             },
@@ -69,7 +69,7 @@ impl Reader<'_> {
         let items = list.items.as_slice();
         match items {
             [] => {
-                self.error("E-SYNTAX", list.span, "nothing stands between these parentheses");
+                self.error("E-SYNTAX", list.span, "these parentheses are empty");
                 return ConstraintKind::Unreadable;
             }
             [only] => return self.constraint(only).kind,
@@ -107,17 +107,18 @@ impl Reader<'_> {
             self.error(
                 "E-CONSTRAINT",
                 list.span,
-                "`~` stands before a whole guard, not inside a constraint",
+                "`~` must come before a whole guard, not inside a constraint",
             )
-            .hint =
-                Some("inside a constraint write `(NOT c)`; a guard reads `~c` or `(NOT-ENTAILED c)`".into());
+            .hint = Some(
+                "inside a constraint, write `(NOT c)`; as a guard, write `~c` or `(NOT-ENTAILED c)`".into(),
+            );
         } else if matches!(items, [_, equals] if is_leaf(equals, TokenKind::Equals)) {
             self.error("E-CONSTRAINT", list.span, "the value is missing after `=`");
         } else if matches!(items, [equals, _] if is_leaf(equals, TokenKind::Equals)) {
             self.error("E-CONSTRAINT", list.span, "the variable is missing before `=`");
         } else {
-            self.error("E-CONSTRAINT", list.span, "this is no constraint").hint =
-                Some("a constraint reads `(variable = value)`; join several by AND or OR".into());
+            self.error("E-CONSTRAINT", list.span, "this is not a constraint").hint =
+                Some("write a constraint as `(variable = value)`; join several with AND or OR".into());
         }
         ConstraintKind::Unreadable
     }
@@ -127,13 +128,13 @@ impl Reader<'_> {
         let first = joints.first().map(|node| self.upper(node)).unwrap_or_default();
         if let Some(mixed) = joints.iter().find(|node| self.upper(node) != first) {
             self.error("E-CONSTRAINT", mixed.span(), "AND and OR are mixed without parentheses").hint =
-                Some("put parentheses around the part that belongs together".into());
+                Some("use parentheses to show which part binds first".into());
             return ConstraintKind::Unreadable;
         }
         let operands: Vec<&[Node]> = items.split(|node| self.is_connective(node)).collect();
         if operands.iter().any(|operand| operand.is_empty()) {
             let span = joints.iter().map(|node| node.span()).reduce(Span::cover).unwrap_or_default();
-            self.error("E-CONSTRAINT", span, format!("a constraint is missing beside {first}"));
+            self.error("E-CONSTRAINT", span, format!("{first} needs another constraint"));
             return ConstraintKind::Unreadable;
         }
         let parts = operands.into_iter().map(|operand| self.operand(operand)).collect();

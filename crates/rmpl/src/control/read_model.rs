@@ -35,7 +35,7 @@ impl Reader<'_> {
             self.shape(
                 "E-ARITY",
                 list,
-                "DEFINSTANCE takes a name, a class, and what is at its ports",
+                "DEFINSTANCE takes a name, a class, and the components at its ports",
                 "(DEFINSTANCE ValveA Valve (driver DriverA) INIT Closed)",
             );
             return None;
@@ -69,11 +69,7 @@ impl Reader<'_> {
                     rest = after;
                 }
                 Node::Leaf(_) => {
-                    self.error(
-                        "E-SYNTAX",
-                        node.span(),
-                        "a port `(name component)` or `INIT mode` is expected here",
-                    );
+                    self.error("E-SYNTAX", node.span(), "expected a port `(name component)` or `INIT mode`");
                 }
             }
         }
@@ -119,12 +115,12 @@ impl Reader<'_> {
     fn field(&mut self, node: &Node) -> Option<Field> {
         let span = node.span();
         let Node::List(list) = node else {
-            self.error("E-SYNTAX", span, "a field in parentheses is expected here").hint = Some(field_hint());
+            self.error("E-SYNTAX", span, "expected a field in parentheses").hint = Some(field_hint());
             return None;
         };
         let Some((word, word_span)) = list.items.first().and_then(|head| keyword::word(self.text, head))
         else {
-            self.error("E-FORM", span, "a field starts with its kind").hint = Some(field_hint());
+            self.error("E-FORM", span, "a field must start with its kind").hint = Some(field_hint());
             return None;
         };
         let upper = word.to_ascii_uppercase();
@@ -138,7 +134,7 @@ impl Reader<'_> {
             _ => {
                 let hint = nearest(&upper, FIELD_KEYWORDS)
                     .map_or_else(field_hint, |known| format!("did you mean {known}?"));
-                self.error("E-FORM", word_span, format!("`{word}` is no kind of field")).hint = Some(hint);
+                self.error("E-FORM", word_span, format!("unknown kind of field `{word}`")).hint = Some(hint);
                 None
             }
         }?;
@@ -167,11 +163,11 @@ impl Reader<'_> {
                 match rest.next() {
                     Some(value) => shows = self.required_name(value, "a value"),
                     None => {
-                        self.error("E-ARITY", node.span(), "a value is missing after SHOWS");
+                        self.error("E-ARITY", node.span(), "expected a value after SHOWS");
                     }
                 }
             } else {
-                self.error("E-SYNTAX", node.span(), "only OBSERVABLE and SHOWS may follow the values");
+                self.error("E-SYNTAX", node.span(), "expected OBSERVABLE or SHOWS after the values");
             }
         }
         Some(FieldKind::Variable { name, values, observable, shows })
@@ -243,7 +239,7 @@ impl Reader<'_> {
         let items: Vec<Node> = list.items.clone();
         let values = self.names(&items, "a value");
         if values.is_empty() {
-            self.error("E-ARITY", list.span, "a domain has at least one value");
+            self.error("E-ARITY", list.span, "a domain needs at least one value");
             return None;
         }
         for (at, value) in values.iter().enumerate() {
@@ -266,7 +262,7 @@ impl Reader<'_> {
     fn required_name(&mut self, node: &Node, what: &str) -> Option<Name> {
         let name = self.name(node);
         if name.is_none() {
-            self.error("E-SYNTAX", node.span(), format!("{what} is expected here"));
+            self.error("E-SYNTAX", node.span(), format!("expected {what}"));
         }
         name
     }
@@ -282,5 +278,5 @@ impl Reader<'_> {
 }
 
 fn field_hint() -> String {
-    format!("fields are {}", FIELD_KEYWORDS.join(", "))
+    format!("use one of {}", FIELD_KEYWORDS.join(", "))
 }

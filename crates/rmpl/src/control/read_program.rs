@@ -104,8 +104,8 @@ impl Reader<'_> {
         if let Some(earlier) = file.definitions.iter().find(|definition| definition.name.text == "main") {
             let whole = earlier.name.span == earlier.span;
             if whole {
-                self.error("E-SYNTAX", span, "a second expression without a name").hint = Some(
-                    "give each a name, as in `Name ():: (PARALLEL …)`, or join them by PARALLEL or SEQUENCE"
+                self.error("E-SYNTAX", span, "only one expression may have no name").hint = Some(
+                    "name each one, as in `Name ():: (PARALLEL …)`, or join them with PARALLEL or SEQUENCE"
                         .into(),
                 );
                 return;
@@ -139,7 +139,7 @@ impl Reader<'_> {
                 }
                 (None, Node::Leaf(token)) if token.kind == TokenKind::Comma => {}
                 _ => {
-                    self.error("E-SYNTAX", item.span(), "a parameter is a name");
+                    self.error("E-SYNTAX", item.span(), "a parameter must be a name");
                 }
             }
         }
@@ -147,7 +147,7 @@ impl Reader<'_> {
             self.error(
                 "E-SYNTAX",
                 span,
-                format!("`{}` is defined as nothing: an expression is missing after `::`", name.text),
+                format!("the definition of `{}` is empty: add an expression after `::`", name.text),
             );
         }
         let body = self.expression_of(body, span);
@@ -157,9 +157,9 @@ impl Reader<'_> {
     fn stray(&mut self, token: Token) {
         let word = self.word_text(token).to_owned();
         let diagnostic =
-            self.error("E-SYNTAX", token.span, format!("`{word}` stands alone outside any form"));
+            self.error("E-SYNTAX", token.span, format!("unexpected `{word}` outside any definition"));
         diagnostic.hint = Some(
-            "a text is made of definitions `Name ():: expression`, classes `(DEFCLASS …)`, components `(DEFINSTANCE …)` and options `(DEFOPTION …)`"
+            "expected a definition such as `Main ():: …`, a class `(DEFCLASS …)`, a component `(DEFINSTANCE …)` or an option `(DEFOPTION …)`"
                 .into(),
         );
     }
@@ -174,8 +174,8 @@ impl Reader<'_> {
             [] => Expression { kind: ExpressionKind::Unreadable, span },
             [node] => self.expression(node),
             [bar, _, ..] => {
-                self.error("E-CONSTRAINT", bar.span(), "non-entailment can be asked for, but not asserted").hint =
-                    Some("use `~c` as the guard of IF, UNLESS, WHEN, WHENEVER or DO-WATCHING; to assert the opposite of c write `(NOT c)`".into());
+                self.error("E-CONSTRAINT", bar.span(), "non-entailment can be a guard, but not an assertion").hint =
+                    Some("use `~c` as the guard of IF, UNLESS, WHEN, WHENEVER or DO-WATCHING; to assert the opposite of c, write `(NOT c)`".into());
                 Expression { kind: ExpressionKind::Unreadable, span }
             }
         }
@@ -187,8 +187,8 @@ impl Reader<'_> {
         let kind = match node {
             Node::Leaf(token) => self.bare(*token),
             Node::List(list) if list.braced => {
-                self.error("E-SYNTAX", span, "braces hold the values of a domain, not an expression").hint =
-                    Some("use parentheses".into());
+                self.error("E-SYNTAX", span, "braces enclose the values of a domain, not an expression")
+                    .hint = Some("use parentheses".into());
                 ExpressionKind::Unreadable
             }
             Node::List(list) => self.list(list),
@@ -207,7 +207,7 @@ impl Reader<'_> {
                 ExpressionKind::Call { name, arguments: Vec::new(), bare: true }
             }
             _ => {
-                self.error("E-SYNTAX", token.span, format!("an expression is expected here, not `{text}`"));
+                self.error("E-SYNTAX", token.span, format!("expected an expression, found `{text}`"));
                 ExpressionKind::Unreadable
             }
         }
@@ -223,12 +223,12 @@ impl Reader<'_> {
                 return self.expression(inner).kind;
             }
             if list.items.is_empty() {
-                self.error("E-SYNTAX", list.span, "nothing stands between these parentheses");
+                self.error("E-SYNTAX", list.span, "these parentheses are empty");
             } else {
                 self.error(
                     "E-SYNTAX",
                     list.span,
-                    "a form starts with its name, a constraint reads `(variable = value)`",
+                    "start a form with its name, or write a constraint as `(variable = value)`",
                 );
             }
             return ExpressionKind::Unreadable;
@@ -236,13 +236,15 @@ impl Reader<'_> {
         let arguments = list.items.get(head.length..).unwrap_or_default();
         match head.upper.as_str() {
             "NOT-ENTAILED" => {
-                self.error("E-CONSTRAINT", head.span, "non-entailment can be asked for, but not asserted").hint =
-                    Some("it is a guard of IF, UNLESS, WHEN, WHENEVER or DO-WATCHING; to assert the opposite of c write `(NOT c)`".into());
+                self.error("E-CONSTRAINT", head.span, "non-entailment can be a guard, but not an assertion").hint =
+                    Some("use it as the guard of IF, UNLESS, WHEN, WHENEVER or DO-WATCHING; to assert the opposite of c, write `(NOT c)`".into());
                 ExpressionKind::Unreadable
             }
             "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" => {
-                self.error("E-FORM", head.span, format!("{} stands inside an expression", head.upper)).hint =
-                    Some("classes, components and options stand beside the definitions".into());
+                self.error("E-FORM", head.span, format!("{} cannot be inside an expression", head.upper))
+                    .hint = Some(
+                    "move it out of the definition: declare classes, components and options at the top level".into(),
+                );
                 ExpressionKind::Unreadable
             }
             keyword if EXPRESSION_KEYWORDS.contains(&keyword) => self.form(keyword, head.span, arguments),
@@ -300,7 +302,7 @@ impl Reader<'_> {
                     span,
                     "IF-THENNEXT takes a condition and one expression, but has two expressions",
                 )
-                .hint = Some("with an alternative it is called IF-THENNEXT-ELSENEXT".into());
+                .hint = Some("with an alternative, use IF-THENNEXT-ELSENEXT".into());
                 return ExpressionKind::Unreadable;
             }
             return self.wrong_arity(keyword, span, wanted, given);
@@ -339,11 +341,10 @@ impl Reader<'_> {
             };
         };
         if let [_, second, ..] = bars {
-            self.error("E-CONSTRAINT", second.span(), "the bar of non-entailment is written once").hint =
-                Some(
-                    "`~` asks whether something is not known; the opposite of a constraint is `(NOT c)`"
-                        .into(),
-                );
+            self.error("E-CONSTRAINT", second.span(), "write `~` only once").hint = Some(
+                "`~` tests whether something is not known; for the opposite of a constraint, write `(NOT c)`"
+                    .into(),
+            );
         }
         let mut non_entailed = !bars.is_empty();
         let mut inner = node;
@@ -357,7 +358,7 @@ impl Reader<'_> {
                     inner = only;
                 }
                 Some([_]) => {
-                    self.error("E-CONSTRAINT", span, "non-entailment is asked for twice");
+                    self.error("E-CONSTRAINT", span, "NOT-ENTAILED is repeated; write it once");
                 }
                 _ => {
                     self.error("E-ARITY", head.span, "NOT-ENTAILED takes one constraint");

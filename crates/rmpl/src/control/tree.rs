@@ -97,7 +97,7 @@ impl Builder<'_> {
                     token.span,
                     format!("parentheses are nested more than {DEEPEST_NESTING} deep"),
                 )
-                .with_hint("move an inner part into a definition of its own"),
+                .with_hint("move an inner part into its own definition"),
             );
             self.tree.broken.push(token.span);
         }
@@ -109,7 +109,7 @@ impl Builder<'_> {
         let Some(open) = self.stack.pop() else {
             let word = if braced { "}" } else { ")" };
             self.diagnostics.push(
-                Diagnostic::error(Code("E-SYNTAX"), token.span, format!("this `{word}` closes nothing"))
+                Diagnostic::error(Code("E-SYNTAX"), token.span, format!("unmatched `{word}`"))
                     .with_fix(replace(&format!("Remove `{word}`"), token.span, "")),
             );
             self.tree.broken.push(token.span);
@@ -121,7 +121,7 @@ impl Builder<'_> {
                 Diagnostic::error(
                     Code("E-SYNTAX"),
                     token.span,
-                    format!("`{opened}` is closed by `{wanted}`, not by this"),
+                    format!("expected `{wanted}` to close `{opened}`"),
                 )
                 .with_fix(replace(&format!("Write `{wanted}`"), token.span, wanted)),
             );
@@ -148,14 +148,14 @@ impl Builder<'_> {
             .map(|open| if open.token.kind == TokenKind::Open { ')' } else { '}' })
             .collect();
         let what = if missing == 1 {
-            "this is never closed".into()
+            "this parenthesis is never closed".into()
         } else {
-            format!("{missing} parentheses from here on are never closed")
+            format!("{missing} parentheses starting here are never closed")
         };
         let insert = self.text.get(..end as usize).map_or(end, |before| before.trim_end().len() as u32);
         self.diagnostics.push(
             Diagnostic::error(Code("E-SYNTAX"), outermost.span, what)
-                .with_hint(format!("`{closers}` is missing"))
+                .with_hint(format!("expected `{closers}`"))
                 .with_fix(replace(&format!("Add `{closers}`"), Span::new(insert, insert), &closers)),
         );
         self.tree.broken.push(Span::new(outermost.span.start, insert));
@@ -166,15 +166,12 @@ impl Builder<'_> {
 
     fn refuse(&mut self, token: Token) {
         let text = self.text.get(token.span.range()).unwrap_or("");
-        let mut diagnostic = Diagnostic::error(
-            Code("E-LEX"),
-            token.span,
-            format!("`{text}` means nothing in a control program"),
-        );
+        let mut diagnostic =
+            Diagnostic::error(Code("E-LEX"), token.span, format!("unexpected `{text}` in a control program"));
         if text.contains(['¬', '!', '\u{304}', '\u{305}']) {
-            diagnostic = diagnostic.with_hint("non-entailment is written `~c`, negation `(NOT c)`");
+            diagnostic = diagnostic.with_hint("write `~c` for non-entailment and `(NOT c)` for negation");
         } else if text == ":" {
-            diagnostic = diagnostic.with_hint("a definition is written `Name ():: …`");
+            diagnostic = diagnostic.with_hint("write a definition as `Name ():: …`");
         } else if text.contains(['&', '|']) {
             diagnostic = diagnostic.with_hint("write `AND` and `OR`");
         }

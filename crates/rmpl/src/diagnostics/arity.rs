@@ -10,8 +10,8 @@ pub const CODE: Code = Code("E-ARITY");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "a call has too many or too few arguments",
-    meaning: "A call hands over one argument for each parameter of the declaration.",
+    title: "wrong number of arguments",
+    meaning: "A call must pass one argument for each parameter.",
     example: "primitive Drive(from, to)[20,30];
 scenario Day[0,60] = { Drive(BASE) }",
     fix: "Add or remove arguments, or change the declaration.",
@@ -26,6 +26,6 @@ pub(crate) fn mismatch(name: &str, wanted: u32, call: &Call) -> Diagnostic {
         1 => "1 argument".to_owned(),
         _ => format!("{number} arguments"),
     };
-    let message = format!("`{name}` takes {}, and this call has {}", count(wanted), count(call.arguments));
+    let message = format!("`{name}` takes {}, but this call passes {}", count(wanted), count(call.arguments));
     Diagnostic::error(CODE, call.with_arguments, message)
 }

@@ -1,4 +1,4 @@
-//! `E-BOUNDS`: bounds that no duration satisfies (SPEC 1.5).
+//! `E-BOUNDS`: invalid bounds (SPEC 1.5).
 
 use exact::{Bound, Time};
 
@@ -12,37 +12,36 @@ pub const CODE: Code = Code("E-BOUNDS");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "bounds that no duration satisfies",
-    meaning: "A lower bound is a finite time of at least 0, and an upper bound is no smaller; `inf` may only be an upper bound. The
-bounds of a call must leave something of those that the primitive or the activity declares: both hold. Bounds within
-which nature chooses are finite, and those of a call lie within the declared ones. Bounds that depend on names are
-checked with the values that they have in the scenario.",
+    title: "invalid bounds",
+    meaning: "The minimum must be a finite time of at least 0, and the maximum must not be smaller. Only the maximum may be
+`inf`. The bounds of a call must overlap the declared bounds, because both apply. `contingent` bounds must be finite, and
+those of a call must lie within the declared ones. Bounds that contain names are checked with the values that the names have
+in the scenario.",
     example: "primitive Drive()[30,20];
 scenario Day[0,60] = { Drive() }",
-    fix: "Swap the two sides, or correct one of them.",
+    fix: "Swap the two bounds, or correct one of them.",
     mended: "primitive Drive()[20,30];
 scenario Day[0,60] = { Drive() }",
 };
 
 pub(crate) fn negative(value: Time, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("a bound cannot be negative, and this is {value}"))
+    Diagnostic::error(CODE, span, format!("a bound cannot be negative, but this one is {value}"))
 }
 
 pub(crate) fn undefined(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "this bound has no value: it divides by zero or takes infinity away")
+    Diagnostic::error(CODE, span, "this bound has no value: it divides by zero or subtracts infinity")
 }
 
 pub(crate) fn too_large(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "this bound is too large to be kept exactly")
+    Diagnostic::error(CODE, span, "this bound is too large to represent exactly")
 }
 
 pub(crate) fn endless(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "a lower bound must be finite")
-        .with_hint("`inf` may only be an upper bound")
+    Diagnostic::error(CODE, span, "the minimum must be finite").with_hint("only the maximum may be `inf`")
 }
 
 pub(crate) fn reversed(lower: (Bound, Span), upper: (Bound, Span), span: Span) -> Diagnostic {
-    let message = format!("the lower bound {} is greater than the upper bound {}", lower.0, upper.0);
+    let message = format!("the minimum {} is greater than the maximum {}", lower.0, upper.0);
     let swap = Fix {
         label: "Swap the bounds".to_owned(),
         edits: vec![
@@ -55,31 +54,26 @@ pub(crate) fn reversed(lower: (Bound, Span), upper: (Bound, Span), span: Span) -
 
 /// Nature chooses from finite times.
 pub fn unlimited(span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, "nature chooses from a finite range, and this upper bound is infinite")
-        .with_hint("write the longest that it can take")
+    Diagnostic::error(CODE, span, "a contingent duration needs a finite maximum, but this one is infinite")
+        .with_hint("give the longest time it can take")
 }
 
 /// Stopping takes a finite time.
 pub fn endless_abort(span: Span) -> Diagnostic {
-    Diagnostic::error(
-        CODE,
-        span,
-        "an activity that is aborted is over at some time, and this upper bound is infinite",
-    )
-    .with_hint("write the longest that stopping can take")
+    Diagnostic::error(CODE, span, "aborting an activity needs a finite maximum, but this one is infinite")
+        .with_hint("give the longest time that stopping can take")
 }
 
 /// The contingent bounds of a call leave those of the declaration.
 pub fn outside(name: &str, written: (Time, Bound), declared: (Time, Bound), span: Span) -> Diagnostic {
     let show = |(lower, upper): (Time, Bound)| format!("[{lower},{upper}]");
     let message = format!(
-        "`{name}` is declared to last {}, and nature cannot choose from {} for this call",
+        "`{name}` is declared with {}, but the contingent bounds {} of this call are not within it",
         show(declared),
         show(written)
     );
-    Diagnostic::error(CODE, span, message).with_hint(
-        "contingent bounds of a call lie within the declared ones: make these narrower, or those wider",
-    )
+    Diagnostic::error(CODE, span, message)
+        .with_hint("narrow the bounds of the call, or widen the declared ones")
 }
 
 /// The bounds of a call exclude those of the declaration.
@@ -91,6 +85,6 @@ pub(crate) fn disjoint(
 ) -> Diagnostic {
     let show = |(lower, upper): (Time, Bound)| format!("[{lower},{upper}]");
     let message =
-        format!("`{name}` is declared to last {}, which {} excludes", show(declared), show(written));
-    Diagnostic::error(CODE, span, message).with_hint("both hold for the call: make them overlap")
+        format!("`{name}` is declared with {}, which does not overlap {}", show(declared), show(written));
+    Diagnostic::error(CODE, span, message).with_hint("both bounds apply to the call: make them overlap")
 }

@@ -1,4 +1,4 @@
-//! `W-CHOICE`: a choice with one alternative.
+//! `W-CHOICE`: choice with one alternative.
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
@@ -11,9 +11,10 @@ pub const CODE: Code = Code("W-CHOICE");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "a choice with one alternative",
-    meaning: "A `choose` with a single alternative leaves nothing to choose. Often the alternatives were separated with `;`, which makes
-a sequence, instead of `,`.",
+    title: "choice with one alternative",
+    meaning:
+        "A `choose` with a single alternative offers no choice. A common cause is `;`, which makes a sequence,
+instead of `,` between the alternatives.",
     example: "primitive Drive()[20,30];
 primitive Wait()[20,30];
 scenario Day[0,60] = { choose { Drive(); Wait() } }",
@@ -25,7 +26,7 @@ scenario Day[0,60] = { choose { Drive(), Wait() } }",
 
 /// A choice with a single alternative, at its `choose`.
 pub(crate) fn one_alternative(choose: Span) -> Diagnostic {
-    Diagnostic::warning(CODE, choose, "there is only one alternative to choose")
-        .with_hint("alternatives are separated by `,`; `;` makes a sequence")
+    Diagnostic::warning(CODE, choose, "this `choose` has only one alternative")
+        .with_hint("separate alternatives with `,`; `;` makes a sequence")
         .with_fix(replacement("Remove `choose`", choose, ""))
 }

@@ -1,4 +1,4 @@
-//! `E-CONSTRAINT`: a malformed constraint of a control program (SPEC 2.1). The prefix notation reports it.
+//! `E-CONSTRAINT`: malformed constraint of a control program (SPEC 2.1). The prefix notation reports it.
 
 use crate::diagnostic::{Code, Severity};
 use crate::explanation::Explanation;
@@ -9,9 +9,9 @@ pub const CODE: Code = Code("E-CONSTRAINT");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "a malformed constraint",
+    title: "malformed constraint",
     meaning: "A constraint compares a variable with a value, as in `(EngineA = Firing)`, negates one with `NOT`, or joins several with
-`AND` or `OR`. Both sides of the `=` are needed.",
+`AND` or `OR`. It needs both sides of the `=`.",
     example: "(WHEN-DONEXT (EngineA =) (Camera = Off))",
     fix: "Write the missing part, or put parentheses around each comparison.",
     mended: "(WHEN-DONEXT (EngineA = Standby) (Camera = Off))",

@@ -11,14 +11,14 @@ pub const CODE: Code = Code("E-CONTINGENT");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "nature cannot choose how long something composite takes",
-    meaning: "Of one activity, one assertion or one delay, nature may choose how long it takes: `contingent [20,40]`. How long a block, a
-choice, a `do`, an `if`, a defined activity or the scenario takes follows from what happens in it. Bounds around it
-without the word are requirements on that.",
+    title: "`contingent` on a composite",
+    meaning: "Only a primitive activity, an assertion or a delay can be `contingent`, as in `contingent [20,40]`: the
+environment chooses its duration. The duration of a block, a choice, a `do`, an `if`, a defined activity or the scenario
+follows from its parts. To limit that duration, write bounds without the word.",
     example: "primitive Drive()[10,30];
 primitive Dig()[5,5];
 scenario Day[0,60] = { { Drive(); Dig() } contingent [15,35] }",
-    fix: "Write the word at the activity that nature decides about, and leave it out here.",
+    fix: "Move `contingent` to the activity whose duration is uncontrolled, and remove it here.",
     mended: "primitive Drive() contingent [10,30];
 primitive Dig()[5,5];
 scenario Day[0,60] = { { Drive(); Dig() } [15,35] }",
@@ -27,17 +27,15 @@ scenario Day[0,60] = { { Drive(); Dig() } [15,35] }",
 /// Contingent bounds at `span` of `what`, which is composite. `word` is their word with the blanks behind it, `moved` a
 /// change that puts them where nature can choose.
 pub(crate) fn composite(what: &str, word: Span, span: Span, moved: Option<Fix>) -> Diagnostic {
-    let message = format!(
-        "nature chooses how long an activity, an assertion or a delay takes, not how long {what} does"
-    );
+    let message = format!("only an activity, an assertion or a delay can be contingent, not {what}");
     let diagnostic = Diagnostic::error(CODE, span, message).with_hint(
-        "write `contingent` at the part that nature decides about; bounds without the word are required of the whole",
+        "move `contingent` to the part whose duration is uncontrolled; without the word, these bounds limit the total duration",
     );
     let diagnostic = match moved {
         Some(moved) => diagnostic.with_fix(moved),
         None => diagnostic,
     };
-    diagnostic.with_fix(replacement("Leave out `contingent`", word, ""))
+    diagnostic.with_fix(replacement("Remove `contingent`", word, ""))
 }
 
 /// Contingent bounds at `span` of a call of the defined activity `name`.

@@ -11,25 +11,25 @@ pub const CODE: Code = Code("W-CONTROLLABILITY");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "plans choose what nature does",
-    meaning: "With `option controllability = none;` the planner reads `contingent` bounds as ordinary ones: it chooses the durations that
-nature chooses, and the plan holds only if nature happens to agree. Execution may fail although the plan is valid.",
+    title: "`contingent` is ignored",
+    meaning: "With `option controllability = none;`, the planner treats `contingent` bounds as ordinary bounds and chooses
+these durations itself. The environment may choose other durations, so execution may fail although the plan is valid.",
     example: "option controllability = none;
 primitive Drive() contingent [20,40];
 scenario Day[0,60] = { Drive() }",
-    fix: "Ask for plans that can be executed whatever nature chooses: `dynamic`, as without the option, or `strong`.",
+    fix: "Use `dynamic` (the default) or `strong` to get plans that work for every duration in the range.",
     mended: "option controllability = dynamic;
 primitive Drive() contingent [20,40];
 scenario Day[0,60] = { Drive() }",
 };
 
-/// The option's value at `span` lets plans choose what nature does, and the file has such durations.
+/// The option's value at `span` lets the planner ignore `contingent`, and the file has such durations.
 pub(crate) fn ignored(span: Span) -> Diagnostic {
     Diagnostic::warning(
         CODE,
         span,
-        "plans choose the contingent durations as well, and may fail when nature does not agree",
+        "`contingent` is ignored: a plan may fail if the environment chooses other durations",
     )
-    .with_hint("`dynamic` asks for plans that can be executed whatever nature chooses")
+    .with_hint("with `dynamic`, plans work for every duration in the range")
     .with_fix(replacement("Change to `dynamic`", span, "dynamic"))
 }

@@ -1,4 +1,4 @@
-//! `E-DUP`: a name is declared twice.
+//! `E-DUP`: duplicate name.
 
 use crate::analysis::Namespace;
 use crate::diagnostic::{Code, Diagnostic, Severity};
@@ -12,11 +12,11 @@ pub const CODE: Code = Code("E-DUP");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "a name is declared twice",
-    meaning: "Activities and primitives share their names, because both are called, and so do `var` and `state`;
-scenarios, resources, locations, obstacles and vehicles each have names of their own. Within one of these kinds a name has one declaration, and so has each option.
-The parameters in one header must differ as well, and one activity sets a variable once. There is one objective, with all goals.
-In one body, two occurrences have one name only in different alternatives of a choice. The first declaration counts.",
+    title: "duplicate name",
+    meaning: "Within one kind, a name may be declared only once. Activities and primitives count as one kind, and so do
+`var` and `state`. Scenarios, resources, locations, obstacles, vehicles and options are further kinds. The parameters of a
+header must also differ, an activity may set a variable only once, and all goals belong in one objective. In one body, two
+occurrences may share a name only if they are in different alternatives of a choice. The first declaration takes effect.",
     example: "primitive Drive()[20,30];
 primitive Drive()[25,40];
 scenario Day[0,60] = { Drive() }",
@@ -39,44 +39,44 @@ pub(crate) fn mode_of_prior(mode: &str, span: Span) -> Diagnostic {
 /// A declaration whose name is taken.
 pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagnostic {
     let message = match namespace {
-        Namespace::Callable => format!("an activity or primitive `{name}` is declared before this one"),
-        Namespace::Variable => format!("the variable `{name}` is declared before"),
-        Namespace::Constant => format!("the constant `{name}` is declared before"),
-        Namespace::Scenario => format!("a scenario `{name}` is declared before this one"),
-        Namespace::Option => format!("the option `{name}` is set before"),
-        Namespace::Terrain => "a terrain is declared before this one".to_owned(),
-        Namespace::Location => format!("a location `{name}` is declared before this one"),
-        Namespace::Obstacle => format!("an obstacle `{name}` is declared before this one"),
-        Namespace::Resource => format!("a resource `{name}` is declared before this one"),
-        Namespace::Objective => "an objective is declared before this one".to_owned(),
-        Namespace::Occurrence => format!("an occurrence `{name}` is named before this one"),
-        Namespace::Vehicle => format!("a vehicle `{name}` is declared before this one"),
+        Namespace::Callable => format!("activity `{name}` is already declared"),
+        Namespace::Variable => format!("variable `{name}` is already declared"),
+        Namespace::Constant => format!("constant `{name}` is already declared"),
+        Namespace::Scenario => format!("scenario `{name}` is already declared"),
+        Namespace::Option => format!("option `{name}` is already set"),
+        Namespace::Terrain => "a terrain is already declared".to_owned(),
+        Namespace::Location => format!("location `{name}` is already declared"),
+        Namespace::Obstacle => format!("obstacle `{name}` is already declared"),
+        Namespace::Resource => format!("resource `{name}` is already declared"),
+        Namespace::Objective => "an objective is already declared".to_owned(),
+        Namespace::Occurrence => format!("occurrence `{name}` is already named"),
+        Namespace::Vehicle => format!("vehicle `{name}` is already declared"),
     };
     Diagnostic::error(CODE, span, message)
-        .with_hint("the first declaration counts; rename or remove this one")
+        .with_hint("only the first declaration takes effect: rename or remove this one")
 }
 
 /// A name that stands twice in one list.
 pub(crate) fn in_list(name: &Name, what: &str) -> Diagnostic {
-    Diagnostic::error(CODE, name.span, format!("the {what} `{}` stands here twice", name.text))
+    Diagnostic::error(CODE, name.span, format!("duplicate {what} `{}`", name.text))
 }
 
 /// A second occurrence of this name in one body.
 pub(crate) fn occurrence(name: &Name) -> Diagnostic {
-    Diagnostic::error(CODE, name.span, format!("another occurrence is named `{}` already", name.text))
+    Diagnostic::error(CODE, name.span, format!("another occurrence is already named `{}`", name.text))
         .with_hint(
-            "only alternatives of one choice share a name: then it stands for the one that is selected",
+            "occurrences may share a name only in different alternatives of one choice; it then means the selected one",
         )
 }
 
 /// A second effect on a variable.
 pub(crate) fn effect(name: &Name) -> Diagnostic {
     Diagnostic::error(CODE, name.span, format!("the activity sets `{}` twice", name.text))
-        .with_hint("a variable has one value when the activity ends")
+        .with_hint("a variable can have only one value when the activity ends")
 }
 
 /// An effect on the place of a vehicle that the activity moves.
 pub(crate) fn movement(name: &Name, vehicle: &str) -> Diagnostic {
-    let message = format!("the activity moves `{vehicle}`, which sets `{}` already", name.text);
+    let message = format!("the activity moves `{vehicle}`, which already sets `{}`", name.text);
     Diagnostic::error(CODE, name.span, message)
 }

@@ -11,17 +11,16 @@ pub const CODE: Code = Code("W-EXOGENOUS");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "the plan chooses when the world acts",
-    meaning: "A branch of the scenario that calls nothing, and only waits and asserts, is what the world does. Where it leaves a choice,
-as `delay[5,20]` does, the planner takes the time that suits the plan: it moves the storm past the survey. Behind `contingent`
-the choice is nature's, and the plan has to withstand every one. A `delay` without bounds may take any time, and leaves a choice
-as well. So does `choose`: the planner takes the alternative that suits the plan, such as clear weather.",
+    title: "planner controls an external event",
+    meaning: "A branch of the scenario that calls no activity, and only waits and asserts, describes external events. If its
+times are flexible, as in `delay[5,20]`, the planner picks the time that suits the plan, for example a storm after the
+survey. A `delay` without bounds is flexible too. After `contingent`, the environment chooses the time, and the plan must
+work for every choice. With `choose`, the planner picks the alternative that suits the plan, such as clear weather.",
     example: "var GO : {OK, NO};
 primitive Dig()[4,4];
 scenario Day[0,60] = { { delay; do { Dig() } maintaining GO=OK }, { delay[5,20]; GO=OK [10,10] } }",
-    fix: "Write `contingent` before the bounds that nature chooses from, which are finite. Where it is known when the world acts, give
-both bounds the same time. Of the alternatives of `choose`, keep the one that the plan is made for, and plan for each other one
-apart.",
+    fix: "If the environment decides, write `contingent` before finite bounds. If the time is known, make both bounds equal.
+If the branch has a `choose`, keep one alternative, and plan for each of the others in a separate scenario.",
     mended: "var GO : {OK, NO};
 primitive Dig()[4,4];
 scenario Day[0,60] = { { delay; do { Dig() } maintaining GO=OK }, { delay contingent [5,20]; GO=OK [10,10] } }",
@@ -42,9 +41,11 @@ pub struct Choice {
     pub needs_blank: bool,
 }
 
-/// How every message begins; what the plan would choose follows: `when: …` or `what: …`.
-pub const BEGINNING: &str =
-    "this branch calls nothing, so it is what the world does, and the plan would choose ";
+/// How the messages begin whose branch leaves times to the plan; the statements and their bounds follow.
+pub const WHEN: &str = "the planner chooses when this external event happens: ";
+
+/// How the messages begin whose branch leaves alternatives to the plan; their number follows.
+pub const WHAT: &str = "the planner chooses which external event happens: ";
 
 /// A branch of the world's that leaves alternatives to the plan: how many the first `choose` has and where that word
 /// stands, and how many more such statements there are.
@@ -54,9 +55,9 @@ pub fn alternatives(count: usize, word: Span, more: usize) -> Diagnostic {
         1 => ", and of 1 more choice".to_owned(),
         more => format!(", and of {more} more choices"),
     };
-    let message = format!("{BEGINNING}what: one of the {count} alternatives of `choose`{more}");
+    let message = format!("{WHAT}one of the {count} alternatives of `choose`{more}");
     Diagnostic::warning(CODE, word, message)
-        .with_hint("keep the alternative that the plan is made for, and plan for each other one apart")
+        .with_hint("keep one alternative, and plan for each of the others in a separate scenario")
 }
 
 /// A branch of the world's that leaves `choices` to the plan; none if it leaves none.
@@ -68,13 +69,15 @@ pub fn branch(choices: &[Choice]) -> Option<Diagnostic> {
         1 => ", and 1 more".to_owned(),
         more => format!(", and {more} more"),
     };
-    let message = format!("{BEGINNING}when: from {} of `{}`{more}", first.bounds.0, first.name);
+    let message = format!("{WHEN}`{}` leaves it {}{more}", first.name, first.bounds.0);
     let hint = match choices.iter().find(|choice| !choice.is_finite) {
         Some(endless) => format!(
-            "say how long it takes at most: nature chooses from finite bounds, as in `{} contingent [0,30]`",
+            "give it a finite maximum, as in `{} contingent [0,30]`, so that the plan must work for every time in the range",
             endless.name
         ),
-        None => "behind `contingent` nature chooses; bounds that are equal leave no choice".to_owned(),
+        None => {
+            "add `contingent` if the environment decides, or use equal bounds if the time is known".to_owned()
+        }
     };
     let edits: Vec<Edit> = (choices.iter().filter(|choice| choice.is_finite))
         .filter_map(|choice| {
@@ -87,6 +90,6 @@ pub fn branch(choices: &[Choice]) -> Option<Diagnostic> {
     if edits.is_empty() {
         return Some(diagnostic);
     }
-    let fix = Fix { label: "Let nature choose: insert `contingent`".to_owned(), edits };
+    let fix = Fix { label: "Insert `contingent`".to_owned(), edits };
     Some(diagnostic.with_fix(fix))
 }

@@ -1,4 +1,4 @@
-//! `E-FORM`: an unknown construct of a control program (SPEC 2.1). The prefix notation reports it.
+//! `E-FORM`: unknown construct in a control program (SPEC 2.1). The prefix notation reports it.
 
 use crate::diagnostic::{Code, Severity};
 use crate::explanation::Explanation;
@@ -9,10 +9,10 @@ pub const CODE: Code = Code("E-FORM");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "an unknown construct of a control program",
-    meaning: "The first word in the parentheses of a control program or a plant model says what they are: `SEQUENCE`, `PARALLEL`,
-`WHEN-DONEXT`, `DEFCLASS` and so on, or the name of a definition of the file. This word is none of them.",
+    title: "unknown construct in a control program",
+    meaning: "In a control program or a plant model, the first word in parentheses must be a construct, such as `SEQUENCE`,
+`PARALLEL`, `WHEN-DONEXT` or `DEFCLASS`, or the name of a definition in the file. This word is neither.",
     example: "(PARALEL (EngineA = Standby) (Camera = Off))",
-    fix: "Correct the word, or define what it names.",
+    fix: "Correct the word, or add a definition with this name.",
     mended: "(PARALLEL (EngineA = Standby) (Camera = Off))",
 };

@@ -12,12 +12,12 @@ pub const CODE: Code = Code("E-LEX");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "text that no token is made of",
-    meaning: "A character, a comment, a text in quotes or a number cannot be read. Names are made of the letters A to Z, digits, `_`,
-and single hyphens between them; word processors and papers often put other dashes and quotes in their place.",
+    title: "unrecognized character",
+    meaning: "Enroute cannot read a character, a comment, a string or a number. A name contains the letters A to Z, digits,
+`_`, and single hyphens between them. Text copied from a word processor or a paper often contains other dashes and quotes.",
     example: "primitive Group-Wait()[0,54];
 scenario Day[0,60] = { Group–Wait() }",
-    fix: "Write the plain character. Where the plain form is known, a quick fix puts it there.",
+    fix: "Type the plain character. If Enroute knows the plain form, a quick fix inserts it.",
     mended: "primitive Group-Wait()[0,54];
 scenario Day[0,60] = { Group-Wait() }",
 };
@@ -29,27 +29,25 @@ pub(crate) fn diagnostic(problem: LexProblem, text: &str) -> Diagnostic {
     match problem.kind {
         LexProblemKind::Unknown => unknown(span, written),
         LexProblemKind::ForeignName => foreign_name(span, written),
-        LexProblemKind::UnclosedComment => Diagnostic::error(CODE, span, "this comment is never closed")
-            .with_hint("write `*/` where it ends; from here on everything is taken for a comment"),
-        LexProblemKind::UnclosedString => {
-            Diagnostic::error(CODE, span, "this text in quotes is not closed on its line")
-                .with_fix(crate::parser::insertion("Insert `\"`", span.end, "\""))
+        LexProblemKind::UnclosedComment => {
+            Diagnostic::error(CODE, span, "unterminated comment").with_hint("add `*/` to close it")
         }
+        LexProblemKind::UnclosedString => Diagnostic::error(CODE, span, "unterminated string")
+            .with_fix(crate::parser::insertion("Insert `\"`", span.end, "\"")),
         LexProblemKind::UnclosedControl => {
-            Diagnostic::error(CODE, span, "this control block is never closed")
-                .with_hint("write `}` where it ends; from here on everything is taken for a part of it")
+            Diagnostic::error(CODE, span, "unterminated control block").with_hint("add `}` to close it")
         }
         LexProblemKind::HugeNumber => {
-            Diagnostic::error(CODE, span, "this number has more digits than can be kept exactly")
-                .with_hint("numbers have at most 14 digits")
+            Diagnostic::error(CODE, span, "this number has too many digits to represent exactly")
+                .with_hint("use at most 14 digits")
         }
     }
 }
 
 fn unknown(span: Span, written: &str) -> Diagnostic {
     let shown: String = written.chars().take(12).flat_map(char::escape_debug).collect();
-    let plural = if written.chars().count() > 1 { "these characters have" } else { "this character has" };
-    let mut diagnostic = Diagnostic::error(CODE, span, format!("{plural} no meaning here: `{shown}`"));
+    let plural = if written.chars().count() > 1 { "these characters are" } else { "this character is" };
+    let mut diagnostic = Diagnostic::error(CODE, span, format!("{plural} not valid here: `{shown}`"));
     if let Some(plain) = plain_form(written) {
         diagnostic = diagnostic.with_fix(replacement(format!("Replace with `{plain}`"), span, plain));
     }
@@ -58,9 +56,12 @@ fn unknown(span: Span, written: &str) -> Diagnostic {
 
 fn foreign_name(span: Span, written: &str) -> Diagnostic {
     let plain: String = written.chars().map(|letter| if is_dash(letter) { '-' } else { letter }).collect();
-    let diagnostic =
-        Diagnostic::error(CODE, span, format!("the name `{written}` has characters that names cannot have"))
-            .with_hint("names are made of the letters A to Z, digits, `_`, and single hyphens between them");
+    let diagnostic = Diagnostic::error(
+        CODE,
+        span,
+        format!("the name `{written}` contains characters that are not allowed in names"),
+    )
+    .with_hint("use the letters A to Z, digits, `_`, and single hyphens between them");
     if plain.is_ascii() {
         return diagnostic.with_fix(replacement(format!("Replace with `{plain}`"), span, plain));
     }

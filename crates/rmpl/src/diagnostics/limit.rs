@@ -10,16 +10,15 @@ pub const CODE: Code = Code("E-LIMIT");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "a mission that expands to too much",
-    meaning: "Every call is written out in full, and so is every copy of a `repeat`. Activities that each call another one twice double the
-network with every level: thirty levels are a thousand million copies. A mission of more than 500,000 events, or nested
-deeper than 200 levels, is refused before it fills the memory; so is an activity in which `or` copies more than 10,000
-statements.",
+    title: "mission too large",
+    meaning: "The planner expands every call, and every copy of a `repeat`. If each activity calls another one twice, every
+level doubles the network: 30 levels are a billion copies. The limits are 500,000 events, 200 levels of nesting, and 10,000
+statements that `or` copies in one activity.",
     example: "primitive Step()[1,2];
 Twice() = { Step(); Step() }
 Four() = { Twice(); Twice() }
 scenario Day[0,60] = { Four() }",
-    fix: "Call the activities of the lowest levels fewer times, or plan one activity at a time.",
+    fix: "Call the lowest-level activities fewer times, or plan one activity at a time.",
     mended: "primitive Step()[1,2];
 Twice() = { Step(); Step() }
 scenario Day[0,60] = { Twice() }",
@@ -27,9 +26,9 @@ scenario Day[0,60] = { Twice() }",
 
 /// Calls and `repeat`, written out, have more than `most` events; `what` has them.
 pub fn events(what: &str, most: usize, span: Span) -> Diagnostic {
-    let message = format!("with calls and `repeat` written out, {what} more than {most} events");
+    let message = format!("after expanding calls and `repeat`, {what} more than {most} events");
     Diagnostic::error(CODE, span, message).with_hint(
-        "make fewer copies, call the lowest activities fewer times, or plan one activity at a time",
+        "make fewer copies, call the lowest-level activities fewer times, or plan one activity at a time",
     )
 }
 
@@ -38,7 +37,7 @@ pub fn pairs(what: &str, most: usize, span: Span) -> Diagnostic {
     Diagnostic::error(
         CODE,
         span,
-        format!("with calls and `repeat` written out, {what} more than {most} pairs"),
+        format!("after expanding calls and `repeat`, {what} more than {most} pairs"),
     )
 }
 
@@ -49,7 +48,7 @@ pub fn nested(most: usize, span: Span) -> Diagnostic {
 
 /// `or` copies more than `most` statements.
 pub(crate) fn copied(most: usize, span: Span) -> Diagnostic {
-    let message = format!("written out, the choices of `or` take more than {most} statements here");
+    let message = format!("after expanding `or`, this needs more than {most} statements");
     Diagnostic::error(CODE, span, message)
-        .with_hint("`or` writes what stands beside it once for each condition")
+        .with_hint("`or` copies the statements next to it once for each condition")
 }

@@ -9,14 +9,14 @@ pub const CODE: Code = Code("W-LIVENESS");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "control program that waits forever after faults",
-    meaning: "The program ends when nothing fails. With one or two faults that no command takes back, a run comes to a step
-after which nothing changes any more: the program waits for a goal or a condition that never comes.",
+    title: "control program waits forever after faults",
+    meaning: "The program ends if no component fails. After one or two faults that no command can repair, nothing changes
+any more: the program waits for a goal or a condition that never becomes true.",
     example: "(PARALLEL (Engine = Firing))
 (DEFCLASS Engine () (COMMAND cmd {none fire}) (MODE Off true) (MODE Firing true) (MODE Failed true)
   (TRANSITION Off Firing (cmd = fire)) (FAULT Off Failed 0.01))
 (DEFINSTANCE Engine Engine INIT Off)",
-    fix: "Enclose what waits in DO-WATCHING with a condition that holds after the faults.",
+    fix: "Enclose the part that waits in DO-WATCHING, with a condition that holds after the faults.",
     mended: "(DO-WATCHING (Engine = Failed) (PARALLEL (Engine = Firing)))
 (DEFCLASS Engine () (COMMAND cmd {none fire}) (MODE Off true) (MODE Firing true) (MODE Failed true)
   (TRANSITION Off Firing (cmd = fire)) (FAULT Off Failed 0.01))

@@ -11,8 +11,8 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
     title: "`,` and `;` in the same braces",
-    meaning: "`,` binds tighter than `;`: in `{ A(), B(); C() }` the activities A and B run in parallel, and C follows both. A reader
-may see it otherwise.",
+    meaning: "`,` binds tighter than `;`: in `{ A(), B(); C() }` the activities A and B run in parallel, and C follows both. A
+reader may expect something else.",
     example: "primitive A()[1,2];
 primitive B()[1,2];
 primitive C()[1,2];
@@ -34,6 +34,8 @@ pub(crate) fn mixed(comma: Span, parallels: &[Span]) -> Diagnostic {
     });
     let fix = Fix { label: "Put braces around the parallel part".to_owned(), edits: edits.collect() };
     Diagnostic::warning(CODE, comma, "`,` and `;` in the same braces: `,` binds tighter")
-        .with_hint("what `,` joins runs in parallel, and what `;` separates follows when all of it is done")
+        .with_hint(
+            "parts joined by `,` run in parallel; the part after `;` starts when all of them have ended",
+        )
         .with_fix(fix)
 }

@@ -10,18 +10,18 @@ pub const CODE: Code = Code("W-NETWORK");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "something in a network's file that planning does not honour",
-    meaning: "Files of other tools say more than planning a network takes into account: what activities cost and earn, limits on
-that, durations that are not the executive's to choose, guards and probabilities. The plan and every verdict about it hold for the
-network without them.",
+    title: "part of a network file is ignored when planning",
+    meaning: "Files of other tools contain information that planning ignores: costs and rewards of activities, limits on
+them, uncontrolled durations, guards and probabilities. The plan and its verification are valid for the network without this
+information.",
     example: "// In a file of another tool: {\"act-1\": {\"tpn-type\": \"activity\", \"cost\": 5, \"controllable\": false, …}, …}",
-    fix: "Write the mission in RMPL, where activities have `costs`, `rewards` and `contingent` durations.",
+    fix: "Write the mission in RMPL, which has `costs`, `rewards` and `contingent` durations.",
     mended: "primitive Act()contingent [2,5] costs 5;
 scenario Day[0,60] = { Act() }",
 };
 
 /// `what` the file of a network says in vain.
 pub fn not_honoured(what: &[String]) -> Diagnostic {
-    let message = format!("planning does not honour what this file says: {}", what.join(", "));
+    let message = format!("ignored when planning: {}", what.join(", "));
     Diagnostic::warning(CODE, Span::default(), message)
 }

@@ -10,10 +10,10 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
     title: "nothing to plan",
-    meaning: "A plan is made for a scenario, and the file has none, or none of the name that was asked for. A file of activities alone
-is fine until a plan is wanted.",
+    meaning: "The planner plans a scenario, but the file has none, or none with the requested name. A file with activities
+only is valid, but cannot be planned.",
     example: "primitive Drive()[20,30];",
-    fix: "Write a scenario, or plan one activity of the file by itself.",
+    fix: "Add a scenario, or plan one activity of the file.",
     mended: "primitive Drive()[20,30];
 scenario Day[0,60] = { Drive() }",
 };

@@ -1,4 +1,4 @@
-//! `W-OPTION`: an unknown option.
+//! `W-OPTION`: unknown option.
 
 use crate::analysis::edit_distance_at_most;
 use crate::diagnostic::{Code, Diagnostic, Severity};
@@ -13,9 +13,10 @@ pub const CODE: Code = Code("W-OPTION");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "an unknown option",
-    meaning: "The option is kept, but nothing reads it. The options are `threat_gap`, `strict`, `time_unit`,
-`control_step` and `controllability`, and `entailment` in a control program.",
+    title: "unknown option",
+    meaning:
+        "This option has no effect. The options are `threat_gap`, `strict`, `time_unit`, `control_step` and
+`controllability`, and `entailment` in a control program.",
     example: "option threat_gpa = 2;
 scenario Day[0,60] = { LIGHT [10,20] }",
     fix: "Correct its name, or remove it.",
@@ -26,7 +27,7 @@ scenario Day[0,60] = { LIGHT [10,20] }",
 /// An option that nothing reads.
 pub(crate) fn unknown(name: &Name) -> Diagnostic {
     let known = ["threat_gap", "strict", "time_unit", "control_step", "controllability"];
-    let diagnostic = Diagnostic::warning(CODE, name.span, format!("there is no option `{}`", name.text))
+    let diagnostic = Diagnostic::warning(CODE, name.span, format!("unknown option `{}`", name.text))
         .with_hint(format!("the options are {}", known.join(", ")));
     let nearest =
         known.iter().filter_map(|known| Some((edit_distance_at_most(&name.text, known, 3)?, known)));

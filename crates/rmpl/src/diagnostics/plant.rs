@@ -9,14 +9,14 @@ pub const CODE: Code = Code("W-PLANT");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "control programs that wait for each other",
-    meaning: "Control programs that command different components of the plant run at once. The plan allows two activities to
-overlap whose programs command the same one: the program that starts second waits until the first one has ended, and its
-activity lasts that much longer.",
+    title: "control programs wait for each other",
+    meaning: "Two activities of the plan may overlap, and their control programs command the same component. Then the
+program that starts second waits until the first has ended, and its activity takes longer. Programs that command different
+components run in parallel.",
     example: "primitive Insert()[6,16] runs OrbitInsert;
 primitive Survey()[4,30] runs TakePictures;
 scenario Day[0,60] = { Insert(), Survey() }",
-    fix: "Put one after the other, or leave the second one time to wait.",
+    fix: "Put one activity after the other, or give the second one time to wait.",
     mended: "primitive Insert()[6,16] runs OrbitInsert;
 primitive Survey()[4,30] runs TakePictures;
 scenario Day[0,60] = { Insert(); Survey() }",

@@ -10,7 +10,7 @@ pub const CODE: Code = Code("E-PROBABILITY");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "a probability outside what is allowed",
+    title: "invalid probability",
     meaning: "Each probability of a prior is above 0 and at most 1, and all of one component sum to 1. The option `entailment` of a
 control program is above 0.5 and at most 1, so that a condition and its opposite are never both known.",
     example: "(DEFOPTION entailment 0.5)

@@ -9,10 +9,10 @@ pub const CODE: Code = Code("E-RESOURCE");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "more than a resource can ever give",
-    meaning: "A call uses more of a resource than its capacity, or consumes or produces more than lies between the least and the greatest
-level. No plan has such a call. What is used is free again afterwards, and what is consumed is gone: a resource with a capacity is
-used, and one with levels is consumed and produced.",
+    title: "resource demand exceeds capacity",
+    meaning: "A call uses more of a resource than its capacity, or consumes or produces more than the difference between the
+minimum and the maximum level. No plan can contain such a call. Activities *use* a resource with a capacity and free it when
+they end. They *consume* and *produce* a resource with levels.",
     example: "resource Power capacity 2;
 primitive Drill()[20,30] uses Power 3;
 scenario Day[0,60] = { Drill() }",

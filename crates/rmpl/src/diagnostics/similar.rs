@@ -1,4 +1,4 @@
-//! `W-SIMILAR`: an undeclared name that looks like a declared one.
+//! `W-SIMILAR`: undeclared name that is similar to a declared one.
 
 use crate::diagnostic::{Code, Diagnostic, Severity, some_of};
 use crate::explanation::Explanation;
@@ -11,9 +11,9 @@ pub const CODE: Code = Code("W-SIMILAR");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "an undeclared name that looks like a declared one",
-    meaning: "The name is legal, but it is not declared, and another name that is declared differs from it by a letter or two. As
-written, the two have nothing to do with each other.",
+    title: "undeclared name that is similar to a declared one",
+    meaning: "This name is not declared, but it is one or two letters away from a declared name. As written, they are
+unrelated.",
     example: "var PATH : {OPEN, SHUT};
 scenario Day[0,60] = { PATH=OPEN [10,20]; PAHT=SHUT [10,20] }",
     fix: "Correct the name, or declare it.",
@@ -26,13 +26,12 @@ pub(crate) fn variable(written: &str, nearest: &str, span: Span) -> Diagnostic {
 }
 
 pub(crate) fn callable(written: &str, nearest: &str, span: Span) -> Diagnostic {
-    let message =
-        format!("this asserts the condition `{written}`, which looks like the activity `{nearest}`");
+    let message = format!("this asserts the condition `{written}`, but there is an activity `{nearest}`");
     alike(message, nearest, span)
 }
 
 pub(crate) fn location(written: &str, nearest: &str, span: Span) -> Diagnostic {
-    alike(format!("there is no location `{written}`, but there is `{nearest}`"), nearest, span)
+    alike(format!("unknown location `{written}`"), nearest, span)
 }
 
 fn alike(message: String, nearest: &str, span: Span) -> Diagnostic {
@@ -43,6 +42,6 @@ fn alike(message: String, nearest: &str, span: Span) -> Diagnostic {
 
 /// `X_V` where `X` is declared without a value `V`.
 pub(crate) fn value(written: &str, variable: &str, domain: &[&str], span: Span) -> Diagnostic {
-    let message = format!("`{written}` is a condition of its own: `{variable}` has no such value");
+    let message = format!("`{written}` is an unrelated condition: `{variable}` has no such value");
     Diagnostic::warning(CODE, span, message).with_hint(format!("`{variable}` is one of {}", some_of(domain)))
 }

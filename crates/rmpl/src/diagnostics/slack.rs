@@ -1,4 +1,4 @@
-//! `W-SLACK`: a bound that can never bind.
+//! `W-SLACK`: bounds without effect.
 
 use exact::{Bound, Time};
 
@@ -13,9 +13,9 @@ pub const CODE: Code = Code("W-SLACK");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "a bound that can never bind",
-    meaning: "Whatever is planned, the part lasts no shorter and no longer than these bounds allow: they exclude nothing. Often the
-bounds of another part were meant, or a time is in the wrong unit.",
+    title: "bounds without effect",
+    meaning: "These bounds exclude no duration that is possible anyway. Common causes are bounds on the wrong part, or a
+time in the wrong unit.",
     example: "primitive Drive()[20,30];
 scenario Day[0,60] = { Drive()[10,40] }",
     fix: "Remove the bounds, or correct them.",
@@ -25,6 +25,6 @@ scenario Day[0,60] = { Drive()[25,40] }",
 
 /// Bounds at `span` around something that lasts `own` anyway.
 pub(crate) fn never_binds(own: (Time, Bound), span: Span) -> Diagnostic {
-    let message = format!("these bounds exclude nothing: this lasts [{},{}] anyway", own.0, own.1);
+    let message = format!("these bounds have no effect: this takes [{},{}] anyway", own.0, own.1);
     Diagnostic::warning(CODE, span, message).with_fix(replacement("Remove the bounds", span, ""))
 }

@@ -10,13 +10,13 @@ pub const CODE: Code = Code("W-SUPPORT");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "a condition that nothing can make true",
-    meaning: "`do … maintaining c`, `if c thennext …` and `ask c` need an assertion of `c` that contains them. No assertion in the file
-can be that: every plan with this part fails. A part that is one alternative of a choice is never chosen. A `state` needs a change to that value, unless it
-begins with it.",
+    title: "unsupported condition",
+    meaning: "`do … maintaining c`, `if c thennext …` and `ask c` need an assertion of `c` that contains them, but the file
+has none. No plan can contain this part; if it is an alternative of a choice, the planner never selects it. For a `state`,
+an activity must set the value, unless it is the initial one.",
     example: "primitive Drive()[20,30];
 scenario Day[0,60] = { do { Drive() } maintaining LIGHT }",
-    fix: "Assert the condition in a parallel branch, with the time for which it holds, or correct its name.",
+    fix: "Assert the condition in a parallel branch, with the duration for which it holds, or correct its name.",
     mended: "primitive Drive()[20,30];
 scenario Day[0,60] = { { delay; do { Drive() } maintaining LIGHT }, LIGHT [40,40] }",
 };
@@ -34,10 +34,13 @@ pub(crate) fn never(literal: &Literal, name: &str, is_state: bool, names: &Names
     if literal.negated {
         condition = format!("not({condition})");
     }
-    let diagnostic =
-        Diagnostic::warning(CODE, literal.span, format!("nothing in this file can make `{condition}` true"));
+    let diagnostic = Diagnostic::warning(
+        CODE,
+        literal.span,
+        format!("nothing asserts `{condition}`, so this part can never be in a plan"),
+    );
     if is_state {
-        return diagnostic.with_hint("it does not begin so, and no activity and no assertion makes it so");
+        return diagnostic.with_hint("it is not the initial value, and no activity sets it");
     }
     diagnostic.with_hint(format!("assert it in a parallel branch, as in `{{ delay; {condition} [10,20] }}`"))
 }

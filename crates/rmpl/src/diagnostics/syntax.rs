@@ -1,4 +1,4 @@
-//! `E-SYNTAX`: text that does not follow the grammar (SPEC 1.2).
+//! `E-SYNTAX`: syntax error (SPEC 1.2).
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
@@ -12,13 +12,12 @@ pub const CODE: Code = Code("E-SYNTAX");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "text that does not follow the grammar",
-    meaning: "Something is missing, or stands where it cannot. The message names what was expected at the marked place. Reading goes
-on behind it, so that one slip of the pen is reported once.",
+    title: "syntax error",
+    meaning: "The parser found something it did not expect. The message says what it expected at the marked position.",
     example: "primitive Drive()[20,30];
 scenario Day[0,60] = { if LIGHT Drive() }",
-    fix: "Add what is missing or remove what is too much. A sequence separates its statements with `;`, a parallel with `,`, and
-bounds have two sides.",
+    fix: "Add the missing part, or remove the extra one. Separate the statements of a sequence with `;` and parallel
+statements with `,`. Write bounds as `[minimum,maximum]`.",
     mended: "primitive Drive()[20,30];
 scenario Day[0,60] = { if LIGHT thennext Drive(), LIGHT [60,60] }",
 };
@@ -36,7 +35,7 @@ impl Found<'_> {
     fn describe(self) -> String {
         match self {
             Self::Text(text) => format!("found `{text}`"),
-            Self::End => "the text ends here".to_owned(),
+            Self::End => "found the end of the text".to_owned(),
         }
     }
 }
@@ -52,7 +51,7 @@ pub(crate) fn expected(wanted: &str, found: Found<'_>, span: Span) -> Diagnostic
 
 /// `wanted` is missing at `place`, which lies just behind `span`.
 pub(crate) fn missing(wanted: &str, found: Found<'_>, span: Span, place: u32, text: &str) -> Diagnostic {
-    error(span, format!("expected {wanted} behind this, {}", found.describe())).with_fix(insertion(
+    error(span, format!("expected {wanted} after this, {}", found.describe())).with_fix(insertion(
         format!("Insert `{}`", text.trim()),
         place,
         text,
@@ -60,36 +59,37 @@ pub(crate) fn missing(wanted: &str, found: Found<'_>, span: Span, place: u32, te
 }
 
 pub(crate) fn too_deep(span: Span) -> Diagnostic {
-    error(span, "this nests too deeply or joins too many parts")
-        .with_hint("give a part of it a name: define an activity and call it")
+    error(span, "this is nested too deeply or has too many parts")
+        .with_hint("move a part of it into an activity, and call that")
 }
 
 pub(crate) fn unmatched_brace(span: Span) -> Diagnostic {
-    error(span, "this `}` closes nothing").with_fix(replacement("Remove `}`", span, ""))
+    error(span, "unmatched `}`").with_fix(replacement("Remove `}`", span, ""))
 }
 
 pub(crate) fn stray_semicolon(span: Span) -> Diagnostic {
-    error(span, "this `;` ends nothing").with_fix(replacement("Remove `;`", span, ""))
+    error(span, "unnecessary `;`").with_fix(replacement("Remove `;`", span, ""))
 }
 
 pub(crate) fn empty_statement(span: Span) -> Diagnostic {
-    error(span, "there is no statement before this `;`").with_fix(replacement("Remove `;`", span, ""))
+    error(span, "expected a statement before this `;`").with_fix(replacement("Remove `;`", span, ""))
 }
 
 pub(crate) fn no_declaration(found: Found<'_>, span: Span) -> Diagnostic {
     error(span, format!("expected a declaration, {}", found.describe())).with_hint(
-        "a file holds `var`, `state`, `resource`, `const`, `primitive`, `objective`, `option`, `scenario`, `constrain`, `import`, \
-         definitions such as `Survey() = { … }`, and the world's `terrain`, `location`, `obstacle` and `vehicle`",
+        "declarations are `var`, `state`, `resource`, `const`, `primitive`, `objective`, `option`, `scenario`, `constrain`, \
+         `import`, definitions such as `Survey() = { … }`, and `terrain`, `location`, `obstacle` and `vehicle`",
     )
 }
 
 pub(crate) fn primitive_with_body(span: Span) -> Diagnostic {
-    error(span, "a primitive has no body")
-        .with_hint("leave out the word `primitive` to define an activity, or end the declaration with `;`")
+    error(span, "a primitive cannot have a body").with_hint(
+        "to define an activity, remove the word `primitive`; otherwise end the declaration with `;`",
+    )
 }
 
 pub(crate) fn keyword_as_name(word: &str, span: Span) -> Diagnostic {
-    error(span, format!("`{word}` is a word of the language and cannot be a name")).with_fix(replacement(
+    error(span, format!("`{word}` is a reserved word")).with_fix(replacement(
         format!("Rename to `{word}_`"),
         span,
         format!("{word}_"),
@@ -97,11 +97,11 @@ pub(crate) fn keyword_as_name(word: &str, span: Span) -> Diagnostic {
 }
 
 pub(crate) fn unclosed_brace(opened: Span, place: u32) -> Diagnostic {
-    error(opened, "this `{` is never closed").with_fix(insertion("Insert `}`", place, " }"))
+    error(opened, "unclosed `{`").with_fix(insertion("Insert `}`", place, " }"))
 }
 
 pub(crate) fn unclosed_bracket(opened: Span, place: u32) -> Diagnostic {
-    error(opened, "this `[` is never closed").with_fix(insertion("Insert `]`", place, "]"))
+    error(opened, "unclosed `[`").with_fix(insertion("Insert `]`", place, "]"))
 }
 
 pub(crate) fn empty_choice(span: Span) -> Diagnostic {
@@ -109,8 +109,8 @@ pub(crate) fn empty_choice(span: Span) -> Diagnostic {
 }
 
 pub(crate) fn one_bound(span: Span) -> Diagnostic {
-    error(span, "bounds have two sides, and the upper one is missing")
-        .with_hint("write `[lower, upper]`; `inf` leaves the upper side open")
+    error(span, "the maximum is missing")
+        .with_hint("write `[minimum,maximum]`; use `inf` for no maximum")
         .with_fix(insertion("Insert `, inf`", span.start, ", inf"))
 }
 
@@ -119,40 +119,39 @@ pub(crate) fn negative_bound(span: Span) -> Diagnostic {
 }
 
 pub(crate) fn double_equals(span: Span) -> Diagnostic {
-    error(span, "a value is compared with a single `=`").with_fix(replacement("Remove `=`", span, ""))
+    error(span, "use a single `=` to compare a value").with_fix(replacement("Remove `=`", span, ""))
 }
 
 pub(crate) fn wrong_count(wanted: &str, count: usize, span: Span) -> Diagnostic {
-    error(span, format!("expected {wanted}; here are {count}"))
+    error(span, format!("expected {wanted}, found {count}"))
 }
 
 /// A condition that is asserted leaves open which of several holds.
 pub(crate) fn choice_asserted(span: Span) -> Diagnostic {
-    error(span, "an assertion says what holds, and this leaves open which of several does").with_hint(
-        "write `choose { a, b }` where planning is to choose; `do … watching a and b` asserts that one of them is false",
+    error(span, "an assertion must be one condition, but this one allows several").with_hint(
+        "to let the planner choose, write `choose { a, b }`; `do … watching a and b` asserts that one of them is false",
     )
 }
 
 /// What an activity requires leaves open which of several it is.
 pub(crate) fn choice_required(span: Span) -> Diagnostic {
-    error(span, "what a primitive requires leaves no choice, and this is one of several conditions").with_hint(
-        "write `X in {V, W}` for several values of one variable, or declare a primitive for each condition and \
-         `choose` between them; `do … maintaining a or b` requires one of two conditions at a call",
+    error(span, "a primitive must require one condition, but this one allows several").with_hint(
+        "for several values of one variable, write `X in {V, W}`; otherwise declare one primitive for each condition and \
+         `choose` between them, or write `do … maintaining a or b` at the call",
     )
 }
 
 pub(crate) fn no_single_effect(span: Span) -> Diagnostic {
-    error(span, "an effect says which one value the variable gets").with_hint("write `sets X=V`")
+    error(span, "an effect must set exactly one value").with_hint("write `sets X=V`")
 }
 
 pub(crate) fn comma_before_clause(span: Span) -> Diagnostic {
-    error(span, "a comma goes on with the clause before it, and here another one begins")
-        .with_fix(replacement("Remove `,`", span, ""))
+    error(span, "unnecessary comma: a new clause starts here").with_fix(replacement("Remove `,`", span, ""))
 }
 
 pub(crate) fn start_in_list(span: Span) -> Diagnostic {
-    error(span, "what is required at the start has a clause of its own").with_fix(replacement(
-        "Begin a clause with `requires`",
+    error(span, "`requires at start` needs its own clause").with_fix(replacement(
+        "Start a clause with `requires`",
         span,
         " requires",
     ))
@@ -162,15 +161,19 @@ pub(crate) fn start_in_list(span: Span) -> Diagnostic {
 pub(crate) fn per_time(word: &str, span: Span) -> Diagnostic {
     let hint = match word {
         "uses" => {
-            "what is used is free again at the activity's end; `consumes` and `produces` count per unit of time"
+            "`uses` cannot count per unit of time, because the activity frees the resource when it ends; use `consumes` or `produces`"
         }
-        _ => "write what the whole activity costs, or what it costs `per metre`",
+        _ => "write the total cost of the activity, or its cost `per metre`",
     };
-    error(span, format!("`{word}` does not count per unit of time")).with_hint(hint)
+    error(span, format!("`{word}` cannot count per unit of time")).with_hint(hint)
 }
 
 pub(crate) fn using_per(span: Span) -> Diagnostic {
-    error(span, "`using` takes the same amount throughout").with_fix(replacement("Remove the unit", span, ""))
+    error(span, "the amount of `using` is constant and has no unit").with_fix(replacement(
+        "Remove the unit",
+        span,
+        "",
+    ))
 }
 
 /// A measure that an objective does not know.
@@ -178,37 +181,36 @@ pub(crate) fn unknown_measure(written: &str, span: Span) -> Diagnostic {
     let diagnostic = error(span, format!("expected `cost`, `reward`, `end` or `length`, found `{written}`"));
     let mut parts = written.split('-');
     if written.contains('-') && parts.all(|part| Measure::by_name(part).is_some()) {
-        return diagnostic
-            .with_hint("a hyphen between letters belongs to a name: put blanks around a minus")
-            .with_fix(replacement("Put blanks around `-`", span, written.replace('-', " - ")));
+        return diagnostic.with_hint("`a-b` is a name; write `a - b` to subtract").with_fix(replacement(
+            "Put spaces around `-`",
+            span,
+            written.replace('-', " - "),
+        ));
     }
     diagnostic
 }
 
 /// A goal that is better the later the scenario ends.
 pub(crate) fn end_maximized(span: Span) -> Diagnostic {
-    error(
-        span,
-        "`end` may only be minimised: a plan says when it can end at the earliest, and any plan may end later",
-    )
+    error(span, "`end` can only be minimized, because it is the earliest end of the plan")
 }
 
 /// The name of an occurrence that does not say which of its events is meant.
 pub(crate) fn which_event(span: Span) -> Diagnostic {
-    error(span, "an occurrence has two events: say which, `.start` or `.end`")
+    error(span, "expected `.start` or `.end` after the name of an occurrence")
         .with_fix(insertion("Insert `.start`", span.end, ".start"))
         .with_fix(insertion("Insert `.end`", span.end, ".end"))
 }
 
 /// A bound between two events among statements.
 pub(crate) fn constrain_in_block(span: Span) -> Diagnostic {
-    error(span, "`constrain` is a declaration, and stands outside of all blocks")
-        .with_hint("it relates events wherever they are: name their occurrences with `as`, and write it behind the block")
+    error(span, "`constrain` is a declaration and must be outside all blocks")
+        .with_hint("name the occurrences with `as`, and move `constrain` after the block")
 }
 
 /// What is to be in sight is itself somewhere else at every time.
 pub(crate) fn sight_of_vehicle(span: Span) -> Diagnostic {
-    error(span, "`visible(…)` names a location, and a vehicle is at several").with_hint(
+    error(span, "`visible(…)` needs a location, but a vehicle is at different ones over time").with_hint(
         "require each vehicle to see a location, or write one condition for each location: \
          `do … maintaining R2.at=HILL and R1.at in visible(HILL)`",
     )
@@ -216,7 +218,7 @@ pub(crate) fn sight_of_vehicle(span: Span) -> Diagnostic {
 
 /// An argument of several conditions.
 pub(crate) fn joined_argument(span: Span) -> Diagnostic {
-    error(span, "an argument is one condition, and this joins another one").with_hint(
-        "give the activity a parameter for each, and join them where it uses them: `A(a, b) = { ask a and b }`",
+    error(span, "an argument must be a single condition").with_hint(
+        "give the activity one parameter for each condition, and join them in its body: `A(a, b) = { ask a and b }`",
     )
 }

@@ -1,4 +1,4 @@
-//! `W-START`: parallel branches that conflict because they start together (SPEC 3.3).
+//! `W-START`: parallel branches conflict at their start (SPEC 3.3).
 
 use crate::diagnostic::{Code, Diagnostic, Edit, Fix, Severity};
 use crate::explanation::Explanation;
@@ -11,11 +11,11 @@ pub const CODE: Code = Code("W-START");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "parallel branches that conflict because they start together",
-    meaning: "Parallel branches start at the same instant. Here two of them begin with conditions that cannot hold together, so no plan
-can order them.",
+    title: "parallel branches conflict at their start",
+    meaning: "Parallel branches start at the same instant. Two of these branches start with conditions that cannot be true
+together, so the planner cannot order them.",
     example: "scenario Day[0,60] = { ARM=DIG [5,5], ARM=LIFT [5,5] }",
-    fix: "Begin one branch with `delay[0,inf]`: then planning may start it later.",
+    fix: "Start one branch with `delay[0,inf]`, so that the planner can delay it.",
     mended: "scenario Day[0,60] = { ARM=DIG [5,5], { delay[0,inf]; ARM=LIFT [5,5] } }",
 };
 
@@ -23,7 +23,7 @@ can order them.",
 pub(crate) fn conflict(pair: [(LabelMode, &Condition); 2], later: Span) -> Diagnostic {
     let [one, other] = pair.map(|(mode, condition)| describe(mode, condition));
     let message =
-        format!("{other} conflicts with {one}: both begin when the branches start, at the same instant");
+        format!("{other} conflicts with {one}: both start at the same instant, when the branches start");
     let fix = Fix {
         label: "Start this branch with `delay[0,inf]`".to_owned(),
         edits: vec![
@@ -32,7 +32,9 @@ pub(crate) fn conflict(pair: [(LabelMode, &Condition); 2], later: Span) -> Diagn
         ],
     };
     Diagnostic::warning(CODE, pair[1].1.span, message)
-        .with_hint("parallel branches start together; with a delay in front, planning may order them")
+        .with_hint(
+            "parallel branches start together; add a delay to one of them so that the planner can order them",
+        )
         .with_fix(fix)
 }
 

@@ -1,4 +1,4 @@
-//! `W-TRAVERSE`: a traverse that goes nowhere (SPEC 1.8).
+//! `W-TRAVERSE`: traverse without a destination (SPEC 1.8).
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
@@ -10,14 +10,14 @@ pub const CODE: Code = Code("W-TRAVERSE");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "a traverse that goes nowhere",
-    meaning: "The primitive is declared with `moves`, but no argument of this call is a declared location. It is planned as an ordinary
-activity, and the vehicles stay where they are.",
+    title: "traverse without a destination",
+    meaning: "The primitive is declared with `moves`, but no argument of this call is a declared location. The planner
+treats it as an ordinary activity, and the vehicles do not move.",
     example: "location BASE (0, 0);
 vehicle Rover : ATRV at BASE;
 primitive Drive(to)[20,30] moves Rover;
 scenario Day[0,60] = { Drive(SOMEWHERE) }",
-    fix: "Hand over a location, or declare the argument as one.",
+    fix: "Pass a declared location.",
     mended: "location BASE (0, 0);
 location SITE (80, 60);
 vehicle Rover : ATRV at BASE;
@@ -30,7 +30,7 @@ pub(crate) fn no_location(name: &str, span: Span) -> Diagnostic {
     Diagnostic::warning(
         CODE,
         span,
-        format!("this traverse goes nowhere: no argument of `{name}` is a location"),
+        format!("this traverse has no destination: no argument of `{name}` is a location"),
     )
-    .with_hint("locations are declared with `location NAME (east, north);`")
+    .with_hint("declare a location with `location NAME (east, north);`")
 }

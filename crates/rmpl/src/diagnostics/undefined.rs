@@ -19,13 +19,13 @@ pub const WARNING: Code = Code("W-UNDEF");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "an undeclared name that must be declared",
-    meaning: "A bound between events names occurrences that `as` names, and an `import` a file of the mission. What an activity sets is a `state` or the place of a vehicle, and what it uses, consumes or produces is a `resource`: their
-declarations say what they begin with, so there is no default. Under `option strict = 1;` every activity that is called must be declared as a primitive or defined, and every vehicle
-and location that the world mentions must be declared.",
+    title: "undeclared name",
+    meaning: "These names must be declared: states that an activity sets, resources that it uses, consumes or produces,
+occurrences in `constrain` (named with `as`), and files in `import`. With `option strict = 1;`, every activity, vehicle and
+location must be declared, too.",
     example: "option strict = 1;
 scenario Day[0,60] = { Drive() }",
-    fix: "Declare the name, correct it, or leave out the option.",
+    fix: "Declare the name, correct it, or remove the option.",
     mended: "option strict = 1;
 primitive Drive()[20,30];
 scenario Day[0,60] = { Drive() }",
@@ -35,9 +35,9 @@ scenario Day[0,60] = { Drive() }",
 pub const WARNING_EXPLANATION: Explanation = Explanation {
     code: WARNING,
     severity: Severity::Warning,
-    title: "an undeclared name",
-    meaning: "An undeclared activity is taken for a primitive that may last any time, `[0,inf]`. That is what the paper's own listing
-needs, but it is also what a misspelled name gets.",
+    title: "undeclared activity",
+    meaning: "The planner treats an undeclared activity as a primitive of any duration, `[0,inf]`. The usual reason is a
+misspelled name.",
     example: "scenario Day[0,60] = { Drive() }",
     fix: "Declare the primitive with its duration, or correct the name.",
     mended: "primitive Drive()[20,30];
@@ -52,7 +52,7 @@ pub(crate) fn call(
     is_strict: bool,
     start: u32,
 ) -> Diagnostic {
-    let message = format!("no activity or primitive `{name}` is declared");
+    let message = format!("unknown activity `{name}`");
     let mut diagnostic = severity(call.span, message, is_strict);
     if let Some(nearest) = nearest {
         diagnostic = diagnostic.with_hint(format!("did you mean `{nearest}`?")).with_fix(replacement(
@@ -61,7 +61,7 @@ pub(crate) fn call(
             nearest,
         ));
     } else if !is_strict {
-        diagnostic = diagnostic.with_hint("it is taken for a primitive that may last any time, [0,inf]");
+        diagnostic = diagnostic.with_hint("assuming a primitive with duration [0,inf]");
     }
     let parameters: Vec<String> = (1..=call.arguments).map(|at| format!("p{at}")).collect();
     let header = format!("{name}({})", parameters.join(", "));
@@ -91,7 +91,7 @@ pub(crate) fn world(
     is_strict: bool,
     start: u32,
 ) -> Diagnostic {
-    let diagnostic = severity(span, format!("no {what} `{name}` is declared"), is_strict);
+    let diagnostic = severity(span, format!("unknown {what} `{name}`"), is_strict);
     let diagnostic = change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| diagnostic);
     if what == "location" { diagnostic.with_fix(declare_location(name, start)) } else { diagnostic }
 }
@@ -103,16 +103,14 @@ pub(crate) fn declare_location(name: &str, start: u32) -> Fix {
 
 /// The place of something that is no vehicle.
 pub(crate) fn place(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
-    let diagnostic = Diagnostic::error(CODE, span, format!("no vehicle `{name}` is declared"));
-    change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
-        diagnostic.with_hint("only a vehicle, or a parameter that stands for one, has a place")
-    })
+    let diagnostic = Diagnostic::error(CODE, span, format!("unknown vehicle `{name}`"));
+    change_to(diagnostic, nearest, span)
+        .unwrap_or_else(|diagnostic| diagnostic.with_hint("only a vehicle has `.at`"))
 }
 
 /// An effect on a `var`.
 pub(crate) fn effect_on_variable(name: &str, span: Span) -> Diagnostic {
-    let message =
-        format!("`{name}` is a `var`, which holds only where it is asserted: an activity cannot set it");
+    let message = format!("an activity cannot set `{name}`, because it is a `var`");
     Diagnostic::error(CODE, span, message).with_hint(format!("declare it as `state {name} : {{…}} = …;`"))
 }
 
@@ -126,11 +124,11 @@ pub(crate) fn state(
     nearest: Option<&str>,
     start: u32,
 ) -> Diagnostic {
-    let diagnostic = Diagnostic::error(CODE, span, format!("no state variable `{name}` is declared"));
+    let diagnostic = Diagnostic::error(CODE, span, format!("unknown state variable `{name}`"));
     change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
         if component_of_state(name).is_some() {
             return diagnostic
-                .with_hint("the mode of a component is a state that is read from the plant")
+                .with_hint("to read the mode of a component, declare it as a state from the plant")
                 .with_fix(insertion(
                     format!("Add `state {name} from plant`"),
                     start,
@@ -141,7 +139,7 @@ pub(crate) fn state(
         let first = values.iter().find(|value| Some(**value) != set).or(values.first()).unwrap_or(&"NONE");
         let declaration = format!("state {name} : {{{}}} = {first};\n", values.join(", "));
         diagnostic
-            .with_hint("what an activity sets lasts: its declaration says which values it has, and the first")
+            .with_hint("declare a state that activities set, with its values and the initial one")
             .with_fix(insertion(format!("Add `state {name} …`"), start, declaration))
     })
 }
@@ -151,7 +149,7 @@ pub(crate) fn component(name: &str, span: Span, nearest: Option<&str>) -> Diagno
     let component = component_of_state(name).unwrap_or(name);
     let diagnostic = Diagnostic::error(CODE, span, format!("the plant has no component `{component}`"));
     change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
-        diagnostic.with_hint("a control block models the plant: `control { (DEFCLASS …) (DEFINSTANCE …) }`")
+        diagnostic.with_hint("add a plant model: `control { (DEFCLASS …) (DEFINSTANCE …) }`")
     })
 }
 
@@ -163,7 +161,7 @@ pub(crate) fn resource(
     nearest: Option<&str>,
     start: u32,
 ) -> Diagnostic {
-    let diagnostic = Diagnostic::error(CODE, span, format!("no resource `{name}` is declared"));
+    let diagnostic = Diagnostic::error(CODE, span, format!("unknown resource `{name}`"));
     change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
         let declaration = match change {
             Change::Uses => format!("resource {name};\n"),
@@ -177,28 +175,28 @@ pub(crate) fn resource(
 
 /// A bound between events of something that nothing is called.
 pub(crate) fn occurrence(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
-    let diagnostic = Diagnostic::error(CODE, span, format!("nothing is named `{name}`"));
+    let diagnostic = Diagnostic::error(CODE, span, format!("unknown name `{name}`"));
     change_to(diagnostic, nearest, span).unwrap_or_else(|diagnostic| {
-        diagnostic.with_hint(format!("name what you mean where it stands in a block: `Drive() as {name}`"))
+        diagnostic.with_hint(format!("name an occurrence in a block, as in `Drive() as {name}`"))
     })
 }
 
 /// An import of a file that the mission does not have.
 pub(crate) fn file(name: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("the mission has no file `{name}`"))
-        .with_hint("files are found from the folder of the file that imports them")
+        .with_hint("paths are relative to the folder of the importing file")
 }
 
 /// A file beside the mission's first one that none imports.
 pub(crate) fn file_not_imported(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("nothing imports the file `{name}`"))
-        .with_hint(format!("`import \"{name}\";` in the main text makes it part of the mission"))
+    Diagnostic::error(CODE, span, format!("the file `{name}` is never imported"))
+        .with_hint(format!("add `import \"{name}\";` to the main file to make it part of the mission"))
 }
 
 /// An import of what is no file of the mission's folder.
 pub(crate) fn file_outside(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("`{name}` is no file in the mission's folder")).with_hint(
-        "a mission imports only files of its own folder and of those in it, by names such as `world/rocks.rmpl`",
+    Diagnostic::error(CODE, span, format!("`{name}` is not in the mission's folder")).with_hint(
+        "import only files from the mission's folder and its subfolders, such as `world/rocks.rmpl`",
     )
 }
 

@@ -10,16 +10,16 @@ pub const CODE: Code = Code("E-NETWORK");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "the file of a network cannot be read",
-    meaning: "A text that begins with a map of JSON or EDN is the file of a network: plan-schema as other tools write it, or the
-JSON that `enroute tpn --format json` writes. It is neither: the notation is broken, an object refers to one that is not there,
-or a bound is no exact time.",
+    title: "unreadable network file",
+    meaning: "A text that starts with `{` is read as a network: plan-schema in JSON or EDN, or the JSON that `enroute tpn
+--format json` writes. This file is neither. It may have a syntax error, a reference to a missing object, or a bound that is
+not an exact time.",
     example: "{\"network-id\": \"net\", \"net\": {\"tpn-type\": \"network\", \"begin-node\": \"a\"}}",
-    fix: "Mend the file where the message says, or export it again. A mission in RMPL begins with a declaration.",
+    fix: "Fix the file at the position shown, or export it again. An RMPL mission starts with a declaration.",
     mended: "scenario Day[0,60] = { Work()[1,2] }",
 };
 
 /// The text cannot be read for this `reason`.
 pub fn unreadable(reason: &str) -> Diagnostic {
-    Diagnostic::error(CODE, Span::default(), format!("this network cannot be read: {reason}"))
+    Diagnostic::error(CODE, Span::default(), format!("cannot read this network: {reason}"))
 }

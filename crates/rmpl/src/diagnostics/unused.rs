@@ -1,4 +1,4 @@
-//! `W-UNUSED`: a declaration that nothing uses.
+//! `W-UNUSED`: unused declaration.
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
@@ -10,12 +10,12 @@ pub const CODE: Code = Code("W-UNUSED");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "a declaration that nothing uses",
-    meaning: "No scenario or activity of the file calls, asserts or visits this. A misspelled use of the name is the usual reason.",
+    title: "unused declaration",
+    meaning: "No scenario or activity of the file uses this declaration. The usual reason is a misspelled name.",
     example: "primitive Drive()[20,30];
 primitive Drill()[20,30];
 scenario Day[0,60] = { Drive() }",
-    fix: "Use it, or remove it.",
+    fix: "Use the declaration, or remove it.",
     mended: "primitive Drive()[20,30];
 primitive Drill()[20,30];
 scenario Day[0,60] = { Drive(); Drill() }",

@@ -1,4 +1,4 @@
-//! `E-VALUE`: a value outside what is allowed.
+//! `E-VALUE`: invalid value.
 
 use crate::diagnostic::{Code, Diagnostic, Severity, some_of};
 use crate::explanation::Explanation;
@@ -12,10 +12,10 @@ pub const CODE: Code = Code("E-VALUE");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Error,
-    title: "a value outside what is allowed",
-    meaning: "A variable that is declared with a domain has no other values, and a condition on it says which value it means. What is
-asserted of a `state` is the one value that it gets. The place of a vehicle is one of the locations. Options, vehicle models and
-measures have allowed values as well.",
+    title: "invalid value",
+    meaning: "A variable has only the values of its domain, and a condition on it must name one of them. An assertion about
+a `state` must name the one value that it sets. A vehicle can only be at a declared location. Options, vehicle models and
+sizes also have a range of allowed values.",
     example: "var PATH : {OPEN, SHUT};
 scenario Day[0,60] = { PATH=OPNE [10,20] }",
     fix: "Correct the value, or add it to the domain.",
@@ -41,9 +41,8 @@ pub(crate) fn outside_domain(
 
 /// A variable with a domain that stands without a value.
 pub(crate) fn no_value(variable: &str, span: Span, domain: &[&str]) -> Diagnostic {
-    let diagnostic =
-        Diagnostic::error(CODE, span, format!("`{variable}` is a variable: say which value it has"))
-            .with_hint(format!("`{variable}` is one of {}", some_of(domain)));
+    let diagnostic = Diagnostic::error(CODE, span, format!("expected a value for the variable `{variable}`"))
+        .with_hint(format!("`{variable}` is one of {}", some_of(domain)));
     domain.iter().take(MAX_FIXES).fold(diagnostic, |diagnostic, value| {
         diagnostic.with_fix(insertion(format!("Write `{variable}={value}`"), span.end, format!("={value}")))
     })
@@ -51,8 +50,8 @@ pub(crate) fn no_value(variable: &str, span: Span, domain: &[&str]) -> Diagnosti
 
 /// The place of a vehicle that is no location.
 pub(crate) fn no_location(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
-    let diagnostic = Diagnostic::error(CODE, span, format!("no location `{name}` is declared"))
-        .with_hint("a vehicle is at one of the locations: `location NAME (east, north);` declares one");
+    let diagnostic = Diagnostic::error(CODE, span, format!("unknown location `{name}`"))
+        .with_hint("declare it with `location NAME (east, north);`");
     match nearest {
         Some(nearest) => diagnostic.with_fix(replacement(format!("Change to `{nearest}`"), span, nearest)),
         None => diagnostic,
@@ -61,9 +60,9 @@ pub(crate) fn no_location(name: &str, span: Span, nearest: Option<&str>) -> Diag
 
 /// An assertion about a state variable that leaves open which value it gets; `values` are the possible ones.
 pub(crate) fn no_single_value(variable: &str, values: &[&str], span: Span) -> Diagnostic {
-    let message = format!("`{variable}` keeps its value, so an assertion about it says which one it gets");
+    let message = format!("an assertion must set exactly one value of the state `{variable}`");
     let diagnostic = Diagnostic::error(CODE, span, message)
-        .with_hint(format!("write `{variable}=…`, or `ask` where the condition is required"));
+        .with_hint(format!("write `{variable}=…`, or use `ask` to require the condition"));
     values.iter().take(MAX_FIXES).fold(diagnostic, |diagnostic, value| {
         let mended = format!("{variable}={value}");
         diagnostic.with_fix(replacement(format!("Change to `{mended}`"), span, mended))
@@ -72,9 +71,10 @@ pub(crate) fn no_single_value(variable: &str, values: &[&str], span: Span) -> Di
 
 /// Something else than a vehicle's place that is to be where a location is in sight.
 pub(crate) fn sight_of_no_place(name: &str, span: Span, is_vehicle: bool) -> Diagnostic {
-    let message = format!("`{name}` is not the place of a vehicle, and only a vehicle sees a location");
+    let message =
+        format!("`{name}` cannot be in `visible(…)`: only the place of a vehicle can, as in `V.at`");
     let diagnostic = Diagnostic::error(CODE, span, message)
-        .with_hint("`V.at in visible(L)` holds while the vehicle V is where it sees the location L");
+        .with_hint("`V.at in visible(L)` is true while the vehicle V is at a location from which it sees L");
     if !is_vehicle {
         return diagnostic;
     }
@@ -84,7 +84,7 @@ pub(crate) fn sight_of_no_place(name: &str, span: Span, is_vehicle: bool) -> Dia
 
 /// An assertion that a vehicle sees something, which its movements decide.
 pub(crate) fn sight_told(variable: &str, span: Span) -> Diagnostic {
-    let message = format!("what is in sight follows from `{variable}`: it can be required, not asserted");
+    let message = format!("visibility follows from `{variable}`: it can be required, but not asserted");
     Diagnostic::error(CODE, span, message).with_fix(insertion("Write `ask`", span.start, "ask "))
 }
 
@@ -92,13 +92,12 @@ pub(crate) fn sight_told(variable: &str, span: Span) -> Diagnostic {
 const MAX_FIXES: usize = 5;
 
 pub(crate) fn option(name: &str, wanted: &str, span: Span) -> Diagnostic {
-    Diagnostic::error(CODE, span, format!("the option `{name}` is {wanted}"))
+    Diagnostic::error(CODE, span, format!("the option `{name}` must be {wanted}"))
 }
 
 pub(crate) fn model(model: &Name, models: &[&str]) -> Diagnostic {
-    let diagnostic =
-        Diagnostic::error(CODE, model.span, format!("there is no vehicle model `{}`", model.text))
-            .with_hint(format!("the models are {}", models.join(", ")));
+    let diagnostic = Diagnostic::error(CODE, model.span, format!("unknown vehicle model `{}`", model.text))
+        .with_hint(format!("the models are {}", models.join(", ")));
     models.iter().fold(diagnostic, |diagnostic, known| {
         diagnostic.with_fix(replacement(format!("Change to `{known}`"), model.span, *known))
     })
@@ -127,6 +126,6 @@ pub(crate) fn speeds(span: Span) -> Diagnostic {
     Diagnostic::error(
         CODE,
         span,
-        "the speeds must be the least and the greatest, in this order, not negative and not both zero",
+        "expected (minimum, maximum) speed, with 0 ≤ minimum ≤ maximum and maximum > 0",
     )
 }

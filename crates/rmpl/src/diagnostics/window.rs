@@ -1,4 +1,4 @@
-//! `W-WINDOW`: bounds that the parts cannot meet, because a sequence never idles (SPEC 3.3).
+//! `W-WINDOW`: unreachable bounds, because a sequence never idles (SPEC 3.3).
 
 use exact::{Bound, Time};
 
@@ -14,13 +14,13 @@ pub const CODE: Code = Code("W-WINDOW");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "bounds that the parts cannot meet",
-    meaning: "The parts of a sequence follow each other without a pause: a sequence never idles. If all parts together can take at most
-8, the sequence cannot last 10; and if they take at least 8, it cannot be over after 6. Every plan with this part fails.",
+    title: "unreachable bounds",
+    meaning: "A sequence never waits between its parts. If the parts take at most 8, the sequence cannot take 10. If the
+parts take at least 8, the sequence cannot end after 6. No plan can contain this part.",
     example: "primitive Drive()[2,3];
 primitive Drill()[4,5];
 scenario Day[10,20] = { Drive(); Drill() }",
-    fix: "Put a `delay` where the sequence may wait, or correct the bounds.",
+    fix: "Add a `delay` where the sequence may wait, or correct the bounds.",
     mended: "primitive Drive()[2,3];
 primitive Drill()[4,5];
 scenario Day[10,20] = { Drive(); delay[0,inf]; Drill() }",
@@ -30,14 +30,12 @@ scenario Day[10,20] = { Drive(); delay[0,inf]; Drill() }",
 pub(crate) fn too_short(most: Bound, least: Time, statement: &Statement, span: Span) -> Diagnostic {
     let is_sequence = matches!(&statement.kind, StatementKind::Sequence(parts) if parts.len() > 1);
     let message = if is_sequence {
-        format!(
-            "this sequence is over after {most} at the latest, and is to last at least {least}: it never idles"
-        )
+        format!("this sequence takes at most {most}, but must take at least {least}, and it never waits")
     } else {
-        format!("this is over after {most} at the latest, and is to last at least {least}")
+        format!("this takes at most {most}, but must take at least {least}")
     };
     let mut diagnostic = Diagnostic::warning(CODE, span, message)
-        .with_hint("put a `delay` where it may wait, or correct the bounds");
+        .with_hint("add a `delay` where it may wait, or correct the bounds");
     if let StatementKind::Sequence(parts) = &statement.kind
         && let Some(last) = parts.last()
     {
@@ -50,6 +48,6 @@ pub(crate) fn too_short(most: Bound, least: Time, statement: &Statement, span: S
 
 /// The parts take at least `least`, and `most` is allowed.
 pub(crate) fn too_long(least: Time, most: Bound, span: Span) -> Diagnostic {
-    let message = format!("this takes at least {least}, and is to be over after {most}");
+    let message = format!("this takes at least {least}, but must end within {most}");
     Diagnostic::warning(CODE, span, message)
 }

@@ -90,7 +90,7 @@ fn contingent(
     let constants = Constants::new(&parse.program());
     let mut sides = bounds.children().map(|side| constants.evaluate(&expression(side)?, &|_| None));
     if let (Some(Some(least)), Some(Some(most))) = (sides.next(), sides.next()) {
-        lines.push(format!("Nature takes **{least}** at least and **{most}** at most."));
+        lines.push(format!("Uncontrolled duration: **{least}** to **{most}**."));
     }
     let windows = windows_at(evaluation, word.span);
     if !windows.is_empty() {
@@ -100,8 +100,8 @@ fn contingent(
 }
 
 /// What the word before bounds means.
-const CONTINGENT_MEANING: &str = "`contingent [l,u]`: nature chooses how long it takes, while it goes on. The executive decides when it starts, sees \
-    when it ends, and may act at that very instant; a plan has to withstand every choice.";
+const CONTINGENT_MEANING: &str = "`contingent [l,u]`: the environment chooses the duration. The executive decides the start, \
+    observes the end, and can react at the same instant. The plan must work for every duration in the range.";
 
 /// The values of the smallest expression around `offset` in every invocation of its activity.
 fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hover> {
@@ -195,8 +195,7 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
             }
             if is_natures && *kind == NameKind::Activity {
                 parts.push(
-                    "Nature chooses how long it takes. Bounds of a call without `contingent` only require something \
-                     of that."
+                    "The environment chooses the duration. In a call, bounds without `contingent` only limit it."
                         .to_owned(),
                 );
             }
@@ -218,7 +217,7 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
         (_, NameKind::BoundName) => parts.push(format!("`{}`: a bound of the call", name.text)),
         (_, NameKind::Constant) => parts.push(format!("`{}`: a constant", name.text)),
         (_, NameKind::Activity) => {
-            parts.push(format!("`{}`: an undeclared primitive, which may last any time, [0,inf]", name.text));
+            parts.push(format!("`{}`: an undeclared primitive with duration [0,inf]", name.text));
         }
         (_, NameKind::Variable) => {
             parts.push(format!("`{}`: an undeclared condition; any value is allowed", name.text));
@@ -226,7 +225,7 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
         (_, NameKind::Value(variable)) => parts.push(format!("`{}`: a value of `{variable}`", name.text)),
         (_, NameKind::Resource) => parts.push(format!("`{}`: an undeclared resource", name.text)),
         (_, NameKind::Vehicle) => parts.push(format!("`{}`: an undeclared vehicle", name.text)),
-        (_, NameKind::Occurrence) => parts.push(format!("`{}`: nothing is named so", name.text)),
+        (_, NameKind::Occurrence) => parts.push(format!("`{}`: unknown name", name.text)),
         (_, NameKind::Model) => parts.push(format!("`{}`: a vehicle model", name.text)),
         (_, NameKind::ControlProgram) => parts.push(format!("`{}`: a control program", name.text)),
         _ => parts.push(format!("`{}`: a symbol", name.text)),
@@ -256,7 +255,7 @@ fn named(parse: &Parse, place: Span) -> Option<String> {
     let text = words.join(" ");
     let shown: String = text.chars().take(MAX_STATEMENT).collect();
     let rest = if shown.len() < text.len() { " …" } else { "" };
-    Some(format!("```rmpl\n{shown}{rest}\n```\nNames an occurrence for `constrain`."))
+    Some(format!("```rmpl\n{shown}{rest}\n```\nNames this occurrence for use in `constrain`."))
 }
 
 /// How many characters of a statement a hover shows.
@@ -306,35 +305,29 @@ pub(super) fn header(root: SyntaxNode<'_>) -> Option<(String, String)> {
 /// What a word of the language means.
 fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
     Some(match token.kind {
-        SyntaxKind::ChooseKeyword => "`choose { A, B }`: planning selects exactly one of the alternatives.",
+        SyntaxKind::ChooseKeyword => "`choose { A, B }`: the planner selects exactly one alternative.",
         SyntaxKind::DoKeyword => {
-            "`do A maintaining c`: A runs while `c` is required to hold. `do A watching c`: A runs while `c` is asserted \
-             to be false, and ends when `c` comes. `do A using R n`: A uses n of the resource R throughout."
+            "`do A maintaining c`: A requires `c` throughout. `do A watching c`: A asserts that `c` is false throughout, and \
+             ends when `c` becomes true. `do A using R n`: A uses n of the resource R throughout."
         }
         SyntaxKind::MaintainingKeyword => "`do A maintaining c`: an assertion of `c` must contain A.",
         SyntaxKind::WatchingKeyword => "`do A watching c`: the plan asserts that `c` is false during A.",
         SyntaxKind::IfKeyword | SyntaxKind::ThennextKeyword => {
-            "`if c thennext A`: `c` is required at the instant when A starts. Bounds behind it belong to A."
+            "`if c thennext A`: A requires `c` at its start. Bounds after it belong to A."
         }
-        SyntaxKind::DelayKeyword => {
-            "`delay[l,u]`: nothing happens for this long; [0,inf] if no bounds are written."
-        }
+        SyntaxKind::DelayKeyword => "`delay[l,u]`: wait this long; without bounds, [0,inf].",
         SyntaxKind::NotKeyword | SyntaxKind::Bang => "`not c`, `!c`: the condition is false.",
-        SyntaxKind::TellKeyword => {
-            "`tell c[l,u]`: asserts `c` for this long; [0,0] if no bounds are written."
-        }
+        SyntaxKind::TellKeyword => "`tell c[l,u]`: asserts `c` for this long; without bounds, [0,0].",
         SyntaxKind::AskKeyword => "`ask c[l,u]`: requires `c` for this long.",
         SyntaxKind::VarKeyword => {
-            "`var X : {V1, V2};` declares a variable and its values. It is known only where it is asserted; a `state` keeps its value."
+            "`var X : {V1, V2};` declares a variable and its values. It has a value only while it is asserted; a `state` keeps its value."
         }
-        SyntaxKind::PrimitiveKeyword => {
-            "`primitive A(p)[l,u];` declares an activity that is not taken apart."
-        }
-        SyntaxKind::ScenarioKeyword => "`scenario S[l,u] = { … }`: what is planned, and its horizon.",
+        SyntaxKind::PrimitiveKeyword => "`primitive A(p)[l,u];` declares an atomic activity.",
+        SyntaxKind::ScenarioKeyword => "`scenario S[l,u] = { … }`: the part to plan, and its total duration.",
         SyntaxKind::OptionKeyword => {
             "`option name = value;` The options are `threat_gap`, `strict`, `time_unit`, `control_step` and `controllability`."
         }
-        SyntaxKind::Infinity => "`inf`: no upper bound.",
+        SyntaxKind::Infinity => "`inf`: no maximum.",
         SyntaxKind::Name => return word_in_its_place(token.text),
         _ => return None,
     })
@@ -343,97 +336,92 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
 /// What a word means that is one of the language only in its place.
 fn word_in_its_place(word: &str) -> Option<&'static str> {
     Some(match word {
-        "const" => "`const NAME = e;`: a number that bounds, arguments and `repeat` may name.",
+        "const" => "`const NAME = e;`: a named number for bounds, arguments and `repeat`.",
         "state" => {
-            "`state X : {V1, V2} = V1;`: a variable that begins with V1 and keeps its value until something changes it."
+            "`state X : {V1, V2} = V1;`: a variable with initial value V1 that keeps its value until an activity sets it."
         }
         "resource" => {
-            "`resource R;`: for one user at a time. `resource R capacity n;`: n of it can be used at a time. `resource R a..b = c;`: \
-             a store whose level is c at the start and stays between a and b."
+            "`resource R;`: one user at a time. `resource R capacity n;`: a capacity of n. `resource R a..b = c;`: a level \
+             that starts at c and stays between a and b."
         }
-        "capacity" => "`resource R capacity n;`: n of it can be used at a time.",
+        "capacity" => "`resource R capacity n;`: at most n can be in use at a time.",
         "objective" => {
-            "`objective minimize cost, maximize reward;`: what plans are to be best in, the most important goal first."
+            "`objective minimize cost, maximize reward;`: goals for the best plan, the most important first."
         }
-        "minimize" => "`minimize cost`: less is better.",
-        "maximize" => "`maximize reward`: more is better.",
-        "cost" => "`cost`: what the selected activities cost.",
-        "reward" => "`reward`: what the selected activities are rewarded with.",
-        "end" => "`end`: the earliest time at which the scenario can end.",
-        "length" => "`length`: the metres driven.",
+        "minimize" => "`minimize cost`: prefers lower values.",
+        "maximize" => "`maximize reward`: prefers higher values.",
+        "cost" => "`cost`: total cost of the selected activities.",
+        "reward" => "`reward`: total reward of the selected activities.",
+        "end" => "`end`: the earliest end of the scenario.",
+        "length" => "`length`: the distance driven, in meters.",
         "requires" => {
-            "`requires X=V`: the condition must hold throughout the activity; `requires at start X=V`: when it starts."
+            "`requires X=V`: the condition must be true throughout the activity; `requires at start X=V`: only when it starts."
         }
-        "sets" => "`sets X=V`: X changes during the activity and is V when it ends.",
-        "uses" => {
-            "`uses R n`: n of R is used from the activity's start to its end; 1 if no amount is written."
-        }
+        "sets" => "`sets X=V`: X changes during the activity, and is V when the activity ends.",
+        "uses" => "`uses R n`: uses n of R from the start to the end of the activity; without an amount, 1.",
         "consumes" => {
-            "`consumes R n`: n of R is gone when the activity starts. `per minute`: for each minute that it may last."
+            "`consumes R n`: removes n from R when the activity starts. `per minute`: for each minute of its maximum duration."
         }
         "produces" => {
-            "`produces R n`: R gains n when the activity ends. `per minute`: for each minute that it surely lasts."
+            "`produces R n`: adds n to R when the activity ends. `per minute`: for each minute of its minimum duration."
         }
-        "costs" => "`costs n`: what the activity adds to `cost`; `costs n per metre` counts the path.",
-        "rewards" => "`rewards n`: what the activity adds to `reward`.",
+        "costs" => "`costs n`: adds n to `cost`; `costs n per metre`: adds n for each meter of the path.",
+        "rewards" => "`rewards n`: adds n to `reward`.",
         "aborts" => {
-            "`aborts [a,b]`: execution may end the activity early, which takes from a to b; its effects then do not happen."
+            "`aborts [a,b]`: the executive may end the activity early, which takes a to b. Its effects then do not happen."
         }
         "per" => {
-            "`n per minute`, `per second`, `per hour`: times the duration. `n per metre`: times the length of the path."
+            "`n per minute`, `per second`, `per hour`: n times the duration. `n per metre`: n times the length of the path."
         }
         "using" => {
-            "`do A using R n`: A uses n of the resource R from its start to its end; 1 if no amount is written."
+            "`do A using R n`: A uses n of the resource R from its start to its end; without an amount, 1."
         }
-        "optional" => "`optional A`: planning chooses between A and nothing. Bounds behind it belong to A.",
+        "optional" => "`optional A`: the planner may include or skip A. Bounds after it belong to A.",
         "unordered" => {
-            "`unordered { A; B; C }`: all of them, one at a time, in the order that planning finds."
+            "`unordered { A; B; C }`: all of them, one at a time, in an order that the planner chooses."
         }
         "at" => {
-            "`V.at`: the location where the vehicle V is. `vehicle V : MODEL at L;`: V starts at L. `requires at start c`: c must \
-             hold when the activity starts."
+            "`V.at`: the location of the vehicle V. `vehicle V : MODEL at L;`: V starts at L. `requires at start c`: c must \
+             be true when the activity starts."
         }
-        "start" => {
-            "`requires at start c`: c must hold when the activity starts, and may change while it lasts."
-        }
+        "start" => "`requires at start c`: c must be true when the activity starts, and may change later.",
         "repeat" => "`repeat n { A }`: n copies of A, one after the other.",
-        "free" => "`free A`: `delay; A`. A parallel branch that may start later.",
-        "else" => "`if c thennext A else B`: planning chooses A where `c` holds, or B where it does not.",
-        "and" => "`a and b`: both hold.",
-        "or" => "`a or b`: planning chooses which of the two it relies on.",
+        "free" => "`free A`: same as `delay; A`. The branch may start later.",
+        "else" => {
+            "`if c thennext A else B`: the planner chooses A where `c` is true, or B where it is false."
+        }
+        "and" => "`a and b`: both are true.",
+        "or" => "`a or b`: the planner chooses which of the two it relies on.",
         "in" => {
-            "`X in {V, W}`: X has one of these values. `V.at in visible(L)`: V is where it sees the location L."
+            "`X in {V, W}`: X has one of these values. `V.at in visible(L)`: V is at a location from which it sees L."
         }
         "visible" => {
-            "`V.at in visible(L)`: V is at a location from which the straight line from its mast to 2 m above L clears the \
-             terrain."
+            "`V.at in visible(L)`: V is at a location from which its mast has a clear line of sight to 2 m above L."
         }
         "s" | "min" | "h" | "d" | "sol" => {
-            "A unit of time: `s`, `min`, `h`, `d` (24 hours) or `sol` (88 775.244 seconds), converted exactly."
+            "A unit of time: `s`, `min`, `h`, `d` (24 hours) or `sol` (88,775.244 seconds), converted exactly."
         }
-        "as" => {
-            "`A as NAME`: names what happens here, so that `constrain` can speak of its start and its end."
-        }
+        "as" => "`A as NAME`: names this occurrence, so that `constrain` can refer to its start and its end.",
         "constrain" | "to" => {
-            "`constrain X.start to Y.end [l,u];`: Y ends at least l and at most u after X starts, where both are selected."
+            "`constrain X.start to Y.end [l,u];`: Y must end at least l and at most u after X starts, if both are selected."
         }
-        "import" => "`import \"file\";`: the declarations of another file of the mission count here, too.",
+        "import" => "`import \"file\";`: includes the declarations of another file of the mission.",
         "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
-        "speed" => "`speed (least, greatest)` in metres per second.",
+        "speed" => "`speed (minimum, maximum)`, in meters per second.",
         "kinodynamic" => {
-            "`moves V kinodynamic`: the way of V takes as long as it needs to turn, speed up and slow down within the limits of its \
+            "`moves V kinodynamic`: the duration includes turning, speeding up and slowing down within the limits of V's \
              model."
         }
         "runs" => {
-            "`runs P`: executing the activity runs the control program P; `runs P(C)` hands it the component C, or a parameter \
-             of the activity that stands for one."
+            "`runs P`: the activity runs the control program P; `runs P(C)` passes it the component C, or a parameter of the \
+             activity."
         }
         "mode" | "from" | "plant" => {
-            "`state C.mode from plant;`: a mission reads the mode of the component C as a state. It begins as the plant does, and \
-             is what is most likely while control programs run."
+            "`state C.mode from plant;`: makes the mode of the component C a state of the mission. It starts with the \
+             plant's initial mode. While control programs run, it is the most likely mode."
         }
-        "cell" => "`cell 0.6`: metres per cell of the map.",
-        "origin" => "`origin (x, y)`: where the map's south-west corner is, in metres.",
+        "cell" => "`cell 0.6`: size of a map cell, in meters.",
+        "origin" => "`origin (x, y)`: position of the map's south-west corner, in meters.",
         _ => return None,
     })
 }

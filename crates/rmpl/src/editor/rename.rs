@@ -30,12 +30,14 @@ pub enum RenameProblem {
 impl fmt::Display for RenameProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::NothingHere => "there is no name here",
-            Self::Fixed => "this name belongs to the language",
-            Self::NoName => "a name begins with a letter and has letters, digits, `_` and single hyphens",
-            Self::Keyword => "this is a word of the language",
-            Self::HyphenInBounds => "a name in bounds has no hyphens: there they are minus",
-            Self::Taken => "something of this kind has this name already",
+            Self::NothingHere => "nothing to rename at the cursor",
+            Self::Fixed => "names that belong to the language cannot be renamed",
+            Self::NoName => {
+                "a name must start with a letter and may contain letters, digits, `_` and single hyphens"
+            }
+            Self::Keyword => "this is a reserved word",
+            Self::HyphenInBounds => "a name used in bounds cannot contain hyphens, which mean minus there",
+            Self::Taken => "this name is already in use",
         })
     }
 }

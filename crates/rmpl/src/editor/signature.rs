@@ -65,14 +65,14 @@ fn open_bracket(parse: &Parse, offset: u32) -> Option<(String, String, String, u
 /// What a declaration, or bounds, want in a bracket behind the word `owner`, where the declaration begins with `first`.
 fn of_declaration(bracket: &str, owner: &str, first: &str) -> Option<(&'static str, &'static str)> {
     Some(match (bracket, owner, first) {
-        ("[", ..) => ("[LEAST, MOST]", "How long it takes at least and at most; `inf` for any time."),
-        ("(", "speed", _) => ("speed (SLOWEST, FASTEST)", "How fast it drives, in metres per second."),
-        ("(", "origin", _) => ("origin (EAST, NORTH)", "Where the map's first corner lies, in metres."),
-        ("(", "circle", _) => ("circle (EAST, NORTH, RADIUS)", "Its middle and its radius, in metres."),
-        ("(", "polygon", _) => ("polygon (EAST, NORTH, …)", "Its corners one after the other, in metres."),
-        ("(", _, "location") => ("location NAME (EAST, NORTH)", "Where it lies, in metres."),
-        ("(", _, "primitive") => ("primitive NAME(PARAMETER, …)", "What a call of it names."),
-        ("{", _, "var" | "state") => ("{VALUE, …}", "The values that it may have."),
+        ("[", ..) => ("[LEAST, MOST]", "Minimum and maximum duration; `inf` for no maximum."),
+        ("(", "speed", _) => ("speed (MINIMUM, MAXIMUM)", "Minimum and maximum speed, in meters per second."),
+        ("(", "origin", _) => ("origin (EAST, NORTH)", "Position of the map's south-west corner, in meters."),
+        ("(", "circle", _) => ("circle (EAST, NORTH, RADIUS)", "Center and radius, in meters."),
+        ("(", "polygon", _) => ("polygon (EAST, NORTH, …)", "Corners in order, in meters."),
+        ("(", _, "location") => ("location NAME (EAST, NORTH)", "Position, in meters."),
+        ("(", _, "primitive") => ("primitive NAME(PARAMETER, …)", "Parameters of a call."),
+        ("{", _, "var" | "state") => ("{VALUE, …}", "Allowed values."),
         _ => return None,
     })
 }

@@ -30,7 +30,7 @@ impl Lowering<'_> {
                 Edit { span: Span::new(to, to), text: format!(" {}", written.text()) },
                 Edit { span: Span::new(from, written.span().end), text: String::new() },
             ];
-            Fix { label: format!("Move it behind `{}`", simple.text()), edits }
+            Fix { label: format!("Move it after `{}`", simple.text()), edits }
         });
         self.diagnostics.push(contingent::composite(what, word_and_blank(written), bounds.span, moved));
         Some(Bounds { is_contingent: false, ..bounds })

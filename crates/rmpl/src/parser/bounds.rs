@@ -37,7 +37,7 @@ impl Parser<'_> {
         let node = self.open();
         self.eat_word(CONTINGENT);
         if !self.at(SyntaxKind::LeftBracket) {
-            self.report_expected("`[` and the least and the greatest duration that nature may choose");
+            self.report_expected("`[` and the minimum and maximum of the uncontrolled duration");
             self.close(node, SyntaxKind::Bounds);
             return;
         }

@@ -75,7 +75,7 @@ impl Parser<'_> {
         if self.at(SyntaxKind::LeftBracket) {
             self.bounds_if_any();
         } else {
-            self.report_expected("`[` and the least and the greatest time that stopping takes");
+            self.report_expected("`[` and the minimum and maximum time that stopping takes");
         }
         self.skip_in_clause();
         self.close(node, SyntaxKind::Aborts);

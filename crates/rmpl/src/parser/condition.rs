@@ -184,7 +184,7 @@ impl Parser<'_> {
         let node = self.open();
         self.bump();
         if self.expect(SyntaxKind::LeftParen) {
-            self.declared_name("the location that has to be in sight");
+            self.declared_name("the location that must be visible");
             if self.at(SyntaxKind::Dot) {
                 let diagnostic = syntax::sight_of_vehicle(self.here());
                 self.report(diagnostic);
@@ -214,9 +214,9 @@ impl Parser<'_> {
         let is_adjacent = self.start_of(self.current) == self.previous_end();
         if !is_adjacent || !words.iter().any(|word| self.eat_word(word)) {
             self.report_expected(if words.contains(&"at") {
-                "`at` or `mode` right behind `.`: the place of a vehicle and the mode of a component are variables"
+                "`at` (place of a vehicle) or `mode` (of a component) directly after `.`"
             } else {
-                "`mode` right behind `.`: what a component is like is a state"
+                "`mode` directly after `.`"
             });
             if self.at(SyntaxKind::Name) {
                 self.bump();

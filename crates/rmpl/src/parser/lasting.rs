@@ -46,10 +46,10 @@ impl Parser<'_> {
         if self.at_word("from") {
             self.bump();
             if !self.eat_word("plant") {
-                self.report_expected("`plant`: the control block models it");
+                self.report_expected("`plant`");
             }
         } else {
-            self.report_expected("`from plant`: what a component is like is estimated");
+            self.report_expected("`from plant`");
         }
         self.close(node, SyntaxKind::FromPlant);
     }
@@ -68,7 +68,7 @@ impl Parser<'_> {
         SyntaxKind::ResourceDecl
     }
 
-    /// Whether the capacity follows; a constant of that name may be the least level.
+    /// Whether the capacity follows; a constant of that name may be the minimum level.
     fn at_capacity(&mut self) -> bool {
         self.at_word("capacity")
             && !matches!(
@@ -84,16 +84,16 @@ impl Parser<'_> {
     /// `0..100 = 40`
     fn range(&mut self) {
         let node = self.open();
-        self.expression("the least level");
+        self.expression("the minimum level");
         if self.eat(SyntaxKind::DotDot) {
-            self.expression("the greatest level");
+            self.expression("the maximum level");
             if self.eat(SyntaxKind::Equals) {
                 self.expression("the level at the start");
             } else {
                 self.report_expected("`=` and the level at the start");
             }
         } else {
-            self.report_expected("`..` and the greatest level, or `capacity` before the number,");
+            self.report_expected("`..` and the maximum level, or `capacity` before the number,");
         }
         self.close(node, SyntaxKind::Range);
     }
@@ -152,7 +152,7 @@ impl Parser<'_> {
             if self.at(SyntaxKind::Name) {
                 self.report_missing("`*`", " *");
             } else {
-                self.report_expected("`*` and what is measured");
+                self.report_expected("`*` and the measure");
                 return;
             }
         }

@@ -59,7 +59,7 @@ impl Parser<'_> {
         if self.at(SyntaxKind::LeftBracket) || self.at_contingent() {
             self.bounds_if_any();
         } else {
-            self.report_expected("`[` and the least and the greatest time between the two");
+            self.report_expected("`[` and the minimum and maximum time between the two");
         }
         self.end_declaration();
         self.close(node, SyntaxKind::ConstrainDecl);

@@ -85,7 +85,7 @@ impl Parser<'_> {
         let node = self.open_around(mark);
         while self.eat(SyntaxKind::Comma) {
             if self.at(SyntaxKind::Comma) || self.at(SyntaxKind::Semicolon) || self.at_block_end() {
-                self.report_expected("a statement behind `,`");
+                self.report_expected("a statement after `,`");
                 continue;
             }
             self.statement();
@@ -166,7 +166,7 @@ impl Parser<'_> {
             self.alternative();
             if self.eat(SyntaxKind::Comma) {
                 if self.at_block_end() {
-                    self.report_expected("another alternative behind `,`");
+                    self.report_expected("another alternative after `,`");
                     return;
                 }
                 continue;
@@ -256,7 +256,7 @@ impl Parser<'_> {
             self.report_expected_keyword("`thennext`", Some("thennext "));
         }
         if self.at_statement_end() {
-            self.report_expected("a statement behind `thennext`");
+            self.report_expected("a statement after `thennext`");
         } else {
             self.nested(Self::statement);
             if self.eat_word("else") {
@@ -300,7 +300,7 @@ impl Parser<'_> {
             self.argument();
             if self.eat(SyntaxKind::Comma) {
                 if self.at(SyntaxKind::RightParen) {
-                    self.report_expected("an argument behind `,`");
+                    self.report_expected("an argument after `,`");
                 }
                 continue;
             }

@@ -37,7 +37,7 @@ impl Parser<'_> {
             if self.at_word("origin") {
                 let node = self.open();
                 self.bump();
-                self.coordinates("2 numbers: metres east and metres north", |count| count == 2);
+                self.coordinates("2 numbers: meters east and meters north", |count| count == 2);
                 self.close(node, SyntaxKind::Origin);
             }
         }
@@ -46,7 +46,7 @@ impl Parser<'_> {
 
     fn location(&mut self) -> SyntaxKind {
         self.declared_name("the name of the location");
-        self.coordinates("2 numbers: metres east and metres north", |count| count == 2);
+        self.coordinates("2 numbers: meters east and meters north", |count| count == 2);
         SyntaxKind::LocationDecl
     }
 
@@ -74,11 +74,11 @@ impl Parser<'_> {
 
     fn shape(&mut self) {
         if self.eat_word("circle") {
-            self.coordinates("3 numbers: metres east and north of the centre, and the radius", |count| {
+            self.coordinates("3 numbers: meters east and north of the center, and the radius", |count| {
                 count == 3
             });
         } else if self.eat_word("polygon") {
-            let wanted = "an east and a north for each of at least three corners";
+            let wanted = "an east and a north coordinate for each of at least three corners";
             self.coordinates(wanted, |count| count >= 6 && count % 2 == 0);
         } else {
             self.report_expected("`circle` or `polygon`");
@@ -116,9 +116,7 @@ impl Parser<'_> {
         if self.at_word("speed") {
             let speed = self.open();
             self.bump();
-            self.coordinates("2 speeds: the least and the greatest, in metres per second", |count| {
-                count == 2
-            });
+            self.coordinates("2 speeds: minimum and maximum, in meters per second", |count| count == 2);
             self.close(speed, SyntaxKind::Speed);
         }
         if self.at_word("kinodynamic") {

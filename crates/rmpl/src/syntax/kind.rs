@@ -302,7 +302,7 @@ impl SyntaxKind {
         match self {
             Self::Name => "a name",
             Self::Number => "a number",
-            Self::String => "a text in quotes",
+            Self::String => "a string",
             Self::ControlText => "a control block",
             Self::Infinity => "`inf`",
             Self::LeftBrace => "`{`",

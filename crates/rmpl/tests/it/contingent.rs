@@ -239,9 +239,9 @@ fn hovering_tells_what_nature_chooses_and_what_is_left_to_the_executive() {
     for line in ["M() = { Dig() con$0tingent [1+1,LONG] }", "primitive Talk() con$0tingent[2,LONG];"] {
         let (word, markdown) = hovered(line, &nothing);
         assert_eq!(word, "contingent");
-        assert!(markdown.contains("nature chooses how long it takes"), "{markdown}");
-        assert!(markdown.contains("decides when it starts"), "{markdown}");
-        assert!(markdown.contains("**2** at least and **40** at most"), "{markdown}");
+        assert!(markdown.contains("the environment chooses the duration"), "{markdown}");
+        assert!(markdown.contains("decides the start"), "{markdown}");
+        assert!(markdown.contains("**2** to **40**"), "{markdown}");
     }
     // What depends on the call is not shown as one value; where the plan is known, its windows are.
     let line = "M()[l,u] = { Dig() con$0tingent [l,u] }";
@@ -254,13 +254,13 @@ fn hovering_tells_what_nature_chooses_and_what_is_left_to_the_executive() {
     };
     let evaluation = Evaluation { invocations: Vec::new(), windows: vec![window] };
     let (_, markdown) = hovered(line, &evaluation);
-    assert!(!markdown.contains("at most."), "{markdown}");
+    assert!(!markdown.contains("Uncontrolled duration"), "{markdown}");
     assert!(markdown.contains("Dig#1.end in [1,9]"), "{markdown}");
     let (_, markdown) = hovered("M() = { Dri$0ve(BASE) }", &nothing);
     assert!(markdown.contains("primitive Drive(to) contingent [LONG/2,LONG]"), "{markdown}");
-    assert!(markdown.contains("Nature chooses how long it takes"), "{markdown}");
+    assert!(markdown.contains("The environment chooses the duration"), "{markdown}");
     let (_, markdown) = hovered("M() = { Di$0g() }", &nothing);
-    assert!(!markdown.contains("Nature"), "{markdown}");
+    assert!(!markdown.contains("environment"), "{markdown}");
     let (_, markdown) = hovered("optio$0n strict = 1;", &nothing);
     assert!(markdown.contains("`controllability`"), "{markdown}");
 }

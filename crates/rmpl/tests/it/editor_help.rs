@@ -205,7 +205,7 @@ fn constants_and_units_show_their_values() {
     check("option time_unit = second;\nprimitive A()[9s, 1s$0ol];", "= **88775.244**");
     check("const A = B;\nconst B = A;\nscenario S[0,A$0] = { delay }", "const A = B");
     check("scenario S = { rep$0eat 3 { A() } }", "copies of A");
-    check("scenario S = { if P thennext A() el$0se B() }", "where it does not");
+    check("scenario S = { if P thennext A() el$0se B() }", "where it is false");
 }
 
 #[test]

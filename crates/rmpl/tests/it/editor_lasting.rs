@@ -126,11 +126,11 @@ fn hovering_tells_what_lasts_who_changes_it_and_who_needs_it() {
         "primitive D(to)[1,2] moves Scout; M() = { ask Sco$0ut.at=BASE }",
         &["vehicle Scout", "Moved by `D`", "`Scout.at`: needed by `Dig`, `M`"],
     );
-    hovers("objective minimize co$0st;", &["what the selected activities cost"]);
-    hovers("primitive A()[1,2] con$0sumes Battery 1;", &["is gone when the activity starts"]);
-    hovers("M() = { opt$0ional Deploy() }", &["between A and nothing"]);
+    hovers("objective minimize co$0st;", &["total cost of the selected activities"]);
+    hovers("primitive A()[1,2] con$0sumes Battery 1;", &["when the activity starts"]);
+    hovers("M() = { opt$0ional Deploy() }", &["may include or skip A"]);
     hovers("sta$0te T : {A, B} = A;", &["keeps its value"]);
-    hovers("M() = { ask Scout.a$0t=BASE }", &["where the vehicle V is"]);
+    hovers("M() = { ask Scout.a$0t=BASE }", &["the location of the vehicle V"]);
 }
 
 /// The cursor's name has exactly the marked places; the one labelled `def` is its definition.

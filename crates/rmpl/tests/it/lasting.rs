@@ -357,7 +357,7 @@ fn one_mistake_gives_one_diagnostic() {
     one_error("state ARM : {IN, OUT} = ;", ";", "the value at the start");
     one_error("resource P 5;", ";", "`capacity` before the number");
     one_error("resource P 0..9;", ";", "the level at the start");
-    one_error("resource P 0.. = 3;", "=", "the greatest level");
+    one_error("resource P 0.. = 3;", "=", "the maximum level");
     one_error("resource P capacity;", ";", "a number");
     one_error("resource P capacity -2;", "-", "negative");
     one_error("objective cost;", "cost", "`minimize` or `maximize`");
@@ -369,41 +369,41 @@ fn one_mistake_gives_one_diagnostic() {
     let clause = |tail: &str, place: &str, message: &str| {
         one_error(&format!("primitive P(s)[1,2] {tail};\nprimitive Q()[1,2];\n"), place, message);
     };
-    clause("requires A or B", "A or B", "leaves no choice");
-    clause("requires not (A and B) sets C=V", "not (A and B)", "leaves no choice");
+    clause("requires A or B", "A or B", "must require one condition");
+    clause("requires not (A and B) sets C=V", "not (A and B)", "must require one condition");
     clause("requires", ";", "a condition");
     clause("requires at start", ";", "a condition");
-    clause("requires A, sets B=V", ",", "another one begins");
-    clause("requires A, at start B", ",", "a clause of its own");
+    clause("requires A, sets B=V", ",", "a new clause starts here");
+    clause("requires A, at start B", ",", "its own clause");
     clause("requires A B", "A", "expected `,`");
     clause("requires A== V sets B=V", "=", "single `=`");
     clause("requires s.place=V sets B=V", "place", "`at`");
-    clause("requires s. at=V sets B=V", "at", "right behind `.`");
-    clause("sets not A=V", "not", "one value");
-    clause("sets A!=V, B=V", "!=", "one value");
-    clause("sets A in {V}, B=V", "in", "one value");
+    clause("requires s. at=V sets B=V", "at", "directly after `.`");
+    clause("sets not A=V", "not", "exactly one value");
+    clause("sets A!=V, B=V", "!=", "exactly one value");
+    clause("sets A in {V}, B=V", "in", "exactly one value");
     clause("sets A uses R", "uses", "the value");
     clause("sets A= uses R 2", "R", "");
     clause("uses", ";", "the name of a resource");
-    clause("uses R 2 per minute", "per minute", "does not count per unit of time");
+    clause("uses R 2 per minute", "per minute", "cannot count per unit of time");
     clause("uses R per minute", "per", "a number");
     clause("consumes R", ";", "a number");
     clause("consumes R sets A=V", "sets", "a number");
     clause("consumes R 2 per day sets A=V", "day", "`second`, `minute`, `hour` or `metre`");
     clause("consumes R -2", "-", "negative");
-    clause("costs 2 per hour", "per hour", "does not count per unit of time");
-    clause("costs 2, rewards 3", ",", "another one begins");
+    clause("costs 2 per hour", "per hour", "cannot count per unit of time");
+    clause("costs 2, rewards 3", ",", "a new clause starts here");
     clause("rewards 2 per metre", "per", "expected `;`");
     clause("needs A", "needs", "expected `;`");
     let body = |text: &str, place: &str, message: &str| {
         one_error(&format!("M() = {{ {text} }}\nprimitive Q()[1,2];\n"), place, message);
     };
     body("do A() using", "}", "the name of a resource");
-    body("do A() using P 2 per minute [1,2]; A()", "per minute", "the same amount");
+    body("do A() using P 2 per minute [1,2]; A()", "per minute", "has no unit");
     body("do A()", "}", "`maintaining`");
     body("A.at()", "(", "`=` and a location");
     body("unordered { A() B() }", ")", "expected `;`");
-    body("unordered { A(); ", "{", "never closed");
+    body("unordered { A(); ", "{", "unclosed");
     body("optional { A(; }", ";", "a name or a number");
 }
 

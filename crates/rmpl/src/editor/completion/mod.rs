@@ -26,7 +26,7 @@ pub struct Completion {
     pub wants: Option<Wanted>,
 }
 
-/// What a text in quotes names, outside of the mission text.
+/// What a string names, outside of the mission text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Wanted {
     /// A map: `terrain "…"`.
@@ -115,7 +115,7 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
     Completion { replaces, items, wants: None }
 }
 
-/// What a text in quotes around the cursor may be, if something is known of it; what stands between the quotes is
+/// What a string around the cursor may be, if something is known of it; what stands between the quotes is
 /// replaced.
 fn in_quotes(before: &[SyntaxToken<'_>], offset: u32) -> Option<Completion> {
     let (last, context) = before.split_last()?;
@@ -156,7 +156,7 @@ fn is_definition(parse: &Parse, name: &str) -> bool {
     outline(parse).iter().any(|item| item.kind == OutlineKind::Activity && item.name == name)
 }
 
-/// Whether the cursor is in a comment, a text in quotes or a number, where nothing is completed.
+/// Whether the cursor is in a comment, a string or a number, where nothing is completed.
 fn is_opaque(token: SyntaxToken<'_>, offset: u32) -> bool {
     match token.kind {
         SyntaxKind::LineComment | SyntaxKind::String | SyntaxKind::Number => token.span.end >= offset,
