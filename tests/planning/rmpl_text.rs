@@ -140,7 +140,7 @@ fn what_does_not_nest_is_named() {
     let read = Document::parse(&file.to_string()).expect("a network");
     let obstacle = rmpl_text::write(&read.network, &[]).expect_err("it does not nest");
     let told = obstacle.told(&read.network, &read.node_uids, &read.arc_uids);
-    assert_eq!(told, "the node `d` is where arcs meet that did not part at one event alone (`ad`, `bd`)");
+    assert_eq!(told, "the node `d` joins arcs that did not branch at a single event (`ad`, `bd`)");
 }
 
 #[test]

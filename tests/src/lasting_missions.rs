@@ -45,7 +45,7 @@ struct Maker {
     left: i64,
     /// Of the reusable resource.
     capacity: i64,
-    /// Between the least and the greatest level of the reservoir.
+    /// Between the minimum and the maximum level of the reservoir.
     room: i64,
     /// Whether there is a second state variable.
     has_second: bool,

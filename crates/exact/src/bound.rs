@@ -17,21 +17,21 @@ pub enum Bound {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BoundError {
     /// The exact result does not fit.
-    #[error("the exact value of this expression does not fit into 64 bits")]
+    #[error("the value of this expression is too large to represent exactly")]
     Overflow,
     #[error("division by zero")]
     DivisionByZero,
     /// ∞ · x for x < 0.
-    #[error("infinity times a negative number is no bound")]
+    #[error("infinity cannot be multiplied by a negative number")]
     NegativeInfinity,
     /// ∞ / x for x ≤ 0.
     #[error("infinity can only be divided by a positive number")]
     InfinityDivided,
     /// ∞ / ∞.
-    #[error("infinity divided by infinity is no bound")]
+    #[error("infinity cannot be divided by infinity")]
     InfinityByInfinity,
     /// x − ∞.
-    #[error("subtracting infinity leaves no bound")]
+    #[error("infinity cannot be subtracted")]
     InfinitySubtracted,
 }
 

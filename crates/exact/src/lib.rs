@@ -36,5 +36,5 @@ pub use time::Time;
 
 /// An exact result does not fit into 64 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, thiserror::Error)]
-#[error("the exact value does not fit into 64 bits")]
+#[error("the value is too large to represent exactly")]
 pub struct Overflow;

@@ -8,10 +8,10 @@ use crate::Rational;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// It is none at all.
-    #[error("`{0}` is no number: write a decimal such as 12.5, or a fraction such as 25/2")]
+    #[error("`{0}` is not a number: write a decimal such as 12.5, or a fraction such as 25/2")]
     Form(String),
     /// It is one that cannot be kept.
-    #[error("`{0}` is too large or too finely divided: its exact value does not fit into 64 bits")]
+    #[error("`{0}` is too large or too precise to represent exactly")]
     Overflow(String),
 }
 

@@ -38,7 +38,7 @@ impl<'de> Deserialize<'de> for Rational {
         }
         match deserializer.deserialize_any(Exact)? {
             Bound::Finite(time) => Ok(time.units()),
-            Bound::Infinite => Err(D::Error::custom("a finite number is wanted here")),
+            Bound::Infinite => Err(D::Error::custom("expected a finite number")),
         }
     }
 }

@@ -27,13 +27,13 @@ pub const ADDED: u32 = u32::MAX;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// Its constraints contradict each other: it is no plan.
-    #[error("the plan's constraints contradict each other")]
+    #[error("the constraints of the plan are inconsistent")]
     Inconsistent,
     /// Its times do not fit.
-    #[error("a time of the plan does not fit into 64 bits")]
+    #[error("a time of the plan is too large to represent exactly")]
     Overflow,
     /// What the world makes of it does not fit.
-    #[error("{event} would come at a time that does not fit into 64 bits")]
+    #[error("the time of {event} is too large to represent exactly")]
     TooLate { event: String },
 }
 

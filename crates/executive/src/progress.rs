@@ -53,7 +53,7 @@ pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Resu
     for &(node, time) in &observed.executed {
         let Some(point) = made.point(node) else {
             let name = tpn::plan_json::node_name(network, node);
-            return Ok(Progress::Violated(vec![format!("{name} is no event of this plan")]));
+            return Ok(Progress::Violated(vec![format!("{name} is not an event of this plan")]));
         };
         executed.push((point, made.scale().ticks(time)?));
     }
@@ -101,9 +101,9 @@ pub fn progress(network: &Network, plan: &Plan, observed: &Observations) -> Resu
                     && !network.nodes[node.index()].events.is_empty()
                 {
                     let name = tpn::plan_json::node_name(network, node);
-                    let latest = Bound::Finite(made.time(latest));
-                    let now = Bound::Finite(observed.now);
-                    reasons.insert(0, format!("{name} had to happen by {latest}, and it is {now}"));
+                    let latest = made.time(latest).readable();
+                    let now = observed.now.readable();
+                    reasons.insert(0, format!("{name} had to happen by {latest}, but it is already {now}"));
                 }
             }
             Progress::Violated(reasons)
@@ -123,13 +123,12 @@ fn explain<'a>(
     arcs: impl Iterator<Item = (ArcId, &'a str)>,
 ) -> Vec<String> {
     let name = |node| tpn::plan_json::node_name(network, node);
-    let happened =
-        |&(node, time): &(NodeId, Time)| format!("{} happened at {}", name(node), Bound::Finite(time));
+    let happened = |&(node, time): &(NodeId, Time)| format!("{} happened at {}", name(node), time.readable());
     let mut reasons: Vec<String> = observed.executed.iter().map(happened).collect();
     for (arc, who) in arcs {
         let arc = &network.arcs[arc.index()];
-        let (from, to, lower) = (name(arc.from), name(arc.to), Bound::Finite(arc.lower));
-        let reason = format!("{to} comes [{lower}, {}] after {from}{who}", arc.upper);
+        let (from, to, lower) = (name(arc.from), name(arc.to), arc.lower.readable());
+        let reason = format!("{to} must come [{lower}, {}] after {from}{who}", arc.upper.readable());
         if !reasons.contains(&reason) {
             reasons.push(reason);
         }
@@ -173,11 +172,11 @@ fn uncertain(
     if let Verdict::Uncontrollable(conflict) = stnu::check(&left, &mut || false)? {
         let arcs = conflict.members.iter().filter_map(|member| broken(network, read, &left, member.part));
         let mut reasons = explain(network, observed, arcs);
-        reasons.insert(0, "nature may break what is left of the plan".to_owned());
+        reasons.insert(0, "the rest of the plan is not controllable".to_owned());
         return Ok(Progress::Violated(reasons));
     }
     let Some(form) = Dispatchable::new(&left, &mut || false)? else {
-        return Ok(Progress::Violated(vec!["nature may break the plan".to_owned()]));
+        return Ok(Progress::Violated(vec!["the plan is not controllable".to_owned()]));
     };
     let origin = PointId(left.num_points() as u32 - 1);
     let mut dispatcher = Dispatcher::new(Arc::new(form), 0);
@@ -244,5 +243,5 @@ fn broken(
         Part::Edge(_) => return None,
         Part::Lower(id) | Part::Upper(id) => natures_arc(read, left.link(id).end)?,
     };
-    Some((arc, if network.is_uncertain(arc) { ", as nature chooses" } else { "" }))
+    Some((arc, if network.is_uncertain(arc) { " (uncontrolled)" } else { "" }))
 }

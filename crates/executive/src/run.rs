@@ -209,7 +209,7 @@ impl Run<'_> {
                     self.write(Happening::Finished);
                     return Ok(Ending::Finished);
                 }
-                self.write(Happening::Stopped { reason: "nothing can happen any more".to_owned() });
+                self.write(Happening::Stopped { reason: "no event can happen anymore".to_owned() });
                 return Ok(Ending::Stopped);
             };
             let now = self.now;
@@ -547,16 +547,16 @@ impl Run<'_> {
         });
         match withdrawn {
             Some(condition) => {
-                format!("{condition} was withdrawn at {time}; it was to hold until {earliest}")
+                format!("{condition} was withdrawn at {time}, but the plan needs it until {earliest}")
             }
-            None => format!("{name} came at {time}, before it could at {earliest}"),
+            None => format!("{name} happened at {time}, before its earliest time {earliest}"),
         }
     }
 
     fn too_late(&self, node: NodeId, latest: Time, reason: Option<&str>) -> String {
         let (name, latest) = (self.stage.name(node), shown(latest));
         let because = reason.map_or_else(String::new, |reason| format!(": {reason}"));
-        format!("{name} had to come by {latest} and did not{because}")
+        format!("{name} did not happen by its latest time {latest}{because}")
     }
 
     /// When the world lets an event happen, given when the plan would. `None` while that is not known yet.
@@ -603,7 +603,7 @@ impl Run<'_> {
                     // It never begins: for planning it is over as soon as it would have begun.
                     let gone = News::Duration(event.occurrence, Time::ZERO);
                     let reason =
-                        format!("{} was withdrawn at {} and will not come", occurrence.name, shown(at));
+                        format!("{} was withdrawn at {} before it started", occurrence.name, shown(at));
                     return Ok(Some(ByWorld::Gone(at, reason, gone)));
                 }
                 begins.map_or(ByWorld::Free, |at| ByWorld::At(at, News::Begins(event.occurrence, at)))
@@ -638,7 +638,8 @@ impl Run<'_> {
             // What nature does waits for nobody.
             Err(SettleError::NotYet(other)) if self.adversary.is_some() && self.is_natures(node) => {
                 let (name, other) = (self.stage.name(node), self.stage.name(self.stage.made.node(other)));
-                let reason = format!("{name} came at {}, and {other} had to come before", shown(self.now));
+                let reason =
+                    format!("{name} happened at {}, but {other} had to happen first", shown(self.now));
                 let (name, news, is_final) = (name.into(), News::None, false);
                 return Ok(Some(Violation { name, reason, news, is_final, is_contact: false }));
             }
@@ -649,7 +650,7 @@ impl Run<'_> {
             Err(SettleError::Overflow(point)) => return Err(self.too_large(self.stage.made.node(point))),
             Err(SettleError::OutOfWindow) => {
                 let name = self.stage.name(node);
-                let reason = format!("{name} could not come at {}", shown(self.now));
+                let reason = format!("{name} could not happen at {}", shown(self.now));
                 let (name, news) = (name.into(), News::None);
                 return Ok(Some(Violation { name, reason, news, is_final: false, is_contact: false }));
             }
@@ -716,7 +717,7 @@ impl Run<'_> {
     /// Plans again from now; an answer says why there is no plan.
     fn replan(&mut self, replanner: &mut dyn Replanner) -> Result<Option<String>, PlanError> {
         if self.plans.len() >= MAX_REPLANS {
-            return Ok(Some(format!("planned again {MAX_REPLANS} times without an end")));
+            return Ok(Some(format!("stopped after {MAX_REPLANS} replans")));
         }
         let mut facts = Facts { now: self.now, ..self.news.clone() };
         for (index, time) in self.stage.times.iter().enumerate() {
@@ -762,7 +763,9 @@ impl Run<'_> {
         self.plans.push(before.close());
         self.scheduled.clear();
         self.restart_frontier()?;
-        Ok(kept.err().map(|node| format!("the new plan does not keep {} in the past", self.stage.name(node))))
+        Ok(kept.err().map(|node| {
+            format!("the new plan changes {}, which has already happened", self.stage.name(node))
+        }))
     }
 
     fn write(&mut self, happening: Happening) {

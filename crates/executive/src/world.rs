@@ -106,20 +106,24 @@ impl Disturbance {
     pub fn problem(&self) -> Option<&'static str> {
         let is_share = |share: Rational| !share.is_negative() && share <= Rational::ONE;
         match self {
-            Self::Duration { duration, .. } if duration.is_negative() => Some("a duration is not negative"),
+            Self::Duration { duration, .. } if duration.is_negative() => {
+                Some("a duration must not be negative")
+            }
             Self::Slow { factor, .. } if !is_share(*factor) || factor.is_zero() => {
-                Some("the share of the greatest speed is above 0 and at most 1")
+                Some("the fraction of the maximum speed must be greater than 0 and at most 1")
             }
             Self::VehicleSlow { factor, .. } if !is_share(*factor) => {
-                Some("the share of the greatest speed is from 0 to 1")
+                Some("the fraction of the maximum speed must be from 0 to 1")
             }
             Self::VehicleSlow { from, until, .. } if from > until => {
-                Some("it is over before it begins: `until` is less than `from`")
+                Some("`until` must not be before `from`")
             }
             _ if self.since().is_some_and(Time::is_negative) => {
-                Some("nothing happens before the mission starts, at 0")
+                Some("a disturbance cannot happen before the mission starts, at 0")
             }
-            Self::Obstacle { radius, .. } if *radius <= 0.0 => Some("an obstacle has a radius above 0"),
+            Self::Obstacle { radius, .. } if *radius <= 0.0 => {
+                Some("the radius of an obstacle must be greater than 0")
+            }
             _ => None,
         }
     }
@@ -174,7 +178,8 @@ impl Script {
     pub fn problem(&self) -> Option<&'static str> {
         let times = self.nature.values().chain(self.schedule.values());
         let mut problems = self.disturbances.iter().map(Disturbance::problem);
-        let is_before = || times.clone().any(|time| time.is_negative()).then_some("a time is not negative");
+        let is_before =
+            || times.clone().any(|time| time.is_negative()).then_some("a time must not be negative");
         problems.find_map(|problem| problem).or_else(is_before)
     }
 }

@@ -412,7 +412,7 @@ impl WorldState {
         match self.value(variable) {
             Some(value) => named(value).unwrap_or_default(),
             None if self.is_changing(variable) => "changing".into(),
-            None => "not known".into(),
+            None => "unknown".into(),
         }
     }
 }

@@ -154,9 +154,9 @@ impl<'vocabulary> Compiler<'vocabulary> {
             variable.values.push(value.text.clone());
             return;
         }
-        let message = format!("`{}` is never `{}`", name.text, value.text);
+        let message = format!("`{}` cannot be `{}`", name.text, value.text);
         let hint = nearest(&value.text, variable.values.iter().map(SmolStr::as_str)).map_or_else(
-            || format!("its values are {}", variable.values.join(", ")),
+            || format!("use one of {}", variable.values.join(", ")),
             |known| format!("did you mean `{known}`?"),
         );
         if !self.diagnostics.iter().any(|known| known.span == value.span) {

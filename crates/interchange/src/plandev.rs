@@ -30,7 +30,7 @@ pub enum PlanDevError {
     },
     /// An interval that has no exact length: months and years, or none that fits.
     #[error(
-        "{place}: `{text}` is not an interval of days, hours, minutes and seconds such as `1 day 02:30:00`"
+        "{place}: `{text}` is not an interval; expected days, hours, minutes and seconds, such as `1 day 02:30:00`"
     )]
     Interval {
         /// The plan or a directive.
@@ -40,11 +40,11 @@ pub enum PlanDevError {
     },
     /// A moment that is none.
     #[error(
-        "the plan: `{0}` is not a moment such as `2030-01-01T00:00:00+00:00` or `2030-001T00:00:00`, or it lies too far"
+        "the plan: `{0}` is not a date that can be represented; expected a form such as `2030-01-01T00:00:00+00:00` or `2030-001T00:00:00`"
     )]
     Moment(String),
     /// A directive is anchored to one that is not there.
-    #[error("{place} is anchored to {anchor}, which the plan does not have")]
+    #[error("{place} is anchored to {anchor}, which is not in the plan")]
     Anchor {
         /// The directive.
         place: String,
@@ -55,7 +55,7 @@ pub enum PlanDevError {
     #[error("the plan has two directives {0}")]
     Twice(i64),
     /// A directive begins before the plan or after its end.
-    #[error("{0} begins outside of the plan")]
+    #[error("{0} starts outside the plan")]
     Outside(String),
     /// The network that the plan comes to cannot be read.
     #[error(transparent)]
@@ -98,7 +98,7 @@ pub fn read(file: &Value) -> Result<Document, PlanDevError> {
     Ok(Document::of_objects(objects.0)?)
 }
 
-const BEGIN: &str = "begin of the plan";
+const BEGIN: &str = "start of the plan";
 const END: &str = "end of the plan";
 
 /// Objects of plan-schema by uid.

@@ -114,7 +114,7 @@ pub struct Relaxation {
 }
 
 /// What [`Failure::is_of_gap`] offers, as an imperative.
-pub const GAP_LABEL: &str = "let conflicting conditions touch: option threat_gap = 0;";
+pub const GAP_LABEL: &str = "allow conflicting conditions to touch: option threat_gap = 0;";
 
 impl Failure {
     /// The option that takes the gap away, as an edit of the text, if that gives a plan.

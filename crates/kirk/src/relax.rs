@@ -241,19 +241,22 @@ fn relaxation(network: &Network, model: &Model, arcs: &[ArcId], is_lower: bool, 
     let new = model.time(new);
     let name = wording::arc_name(network, arc);
     let is_natures = network.is_uncertain(arcs[0]);
+    let changed = |change: &str, old: Bound| {
+        format!("{change} of {name} from {} to {}", old.readable(), new.readable())
+    };
     let (old, new_lower, new_upper, label) = if is_natures && is_lower {
-        let label =
-            format!("it would be controllable if {name} took at least {new} instead of {}", arc.lower);
-        (Bound::Finite(arc.lower), Bound::Finite(new), arc.upper, label)
+        let old = Bound::Finite(arc.lower);
+        let label = format!("{}, if the environment allows it", changed("raise the minimum", old));
+        (old, Bound::Finite(new), arc.upper, label)
     } else if is_natures {
-        let label = format!("it would be controllable if {name} took at most {new} instead of {}", arc.upper);
+        let label = format!("{}, if the environment allows it", changed("lower the maximum", arc.upper));
         (arc.upper, Bound::Finite(arc.lower), Bound::Finite(new), label)
     } else if is_lower {
         let old = Bound::Finite(arc.lower);
-        let label = format!("let {name} take {} at least instead of {old}", Bound::Finite(new));
+        let label = changed("lower the minimum", old);
         (old, Bound::Finite(new), arc.upper, label)
     } else {
-        let label = format!("let {name} take up to {} instead of {}", Bound::Finite(new), arc.upper);
+        let label = changed("raise the maximum", arc.upper);
         (arc.upper, Bound::Finite(arc.lower), Bound::Finite(new), label)
     };
     Relaxation {

@@ -28,20 +28,20 @@ impl Unplannable {
     pub(crate) fn message(self, network: &Network) -> String {
         match self {
             Self::Time(event) => {
-                let what = "a time does not fit into 64 bits after scaling by the common denominator";
+                let what = "a time is too large to represent exactly";
                 match name(network, event) {
                     Some(event) => format!("{what}: that of {event}"),
                     None => what.to_owned(),
                 }
             }
             Self::Links => {
-                "more than a million causal links and orders are possible, which is more than planning keeps"
+                "the mission is too large to plan: it has more than a million possible causal links and orderings"
                     .to_owned()
             }
             Self::Entangled => {
-                "the choices of this network are not nested: states, resources, objectives, durations that are not \
-                 controlled and constraints between threads are planned only where each choice ends before what it is \
-                 part of, and no lower bound is negative"
+                "this network cannot be planned: its choices are not nested, or a minimum is negative. States, resources, \
+                 objectives, uncontrolled durations and constraints between threads need nested choices and minimums of at \
+                 least 0."
                     .to_owned()
             }
         }

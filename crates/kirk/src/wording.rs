@@ -1,7 +1,7 @@
 //! Reasons in the author's terms.
 
 use controllability::{Broken, FailingRun, RunEvent};
-use exact::{Bound, Rational, Time};
+use exact::{Rational, Time};
 use rmpl::program::{Change, LabelMode};
 use tpn::{Arc, ArcId, ArcKind, Choice, EventRef, LabelId, Network, OccurrenceKind, Supply, Use};
 
@@ -27,7 +27,7 @@ pub fn contradiction(network: &Network, cycle: &[CycleMember]) -> Option<String>
     };
     let total = Time::checked_sum(cycle.iter().map(|member| member.weight)).and_then(Time::checked_neg);
     Some(match total.filter(|_| cycle.iter().any(allows)) {
-        Some(excess) => format!("{bounds}: {excess} too much"),
+        Some(excess) => format!("{bounds}: {excess} too long"),
         None => bounds,
     })
 }
@@ -86,7 +86,7 @@ impl Told<'_> {
     pub(crate) fn message(&self) -> String {
         let what = match self.kind {
             FailureKind::Temporal => {
-                self.bounds().unwrap_or_else(|| "bounds contradict each other".to_owned())
+                self.bounds().unwrap_or_else(|| "the bounds are inconsistent".to_owned())
             }
             FailureKind::OpenCondition => self.open_condition(),
             FailureKind::Threat => self.threat(),
@@ -117,7 +117,7 @@ impl Told<'_> {
                 _ => None,
             })
             .collect();
-        let Some(first) = uses.first() else { return "a resource is used too much".to_owned() };
+        let Some(first) = uses.first() else { return "resource demand exceeds capacity".to_owned() };
         let resource = &self.network.resources[first.resource.index()];
         let mut names: Vec<String> = Vec::new();
         for owner in uses.iter().map(|used| use_owner(self.network, used)) {
@@ -136,7 +136,10 @@ impl Told<'_> {
                 }
             }
             let shared: Vec<String> = shared.into_iter().map(str::to_owned).collect();
-            return format!("{names_joined} share {}, and no order of them fits", joined(&shared));
+            return format!(
+                "{names_joined} share {}, but they do not fit one after the other",
+                joined(&shared)
+            );
         }
         let sum = |change: Change| {
             let amounts = uses.iter().filter(|used| used.change == change).map(|used| used.amount);
@@ -145,10 +148,10 @@ impl Told<'_> {
         let verb = if names.len() == 1 { "takes" } else { "together take" };
         let what = match resource.supply {
             Supply::Reusable { capacity } if capacity == Rational::ONE => {
-                format!("{names_joined} cannot have {name} one after the other")
+                format!("{names_joined} do not fit one after the other on {name}")
             }
             Supply::Reusable { capacity } => format!(
-                "{names_joined} {verb} {} of {name}, which has {capacity}, and cannot wait for each other",
+                "{names_joined} {verb} {} of {name}, but its capacity is {capacity}, and they cannot wait for each other",
                 sum(Change::Uses),
             ),
             Supply::Reservoir { least, greatest, level } => {
@@ -163,11 +166,11 @@ impl Told<'_> {
                         verb,
                         taken,
                         least.checked_sub(after),
-                        format!("below {least}, and nothing gives enough"),
+                        format!("below the minimum {least}, and not enough is produced"),
                     )
                 } else {
                     let verb = if names.len() == 1 { "gives" } else { "together give" };
-                    let end = format!("above {greatest}, and nothing takes enough");
+                    let end = format!("above the maximum {greatest}, and not enough is consumed");
                     (verb, given, after.checked_sub(greatest), end)
                 };
                 format!(
@@ -202,14 +205,20 @@ impl Told<'_> {
             let name = arc_name(self.network, arc);
             if self.network.is_uncertain(*id) {
                 let verb = if name.starts_with("the ") { "lasts" } else { "takes" };
-                push(&mut natures, format!("{name} {verb} {} to {}", arc.lower, arc.upper));
+                push(
+                    &mut natures,
+                    format!("{name} {verb} {} to {}", arc.lower.readable(), arc.upper.readable()),
+                );
             } else if !is_structural(arc.kind) {
                 match member {
                     Member::Bound(Constraint::Upper(_)) => {
-                        push(&mut rest, format!("{name} {} {}", allowing_verb(self.network, arc), arc.upper));
+                        push(
+                            &mut rest,
+                            format!("{name} {} {}", allowing_verb(self.network, arc), arc.upper.readable()),
+                        );
                     }
                     _ if arc.lower != Time::ZERO => {
-                        push(&mut rest, format!("{name} needs at least {}", arc.lower));
+                        push(&mut rest, format!("{name} needs at least {}", arc.lower.readable()));
                     }
                     _ => {}
                 }
@@ -217,9 +226,9 @@ impl Told<'_> {
         }
         let natures = joined(&natures);
         if rest.is_empty() {
-            return format!("{natures}, as nature chooses, and no times suit all of that");
+            return format!("{natures} (uncontrolled), so no schedule works for every duration");
         }
-        format!("{natures}, as nature chooses, which leaves no times for all the rest: {}", joined(&rest))
+        format!("{natures} (uncontrolled), so the remaining bounds cannot be met: {}", joined(&rest))
     }
 
     /// The activities that would move one vehicle at the same time, if that is what the conflict is about.
@@ -241,7 +250,7 @@ impl Told<'_> {
 
     fn open_condition(&self) -> String {
         let asks: Vec<LabelId> = self.conditions();
-        let Some(&ask) = asks.first() else { return "a requirement cannot be carried".to_owned() };
+        let Some(&ask) = asks.first() else { return "nothing supports a requirement".to_owned() };
         let label = &self.network.labels[ask.index()];
         let owner = interval_name(self.network, ask);
         let requires = if owner == label.text.as_str() {
@@ -300,7 +309,7 @@ impl Told<'_> {
             .flat_map(|ask| self.network.unseen(ask, labels.iter().copied()))
             .collect();
         let reason = if unseen.is_empty() { String::new() } else { format!(", because {}", joined(&unseen)) };
-        let kept_apart = format!("{} cannot be kept apart{reason}", joined(&names));
+        let kept_apart = format!("{} overlap, and the planner cannot separate them{reason}", joined(&names));
         match self.bounds().or_else(|| self.room()) {
             Some(bounds) => format!("{kept_apart}: {bounds}"),
             None => kept_apart,
@@ -315,7 +324,7 @@ impl Told<'_> {
             let arc = &self.network.arcs[arc.index()];
             if !is_structural(arc.kind) {
                 let name = arc_name(self.network, arc);
-                let limit = format!("{name} {} {}", allowing_verb(self.network, arc), arc.upper);
+                let limit = format!("{name} {} {}", allowing_verb(self.network, arc), arc.upper.readable());
                 if !limits.contains(&limit) {
                     limits.push(limit);
                 }
@@ -363,7 +372,7 @@ impl Told<'_> {
                 Constraint::Departure(way) => {
                     needed = needed.and_then(|needed| needed.checked_sub(member.weight));
                     if member.weight != Time::ZERO {
-                        let name = format!("the way of {}", interval_name(self.network, way.movement));
+                        let name = format!("the drive of {}", interval_name(self.network, way.movement));
                         count(&mut needs, Need::Way, name);
                     }
                 }
@@ -386,7 +395,7 @@ impl Told<'_> {
                     let name = interval_name(self.network, label);
                     format!("{needs} {verb} at least {needed}, but {name} cannot wait that long")
                 }
-                None => format!("{needs} {verb} at least {needed}, but the program leaves no time for it"),
+                None => format!("{needs} {verb} at least {needed}, but the mission leaves no time for it"),
             },
             [only] if only.count == 1 => {
                 format!("{needs} {verb} at least {needed}, but {} {} {allowed}", only.name, only.kind)
@@ -405,11 +414,11 @@ impl Told<'_> {
     fn unnamed_need(&self) -> String {
         let has = |wanted: fn(Constraint) -> bool| self.cycle.iter().any(|it| wanted(it.constraint));
         let what = if has(|it| matches!(it, Constraint::Order(_))) {
-            "keeping them apart"
+            "separating them"
         } else if has(|it| matches!(it, Constraint::UseOrder(_) | Constraint::Departure(_))) {
-            "coming one after the other"
+            "running them one after the other"
         } else {
-            "their order in the program"
+            "their order in the mission"
         };
         what.to_owned()
     }
@@ -417,7 +426,7 @@ impl Told<'_> {
 
 /// A time as people read it, where it fits.
 fn shown(time: Option<Time>) -> String {
-    time.map_or_else(|| "a time beyond 64 bits".to_owned(), |time| time.to_string())
+    time.map_or_else(|| "a time too large to represent".to_owned(), Time::readable)
 }
 
 /// Whether a bound says something to the author: glue does not.
@@ -439,10 +448,10 @@ const MAX_RUN_LINES: usize = 20;
 /// A run in which nature makes a mission fail, a line for each thing that happens.
 pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
     let event = |event: &RunEvent| {
-        let time = Bound::Finite(event.time);
+        let time = event.time.readable();
         if let Some(natures) = event.natures {
             let name = arc_name(network, &network.arcs[natures.index()]);
-            return Some(format!("at {time} nature ends {name}"));
+            return Some(format!("at {time} the environment ends {name}"));
         }
         let is_named = !network.nodes[event.event.index()].events.is_empty();
         is_named.then(|| format!("at {time} {}", tpn::plan_json::node_name(network, event.event)))
@@ -450,23 +459,23 @@ pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
     let broken = match run.broken {
         Broken::Lower(arc) => {
             let arc = &network.arcs[arc.index()];
-            format!("{} needs at least {}", arc_name(network, arc), Bound::Finite(arc.lower))
+            format!("{} needs at least {}", arc_name(network, arc), arc.lower.readable())
         }
         Broken::Upper(arc) => {
             let arc = &network.arcs[arc.index()];
-            format!("{} {} {}", arc_name(network, arc), allowing_verb(network, arc), arc.upper)
+            format!("{} {} {}", arc_name(network, arc), allowing_verb(network, arc), arc.upper.readable())
         }
         Broken::Order { earlier, later } => {
             let [earlier, later] = [earlier, later].map(|node| tpn::plan_json::node_name(network, node));
             format!("{later} must not come before {earlier}")
         }
     };
-    let broken = format!("at {} it has failed: {broken}", Bound::Finite(run.at));
+    let broken = format!("at {} the plan fails: {broken}", run.at.readable());
     let mut lines: Vec<String> = run.events.iter().filter_map(event).collect();
     // What breaks a long run is what happens last.
     let left_out = lines.len().saturating_sub(MAX_RUN_LINES);
     if left_out > 1 {
-        lines.splice(..left_out, [format!("{left_out} events before that, at their times")]);
+        lines.splice(..left_out, [format!("{left_out} earlier events, as planned")]);
     }
     lines.push(broken);
     lines

@@ -161,7 +161,7 @@ fn check_names(network: &Network, script: &Script) -> Result<(), String> {
         natures_ranges(network).any(|(it, _)| it.name == *name) || network.occurrences.iter().any(is_abort)
     };
     if let Some(name) = script.nature.keys().find(|name| !is_natures(name)) {
-        return Err(format!("nature does not choose how long {name} lasts"));
+        return Err(format!("the duration of {name} is not contingent"));
     }
     if script.schedule.is_empty() {
         return Ok(());
@@ -184,12 +184,12 @@ fn wrong_kind(network: &Network, disturbance: &Disturbance) -> Option<String> {
     let (is_right, wanted) = match disturbance {
         Disturbance::Duration { .. } => {
             let is_activity = occurrence.kind == OccurrenceKind::Primitive;
-            (is_activity || is_natures(), "an activity, nor does nature choose how long it lasts")
+            (is_activity || is_natures(), "an activity, and its duration is not contingent")
         }
         Disturbance::Slow { .. } | Disturbance::Fault { .. } => {
             (occurrence.kind == OccurrenceKind::Primitive, "an activity")
         }
-        _ => (occurrence.kind == OccurrenceKind::Assertion, "a condition that comes and goes"),
+        _ => (occurrence.kind == OccurrenceKind::Assertion, "a condition that starts and ends"),
     };
     (!is_right).then(|| format!("{name} is not {wanted}"))
 }
@@ -197,15 +197,17 @@ fn wrong_kind(network: &Network, disturbance: &Disturbance) -> Option<String> {
 /// Whether a disturbance may give a variable a value.
 fn check_state(network: &Network, variable: &SmolStr, value: &SmolStr) -> Result<(), String> {
     let known = network.variables.iter().find(|known| known.name == *variable);
-    let known = known.ok_or_else(|| format!("nothing in the mission depends on a variable {variable}"))?;
+    let known = known.ok_or_else(|| format!("the mission does not use the variable {variable}"))?;
     if !known.is_lasting {
-        return Err(format!("{variable} is known only where it is asserted: withdraw an assertion instead"));
+        return Err(format!(
+            "{variable} has a value only while it is asserted: withdraw an assertion instead"
+        ));
     }
     if variable.ends_with(".at") {
-        return Err(format!("{variable} follows from where the vehicle drives, and nothing else changes it"));
+        return Err(format!("{variable} is the place of a vehicle, so only driving changes it"));
     }
     if !known.values.contains(value) {
-        return Err(format!("{variable} is never {value}: it is one of {}", known.values.join(", ")));
+        return Err(format!("{variable} cannot be {value}: use one of {}", known.values.join(", ")));
     }
     Ok(())
 }
@@ -213,12 +215,14 @@ fn check_state(network: &Network, variable: &SmolStr, value: &SmolStr) -> Result
 /// Whether a disturbance may bring a resource to a level.
 fn check_level(network: &Network, resource: &SmolStr, level: Rational) -> Result<(), String> {
     let known = network.resources.iter().find(|known| known.name == *resource);
-    let known = known.ok_or_else(|| format!("nothing in the mission uses a resource {resource}"))?;
+    let known = known.ok_or_else(|| format!("the mission does not use the resource {resource}"))?;
     match known.supply {
-        Supply::Reusable { .. } => Err(format!("{resource} is no reservoir, so that it has no level")),
-        Supply::Reservoir { least, greatest, .. } if !(least..=greatest).contains(&level) => {
-            Err(format!("the level of {resource} is from {} to {}", least.readable(), greatest.readable()))
-        }
+        Supply::Reusable { .. } => Err(format!("{resource} has a capacity, not a level")),
+        Supply::Reservoir { least, greatest, .. } if !(least..=greatest).contains(&level) => Err(format!(
+            "the level of {resource} must be from {} to {}",
+            least.readable(),
+            greatest.readable()
+        )),
         Supply::Reservoir { .. } => Ok(()),
     }
 }
@@ -320,6 +324,6 @@ impl Replanner for WithPaths<'_, '_> {
         }
         let reasons = outcome.failure.iter().flat_map(|failure| &failure.reasons);
         let messages: Vec<&str> = reasons.map(|reason| reason.message.as_str()).take(3).collect();
-        Err(format!("there is no plan from here: {}", messages.join("; ")))
+        Err(format!("no plan from here: {}", messages.join("; ")))
     }
 }

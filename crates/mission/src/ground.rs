@@ -148,9 +148,9 @@ impl Grounds {
     fn unknown_terrain(&self, declared: &TerrainDecl) -> Diagnostic {
         let imported = self.imported.keys().map(SmolStr::to_string);
         let known: Vec<String> = terrain::asset_names().map(str::to_owned).chain(imported).collect();
-        let message = format!("there is no terrain called \"{}\"", declared.asset);
+        let message = format!("unknown terrain \"{}\"", declared.asset);
         Diagnostic::error(Code("E-UNDEF"), declared.asset_span, message)
-            .with_hint(format!("import a map file of that name, or use one of: {}", known.join(", ")))
+            .with_hint(format!("import a map file with this name, or use one of: {}", known.join(", ")))
     }
 }
 

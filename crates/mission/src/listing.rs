@@ -161,7 +161,7 @@ impl Listing<'_, '_> {
             Ok((network, plans)) => {
                 let same = plans.iter().find(|known| known.is_same(plan));
                 let listed = |plan: &Plan| Listed { network: Arc::clone(network), plan: plan.clone() };
-                same.map(listed).ok_or_else(|| "in this order there is no time for its drives".to_owned())
+                same.map(listed).ok_or_else(|| "its drives take too long in this order".to_owned())
             }
             Err(reason) => Err(reason.clone()),
         })
@@ -214,7 +214,7 @@ fn no_time(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>) -
         Some(format!("{name} takes at least {:.1}", least.to_f64()))
     };
     let drives: Vec<String> = inserted.values().filter_map(least).collect();
-    format!("there is no plan with the paths of its drives: {}", drives.join(", "))
+    format!("no plan with the paths of its drives: {}", drives.join(", "))
 }
 
 /// The network with these choices: the arcs to other alternatives would have to take at least one unit and at most none.

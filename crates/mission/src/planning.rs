@@ -579,13 +579,12 @@ fn out_of_bounds(problem: &Problem<'_>, route: &Route, legs: &[Leg], map: &Terra
     let shown = |time: Time| format!("{:.1}", time.to_f64());
     let reason = match (upper, most) {
         (Bound::Finite(upper), _) if least > upper => format!(
-            "within its bounds: its path of {length_m:.0} m takes at least {}, and at most {} is allowed",
+            "within its bounds: its path of {length_m:.0} m takes at least {}, but at most {} is allowed",
             shown(least),
             shown(upper)
         ),
         (_, Some(most)) if most < lower => format!(
-            "within its bounds: its path of {length_m:.0} m takes at most {} without stopping, and at least {} is \
-             asked for",
+            "within its bounds: its path of {length_m:.0} m takes at most {} without stopping, but must take at least {}",
             shown(most),
             shown(lower)
         ),

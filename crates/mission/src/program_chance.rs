@@ -26,7 +26,7 @@ pub(crate) fn sample_control(
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ProgramTally, String> {
     let Control::Bound(system) = control else {
-        return Err("there is no program with a plant that it controls".to_owned());
+        return Err("a control program with a plant is needed".to_owned());
     };
     let inputs = inputs(system, &chance.injected)?;
     let trials = Trials {

@@ -225,7 +225,7 @@ impl<'run> ProgramExecutor<'run> {
                 Err(error) => {
                     for active in &moment.running {
                         let number = active.program.steps + 1;
-                        let reason = format!("step {number} of the program cannot be taken: {error}");
+                        let reason = format!("step {number} of the program failed: {error}");
                         self.told.entry(active.occurrence).or_default().ends = Ends::Never(reason);
                     }
                     moment.time = moment.active().map(|active| active.given_up).max().unwrap_or(time);
@@ -281,7 +281,7 @@ impl<'run> ProgramExecutor<'run> {
             let holder = moment.holder(active).filter(|_| active.program.steps == 0);
             told.ends = Ends::Never(match holder {
                 Some(holder) => format!("its program waits for that of {}, which has not ended", holder.name),
-                None => format!("its program did not reach its end in {} steps", active.program.steps),
+                None => format!("its program did not end within {} steps", active.program.steps),
             });
         }
     }
@@ -381,10 +381,10 @@ fn unexplained(model: &Model, outcome: &StepOutcome) -> Option<String> {
             let observed = model.observation_names(conflict);
             let observed: Vec<String> =
                 observed.iter().map(|(name, value)| format!("{name}={value}")).collect();
-            Some(format!("the belief is refuted: no state of the plant explains {}", observed.join(", ")))
+            Some(format!("no tracked state of the plant explains {}", observed.join(", ")))
         }
         StepOutcome::LimitReached => {
-            Some("no state of the plant that the estimator kept explains what is observed".to_owned())
+            Some("no tracked state of the plant explains the observations".to_owned())
         }
     }
 }
@@ -419,7 +419,7 @@ fn text(active: &Active, step: &LoopStep, input: &StepInput) -> String {
     let mut text = format!("step {}: {commands}", active.program.steps);
     for (&component, &mode) in &input.injected {
         let name = model.component(component).map_or("?", |component| component.name.as_str());
-        let _ = write!(text, "; {name} comes into {}", model.mode_name(component, mode));
+        let _ = write!(text, "; {name} goes to {}", model.mode_name(component, mode));
     }
     let found: Vec<String> = step.conflicts.iter().map(|conflict| conflict.describe(model)).collect();
     if !found.is_empty() {

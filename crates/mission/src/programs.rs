@@ -39,7 +39,7 @@ impl Programs {
         let mut programs = Self { systems: BTreeMap::new(), step: program.options.control_step };
         let mut found = Vec::new();
         for extra in program.control.iter().skip(1) {
-            let message = "a mission has one control block; this one is not read";
+            let message = "a mission can have only one control block; this one is ignored";
             found.push(Diagnostic::error(Code("E-DUP"), extra.span, message));
         }
         let runners =
@@ -226,11 +226,11 @@ pub fn overlaps(programs: &Programs, network: &Network, plan: &Plan) -> Vec<Diag
         .filter(|(_, gaps)| may_overlap(gaps))
         .filter_map(|(([first, second], component), _)| {
             let message = format!(
-                "{} and {} may run at the same time, and the programs of both command {component}: the one that starts \
-                 second waits until the other has ended",
+                "{} and {} may run at the same time, and both programs command {component}: the one that starts second waits \
+                 until the other has ended",
                 first.name, second.name
             );
-            let hint = "put one after the other, or see that the bounds leave time to wait";
+            let hint = "put one after the other, or widen the bounds so that it can wait";
             Some(Diagnostic::warning(BUSY, second.span?, message).with_hint(hint))
         })
         .collect()
@@ -242,7 +242,7 @@ pub(crate) fn named(model: &Model, component: &str, mode: &str) -> Option<(plant
 }
 
 fn unknown(name: &Name, has_block: bool, nearest: Option<&str>) -> Diagnostic {
-    let message = format!("no control program `{}` is defined", name.text);
+    let message = format!("unknown control program `{}`", name.text);
     let hint = match (nearest, has_block) {
         (Some(nearest), _) => format!("did you mean `{nearest}`?"),
         (None, true) => format!("define it in the control block: `{} ():: …`", name.text),
@@ -252,9 +252,9 @@ fn unknown(name: &Name, has_block: bool, nearest: Option<&str>) -> Diagnostic {
 }
 
 fn no_plant(name: &Name) -> Diagnostic {
-    let message = format!("there is no plant for `{}` to control", name.text);
+    let message = format!("`{}` needs a plant to control", name.text);
     Diagnostic::error(Code("E-UNDEF"), name.span, message)
-        .with_hint("declare its components by DEFCLASS and DEFINSTANCE in the control block")
+        .with_hint("declare its components with DEFCLASS and DEFINSTANCE in the control block")
 }
 
 fn arity(name: &Name, expected: usize, handed: usize) -> Diagnostic {
@@ -263,10 +263,10 @@ fn arity(name: &Name, expected: usize, handed: usize) -> Diagnostic {
         1 => "one name".to_owned(),
         count => format!("{count} names"),
     };
-    let message = format!("`{}` takes {}, and is handed {}", name.text, names(expected), names(handed));
+    let message = format!("`{}` takes {}, but is given {}", name.text, names(expected), names(handed));
     let diagnostic = Diagnostic::error(Code("E-ARITY"), name.span, message);
     diagnostic
-        .with_hint("hand it components of the plant, or parameters that stand for them: `runs P(EngineA)`")
+        .with_hint("pass it components of the plant, or parameters of the activity, as in `runs P(EngineA)`")
 }
 
 /// Whether a name is one of a plant's components, variables, modes or values.

@@ -145,9 +145,8 @@ pub(crate) fn warnings(
         .iter()
         .filter_map(|violation| {
             let [first, second] = violation.vehicles;
-            let under_way = |drive: &&Drive| {
-                drive.vehicles.contains(&second) && drive.start.to_f64() <= violation.time
-            };
+            let under_way =
+                |drive: &&Drive| drive.vehicles.contains(&second) && drive.start.to_f64() <= violation.time;
             let own = |drive: &&Drive| drive.vehicles.contains(&second);
             let others = |drive: &&Drive| drive.vehicles.contains(&first);
             let drive = drives.iter().rev().find(under_way);
@@ -155,7 +154,7 @@ pub(crate) fn warnings(
             let span = network.occurrences.get(drive.occurrence.index())?.span?;
             let message = violation.words(&program.world, network);
             Some(Diagnostic::warning(SeparationViolation::CODE, span, message).with_hint(
-                "give one of them time to wait or to go around the other; vehicles of one traverse keep formation",
+                "delay one of them or route it differently; vehicles of one traverse keep formation",
             ))
         })
         .collect()

@@ -233,7 +233,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
         for (vehicle, written) in moving.vehicles.iter().zip(&moving.moves.vehicles) {
             if !world.vehicles.iter().any(|it| it.name.text == *vehicle) {
                 let place = if *vehicle == written.text { written.span } else { span };
-                warn(place, format!("no vehicle is called `{vehicle}`"));
+                warn(place, format!("unknown vehicle `{vehicle}`"));
             }
         }
     }
@@ -243,7 +243,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
                 primitive.uses.iter().filter_map(|used| used.amount.as_ref()).chain(&primitive.costs);
             for amount in amounts.filter(|amount| amount.per == Some(Per::Metre)) {
                 let message =
-                    "without a terrain there are no paths, so that an amount per metre counts as nothing";
+                    "amounts per metre count as 0, because the mission has no terrain and so no paths";
                 found.push(rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), amount.span, message));
             }
         }
@@ -251,7 +251,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
     for vehicle in &world.vehicles {
         if motion::vehicle_model(&vehicle.model.text).is_none() {
             let known: Vec<&str> = motion::VEHICLE_MODELS.iter().map(|model| model.name).collect();
-            let message = format!("no vehicle model is called `{}`", vehicle.model.text);
+            let message = format!("unknown vehicle model `{}`", vehicle.model.text);
             let hint = format!("the models are {}", known.join(", "));
             found.push(
                 rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), vehicle.model.span, message)
@@ -259,7 +259,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
             );
         }
         if waypoint(world, &vehicle.start.text).is_none() {
-            let message = format!("no location is called `{}`", vehicle.start.text);
+            let message = format!("unknown location `{}`", vehicle.start.text);
             found.push(rmpl::Diagnostic::error(rmpl::Code("E-UNDEF"), vehicle.start.span, message));
         }
     }

@@ -96,7 +96,7 @@ impl std::fmt::Display for Failure {
                 Collision::Cell { state, .. } => {
                     write!(
                         formatter,
-                        "the vehicle can't be at the {end}: some of it would be {}",
+                        "the vehicle can't be at the {end}: part of it would be {}",
                         state.describe()
                     )
                 }
@@ -104,9 +104,9 @@ impl std::fmt::Display for Failure {
         match self {
             Self::StartInCollision(collision) => place(formatter, "start", collision),
             Self::GoalInCollision(collision) => place(formatter, "goal", collision),
-            Self::GoalEnclosed => write!(formatter, "obstacles close off the goal: there is no path"),
+            Self::GoalEnclosed => write!(formatter, "no path: obstacles surround the goal"),
             Self::NotFound { samples } => write!(formatter, "no path found in {samples} samples"),
-            Self::Stopped { samples } => write!(formatter, "stopped after {samples} samples without a path"),
+            Self::Stopped { samples } => write!(formatter, "stopped after {samples} samples; no path found"),
         }
     }
 }

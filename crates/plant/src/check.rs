@@ -53,7 +53,7 @@ impl Checker<'_, '_> {
         for variable in class.variables.iter().chain(&class.commands) {
             if variable.values.len() > MAX_VALUES {
                 let message = format!(
-                    "`{}` has {} values; at most {MAX_VALUES} are possible",
+                    "`{}` has {} values, but at most {MAX_VALUES} are allowed",
                     variable.name.text,
                     variable.values.len()
                 );
@@ -62,7 +62,7 @@ impl Checker<'_, '_> {
             if let Some(shows) = &variable.shows
                 && !variable.values.contains(&shows.text)
             {
-                let message = format!("`{}` is never `{}`", variable.name.text, shows.text);
+                let message = format!("`{}` cannot be `{}`", variable.name.text, shows.text);
                 self.error(
                     "E-VALUE",
                     shows.span,
@@ -75,12 +75,12 @@ impl Checker<'_, '_> {
             if !self.file.classes.iter().any(|known| known.name.text == target.text) {
                 let known = self.file.classes.iter().map(|known| known.name.text.as_str());
                 let hint = did_you_mean(&target.text, known);
-                self.error("E-UNDEF", target.span, format!("the port `{}` names no class", port.text), hint);
+                self.error("E-UNDEF", target.span, format!("the port `{}` needs a class", port.text), hint);
             }
         }
         if class.modes.len() > MAX_VALUES {
             let span = class.modes[MAX_VALUES].0.span;
-            self.error("E-VALUE", span, format!("at most {MAX_VALUES} modes are possible"), None);
+            self.error("E-VALUE", span, format!("a class can have at most {MAX_VALUES} modes"), None);
         }
         for (_, constraints) in &class.modes {
             for constraint in constraints {
@@ -116,15 +116,16 @@ impl Checker<'_, '_> {
                 self.error(
                     "E-DUP",
                     from.span,
-                    format!("the fault from `{}` to `{}` is declared twice", from.text, to.text),
+                    format!("the fault from `{}` to `{}` is already declared", from.text, to.text),
                     None,
                 );
             }
             let Some((numerator, denominator)) =
                 probability::parse(&given.text).filter(|(part, whole)| *part > 0 && part <= whole)
             else {
-                let hint = Some("write a number above 0 and at most 1, such as `0.01` or `1/100`".into());
-                self.error("E-VALUE", given.span, format!("`{}` is no probability", given.text), hint);
+                let hint =
+                    Some("write a number greater than 0 and at most 1, such as `0.01` or `1/100`".into());
+                self.error("E-VALUE", given.span, format!("`{}` is not a probability", given.text), hint);
                 continue;
             };
             let sum = sums.entry(from.text.as_str()).or_insert((0, 1));
@@ -132,7 +133,7 @@ impl Checker<'_, '_> {
                 Some(total) if total.0 <= total.1 => *sum = total,
                 Some(_) => {
                     let message =
-                        format!("the faults of `{}` have a probability of more than 1 together", from.text);
+                        format!("the probabilities of the faults of `{}` add up to more than 1", from.text);
                     self.error("E-VALUE", given.span, message, None);
                 }
                 None => {
@@ -176,8 +177,8 @@ impl Checker<'_, '_> {
                 }
             }
             ConstraintKind::Parameter(name) => {
-                let hint = Some("a constraint reads `(variable = value)`".into());
-                self.error("E-CONSTRAINT", name.span, format!("`{}` is no constraint", name.text), hint);
+                let hint = Some("write a constraint as `(variable = value)`".into());
+                self.error("E-CONSTRAINT", name.span, format!("`{}` is not a constraint", name.text), hint);
             }
             ConstraintKind::Equals { variable, value } => {
                 let class_name = class.lineage.first().cloned().unwrap_or_default();
@@ -203,19 +204,19 @@ impl Checker<'_, '_> {
                     return;
                 };
                 if meaning.is_command && !is_guard {
-                    let message = format!("`{}` is a command: a mode cannot constrain it", variable.text);
+                    let message = format!("a mode cannot constrain the command `{}`", variable.text);
                     self.error(
                         "E-CONSTRAINT",
                         variable.span,
                         message,
-                        Some("commands belong into the guards of transitions".into()),
+                        Some("use commands only in the guards of transitions".into()),
                     );
                 } else if !meaning.values.contains(&value.text) {
                     let hint = did_you_mean(&value.text, meaning.values.iter().map(SmolStr::as_str));
                     self.error(
                         "E-VALUE",
                         value.span,
-                        format!("`{}` is never `{}`", variable.text, value.text),
+                        format!("`{}` cannot be `{}`", variable.text, value.text),
                         hint,
                     );
                 }
@@ -231,7 +232,7 @@ impl Checker<'_, '_> {
                 self.error(
                     "E-DUP",
                     instance.name.span,
-                    format!("the component `{}` is declared twice", instance.name.text),
+                    format!("the component `{}` is already declared", instance.name.text),
                     None,
                 );
             }
@@ -243,19 +244,18 @@ impl Checker<'_, '_> {
                 self.error(
                     "E-UNDEF",
                     instance.class.span,
-                    format!("no class is called `{}`", instance.class.text),
+                    format!("unknown class `{}`", instance.class.text),
                     hint,
                 );
             }
             let Some(class) = self.classes.get(&instance.class.text) else { continue };
             if class.modes.is_empty() {
-                let message =
-                    format!("`{}` has no mode, so that no component can be one", instance.class.text);
+                let message = format!("the class `{}` needs at least one mode", instance.class.text);
                 self.error(
                     "E-FORM",
                     instance.class.span,
                     message,
-                    Some("give it at least one, such as `(MODE Present true)`".into()),
+                    Some("add one, such as `(MODE Present true)`".into()),
                 );
             }
             for initial in instance.initial.modes() {
@@ -278,7 +278,12 @@ impl Checker<'_, '_> {
                 continue;
             };
             if instance.ports.iter().take(at).any(|(earlier, _)| earlier.text == port.text) {
-                self.error("E-DUP", port.span, format!("the port `{}` is connected twice", port.text), None);
+                self.error(
+                    "E-DUP",
+                    port.span,
+                    format!("the port `{}` is already connected", port.text),
+                    None,
+                );
             }
             let Some(other) = self.file.instances.iter().find(|known| known.name.text == component.text)
             else {
@@ -287,7 +292,7 @@ impl Checker<'_, '_> {
                 self.error(
                     "E-UNDEF",
                     component.span,
-                    format!("no component is called `{}`", component.text),
+                    format!("unknown component `{}`", component.text),
                     hint,
                 );
                 continue;
@@ -321,7 +326,7 @@ fn did_you_mean<'name>(word: &str, known: impl IntoIterator<Item = &'name str> +
     let all: Vec<&str> = known.clone().into_iter().collect();
     nearest(word, known)
         .map(|known| format!("did you mean `{known}`?"))
-        .or_else(|| (!all.is_empty() && all.len() <= 12).then(|| format!("known are {}", all.join(", "))))
+        .or_else(|| (!all.is_empty() && all.len() <= 12).then(|| format!("use one of {}", all.join(", "))))
 }
 
 fn add(left: (u64, u64), right: (u64, u64)) -> Option<(u64, u64)> {

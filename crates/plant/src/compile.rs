@@ -67,11 +67,9 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
             .and_then(|id| model.component(*id))
             .map_or(Span::default(), |component| component.span);
         let message = format!("these components depend on each other in a cycle: {}", names.join(", "));
-        diagnostics.push(
-            Diagnostic::warning(Code("E-RECURSION"), span, message).with_hint(
-                "estimation works, but commands are then found by search instead of by causal order",
-            ),
-        );
+        diagnostics.push(Diagnostic::warning(Code("E-RECURSION"), span, message).with_hint(
+            "estimation still works, but commands are then found by search instead of in causal order",
+        ));
     }
     (Some(model), diagnostics)
 }

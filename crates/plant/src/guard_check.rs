@@ -28,10 +28,11 @@ pub(crate) fn check_guards(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
                     continue;
                 }
                 let message = format!(
-                    "`{}` never leaves {} by this transition: nothing makes its guard true",
+                    "`{}` can never take this transition from {}: its guard cannot become true",
                     component.name, mode.name
                 );
-                let hint = "a guard is judged by modes and commands alone, and values that they leave open enable nothing";
+                let hint =
+                    "only modes and commands can make a guard true; values that they leave open cannot";
                 let warning = Diagnostic::warning(Code("E-CONSTRAINT"), transition.span, message);
                 diagnostics.push(warning.with_hint(hint));
             }

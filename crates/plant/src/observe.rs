@@ -79,7 +79,7 @@ impl Model {
                     .command_variables
                     .iter()
                     .filter_map(|variable| Some(self.component(variable.component)?.name.as_str()));
-                return Err(format!("nothing called `{name}` takes commands{}", meant(name, names)));
+                return Err(format!("no component `{name}` takes commands{}", meant(name, names)));
             }
             let offered: Vec<&str> = known
                 .clone()
@@ -126,7 +126,7 @@ impl Model {
                 self.variables.get(id.0 as usize).map_or(&[][..], |variable| variable.values.as_slice());
             let found = values.iter().position(|known| known == value).ok_or_else(|| {
                 format!(
-                    "`{name}` is never `{value}`{}",
+                    "`{name}` cannot be `{value}`{}",
                     meant(value, values.iter().map(smol_str::SmolStr::as_str))
                 )
             })?;

@@ -164,7 +164,7 @@ impl Planner {
             let all: Vec<Goal> =
                 goals.iter().filter(|goal| culprits.contains(&goal.component)).copied().collect();
             let names: Vec<String> = all.iter().map(|goal| goal.describe(&self.model)).collect();
-            let reason = format!("{} cannot hold together", names.join(" and "));
+            let reason = format!("{} contradict each other", names.join(" and "));
             unreachable.extend(all.iter().map(|goal| Unreachable {
                 goal: *goal,
                 reason: reason.clone(),
@@ -303,16 +303,19 @@ impl Planner {
 
     fn reason(&self, state: &State, goal: Goal, accepted: &[Goal], limit_reached: bool) -> String {
         if limit_reached {
-            return format!("no way to {} was found among {MAX_STATES} states", goal.describe(&self.model));
+            return format!(
+                "no commands that reach {} were found within {MAX_STATES} states",
+                goal.describe(&self.model)
+            );
         }
         let reach = self.reach(state);
         if reach.get(goal.component.0 as usize).is_some_and(|reach| reach & goal.modes != 0) {
             let others: Vec<String> = accepted.iter().map(|goal| goal.describe(&self.model)).collect();
             let what = goal.describe(&self.model);
             return if others.is_empty() {
-                format!("{what} cannot be brought about: what it needs first rules out what it needs later")
+                format!("no commands reach {what}: its first step makes a later step impossible")
             } else {
-                format!("{what} cannot be brought about together with {}", others.join(" and "))
+                format!("no commands reach {what} together with {}", others.join(" and "))
             };
         }
         self.why(state, goal, &reach)
@@ -346,7 +349,7 @@ impl Planner {
                     format!(": {}", self.why(state, needed, reach))
                 };
                 return format!(
-                    "`{name}` goes from {} to {} only with {}, which is out of reach{because}",
+                    "`{name}` goes from {} to {} only with {}, which cannot be reached{because}",
                     mode(at),
                     mode(step.to),
                     needed.describe(&self.model)
@@ -354,7 +357,7 @@ impl Planner {
             }
             at = step.to;
         }
-        format!("`{name}` cannot get from {} to {}", mode(from), mode(target))
+        format!("no transitions lead `{name}` from {} to {}", mode(from), mode(target))
     }
 }
 

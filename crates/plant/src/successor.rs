@@ -23,13 +23,13 @@ pub enum EstimateError {
         second: String,
     },
     /// No state of the belief can lead to the observation.
-    #[error("no state that is believed possible explains the observations")]
+    #[error("no tracked state explains the observations")]
     Unexplained,
     /// There are more states than can be kept.
-    #[error("more than {0} states are possible: ask for the most likely ones")]
+    #[error("more than {0} states are possible: limit the number of tracked states")]
     TooMany(usize),
     /// The modes that were asked for contradict each other.
-    #[error("these modes cannot hold together: {0}")]
+    #[error("these modes contradict each other: {0}")]
     Impossible(String),
 }
 

@@ -271,18 +271,18 @@ impl Uncertainty {
     pub fn problem(&self, network: &Network) -> Option<String> {
         let unknown = self.unknown_names(network);
         if !unknown.is_empty() {
-            return Some(format!("no activity or condition is called {}", unknown.join(", ")));
+            return Some(format!("unknown activity or condition {}", unknown.join(", ")));
         }
         if let Some(name) = self.unsound() {
             return Some(format!(
-                "what is said of {name} is no distribution: its numbers must not fall, and not be below 0"
+                "the distribution of {name} is invalid: its numbers must not decrease, and must be at least 0"
             ));
         }
         let mut incidents = self.late.iter().chain(&self.withdrawn);
         if let Some((name, it)) = incidents.find(|(_, it)| !(0.0..=1.0).contains(&it.probability)) {
-            return Some(format!("the probability of {name} is from 0 to 1, and not {}", it.probability));
+            return Some(format!("the probability of {name} must be from 0 to 1, not {}", it.probability));
         }
-        let rocks = "rocks have lengths from 0 on, and the least radius comes first";
+        let rocks = "the lengths of rocks must be at least 0, and the minimum radius must come first";
         (!self.rocks.is_sound()).then(|| rocks.to_owned())
     }
 

@@ -237,7 +237,7 @@ impl SeparationViolation {
         };
         let place = self.position_m;
         format!(
-            "{first} and {second} come within {:.2} m of each other near ({:.0}, {:.0}) at {:.1}, {schedule}; they need {:.2} m",
+            "{first} and {second} come within {:.2} m of each other near ({:.0}, {:.0}) at {:.1}, {schedule}; they need at least {:.2} m",
             self.distance_m, place.x, place.y, self.time, self.least_m
         )
     }

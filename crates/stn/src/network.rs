@@ -53,7 +53,7 @@ impl From<Overflow> for Inconsistency {
 
 impl std::fmt::Display for Overflow {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("a time does not fit into 64 bits")
+        f.write_str("a time is too large to represent exactly")
     }
 }
 

@@ -30,7 +30,7 @@ pub enum Undecided {
 impl fmt::Display for Undecided {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Overflow => "a time does not fit into 64 bits",
+            Self::Overflow => "a time is too large to represent exactly",
             Self::Stopped => "stopped",
         })
     }

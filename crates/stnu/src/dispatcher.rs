@@ -68,13 +68,13 @@ pub enum DispatchError {
 impl fmt::Display for DispatchError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Executed => f.write_str("it has happened already"),
-            Self::Owner => f.write_str("the executive executes its points, and nature its own"),
-            Self::Blocked => f.write_str("something else must come first"),
+            Self::Executed => f.write_str("it has already happened"),
+            Self::Owner => f.write_str("the executive can only execute its own points, and the environment only the ends of contingent links"),
+            Self::Blocked => f.write_str("another event must come first"),
             Self::Early(time) => write!(f, "not before {time}"),
             Self::Late(time) => write!(f, "no later than {time}"),
-            Self::Past => f.write_str("time does not run backwards"),
-            Self::Overflow => f.write_str("a time does not fit into 64 bits"),
+            Self::Past => f.write_str("time cannot run backwards"),
+            Self::Overflow => f.write_str("a time is too large to represent exactly"),
         }
     }
 }

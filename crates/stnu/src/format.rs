@@ -79,7 +79,7 @@ impl Draft {
             Ok(scale) if self.fits(scale) => (scale, false),
             _ => (BILLIONTHS, true),
         };
-        let too_large = |line| ParseError::new(line, "a time does not fit into 64 bits");
+        let too_large = |line| ParseError::new(line, "a time is too large to represent exactly");
         let mut network = Network::new(self.names.len());
         for DraftEdge { line, from, to, weight } in self.edges {
             if let Some(weight) = weight.finite() {

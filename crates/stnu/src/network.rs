@@ -72,9 +72,9 @@ pub enum LinkError {
 impl fmt::Display for LinkError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Range => "the bounds of a contingent link are 0 ≤ lower ≤ upper",
-            Self::Point => "a contingent link is between points of the network",
-            Self::EndTaken(_) => "a time point ends at most one contingent link",
+            Self::Range => "the bounds of a contingent link must satisfy 0 ≤ minimum ≤ maximum",
+            Self::Point => "both ends of a contingent link must be points of the network",
+            Self::EndTaken(_) => "a time point can end only one contingent link",
             Self::Circular => "a contingent link cannot be activated by its own end",
         })
     }

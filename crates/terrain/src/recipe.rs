@@ -88,7 +88,7 @@ const NO_CRATERS: Craters = Craters { count: 0, diameters_m: [1.0, 1.0], freshne
 pub const RECIPES: &[Recipe] = &[
     Recipe {
         name: "flat",
-        title: "Level ground without anything on it, 307 m × 307 m",
+        title: "Flat ground without obstacles, 307 m × 307 m",
         frame: GridFrame::new(512, 512, 0.6),
         seed: 0,
         relief: Relief { height_m: 0.0, wavelength_m: 100.0, octaves: 0, gain: 0.5, ridged: false },
@@ -137,7 +137,7 @@ pub const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "noachian-highland",
-        title: "Old highland, densely cratered and rocky, 614 m × 614 m",
+        title: "Old highland with many craters and rocks, 614 m × 614 m",
         frame: GridFrame::new(1024, 1024, 0.6),
         seed: 1976,
         relief: Relief { height_m: 6.0, wavelength_m: 200.0, octaves: 8, gain: 0.42, ridged: false },

@@ -165,7 +165,7 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
     let start = reader.node_id(document.get("start"), "start")?;
     let end = reader.node_id(document.get("end"), "end")?;
     let threat_gap = match document.get("threat_gap") {
-        Some(gap) => Time::deserialize(gap).map_err(|_| error("threat_gap", "is no exact time"))?,
+        Some(gap) => Time::deserialize(gap).map_err(|_| error("threat_gap", "is not an exact time"))?,
         None => Time::ONE,
     };
     let controllability = match document.get("controllability") {
@@ -268,7 +268,7 @@ impl Reader {
     fn read_node(&mut self, index: usize, value: &Value) -> Result<(), NetworkError> {
         let place = format!("nodes[{index}]");
         if value.get("id").is_some_and(|id| id.as_u64() != Some(index as u64)) {
-            return Err(error(&place, "ids count nodes from 0, in order"));
+            return Err(error(&place, "node ids must count from 0, in order"));
         }
         if let Some(role) = value.get("role") {
             self.nodes[index].role = serde_json::from_value(role.clone())
@@ -281,7 +281,7 @@ impl Reader {
             self.nodes[index].role = Role::Decision;
         }
         for event in value.get("events").and_then(Value::as_array).into_iter().flatten() {
-            let event = event.as_str().ok_or_else(|| error(&place, "an event is a name"))?;
+            let event = event.as_str().ok_or_else(|| error(&place, "an event must be a name"))?;
             let event = self.event(event, NodeId::from_index(index), &place)?;
             self.nodes[index].events.push(event);
         }
@@ -289,8 +289,8 @@ impl Reader {
     }
 
     fn event(&mut self, name: &str, node: NodeId, place: &str) -> Result<EventRef, NetworkError> {
-        let (name, end) =
-            split_event(name).ok_or_else(|| error(place, &format!("`{name}` is no event's name")))?;
+        let (name, end) = split_event(name)
+            .ok_or_else(|| error(place, &format!("`{name}` is not the name of an event")))?;
         let occurrence = match self.by_name.get(name) {
             Some(&known) => known,
             None => self.add_occurrence(Occurrence {
@@ -323,32 +323,31 @@ impl Reader {
         let place = format!("arcs[{index}]");
         let id = ArcId::from_index(index);
         if value.get("id").is_some_and(|id| id.as_u64() != Some(index as u64)) {
-            return Err(error(&place, "ids count arcs from 0, in order"));
+            return Err(error(&place, "arc ids must count from 0, in order"));
         }
         let (from, to) = (self.node_id(value.get("from"), &place)?, self.node_id(value.get("to"), &place)?);
         let lower = value.get("lower").and_then(|lower| Time::deserialize(lower).ok());
-        let lower = lower.ok_or_else(|| error(&place, "`lower` is no time"))?;
+        let lower = lower.ok_or_else(|| error(&place, "`lower` must be a time"))?;
         let upper = value.get("upper").and_then(|upper| Bound::deserialize(upper).ok());
-        let upper = upper.ok_or_else(|| error(&place, "`upper` is no bound"))?;
+        let upper = upper.ok_or_else(|| error(&place, "`upper` must be a time or `inf`"))?;
         if Bound::Finite(lower) > upper {
             return Err(error(&place, "`lower` is greater than `upper`"));
         }
         let is_contingent = match value.get("contingent") {
-            Some(flag) => flag.as_bool().ok_or_else(|| error(&place, "`contingent` is `true` or `false`"))?,
+            Some(flag) => {
+                flag.as_bool().ok_or_else(|| error(&place, "`contingent` must be `true` or `false`"))?
+            }
             None => false,
         };
         if is_contingent && (lower < Time::ZERO || upper.finite().is_none()) {
-            return Err(error(&place, "a contingent duration is within finite bounds that are not negative"));
+            return Err(error(&place, "a contingent duration needs finite bounds of at least 0"));
         }
         let kind: ArcKind =
             serde_json::from_value(value.get("kind").cloned().unwrap_or_else(|| "glue".into()))
                 .map_err(|problem| error(&place, &problem.to_string()))?;
         let occurrence = match value.get("activity").and_then(Value::as_str) {
             Some(name) => Some(
-                *self
-                    .by_name
-                    .get(name)
-                    .ok_or_else(|| error(&place, &format!("no event belongs to `{name}`")))?,
+                *self.by_name.get(name).ok_or_else(|| error(&place, &format!("`{name}` has no events")))?,
             ),
             None => None,
         };
@@ -379,7 +378,7 @@ impl Reader {
             let alternative = value.get("alternative").and_then(Value::as_u64);
             let known = self.decision_at(decision, &place)?;
             if alternative != Some(known.alternatives.len() as u64) {
-                return Err(error(&place, "alternatives are numbered from 0, in order"));
+                return Err(error(&place, "alternatives must be numbered from 0, in order"));
             }
             arc.choice = Some((decision, known.alternatives.len() as u32));
             known.alternatives.push(id);
@@ -403,7 +402,7 @@ impl Reader {
         let mode = match value.get("type").and_then(Value::as_str) {
             Some("Ask") => LabelMode::Ask,
             Some("Tell") => LabelMode::Tell,
-            _ => return Err(error(place, "a label's `type` is `Ask` or `Tell`")),
+            _ => return Err(error(place, "the `type` of a label must be `Ask` or `Tell`")),
         };
         let text = text(value, "literal", place)?;
         // A condition on what is in sight names the places that it comes to.
@@ -416,7 +415,7 @@ impl Reader {
             None => vocabulary.literal(&text),
         };
         let literal = literal
-            .ok_or_else(|| error(place, &format!("`{text}` is no literal of the declared variables")))?;
+            .ok_or_else(|| error(place, &format!("`{text}` is not a condition on a declared variable")))?;
         let owner = match value.get("owner").and_then(Value::as_str) {
             Some(name) => self.by_name.get(name).copied(),
             None => arc_owner,
@@ -432,7 +431,7 @@ impl Reader {
     /// The decision of that number; numbers beyond any sensible count are refused, gaps are found at the end.
     fn decision_at(&mut self, decision: DecisionId, place: &str) -> Result<&mut Decision, NetworkError> {
         if decision.index() >= self.nodes.len() {
-            return Err(error(place, "decisions are numbered from D1 without gaps"));
+            return Err(error(place, "decisions must be numbered from D1 without gaps"));
         }
         while self.decisions.len() <= decision.index() {
             self.decisions.push(Decision {
@@ -452,7 +451,10 @@ impl Reader {
                 return Err(error(&name, "has no node"));
             };
             if decision.alternatives.is_empty() || node.out_arcs != decision.alternatives {
-                return Err(error(&name, "its node has exactly its alternatives as out-arcs, at least one"));
+                return Err(error(
+                    &name,
+                    "the out-arcs of its node must be exactly its alternatives, at least one",
+                ));
             }
         }
         Ok(())
@@ -498,7 +500,7 @@ fn mode_name(mode: LabelMode) -> &'static str {
 fn decision_id(value: Option<&Value>, place: &str) -> Result<DecisionId, NetworkError> {
     let number = value.and_then(Value::as_str).and_then(|name| name.strip_prefix('D')?.parse::<u32>().ok());
     let index = number.and_then(|number| number.checked_sub(1));
-    index.map(DecisionId).ok_or_else(|| error(place, "a decision is named D1, D2, …"))
+    index.map(DecisionId).ok_or_else(|| error(place, "a decision must be named D1, D2, …"))
 }
 
 fn list<'value>(document: &'value Value, member: &str) -> Result<&'value [Value], NetworkError> {

@@ -32,19 +32,19 @@ pub struct PathLeg {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PathError {
     /// There is no such traverse, or it has no arc.
-    #[error("the network has no traverse with that number")]
+    #[error("unknown traverse number")]
     NoTraverse,
     /// It has no segment at all.
-    #[error("a path has at least one segment")]
+    #[error("a path needs at least one segment")]
     Empty,
     /// A length is negative, infinite or not a number, or too long for exact time.
-    #[error("a segment's length of {0} metres has no exact duration")]
+    #[error("a segment of {0} m has no exact duration")]
     Length(String),
     /// The lengths add up to more than exact time holds.
-    #[error("a path's segments take too long together for exact time")]
+    #[error("the total duration of a path is too large to represent exactly")]
     TooLong,
     /// The greatest speed is not positive, or the least is negative or greater.
-    #[error("the speeds {0} to {1} metres per second are no range of speeds to drive at")]
+    #[error("{0} to {1} m/s is not a valid range of speeds")]
     Speed(String, String),
 }
 

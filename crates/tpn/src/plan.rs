@@ -306,7 +306,7 @@ pub struct UseOrdering {
 pub enum Levels {
     /// Of a reusable resource: the most that is used at a time.
     Peak(Rational),
-    /// Of a reservoir: the least and the greatest level.
+    /// Of a reservoir: the minimum and the maximum level.
     Range {
         /// The least level.
         low: Rational,

@@ -85,14 +85,14 @@ fn state_order_from_json(
     plan: &Value,
 ) -> Result<Vec<StateOrder>, PlanError> {
     let Some(stated) = plan.get("state_order") else { return Ok(Vec::new()) };
-    let Value::Object(stated) = stated else { return Err(shape("`state_order` is not an object")) };
+    let Value::Object(stated) = stated else { return Err(shape("`state_order` must be an object")) };
     let variables: BTreeMap<&str, VariableId> = (network.variables.iter().enumerate())
         .map(|(index, variable)| (variable.name.as_str(), VariableId::from_index(index)))
         .collect();
     let mut found = Vec::with_capacity(stated.len());
     for (name, producers) in stated {
         let variable = *variables.get(name.as_str()).ok_or_else(|| unknown("state variable", name))?;
-        let wrong = || shape(&format!("`state_order` has no list of names for `{name}`"));
+        let wrong = || shape(&format!("`state_order` needs a list of names for `{name}`"));
         let label = |producer: &Value| names.label(producer.as_str().ok_or_else(wrong)?);
         let producers = producers.as_array().ok_or_else(wrong)?.iter().map(label);
         let producers = producers.collect::<Result<Vec<LabelId>, PlanError>>()?;
@@ -142,12 +142,12 @@ fn levels_from_json(network: &Network, plan: &Value) -> Result<Vec<Levels>, Plan
     let Some(stated) = plan.get("resources") else { return Ok(Vec::new()) };
     let number = |resource: &Value, member: &str| {
         let number = resource.get(member).cloned().and_then(|number| serde_json::from_value(number).ok());
-        number.ok_or_else(|| shape(&format!("`{member}` of a resource is no exact number")))
+        number.ok_or_else(|| shape(&format!("`{member}` of a resource must be an exact number")))
     };
     let levels = network.resources.iter().map(|resource| {
         let levels = stated
             .get(resource.name.as_str())
-            .ok_or_else(|| shape(&format!("`resources` does not tell of `{}`", resource.name)))?;
+            .ok_or_else(|| shape(&format!("`resources` has no entry for `{}`", resource.name)))?;
         match resource.supply {
             Supply::Reusable { .. } => Ok(Levels::Peak(number(levels, "peak")?)),
             Supply::Reservoir { .. } => {
@@ -186,7 +186,7 @@ pub fn selected_activities(network: &Network, plan: &Plan) -> Vec<String> {
 pub fn plans_from_json(network: &Network, document: &Value) -> Result<Vec<Plan>, PlanError> {
     match document.get("plans") {
         Some(Value::Array(plans)) => plans.iter().map(|plan| plan_from_json(network, plan)).collect(),
-        Some(_) => Err(shape("`plans` is not a list")),
+        Some(_) => Err(shape("`plans` must be a list")),
         None => Ok(vec![plan_from_json(network, document)?]),
     }
 }
@@ -195,7 +195,7 @@ pub fn plans_from_json(network: &Network, document: &Value) -> Result<Vec<Plan>,
 /// `activities`, which [`stated_activities`] gives.
 pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError> {
     if !plan.is_object() {
-        return Err(shape("a plan is an object with `choices` and `windows`"));
+        return Err(shape("a plan must be an object with `choices` and `windows`"));
     }
     let names = Names::new(network);
     let mut choices = Vec::new();
@@ -209,7 +209,7 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
         let label = |member: &str| {
             let name = link.get(member).and_then(Value::as_str);
             names.label(
-                name.ok_or_else(|| shape("a causal link is an object with the names `ask` and `tell`"))?,
+                name.ok_or_else(|| shape("a causal link must be an object with the names `ask` and `tell`"))?,
             )
         };
         causal_links.push(CausalLink { ask: label("ask")?, tell: label("tell")? });
@@ -220,14 +220,14 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
             Some([Value::String(first), Value::String(then)]) => {
                 Ok(Ordering { first: names.label(first)?, then: names.label(then)? })
             }
-            _ => Err(shape(&format!("`{member}` is a list of pairs of names"))),
+            _ => Err(shape(&format!("`{member}` must be a list of pairs of names"))),
         };
         items(plan, member)?.iter().map(pair).collect()
     };
     let mut uses_ordered = Vec::new();
     for pair in items(plan, "uses_ordered")? {
         let Some([Value::String(first), Value::String(then)]) = pair.as_array().map(Vec::as_slice) else {
-            return Err(shape("`uses_ordered` is a list of pairs of names"));
+            return Err(shape("`uses_ordered` must be a list of pairs of names"));
         };
         uses_ordered.push(UseOrdering { first: names.used(first)?, then: names.used(then)? });
     }
@@ -235,10 +235,10 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
     for (event, window) in members(plan, "windows")? {
         let node = names.event(event)?;
         let read = read_window(window)
-            .ok_or_else(|| shape(&format!("the window of `{event}` is not a pair of exact times")))?;
+            .ok_or_else(|| shape(&format!("the window of `{event}` must be a pair of exact times")))?;
         if windows[node.index()].is_some_and(|known| known != read) {
             return Err(shape(&format!(
-                "`{event}` is given two windows, under its names for the same event"
+                "`{event}` has two windows, under different names of the same event"
             )));
         }
         windows[node.index()] = Some(read);
@@ -263,7 +263,7 @@ pub fn plan_from_json(network: &Network, plan: &Value) -> Result<Plan, PlanError
 fn omitted(plan: &Value) -> Result<usize, PlanError> {
     let Some(stated) = plan.get("conflict_order_omitted") else { return Ok(0) };
     let count = stated.as_u64().and_then(|count| usize::try_from(count).ok());
-    count.ok_or_else(|| shape("`conflict_order_omitted` is a number of pairs"))
+    count.ok_or_else(|| shape("`conflict_order_omitted` must be a number of pairs"))
 }
 
 /// The `activities` that a plan's JSON states, sorted, if it does.
@@ -278,7 +278,9 @@ pub fn stated_activities(plan: &Value) -> Option<Vec<String>> {
 pub fn times_from_json(network: &Network, times: &Value) -> Result<Vec<Option<Time>>, PlanError> {
     let names = Names::new(network);
     let mut by_node = vec![None; network.nodes.len()];
-    let Value::Object(times) = times else { return Err(shape("times are an object from events to numbers")) };
+    let Value::Object(times) = times else {
+        return Err(shape("times must be an object that maps events to numbers"));
+    };
     for (event, time) in times {
         let read = Time::deserialize(time)
             .map_err(|reason| shape(&format!("the time of `{event}` is not exact: {reason}")))?;
@@ -333,7 +335,7 @@ fn choice(network: &Network, name: &str, alternative: &Value) -> Result<Choice, 
     let index = number.and_then(|number| number.checked_sub(1)).ok_or_else(|| unknown("decision", name))?;
     let decision = network.decisions.get(index as usize).ok_or_else(|| unknown("decision", name))?;
     let alternative =
-        alternative.as_u64().ok_or_else(|| shape("a choice is the number of an alternative"))?;
+        alternative.as_u64().ok_or_else(|| shape("a choice must be the number of an alternative"))?;
     if alternative >= decision.alternatives.len() as u64 {
         return Err(unknown("alternative", &format!("{name}: {alternative}")));
     }

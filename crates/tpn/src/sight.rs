@@ -32,9 +32,12 @@ impl Hidden {
     pub fn reason(&self) -> String {
         match self.blocked_at_m {
             Some([east, north, _]) => {
-                format!("from {} the ground near ({east:.0}, {north:.0}) blocks the line", self.place)
+                format!(
+                    "from {} the ground near ({east:.0}, {north:.0}) blocks the line of sight",
+                    self.place
+                )
             }
-            None => format!("from {} the map does not have the heights that decide it", self.place),
+            None => format!("from {} the map does not have the heights to decide it", self.place),
         }
     }
 }

@@ -73,8 +73,8 @@ pub fn compare(network: &Network, one: &Plan, other: &Plan) -> Ordering {
 /// Whether a plan is known to be the best, in words; `None` without an objective.
 pub const fn standing(plan: &Plan) -> Option<&'static str> {
     match plan.quality.is_optimal {
-        Some(true) => Some("the planner has shown that no plan is better"),
-        Some(false) => Some("planning ended before it was known whether a better plan exists"),
+        Some(true) => Some("optimal: no better plan exists"),
+        Some(false) => Some("not proven optimal: planning ended before the search was complete"),
         None => None,
     }
 }

@@ -12,9 +12,15 @@ pub(crate) fn check_form(network: &Network, plan: &Plan) -> Result<(), Verdict> 
             violations.push(Violation::new(Rule::Form, message));
         }
     };
-    expect(plan.selected_nodes.len() == network.nodes.len(), "the plan is of a network with other nodes");
-    expect(plan.selected_arcs.len() == network.arcs.len(), "the plan is of a network with other arcs");
-    expect(plan.windows.len() == network.nodes.len(), "the plan does not have one window for each node");
+    expect(
+        plan.selected_nodes.len() == network.nodes.len(),
+        "the plan belongs to a different network: its nodes differ",
+    );
+    expect(
+        plan.selected_arcs.len() == network.arcs.len(),
+        "the plan belongs to a different network: its arcs differ",
+    );
+    expect(plan.windows.len() == network.nodes.len(), "the plan must have one window for each node");
     let orderings = plan.conflict_order.iter().chain(&plan.orderings_added);
     let labels = orderings.flat_map(|ordering| [ordering.first, ordering.then]);
     let labels = labels.chain(plan.causal_links.iter().flat_map(|link| [link.ask, link.tell]));
@@ -42,11 +48,11 @@ pub(crate) fn check_form(network: &Network, plan: &Plan) -> Result<(), Verdict> 
                 && it.arc.index() < network.arcs.len()
                 && it.start.index().max(it.end.index()) < network.nodes.len()
         }) && network.worths.iter().all(|it| it.arc.index() < network.arcs.len()),
-        "the network has a use or a worth of something unknown",
+        "the network has a resource use or an objective with an unknown reference",
     );
     expect(
         network.departures.iter().all(|it| it.arrival.index() < network.labels.len()),
-        "the network has a departure of something unknown",
+        "the network has a departure with an unknown reference",
     );
     if violations.is_empty() { Ok(()) } else { Err(Verdict::new(violations)) }
 }
@@ -80,7 +86,7 @@ pub(crate) fn check_selection(network: &Network, plan: &Plan, violations: &mut V
     for (index, decision) in network.decisions.iter().enumerate() {
         if taken[index].is_some() && !nodes[decision.node.index()] {
             let name = Network::decision_name(tpn::DecisionId::from_index(index));
-            let message = format!("{name} is decided, but the plan never reaches it");
+            let message = format!("the plan decides {name}, but never reaches it");
             violations.push(Violation::new(Rule::Selection, message));
         }
     }
@@ -92,7 +98,7 @@ fn choices(network: &Network, plan: &Plan, violations: &mut Vec<Violation>) -> V
     for choice in &plan.choices {
         let name = Network::decision_name(choice.decision);
         if taken[choice.decision.index()].replace(choice.alternative).is_some() {
-            violations.push(Violation::new(Rule::Selection, format!("{name} is decided twice")));
+            violations.push(Violation::new(Rule::Selection, format!("the plan decides {name} twice")));
         }
         if choice.alternative as usize >= network.decisions[choice.decision.index()].alternatives.len() {
             let message = format!("{name} has no alternative {}", choice.alternative);
@@ -112,7 +118,10 @@ fn selected_out_arcs(
     let Some(decision) = network.nodes[node.index()].decision else { return out.clone() };
     let name = Network::decision_name(decision);
     let Some(alternative) = taken[decision.index()] else {
-        violations.push(Violation::new(Rule::Selection, format!("{name} is reached, but not decided")));
+        violations.push(Violation::new(
+            Rule::Selection,
+            format!("the plan reaches {name}, but does not decide it"),
+        ));
         return Vec::new();
     };
     let is_taken = |arc: &&ArcId| network.arcs[arc.index()].choice == Some((decision, alternative));
@@ -124,7 +133,7 @@ fn compare(network: &Network, plan: &Plan, nodes: &[bool], arcs: &[bool], violat
         if expected != selected {
             let name = node_name(network, NodeId::from_index(index));
             let message = if expected {
-                format!("{name} belongs to the plan's choices, but is not selected")
+                format!("{name} follows from the plan's choices, but is not selected")
             } else {
                 format!("{name} is selected, but no selected arc leads to it")
             };
@@ -137,12 +146,12 @@ fn compare(network: &Network, plan: &Plan, nodes: &[bool], arcs: &[bool], violat
             let events = vec![node_name(network, arc.from), node_name(network, arc.to)];
             let message = if expected {
                 format!(
-                    "the arc from {} to {} belongs to the plan's choices, but is not selected",
+                    "the arc from {} to {} follows from the plan's choices, but is not selected",
                     events[0], events[1]
                 )
             } else {
                 format!(
-                    "the arc from {} to {} is selected, but belongs to no choice of the plan",
+                    "the arc from {} to {} is selected, but does not follow from the plan's choices",
                     events[0], events[1]
                 )
             };

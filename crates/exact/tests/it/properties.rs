@@ -137,7 +137,7 @@ fn a_document_has_numbers_only_where_they_are_exact() {
 #[test]
 fn what_is_no_exact_time_in_a_document_is_refused_with_its_reason() {
     let refused = |text: &str| serde_json::from_str::<Time>(text).expect_err(text).to_string();
-    assert!(refused("\"soon\"").contains("`soon` is no number"));
+    assert!(refused("\"soon\"").contains("`soon` is not a number"));
     assert!(refused("9223372036854775808").contains("does not fit into 64 bits"));
     assert!(refused("1e300").contains("does not fit into 64 bits"));
     assert!(refused("\"inf\"").contains("finite"));

@@ -53,9 +53,9 @@ fn warning(model: &Model, faults: &[FinalFault], span: Span, labels: &[String]) 
             format!("{name}={}", model.mode_name(*id, *mode))
         })
         .collect();
-    let message = format!("with {} the program waits forever: {}", names.join(" and "), labels.join(", "));
+    let message = format!("after {} the program waits forever: {}", names.join(" and "), labels.join(", "));
     Diagnostic::warning(Code("W-LIVENESS"), span, message)
-        .with_hint("end the wait: enclose it in DO-WATCHING with what shows that it cannot end")
+        .with_hint("enclose the part that waits in DO-WATCHING, with a condition that holds after the fault")
 }
 
 /// The first fault of each component that leads to a mode which no transition leaves.

@@ -105,10 +105,10 @@ impl System {
                     let diagnostic = Diagnostic::error(
                         Code("E-UNDEF"),
                         rmpl::Span::default(),
-                        "there is no plant to control",
+                        "the program needs a plant to control",
                     )
                     .with_hint(
-                        "declare components by DEFCLASS and DEFINSTANCE, here or in a model of their own",
+                        "declare components with DEFCLASS and DEFINSTANCE, here or in a separate model",
                     );
                     if place {
                         model_diagnostics.push(diagnostic);
@@ -234,11 +234,11 @@ fn undefined(name: &Name, known: &BTreeSet<SmolStr>, is_asserted: bool) -> Diagn
     let hint = nearest(&name.text, known.iter().map(SmolStr::as_str)).map_or_else(
         || {
             let missing = if is_asserted {
-                "asserted, but nothing asks for it"
+                "asserted, but never used in a guard"
             } else {
-                "asked for, but nothing asserts it"
+                "used in a guard, but never asserted"
             };
-            format!("a variable of the program's own is both asserted and asked for; this one is {missing}")
+            format!("a variable that the plant does not have must be both asserted and used in a guard; this one is {missing}")
         },
         |meant| format!("did you mean `{meant}`?"),
     );

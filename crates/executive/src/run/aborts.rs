@@ -36,7 +36,7 @@ impl Run<'_> {
             let fixed = begun.running.iter().find(|id| self.abort_time(**id).is_none());
             if let Some(id) = fixed {
                 let name = &self.stage.network.occurrences[id.index()].name;
-                hindrance = Some(format!("{name} is under way and cannot be ended early"));
+                hindrance = Some(format!("{name} is in progress and cannot be ended early"));
                 break;
             }
             let takes = begun.running.iter().filter_map(|&id| self.abort_time(id)).max().unwrap_or_default();
@@ -52,7 +52,7 @@ impl Run<'_> {
                 let name = self.stage.network.occurrences[id.index()].name.clone();
                 let text = match self.abort_time(id) {
                     Some(takes) if takes.is_positive() => {
-                        format!("is ended early, which takes until {}", shown(since))
+                        format!("is being ended early, until {}", shown(since))
                     }
                     _ => "is ended early".to_owned(),
                 };
@@ -225,7 +225,7 @@ impl Run<'_> {
         } else {
             format!("at {}", shown(moment(start)?.max(self.now)))
         };
-        Some(format!("{who} needs {text} {when}, and it holds until {}", shown(over)))
+        Some(format!("{who} needs {text} {when}, but it holds only until {}", shown(over)))
     }
 
     /// The first activity that an interval begins with, or else lies in it.

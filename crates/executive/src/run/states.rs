@@ -118,8 +118,7 @@ impl Run<'_> {
         let value = described.values.get(estimated.index()).map_or("", |value| value.as_str());
         let name =
             of.owner.map_or_else(SmolStr::default, |owner| network.occurrences[owner.index()].name.clone());
-        let text =
-            format!("is over, and {} is estimated to be {value}: {} has not come", described.name, of.text);
+        let text = format!("has ended, but {} is estimated to be {value}, not {}", described.name, of.text);
         self.write(Happening::Progress { name, text });
         if let Some(happening) = self.state.set_value(network, variable, estimated) {
             self.write(happening);
@@ -168,19 +167,19 @@ impl Run<'_> {
                 let is = self.state.words(network, variable);
                 let name = &network.variables[variable.index()].name;
                 let reason =
-                    format!("{} needs {}, and {name} is {is} at {now}", self.needing(label), of.text);
+                    format!("{} needs {}, but {name} is {is} at {now}", self.needing(label), of.text);
                 (network.interval(label).0, reason)
             }
             Lack::Level(resource) => {
                 let of = &network.resources[resource.index()];
                 let (name, level) = (&of.name, self.state.level(resource));
                 let limit = match of.supply {
-                    Supply::Reusable { capacity } => format!("of which there is {}", capacity.readable()),
+                    Supply::Reusable { capacity } => format!("of a capacity of {}", capacity.readable()),
                     Supply::Reservoir { least, .. } if level < least => {
-                        format!("below its least level of {}", least.readable())
+                        format!("below its minimum of {}", least.readable())
                     }
                     Supply::Reservoir { greatest, .. } => {
-                        format!("above its greatest level of {}", greatest.readable())
+                        format!("above its maximum of {}", greatest.readable())
                     }
                 };
                 (network.start, format!("{name} is at {} at {now}, {limit}", level.readable()))
@@ -310,7 +309,7 @@ impl Run<'_> {
         };
         let of = &network.variables[variable.index()];
         let reason = format!(
-            "{} needs {} {when}, and {} became {} at {}",
+            "{} needs {} {when}, but {} became {} at {}",
             self.needing(label),
             network.labels[label.index()].text,
             of.name,
@@ -396,7 +395,7 @@ impl Run<'_> {
                 (of.moment(), format!("{who} {verb} {amount} {with} {name} at {at}, {taken}: {stands}"))
             } else {
                 let range = format!("between {} and {}", least.readable(), greatest.readable());
-                let text = format!("{stands}: the plan no longer keeps it {range} in every schedule");
+                let text = format!("{stands}: the plan no longer keeps its level {range} in every schedule");
                 (network.start, text)
             };
         Violation {

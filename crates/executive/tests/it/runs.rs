@@ -304,10 +304,7 @@ fn an_abortable_activity_is_ended_early_and_the_other_alternative_is_taken() {
             _ => None,
         })
         .collect();
-    assert_eq!(
-        words,
-        [(Time::from(10), "is ended early, which takes until 13"), (Time::from(13), "has ended")]
-    );
+    assert_eq!(words, [(Time::from(10), "is being ended early, until 13"), (Time::from(13), "has ended")]);
 }
 
 #[test]
@@ -319,7 +316,7 @@ fn what_cannot_be_aborted_stops_with_what_it_needed_and_when() {
     };
     assert_eq!(
         reason,
-        "Walk#1 needs PATH1=OK until 20, and it holds until 10: Walk#1 is under way and cannot be ended early"
+        "Walk#1 needs PATH1=OK until 20, but it holds only until 10: Walk#1 is in progress and cannot be ended early"
     );
 }
 

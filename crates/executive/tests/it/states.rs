@@ -22,7 +22,7 @@ impl Replanner for Kirk {
         let Some(plan) = outcome.plans.into_iter().next() else {
             let reasons = outcome.failure.iter().flat_map(|failure| &failure.reasons);
             let messages: Vec<&str> = reasons.map(|reason| reason.message.as_str()).collect();
-            return Err(format!("there is no plan from here: {}", messages.join("; ")));
+            return Err(format!("no plan from here: {}", messages.join("; ")));
         };
         let verdict = verify::check_plan(&network, &plan);
         assert!(verdict.valid, "{:?}", verdict.violations);
@@ -131,7 +131,7 @@ fn without_another_way_the_run_stops_before_the_activity_starts() {
     let stop = outcome.log.last().expect("it stopped");
     assert_eq!(stop.time, Time::from(7));
     let Happening::Stopped { reason } = &stop.happening else { panic!("{stop:?}") };
-    assert!(reason.starts_with("there is no plan from here: ") && reason.contains("ARM=OUT"), "{reason}");
+    assert!(reason.starts_with("no plan from here: ") && reason.contains("ARM=OUT"), "{reason}");
 }
 
 #[test]

@@ -32,12 +32,12 @@ pub const MAX_HOLED_POSITIONS: usize = 5_000;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeoJsonError {
     /// It is no JSON, or no `GeoJSON` object.
-    #[error("this is no GeoJSON: {0}")]
+    #[error("this is not GeoJSON: {0}")]
     Shape(String),
     /// Its coordinates are in a system that is not known here.
     #[error(
-        "its coordinates are in {0}, which is not read; write them in degrees (RFC 7946), as with \
-         `ogr2ogr -t_srs EPSG:4326 -lco RFC7946=YES OUT.geojson IN`"
+        "coordinates in {0} are not supported; convert them to degrees (RFC 7946), as with `ogr2ogr -t_srs EPSG:4326 -lco \
+         RFC7946=YES OUT.geojson IN`"
     )]
     ReferenceSystem(String),
     /// A position that is none.
@@ -48,10 +48,12 @@ pub enum GeoJsonError {
         problem: String,
     },
     /// More than [`MAX_POSITIONS`] or [`MAX_HOLED_POSITIONS`].
-    #[error("it has more than {MAX_POSITIONS} positions, or {MAX_HOLED_POSITIONS} in polygons with holes")]
+    #[error(
+        "the file has more than {MAX_POSITIONS} positions, or {MAX_HOLED_POSITIONS} in polygons with holes"
+    )]
     TooLarge,
     /// Nothing in it is a place or an obstacle.
-    #[error("it has no Point, Polygon or MultiPolygon")]
+    #[error("the file needs a Point, Polygon or MultiPolygon")]
     Empty,
 }
 
@@ -77,7 +79,7 @@ pub fn declarations_of_file(name: &str, bytes: &[u8]) -> Option<Result<String, G
     }
     match std::str::from_utf8(bytes) {
         Ok(text) => Some(declarations(name, text, &Frame::default())),
-        Err(_) => Some(Err(GeoJsonError::Shape("it is not text".to_owned()))),
+        Err(_) => Some(Err(GeoJsonError::Shape("the file is not text".to_owned()))),
     }
 }
 
@@ -88,9 +90,7 @@ pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, Ge
     let document: Value =
         serde_json::from_str(text).map_err(|error| GeoJsonError::Shape(error.to_string()))?;
     if !is_geojson(&document) {
-        return Err(GeoJsonError::Shape(
-            "it is neither a feature nor a collection nor a geometry".to_owned(),
-        ));
+        return Err(GeoJsonError::Shape("expected a feature, a collection or a geometry".to_owned()));
     }
     let mut reader = Reader::default();
     match document.get("features").and_then(Value::as_array) {
@@ -188,7 +188,7 @@ impl Reader {
                 self.lines += 1;
                 Ok(())
             }
-            other => Err(wrong(feature, format!("`{}` is no geometry", one_line(other)))),
+            other => Err(wrong(feature, format!("`{}` is not a geometry", one_line(other)))),
         }
     }
 
@@ -196,10 +196,7 @@ impl Reader {
         let position = self.position(point, feature)?;
         let (geometry, plain) = match feature.radius_m {
             Some(radius_m) if !RADII_M.contains(&radius_m) => {
-                return Err(wrong(
-                    feature,
-                    format!("a `radius_m` of {radius_m} is no radius of an obstacle"),
-                ));
+                return Err(wrong(feature, format!("`radius_m` must be greater than 0, not {radius_m}")));
             }
             Some(radius_m) => (Geometry::Circle { center: position, radius_m }, "Obstacle"),
             None => (Geometry::Place(position), "Place"),
@@ -218,7 +215,7 @@ impl Reader {
                 ring.pop();
             }
             if ring.len() < 3 {
-                return Err(wrong(feature, "a ring has less than three corners".to_owned()));
+                return Err(wrong(feature, "a ring needs at least three corners".to_owned()));
             }
             read.push(ring);
         }
@@ -243,7 +240,7 @@ impl Reader {
         let number = |axis: usize| position.get(axis).and_then(Value::as_f64).filter(|it| it.is_finite());
         match (number(0), number(1)) {
             (Some(east), Some(north)) => Ok([east, north]),
-            _ => Err(wrong(feature, "a position is not a pair of numbers".to_owned())),
+            _ => Err(wrong(feature, "a position must be a pair of numbers".to_owned())),
         }
     }
 
@@ -315,7 +312,7 @@ impl Shape {
 }
 
 fn list<'value>(value: &'value Value, feature: &Feature) -> Result<&'value Vec<Value>, GeoJsonError> {
-    value.as_array().ok_or_else(|| wrong(feature, "its coordinates are not a list".to_owned()))
+    value.as_array().ok_or_else(|| wrong(feature, "its coordinates must be a list".to_owned()))
 }
 
 fn wrong(feature: &Feature, problem: String) -> GeoJsonError {

@@ -38,21 +38,21 @@ impl Frame {
         match frame.get("units").and_then(Value::as_str) {
             Some("metres") => return Ok(Self { is_metres: true, ..Self::default() }),
             None | Some("degrees") => {}
-            Some(_) => return Err(said("has other `units` than \"metres\" and \"degrees\"")),
+            Some(_) => return Err(said("needs `units` \"metres\" or \"degrees\"")),
         }
         let origin_deg = match frame.get("origin") {
             None => None,
             Some(origin) => {
                 let number = |axis: usize| origin.get(axis).and_then(Value::as_f64);
                 let both = number(0).zip(number(1)).map(|(lon, lat)| [lon, lat]);
-                Some(both.ok_or_else(|| said("has an `origin` that is not a longitude and a latitude"))?)
+                Some(both.ok_or_else(|| said("needs an `origin` with a longitude and a latitude"))?)
             }
         };
         let radius_m = match frame.get("radius_m") {
             None => None,
             Some(radius) => {
                 let radius = radius.as_f64().filter(|radius| BODY_RADII_M.contains(radius));
-                Some(radius.ok_or_else(|| said("has a `radius_m` that is not within 1 to 1,000,000,000"))?)
+                Some(radius.ok_or_else(|| said("needs a `radius_m` from 1 to 1,000,000,000"))?)
             }
         };
         Ok(Self { is_metres: false, origin_deg, radius_m })
@@ -111,7 +111,7 @@ impl Projection {
     pub fn to_metres(&self, position: [f64; 2]) -> Result<Point2<f64>, String> {
         let &Self::Degrees { origin_deg, radius_m } = self else {
             let is_near = position.iter().all(|metres| metres.abs() < MAX_METRES);
-            return if is_near { Ok(position.into()) } else { Err("it is too far away".to_owned()) };
+            return if is_near { Ok(position.into()) } else { Err("too far away".to_owned()) };
         };
         check_degrees(position)?;
         let [lon, lat] = position.map(f64::to_radians);
@@ -124,7 +124,7 @@ impl Projection {
         let angle = libm::atan2(sine, z);
         if angle > MAX_ANGLE_RAD {
             let far_km = angle * radius_m / 1000.0;
-            return Err(format!("it is {far_km:.0} km from the origin, too far for a plane"));
+            return Err(format!("{far_km:.0} km from the origin, which is too far for a flat map"));
         }
         let scale = if sine > 0.0 { radius_m * angle / sine } else { radius_m };
         Ok(Point2::new(scale * x, scale * y))
@@ -165,7 +165,7 @@ fn check_degrees([lon, lat]: [f64; 2]) -> Result<(), String> {
         Ok(())
     } else {
         Err(format!(
-            "({lon}, {lat}) is no longitude and latitude in degrees; a file in metres says so by \"{FRAME}\": \
+            "({lon}, {lat}) is not a longitude and latitude in degrees; if the file is in meters, add \"{FRAME}\": \
              {{\"units\": \"metres\"}}"
         ))
     }
@@ -174,7 +174,7 @@ fn check_degrees([lon, lat]: [f64; 2]) -> Result<(), String> {
 impl fmt::Display for Projection {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Metres => out.write_str("metres as in the file"),
+            Self::Metres => out.write_str("meters as in the file"),
             Self::Degrees { origin_deg: [lon, lat], radius_m } => write!(
                 out,
                 "metres east and north of longitude {lon}, latitude {lat}, on a sphere with a radius of {radius_m} m"

@@ -22,7 +22,7 @@ pub(super) fn parse(text: &str) -> Result<Value, EdnError> {
     let value = reader.value(0)?;
     reader.skip_blank(0)?;
     if reader.at < text.len() {
-        return Err(reader.error("there is more after the value"));
+        return Err(reader.error("unexpected content after the value"));
     }
     Ok(value)
 }
@@ -72,11 +72,11 @@ impl Reader<'_> {
 
     fn value(&mut self, depth: usize) -> Result<Value, EdnError> {
         if depth > DEEPEST {
-            return Err(self.error("values are nested too deep"));
+            return Err(self.error("values are nested too deeplyly"));
         }
         self.skip_blank(depth)?;
         match self.peek() {
-            None => Err(self.error("a value is missing")),
+            None => Err(self.error("expected a value")),
             Some('{') => {
                 self.at += 1;
                 self.map(depth)
@@ -116,7 +116,7 @@ impl Reader<'_> {
                     self.at += close.len_utf8();
                     return Ok(Value::Array(items));
                 }
-                None => return Err(self.error(&format!("`{close}` is missing"))),
+                None => return Err(self.error(&format!("expected `{close}`"))),
                 Some(_) => items.push(self.value(depth + 1)?),
             }
         }
@@ -124,9 +124,9 @@ impl Reader<'_> {
 
     fn map(&mut self, depth: usize) -> Result<Value, EdnError> {
         let start = self.at;
-        let Value::Array(items) = self.items('}', depth)? else { return Err(self.error("`}` is missing")) };
+        let Value::Array(items) = self.items('}', depth)? else { return Err(self.error("expected `}`")) };
         if items.len() % 2 != 0 {
-            return Err(EdnError { at: start, problem: "a key of this map has no value".to_owned() });
+            return Err(EdnError { at: start, problem: "a key of this map needs a value".to_owned() });
         }
         let mut map = Map::new();
         let mut items = items.into_iter();
@@ -143,12 +143,12 @@ impl Reader<'_> {
     fn string(&mut self) -> Result<String, EdnError> {
         let mut text = String::new();
         loop {
-            let Some(character) = self.peek() else { return Err(self.error("`\"` is missing")) };
+            let Some(character) = self.peek() else { return Err(self.error("expected `\"`")) };
             self.at += character.len_utf8();
             match character {
                 '"' => return Ok(text),
                 '\\' => {
-                    let Some(escaped) = self.peek() else { return Err(self.error("`\"` is missing")) };
+                    let Some(escaped) = self.peek() else { return Err(self.error("expected `\"`")) };
                     self.at += escaped.len_utf8();
                     text.push(match escaped {
                         'n' => '\n',
@@ -166,13 +166,13 @@ impl Reader<'_> {
 
     fn unicode(&mut self) -> Result<char, EdnError> {
         let code = self.rest().get(..4).and_then(|digits| u32::from_str_radix(digits, 16).ok());
-        let character = code.and_then(char::from_u32).ok_or_else(|| self.error("`\\u` takes four digits"))?;
+        let character = code.and_then(char::from_u32).ok_or_else(|| self.error("`\\u` needs four digits"))?;
         self.at += 4;
         Ok(character)
     }
 
     fn character(&mut self) -> Result<String, EdnError> {
-        let Some(first) = self.peek() else { return Err(self.error("a character is missing")) };
+        let Some(first) = self.peek() else { return Err(self.error("expected a character")) };
         self.at += first.len_utf8();
         let name = format!("{first}{}", self.token());
         Ok(match name.as_str() {
@@ -197,7 +197,7 @@ impl Reader<'_> {
         let is_number =
             token.trim_start_matches(['+', '-']).starts_with(|first: char| first.is_ascii_digit());
         Ok(match token.as_str() {
-            "" => return Err(self.error("this closes nothing")),
+            "" => return Err(self.error("unmatched closing bracket")),
             "nil" => Value::Null,
             "true" => Value::Bool(true),
             "false" => Value::Bool(false),
@@ -219,7 +219,7 @@ fn number_value(token: &str, start: usize) -> Result<Value, EdnError> {
     let number = digits.parse().ok().and_then(Number::from_f64);
     number
         .map(Value::Number)
-        .ok_or_else(|| EdnError { at: start, problem: format!("`{token}` is no number") })
+        .ok_or_else(|| EdnError { at: start, problem: format!("`{token}` is not a number") })
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ pub enum PlanSchemaError {
     #[error("{0}")]
     Shape(String),
     /// An object refers to one that is not there.
-    #[error("`{from}` refers to `{to}`, which the file does not have")]
+    #[error("`{from}` refers to `{to}`, which is not in the file")]
     Dangling {
         from: String,
         /// What it names.
@@ -70,10 +70,10 @@ impl Document {
         match value {
             Value::Object(objects) => Self::of_objects(objects),
             Value::Array(_) if text.contains("plan/by-plid") => Err(PlanSchemaError::Shape(
-                "these are plans merged by plan-schema; the plan network that one was made of is read, mostly called `.tpn.edn`"
+                "plans merged by plan-schema are not supported; open the plan network, usually named `.tpn.edn`"
                     .to_owned(),
             )),
-            _ => Err(PlanSchemaError::Shape("the file is not a map of objects".to_owned())),
+            _ => Err(PlanSchemaError::Shape("the file must be a map of objects".to_owned())),
         }
     }
 

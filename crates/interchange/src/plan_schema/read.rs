@@ -115,9 +115,9 @@ impl<'file> Reader<'file> {
         };
         let missing = || {
             let problem = if self.objects.values().any(is_hierarchical) {
-                "this is a hierarchical task network (HTN), whose plan network is another file, mostly called `.tpn.json`"
+                "hierarchical task networks (HTN) are not supported; open the plan network, usually named `.tpn.json`"
             } else {
-                "the file has no `network-id` and no network object"
+                "the file needs a `network-id` or a network object"
             };
             PlanSchemaError::Shape(problem.to_owned())
         };
@@ -167,7 +167,7 @@ impl<'file> Reader<'file> {
         match (ends.next(), ends.next()) {
             (Some(end), None) => Ok(NodeId::from_index(end)),
             _ => Err(PlanSchemaError::Shape(
-                "the network has no `end-node`, and not exactly one last node".to_owned(),
+                "the network needs an `end-node` or exactly one last node".to_owned(),
             )),
         }
     }
@@ -372,20 +372,20 @@ impl<'file> Reader<'file> {
             Some(Value::Array(sides)) if sides.is_empty() => (&Value::Null, &Value::Null),
             Some(Value::Array(sides)) => match sides.as_slice() {
                 [lower, upper] => (lower, upper),
-                _ => return Err(error("`value` is not a pair of bounds")),
+                _ => return Err(error("`value` must be a pair of bounds")),
             },
-            Some(_) => return Err(error("`value` is not a pair of bounds")),
+            Some(_) => return Err(error("`value` must be a pair of bounds")),
         };
         let lower = match lower {
             Value::Null => Time::ZERO,
-            lower => Time::deserialize(lower).map_err(|_| error("the lower bound is no time"))?,
+            lower => Time::deserialize(lower).map_err(|_| error("the minimum is not a time"))?,
         };
         let upper = match upper {
             Value::Null => Bound::Infinite,
-            upper => Bound::deserialize(upper).map_err(|_| error("the upper bound is no time"))?,
+            upper => Bound::deserialize(upper).map_err(|_| error("the maximum is not a time"))?,
         };
         if lower.is_negative() || Bound::Finite(lower) > upper {
-            return Err(error("a duration is at least 0, and its lower bound not above its upper one"));
+            return Err(error("the bounds must satisfy 0 ≤ minimum ≤ maximum"));
         }
         Ok(Some(((lower, upper), self.reference(uid, "end-node")?)))
     }
@@ -475,7 +475,7 @@ impl<'file> Reader<'file> {
     /// `conditions` is this program's own key: `[{"type": "Ask" | "Tell", "literal": "X=V"}, …]`.
     fn read_labels(&mut self, arc: ArcId, object: &Value, uid: &str) -> Result<(), PlanSchemaError> {
         for label in object.get("conditions").and_then(Value::as_array).into_iter().flatten() {
-            let wrong = || PlanSchemaError::Shape(format!("`{uid}` has a condition that is no literal"));
+            let wrong = || PlanSchemaError::Shape(format!("the condition of `{uid}` must be a literal"));
             let mode = match label.get("type").and_then(Value::as_str) {
                 Some("Ask") => LabelMode::Ask,
                 Some("Tell") => LabelMode::Tell,

@@ -17,21 +17,19 @@ pub const NAMESPACE: &str = "http://mers.csail.mit.edu/tpn";
 /// Why a file is no network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PtpnError {
-    #[error("this is no XML: {0}")]
+    #[error("this is not XML: {0}")]
     Xml(String),
     /// An element is not there, or not as it has to be.
     #[error("{0}")]
     Shape(String),
     /// A guard that arcs cannot say.
-    #[error(
-        "{place} is guarded by something else than the choices on the way to it; only networks that branch are read"
-    )]
+    #[error("the guard of {place} depends on more than the choices before it, which is not supported")]
     Guard {
         /// The event, constraint or episode.
         place: String,
     },
     /// Guards of more than 1,000 ways.
-    #[error("{place} has a guard of too many ways")]
+    #[error("the guard of {place} has too many alternatives")]
     TooManyTerms {
         /// The event, constraint or episode.
         place: String,

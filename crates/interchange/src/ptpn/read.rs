@@ -27,11 +27,13 @@ pub fn read(text: &str) -> Result<Document, PtpnError> {
     let networks: Vec<Node> = match root.tag_name().name() {
         "tpns" => children(root, "tpn").collect(),
         "tpn" | "ptpn" => vec![root],
-        other => return Err(PtpnError::Shape(format!("`{other}` is no element of a pTPN"))),
+        other => return Err(PtpnError::Shape(format!("`{other}` is not an element of a pTPN"))),
     };
     match networks.as_slice() {
         [network] => Reader::new(*network)?.document(*network),
-        networks => Err(PtpnError::Shape(format!("the file has {} networks, not one", networks.len()))),
+        networks => {
+            Err(PtpnError::Shape(format!("the file has {} networks, but needs exactly one", networks.len())))
+        }
     }
 }
 
@@ -92,7 +94,7 @@ impl Reader {
             let values =
                 domain.iter().map(|value| text_of(*value, "value")).collect::<Result<Vec<_>, _>>()?;
             if values.iter().collect::<BTreeSet<_>>().len() != values.len() || values.is_empty() {
-                return Err(PtpnError::Shape(format!("`{id}` has no values, or one twice")));
+                return Err(PtpnError::Shape(format!("`{id}` needs values that are all different")));
             }
             let number = |value: &Node, key: &'static str| {
                 text_of(*value, key).ok().and_then(|text| text.parse().ok())
@@ -100,7 +102,7 @@ impl Reader {
             let kind = text_of(decision, "type").unwrap_or_default();
             let number_of_it = reader.decisions.len() as u32;
             if reader.by_id.insert(id.clone(), number_of_it).is_some() {
-                return Err(PtpnError::Shape(format!("there are two decision variables `{id}`")));
+                return Err(PtpnError::Shape(format!("duplicate decision variable `{id}`")));
             }
             reader.value_counts.push(values.len() as u32);
             reader.decisions.push(Decision {
@@ -202,7 +204,7 @@ impl Reader {
                 }
                 _ => {
                     let problem = format!(
-                        "`{id}` lets either event be first, which a plan network does not; only bounds of one sign are read"
+                        "`{id}` allows both orders of its events, which is not supported; both bounds must have the same sign"
                     );
                     return Err(PtpnError::Shape(problem));
                 }
@@ -336,16 +338,16 @@ impl Reader {
     }
 
     fn guard(&self, xml: Node<'_, '_>, is_negated: bool, depth: u32) -> Result<Guard, GuardError> {
-        let Some(depth) = depth.checked_sub(1) else { return Err(shape("it nests too deeply")) };
+        let Some(depth) = depth.checked_sub(1) else { return Err(shape("it is nested too deeply")) };
         let parts = || xml.children().filter(Node::is_element);
         match (xml.tag_name().name(), is_negated) {
             ("guard", _) => match (parts().next(), parts().nth(1)) {
                 (Some(part), None) => self.guard(part, is_negated, depth),
-                _ => Err(shape("it is not one condition")),
+                _ => Err(shape("expected one condition")),
             },
             ("not", _) => match parts().next() {
                 Some(part) => self.guard(part, !is_negated, depth),
-                None => Err(shape("`not` of nothing")),
+                None => Err(shape("`not` needs a condition")),
             },
             ("or", false) | ("and", true) => parts()
                 .try_fold(Guard::never(), |all, part| Ok(all.or(&self.guard(part, is_negated, depth)?)?)),
@@ -355,12 +357,12 @@ impl Reader {
                 let says_true = match xml.text().unwrap_or_default().trim() {
                     "true" | "1" => true,
                     "false" | "0" => false,
-                    other => return Err(shape(&format!("`{other}` is neither true nor false"))),
+                    other => return Err(shape(&format!("expected true or false, found `{other}`"))),
                 };
                 Ok(if says_true == is_negated { Guard::never() } else { Guard::always() })
             }
             ("decision-variable-equals", _) => self.equals(xml, is_negated),
-            (other, _) => Err(shape(&format!("`{other}` is no condition that is known"))),
+            (other, _) => Err(shape(&format!("unknown condition `{other}`"))),
         }
     }
 
@@ -368,7 +370,7 @@ impl Reader {
         let part = |key: &'static str| text_of(xml, key).map_err(|error| shape(&error.to_string()));
         let (variable, value) = (part("variable")?, part("value")?);
         let known = self.by_id.get(&variable).copied();
-        let index = known.ok_or_else(|| shape(&format!("`{variable}` is no decision variable")))?;
+        let index = known.ok_or_else(|| shape(&format!("unknown decision variable `{variable}`")))?;
         let values = &self.decisions[index as usize].values;
         let chosen = values.iter().position(|it| *it == value);
         let chosen = chosen.ok_or_else(|| shape(&format!("`{variable}` has no value `{value}`")))?;
@@ -453,7 +455,7 @@ fn lower(text: &str, id: &str) -> Result<Option<Time>, PtpnError> {
     if ["-INF", "-INFINITY"].contains(&text.to_ascii_uppercase().as_str()) {
         return Ok(None);
     }
-    text.parse().map(Some).map_err(|_| PtpnError::Shape(format!("`{id}`: `{text}` is no time")))
+    text.parse().map(Some).map_err(|_| PtpnError::Shape(format!("`{id}`: `{text}` is not a time")))
 }
 
 fn upper(text: &str, id: &str) -> Result<Bound, PtpnError> {
@@ -462,7 +464,7 @@ fn upper(text: &str, id: &str) -> Result<Bound, PtpnError> {
         _ => text
             .parse()
             .map(Bound::Finite)
-            .map_err(|_| PtpnError::Shape(format!("`{id}`: `{text}` is no time"))),
+            .map_err(|_| PtpnError::Shape(format!("`{id}`: `{text}` is not a time"))),
     }
 }
 
@@ -497,13 +499,13 @@ fn text_of(node: Node<'_, '_>, name: &'static str) -> Result<String, PtpnError> 
 }
 
 fn dangling(from: &str, to: &str) -> PtpnError {
-    PtpnError::Shape(format!("`{from}` refers to `{to}`, which the file does not have"))
+    PtpnError::Shape(format!("`{from}` refers to `{to}`, which is not in the file"))
 }
 
 fn twice(id: &str) -> PtpnError {
-    PtpnError::Shape(format!("there are two elements `{id}`"))
+    PtpnError::Shape(format!("duplicate element `{id}`"))
 }
 
 fn beyond(id: &str) -> PtpnError {
-    PtpnError::Shape(format!("`{id}` has bounds beyond what can be counted"))
+    PtpnError::Shape(format!("the bounds of `{id}` are too large"))
 }

@@ -231,7 +231,7 @@ impl Shaping<'_> {
                 return Err(Obstacle::at_arc(id, "leads to an event that no activity leads to"));
             };
             if arc.is_contingent {
-                return Err(Obstacle::at_arc(id, "lets nature choose how long several activities take"));
+                return Err(Obstacle::at_arc(id, "has a contingent duration for several activities"));
             }
             let whole =
                 if arc.kind == ArcKind::Constraint { None } else { self.part(arc.from, arc.to, from, to) };
@@ -274,7 +274,7 @@ impl Shaping<'_> {
         if arc.kind != ArcKind::Constraint {
             let around = self.alternatives_around(from.0);
             if !self.alternatives_around(to.0).is_subset(&around) {
-                return Err(Obstacle::at_arc(id, "bounds an event inside of an alternative from outside"));
+                return Err(Obstacle::at_arc(id, "bounds an event inside an alternative from outside"));
             }
         }
         let (lower, upper) = (arc.lower, arc.upper);

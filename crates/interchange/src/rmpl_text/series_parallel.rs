@@ -229,9 +229,9 @@ impl<'network> Reduction<'network> {
             } else if node == end && !outs.is_empty() {
                 ("is the network's end, and arcs leave it", arcs_out)
             } else if outs.is_empty() && !ins.is_empty() && node != end {
-                ("is left by nothing, and is not the network's end", arcs_in)
+                ("has no outgoing arc, but is not the end of the network", arcs_in)
             } else if node != end && ins.len() > 1 {
-                ("is where arcs meet that did not part at one event alone", arcs_in)
+                ("joins arcs that did not branch at a single event", arcs_in)
             } else {
                 continue;
             };
@@ -242,7 +242,7 @@ impl<'network> Reduction<'network> {
             let outs = &self.outs[node.index()];
             if outs.len() > 1 || (self.open[node.index()] && !outs.is_empty()) {
                 return Obstacle {
-                    problem: "is where arcs part that do not meet at one event alone".to_owned(),
+                    problem: "branches into arcs that do not join at a single event".to_owned(),
                     nodes: vec![node],
                     arcs: outs.iter().take(2).map(|&edge| self.edges[edge].first).collect(),
                 };

@@ -291,7 +291,7 @@ impl Writer<'_> {
         if self.network.threat_gap != Time::ONE {
             let gap = time(self.network.threat_gap)?;
             if gap.contains('/') {
-                return Err(Obstacle::whole(format!("the threat gap {gap} is no decimal number")));
+                return Err(Obstacle::whole(format!("the threat gap {gap} is not a decimal number")));
             }
             let _ = writeln!(text, "option threat_gap = {gap};");
         }

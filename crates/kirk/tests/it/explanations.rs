@@ -55,8 +55,8 @@ fn a_deadline_that_is_too_tight_names_what_takes_too_long() {
     assert_eq!(failure.kinds(), [FailureKind::Temporal]);
     assert_eq!(failure.reasons[0].message, "A and B need at least 50, but the scenario allows only 45");
     let fixes: Vec<&str> = failure.relaxations.iter().map(|relaxation| relaxation.label.as_str()).collect();
-    assert!(fixes.contains(&"let the scenario take up to 50 instead of 45"), "{fixes:?}");
-    assert!(fixes.contains(&"let A take 25 at least instead of 30"), "{fixes:?}");
+    assert!(fixes.contains(&"raise the maximum of the scenario from 45 to 50"), "{fixes:?}");
+    assert!(fixes.contains(&"lower the minimum of A from 30 to 25"), "{fixes:?}");
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn conditions_that_cannot_be_kept_apart_are_both_named() {
     assert_eq!(failure.kinds(), [FailureKind::Threat]);
     assert_eq!(
         failure.reasons[0].message,
-        "CAM=ON and CAM=OFF cannot be kept apart: CAM=ON, CAM=OFF and a gap of 1 need at least 23, but the scenario allows only 20"
+        "CAM=ON and CAM=OFF overlap, and the planner cannot separate them: CAM=ON, CAM=OFF and a gap of 1 need at least 23, but the scenario allows only 20"
     );
     let horizon =
         failure.relaxations.iter().find(|relaxation| relaxation.old == exact::Bound::Finite(20.into()));
@@ -104,7 +104,7 @@ fn every_alternative_has_its_own_reason() {
         [
             "with D1=0: A needs at least 30, but the scenario allows only 15",
             "with D1=1: B needs at least 20, but the scenario allows only 15",
-            "with D1=2: MODE=X and MODE=Y cannot be kept apart: MODE=X and a gap of 1 need at least 4, \
+            "with D1=2: MODE=X and MODE=Y overlap, and the planner cannot separate them: MODE=X and a gap of 1 need at least 4, \
              but MODE=Y cannot wait that long",
         ]
     );
@@ -124,7 +124,8 @@ fn what_excludes_each_other_for_too_long_has_one_minimal_reason() {
         assert!(failure.is_complete);
         assert_eq!(failure.kinds(), [FailureKind::Threat]);
         let reason = &failure.reasons[0];
-        let all = format!("M0=j0, M0=j1 and {} others cannot be kept apart", count - 2);
+        let all =
+            format!("M0=j0, M0=j1 and {} others overlap, and the planner cannot separate them", count - 2);
         let horizon = format!("the scenario allows only {}", count * 10 - 1);
         assert_eq!(reason.message, format!("{all}: {horizon}"));
         let whole = exact::Time::from(count as i64 * 10);

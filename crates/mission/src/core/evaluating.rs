@@ -115,7 +115,9 @@ impl Core {
         host: &mut dyn CoreHost,
     ) -> Option<Result<Evaluated, String>> {
         if rmpl::control::is_control_text(&update.source) {
-            return Some(Err("a control program is stepped, not executed".to_owned()));
+            return Some(Err(
+                "this is a control program: run it step by step in the Program panel".to_owned()
+            ));
         }
         let compiled = self.compile(update, host);
         let Some(network) = compiled.network.clone() else {

@@ -155,4 +155,4 @@ impl Core {
     }
 }
 
-const NO_PLAN: &str = "there is no plan to execute";
+const NO_PLAN: &str = "the mission has no plan to execute";

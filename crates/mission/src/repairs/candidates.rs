@@ -147,7 +147,7 @@ impl Candidates<'_> {
             return None;
         }
         let label = format!(
-            "let {} wait for {}: free {}",
+            "let {} start after {}: free {}",
             self.shown(own, waiting),
             self.shown(others, other),
             self.shown(own, waiting)
@@ -220,7 +220,7 @@ impl Candidates<'_> {
             Some(declared) => Edit { span: declared.span, text: text.clone() },
             None => rmpl::editor::add_declaration(&rmpl::parse(self.source), &text),
         };
-        Some(Fix { label: format!("let {name} keep its value: {text}"), edits: vec![edit] })
+        Some(Fix { label: format!("make {name} a state that keeps its value: {text}"), edits: vec![edit] })
     }
 
     /// Activities that need more than there is: one waits, or something gives more first.

@@ -246,7 +246,7 @@ impl<'a> Trip<'a> {
             let time_s = self.convoy.time_s();
             if steps_left == 0 {
                 return Err(format!(
-                    "{} after {time_s:.0} s: longer drives are not simulated",
+                    "{} after {time_s:.0} s, the longest drive that is simulated",
                     self.stuck(0)
                 ));
             }
@@ -384,7 +384,7 @@ impl<'a> Trip<'a> {
         self.entries.push((
             self.convoy.time_s(),
             format!(
-                "{name} can't go on near ({:.0}, {:.0}) and takes another way of {length_m:.0} m",
+                "{name} is blocked near ({:.0}, {:.0}) and takes another path of {length_m:.0} m",
                 here.x, here.y
             ),
         ));
@@ -442,7 +442,7 @@ impl<'a> Trip<'a> {
         }
         let way = Path::new(points);
         let text = format!(
-            "{} takes another way of {:.0} m, around what was seen before",
+            "{} takes another path of {:.0} m, around an obstacle that was seen before",
             self.names[0],
             way.length_m()
         );
@@ -478,7 +478,7 @@ impl<'a> Trip<'a> {
 
     fn stuck(&self, vehicle: usize) -> String {
         let here = self.convoy.state(vehicle).position_m;
-        format!("{} finds no way on near ({:.0}, {:.0})", self.names[vehicle], here.x, here.y)
+        format!("{} finds no path near ({:.0}, {:.0})", self.names[vehicle], here.x, here.y)
     }
 
     fn note_passes(&mut self) {

@@ -66,7 +66,7 @@ fn rovers_and_a_blimp_explore_from_the_base_to_the_last_report() {
 fn a_path_that_is_closed_at_100_while_rovers_are_on_it_is_left_for_the_other() {
     let ran = run(EXPLORATION, &[closed_at(100)]);
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
-    assert_eq!(violations(&ran), ["Tell(PATH1=OK)#1 was withdrawn at 100; it was to hold until 260"]);
+    assert_eq!(violations(&ran), ["Tell(PATH1=OK)#1 was withdrawn at 100, but the plan needs it until 260"]);
     assert!(told(&ran, "Group-Traverse-Path#1").iter().any(|text| text.starts_with("is ended early")));
     assert_eq!([value(&ran, "RIDGE-IS"), value(&ran, "SHELF-IS")], [Some("ANALYSED"); 2]);
     let named = |name: &str| {

@@ -115,7 +115,7 @@ fn a_detour_that_leaves_too_little_stops_a_rover_that_cannot_charge() {
     assert_eq!(execution.ending, Ending::Stopped);
     let stop = execution.log.last().expect("it stopped");
     let Happening::Stopped { reason } = &stop.happening else { panic!("{stop:?}") };
-    assert!(reason.starts_with("there is no plan from here: ") && reason.contains("Battery"), "{reason}");
+    assert!(reason.starts_with("no plan from here: ") && reason.contains("Battery"), "{reason}");
     let drives = execution.drives.len();
     assert_eq!(drives, 1, "it does not set out on what it cannot finish");
 }
@@ -177,26 +177,26 @@ fn disturbances_of_what_the_mission_does_not_have_are_refused() {
     assert_eq!(state("ARM", "OUT", "2.5"), Ok(()));
     assert_eq!(level("Battery", "100"), Ok(()));
     let refused = [
-        (state("ARM", "SIDEWAYS", "2"), "ARM is never SIDEWAYS: it is one of IN, OUT"),
-        (state("LEG", "IN", "2"), "nothing in the mission depends on a variable LEG"),
+        (state("ARM", "SIDEWAYS", "2"), "ARM cannot be SIDEWAYS: use one of IN, OUT"),
+        (state("LEG", "IN", "2"), "the mission does not use the variable LEG"),
         (
             state("LIGHT", "ON", "2"),
-            "LIGHT is known only where it is asserted: withdraw an assertion instead",
+            "LIGHT has a value only while it is asserted: withdraw an assertion instead",
         ),
-        (
-            state("R1.at", "A", "2"),
-            "R1.at follows from where the vehicle drives, and nothing else changes it",
-        ),
-        (level("Battery", "100.5"), "the level of Battery is from 0 to 100"),
-        (level("Battery", "-1"), "the level of Battery is from 0 to 100"),
-        (level("Power", "1"), "Power is no reservoir, so that it has no level"),
-        (level("Fuel", "1"), "nothing in the mission uses a resource Fuel"),
+        (state("R1.at", "A", "2"), "R1.at is the place of a vehicle, so only driving changes it"),
+        (level("Battery", "100.5"), "the level of Battery must be from 0 to 100"),
+        (level("Battery", "-1"), "the level of Battery must be from 0 to 100"),
+        (level("Power", "1"), "Power has a capacity, not a level"),
+        (level("Fuel", "1"), "the mission does not use the resource Fuel"),
     ];
     for (answer, expected) in refused {
         assert_eq!(answer, Err(expected.to_owned()));
     }
     let early = state("ARM", "OUT", "-1").expect_err("nothing happens before the start");
-    assert!(early.contains("disturbance 1: nothing happens before the mission starts, at 0"), "{early}");
+    assert!(
+        early.contains("disturbance 1: a disturbance cannot happen before the mission starts, at 0"),
+        "{early}"
+    );
 }
 #[test]
 fn what_a_path_takes_makes_room_for_a_charge() {

@@ -270,7 +270,7 @@ fn a_vehicle_that_is_handed_over_is_the_one_that_moves() {
         mission::compile(&parse.program(), &Goal::Default, &mut Vec::new()).expect("it is a network");
     let warnings = mission::traverse::check(&network, &parse.program());
     assert_eq!(warnings.len(), 1);
-    assert_eq!(warnings[0].message, "no vehicle is called `R3`");
+    assert_eq!(warnings[0].message, "unknown vehicle `R3`");
 }
 
 #[test]

@@ -145,13 +145,13 @@ fn the_example_has_nothing_wrong_with_it() {
 #[test]
 fn an_unknown_program_and_a_missing_plant_are_told() {
     let misspelled = ORBIT.replace("runs OrbitInsert", "runs OrbitInsret");
-    assert_eq!(diagnostics(&misspelled), ["E-UNDEF no control program `OrbitInsret` is defined"]);
+    assert_eq!(diagnostics(&misspelled), ["E-UNDEF unknown control program `OrbitInsret`"]);
     let (mission, _) = ORBIT.split_once("control {").expect("it has a control block");
-    assert_eq!(diagnostics(mission), ["E-UNDEF no control program `OrbitInsert` is defined"]);
+    assert_eq!(diagnostics(mission), ["E-UNDEF unknown control program `OrbitInsert`"]);
     let program = "control {\n  OrbitInsert ():: (EngineA = Firing)\n}\n";
     assert_eq!(
         diagnostics(&format!("{mission}{program}")),
-        ["E-UNDEF there is no plant for `OrbitInsert` to control"]
+        ["E-UNDEF `OrbitInsert` needs a plant to control"]
     );
 }
 
@@ -311,7 +311,7 @@ fn a_program_that_waits_too_long_says_for_whom() {
 fn what_programs_are_handed_is_checked_where_the_activity_is_called() {
     let of = |text: &str| diagnostics(&engines(text));
     let found = of("primitive Start()[1,9] runs Fire;\nscenario S[0,20] = { Start() }");
-    assert_eq!(found, ["E-ARITY `Fire` takes one name, and is handed no names"]);
+    assert_eq!(found, ["E-ARITY `Fire` takes one name, but is given no names"]);
     let text = engines("primitive Start(e)[1,9] runs Fire(e);\nscenario S[0,20] = { Start(EngineC) }");
     let parse = rmpl::parse(&text);
     let mut found = parse.diagnostics();
@@ -345,7 +345,7 @@ fn an_effect_that_the_estimate_denies_is_none_and_the_mission_plans_again() {
     let found = violations(&ran);
     assert!(found[0].contains("BurnA#1 needs EngineA.mode=Firing"), "{found:?}");
     let said = progress(&ran);
-    let word = "is over, and EngineA.mode is estimated to be Failed: EngineA.mode=Firing has not come";
+    let word = "has ended, but EngineA.mode is estimated to be Failed, not EngineA.mode=Firing";
     assert!(said.iter().any(|(_, text)| text.contains(word)), "{said:?}");
 }
 
@@ -397,7 +397,7 @@ fn states_of_components_are_checked_against_the_plant() {
     let found = of(&sound.replace("mode=Off", "mode=Of"));
     assert!(found.len() == 1 && found[0].starts_with("E-VALUE"), "{found:?}");
     let undeclared = sound.replace("state EngineA.mode from plant;", "");
-    assert_eq!(of(&undeclared), ["E-UNDEF no state variable `EngineA.mode` is declared"]);
+    assert_eq!(of(&undeclared), ["E-UNDEF unknown state variable `EngineA.mode`"]);
     // The plant is written below, and follows its own edits.
     let mut parse = rmpl::parse(&engines(sound));
     let at = parse.text().find("INIT Off").expect("the first engine") as u32 + 5;
@@ -444,7 +444,7 @@ fn the_component_of_a_mode_may_be_a_parameter_and_is_looked_up_at_the_call() {
     let (_, ran) = execute(&text, &[]);
     assert_eq!(time(&ran, "Burn#1.end"), Some(7.into()), "{:?}", ran.outcome.log);
     let undeclared = text.replace("Burn(EngineA) }", "Burn(EngineB) }");
-    assert_eq!(diagnostics(&undeclared), ["E-UNDEF no state variable `EngineB.mode` is declared"]);
+    assert_eq!(diagnostics(&undeclared), ["E-UNDEF unknown state variable `EngineB.mode`"]);
     let wrong = text.replace("requires e.mode=Firing", "requires e.mode=Blazing");
     assert_eq!(diagnostics(&wrong), ["E-VALUE `Blazing` is not a value of `EngineA.mode`"]);
 }
@@ -461,6 +461,6 @@ fn a_refuted_belief_violates_the_activity_and_the_run_says_why() {
     let (_, ran) = execute(ORBIT, &[fault]);
     assert_eq!(ran.outcome.ending, Ending::Stopped);
     let reasons = violations(&ran);
-    let expected = "the belief is refuted: no state of the plant explains EngineA.power_in=nominal";
+    let expected = "no tracked state of the plant explains EngineA.power_in=nominal";
     assert!(reasons.iter().any(|reason| reason.contains(expected)), "{reasons:?}");
 }

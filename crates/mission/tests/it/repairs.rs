@@ -94,12 +94,12 @@ fn a_condition_that_is_known_only_while_it_is_told_is_made_to_last() {
     let fixes = offered(source);
     assert_eq!(
         labels(&fixes),
-        ["let ARM keep its value: state ARM : {OUT, UNKNOWN} = UNKNOWN;"],
+        ["make ARM a state that keeps its value: state ARM : {OUT, UNKNOWN} = UNKNOWN;"],
         "{fixes:?}"
     );
     let declared = format!("var ARM : {{IN, OUT}}; {source}");
     let fixes = offered(&declared);
-    assert_eq!(labels(&fixes), ["let ARM keep its value: state ARM : {IN, OUT} = IN;"]);
+    assert_eq!(labels(&fixes), ["make ARM a state that keeps its value: state ARM : {IN, OUT} = IN;"]);
     assert!(applied(&declared, &fixes[0]).starts_with("state ARM : {IN, OUT} = IN; primitive"));
 }
 

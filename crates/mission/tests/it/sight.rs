@@ -90,8 +90,7 @@ fn a_plan_drives_to_where_the_location_is_in_sight() {
 fn a_failure_says_what_blocks_the_line() {
     let evaluated = planned("Relay(R1, BASE)");
     let failure = evaluated.planned.planning.outcome.failure.as_ref().expect("no plan");
-    let expected =
-        "Relay requires R1.at in visible(BASE), but from CRATER the ground near (32, 14) blocks the line";
+    let expected = "Relay requires R1.at in visible(BASE), but from CRATER the ground near (32, 14) blocks the line of sight";
     let told = &failure.reasons.first().expect("one").message;
     assert!(told.starts_with(expected), "{told}");
 }

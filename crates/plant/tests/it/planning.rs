@@ -87,7 +87,7 @@ fn a_goal_out_of_reach_says_why() {
     );
     assert_eq!(
         commands(&broken, &[], &[("v", "Open"), ("d", "Off")]),
-        Err(vec!["d=Off cannot be brought about together with v=Open".into()])
+        Err(vec!["no commands reach d=Off together with v=Open".into()])
     );
 }
 
@@ -240,5 +240,9 @@ fn a_guard_that_nothing_makes_true_is_a_warning() {
     let (model, diagnostics) = compile(&rmpl::control::parse(&text).file);
     assert!(model.is_some());
     let found: Vec<&str> = diagnostics.iter().map(|found| found.message.as_str()).collect();
-    assert_eq!(found, ["`L` never leaves Off by this transition: nothing makes its guard true"], "{text}");
+    assert_eq!(
+        found,
+        ["`L` can never take this transition from Off: its guard cannot become true"],
+        "{text}"
+    );
 }

@@ -45,7 +45,7 @@ pub(super) fn parse(text: &str) -> Result<Document, ParseError> {
     if let Some(kind) = reader.data(graph, "NetworkType")
         && !["STN", "STNU", "CSTN", "CSTNU"].contains(&kind)
     {
-        return Err(reader.error(graph, format!("networks of kind {kind} are not read")));
+        return Err(reader.error(graph, format!("networks of type {kind} are not supported")));
     }
     let mut draft = Draft::default();
     let mut by_name = BTreeMap::new();
@@ -54,7 +54,7 @@ pub(super) fn parse(text: &str) -> Result<Document, ParseError> {
         reader.refuse_conditions(node)?;
         let point = PointId(draft.names.len() as u32);
         if by_name.insert(name, point).is_some() {
-            return Err(reader.error(node, format!("{name} is named twice")));
+            return Err(reader.error(node, format!("duplicate name {name}")));
         }
         draft.names.push(name.to_owned());
     }
@@ -142,7 +142,7 @@ fn incomplete(draft: &Draft, from: PointId, to: PointId, line: usize) -> ParseEr
     let (from, to) = (&draft.names[from.index()], &draft.names[to.index()]);
     ParseError::new(
         line,
-        format!("the contingent link between {from} and {to} needs a lower and an upper bound"),
+        format!("the contingent link between {from} and {to} needs a minimum and a maximum"),
     )
 }
 
@@ -193,7 +193,7 @@ impl<'a, 'input> Reader<'a, 'input> {
 
     fn refuse_conditions(&self, node: Node<'a, 'input>) -> Result<(), ParseError> {
         if self.data(node, "Obs").is_some() || self.data(node, "Label").is_some_and(|label| label != "⊡") {
-            return Err(self.error(node, "conditional networks are not read"));
+            return Err(self.error(node, "conditional networks are not supported"));
         }
         Ok(())
     }
@@ -247,7 +247,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             let mut words: Vec<&str> = tuple.split(',').map(str::trim).collect();
             let label = words.pop().unwrap_or_default();
             if !label.is_empty() && label != "⊡" {
-                return Err(self.error(edge, "conditional networks are not read"));
+                return Err(self.error(edge, "conditional networks are not supported"));
             }
             let words = words.try_into();
             tuples.push(words.map_err(|_| self.error(edge, format!("{name} are not as expected: {text}")))?);

@@ -22,7 +22,7 @@ pub(super) fn parse(text: &str) -> Result<Document, ParseError> {
         _ => {
             return Err(ParseError::new(
                 line,
-                format!("only networks of kind STN or STNU are read, not {kind}"),
+                format!("only networks of type STN or STNU are supported, not {kind}"),
             ));
         }
     };
@@ -90,7 +90,7 @@ fn sections(text: &str) -> Result<Vec<Section<'_>>, ParseError> {
             sections.push(Vec::new());
         } else if !content.is_empty() {
             let Some(section) = sections.last_mut() else {
-                return Err(ParseError::new(line, "expected a section, opened by a line with `#`"));
+                return Err(ParseError::new(line, "expected a section that starts with a line with `#`"));
             };
             section.push((line, content));
         }
@@ -101,7 +101,7 @@ fn sections(text: &str) -> Result<Vec<Section<'_>>, ParseError> {
 fn single<'a>(section: &[(usize, &'a str)], end: usize) -> Result<(usize, &'a str), ParseError> {
     match section {
         [only] => Ok(*only),
-        [] => Err(ParseError::new(end, "a section is empty")),
+        [] => Err(ParseError::new(end, "a section must not be empty")),
         [_, (line, _), ..] => Err(ParseError::new(*line, "expected the next section")),
     }
 }
@@ -115,7 +115,7 @@ fn announced(expected: usize, what: &str, found: usize, end: usize) -> Result<()
     if expected == found {
         return Ok(());
     }
-    Err(ParseError::new(end, format!("{expected} {what} are announced, but {found} are listed")))
+    Err(ParseError::new(end, format!("the header says {expected} {what}, but {found} are listed")))
 }
 
 fn read_names(
@@ -129,18 +129,18 @@ fn read_names(
         for name in content.split_whitespace() {
             // The other layout is XML, which has no way to write these.
             if let Some(letter) = name.chars().find(|&it| it < ' ' || matches!(it, '\u{fffe}' | '\u{ffff}')) {
-                let message = format!("a name cannot have the character {}", letter.escape_unicode());
+                let message = format!("a name cannot contain the character {}", letter.escape_unicode());
                 return Err(ParseError::new(line, message));
             }
             if by_name.insert(name.to_owned(), PointId(names.len() as u32)).is_some() {
-                return Err(ParseError::new(line, format!("{name} is named twice")));
+                return Err(ParseError::new(line, format!("duplicate name {name}")));
             }
             names.push(name.to_owned());
         }
     }
     let line = section.last().map_or(end, |&(line, _)| line);
     if names.len() != num_points {
-        let message = format!("{num_points} time points are announced, but {} are named", names.len());
+        let message = format!("the header says {num_points} time points, but {} are named", names.len());
         return Err(ParseError::new(line, message));
     }
     Ok((names, by_name))

@@ -83,14 +83,14 @@ fn what_is_wrong_with_plain_text_is_told_with_its_line() {
     assert_eq!(refused(&PLAIN.replace("STNU", "CSTNU")).0, 2);
     assert_eq!(
         refused(&PLAIN.replace("\n1\n", "\n2\n")).1,
-        "2 contingent links are announced, but 1 are listed"
+        "the header says 2 contingent links, but 1 are listed"
     );
     assert_eq!(refused(&PLAIN.replace("A 20 40 C", "A 40 20 C")).0, 15);
     assert_eq!(refused(&PLAIN.replace("A 20 40 C", "A 20 40 Q")).1, "Q is not a time point");
     assert_eq!(refused(&PLAIN.replace("A 20 40 C", "A 20 C")).0, 15);
     assert_eq!(refused(&PLAIN.replace("Z 35 C", "Z many C")).0, 12);
-    assert_eq!(refused(&PLAIN.replace("\n3\n", "\n4\n")).1, "4 time points are announced, but 3 are named");
-    assert_eq!(refused(&PLAIN.replace("Z A C\n", "Z A A\n")).1, "A is named twice");
+    assert_eq!(refused(&PLAIN.replace("\n3\n", "\n4\n")).1, "the header says 4 time points, but 3 are named");
+    assert_eq!(refused(&PLAIN.replace("Z A C\n", "Z A A\n")).1, "duplicate name A");
     assert!(refused("# only\n").1.contains("empty"));
     assert_eq!(refused("STN\n").0, 1);
 }
@@ -130,7 +130,7 @@ fn times_without_common_ticks_are_rounded_to_the_safe_side() {
     assert_eq!((link.lower, link.upper), (285_714_285_714, 900_100_000_000));
     assert_eq!(
         refused(&PLAIN.replace("Z 35 C", "Z 9000000000000000000 C").replace("-30", "-1/3")).1,
-        "a time does not fit into 64 bits"
+        "a time is too large to represent exactly"
     );
 }
 
@@ -150,9 +150,9 @@ fn what_is_wrong_with_graphml_is_told_with_its_line() {
     );
     assert_eq!(refused(&GRAPHML.replace(">35<", ">many<")).0, 11);
     let one_side = GRAPHML.replace("LC(C):20", "");
-    assert_eq!(refused(&one_side).1, "the contingent link between A and C needs a lower and an upper bound");
+    assert_eq!(refused(&one_side).1, "the contingent link between A and C needs a minimum and a maximum");
     let observing = GRAPHML.replace("<node id=\"A\"/>", "<node id=\"A\"><data key=\"Obs\">p</data></node>");
-    assert_eq!(refused(&observing), (7, "conditional networks are not read".into()));
+    assert_eq!(refused(&observing), (7, "conditional networks are not supported".into()));
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn other_ways_to_write_a_contingent_link_in_graphml_are_read() {
         .replace("Value\">35", "LabeledValues\">{(35, ⊡) }");
     assert_eq!(Document::parse(&labelled), Ok(plain.clone()));
     let conditional = labelled.replace("(35, ⊡)", "(35, p)");
-    assert_eq!(refused(&conditional), (11, "conditional networks are not read".into()));
+    assert_eq!(refused(&conditional), (11, "conditional networks are not supported".into()));
     let keyed = GRAPHML
         .replace("<key id=\"Type\"", "<key id=\"d1\" for=\"edge\" attr.name=\"Value\"/>\n<key id=\"Type\"")
         .replace("key=\"Value\"", "key=\"d1\"");

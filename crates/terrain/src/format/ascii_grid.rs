@@ -5,7 +5,7 @@ use super::{FormatError, Meaning, Raster, checked_cell_count};
 const FORMAT: &str = "ESRI ASCII grid";
 
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
-    let text = std::str::from_utf8(bytes).map_err(|_| malformed("it is not text".into()))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| malformed("the file is not text".into()))?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut words = text.split_ascii_whitespace().peekable();
     let (mut width, mut height, mut cell_size_m, mut cell_height_m, mut no_data) =
@@ -18,7 +18,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             continue;
         }
         let number: f64 =
-            value.parse().map_err(|_| malformed(format!("`{keyword}` is `{value}`, which is no number")))?;
+            value.parse().map_err(|_| malformed(format!("`{keyword}` must be a number, not `{value}`")))?;
         match keyword.to_ascii_lowercase().as_str() {
             "ncols" => width = Some(number),
             "nrows" => height = Some(number),
@@ -27,25 +27,25 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             "nodata_value" => no_data = Some(number),
             // Where the map lies on its planet is up to the mission.
             "xllcorner" | "yllcorner" | "xllcenter" | "yllcenter" => {}
-            _ => return Err(malformed(format!("`{keyword}` is no keyword of the header"))),
+            _ => return Err(malformed(format!("unknown keyword `{keyword}` in the header"))),
         }
     }
     if let (Some(width), Some(height)) = (cell_size_m, cell_height_m)
         && (width - height).abs() > 1e-4 * width.abs()
     {
-        let problem = format!("its cells are not square: {width} × {height}");
+        let problem = format!("cells must be square, not {width} × {height}");
         return Err(FormatError::Unsupported { format: FORMAT, problem });
     }
     let size = |number: Option<f64>, keyword: &str| match number {
         Some(number) if number >= 0.0 && number.fract() == 0.0 && number < 1e15 => Ok(number as u64),
         Some(number) => Err(malformed(format!("`{keyword}` is {number}"))),
-        None => Err(malformed(format!("`{keyword}` is missing"))),
+        None => Err(malformed(format!("expected `{keyword}`"))),
     };
     let (width, height) = (size(width, "ncols")?, size(height, "nrows")?);
     let count = checked_cell_count(width, height)?;
     let (width, height) = (width as u32, height as u32);
     if text.len() < 2 * count {
-        return Err(malformed(format!("it is too short for {width} × {height} values")));
+        return Err(malformed(format!("the file is too short for {width} × {height} values")));
     }
     let mut samples = Vec::with_capacity(count);
     for word in words {
@@ -53,11 +53,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         let value = value.map_err(|_| malformed(format!("value {} is `{word}`", samples.len() + 1)))?;
         samples.push(if Some(value) == no_data { f32::NAN } else { value as f32 });
         if samples.len() > count {
-            return Err(malformed(format!("it has more than {width} × {height} values")));
+            return Err(malformed(format!("the file has more than {width} × {height} values")));
         }
     }
     if samples.len() < count {
-        return Err(malformed(format!("it has {} values for {width} × {height} cells", samples.len())));
+        return Err(malformed(format!("the file has {} values for {width} × {height} cells", samples.len())));
     }
     Ok(Raster {
         width,

@@ -22,10 +22,10 @@ const BEGINNINGS: [(&[u8], &str, &str); 17] = [
     (b"DSBB", "Surfer grid", CONVERT),
     (b"DSRB", "Surfer grid", CONVERT),
     (b"\0\0\0\x0cjP  ", "JPEG 2000 image", CONVERT),
-    (b"\xff\xd8\xff", "JPEG image", "its compression changes heights; write the map as PNG or GeoTIFF"),
-    (b"LASF", "LAS point cloud", "make a grid of it, as with `pdal` and its `writers.gdal`"),
-    (b"PK\x03\x04", "ZIP archive", "unpack it and take the map that is in it"),
-    (b"\x1f\x8b", "gzip archive", "unpack it and take the map that is in it"),
+    (b"\xff\xd8\xff", "JPEG image", "JPEG compression changes heights; save the map as PNG or GeoTIFF"),
+    (b"LASF", "LAS point cloud", "convert it to a grid, as with `pdal` and its `writers.gdal`"),
+    (b"PK\x03\x04", "ZIP archive", "unpack it and open the map inside"),
+    (b"\x1f\x8b", "gzip archive", "unpack it and open the map inside"),
 ];
 
 /// Why a file of a known format that is not read is refused; `None` for all others.

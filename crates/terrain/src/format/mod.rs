@@ -53,8 +53,8 @@ pub enum FileFormat {
 pub enum FormatError {
     /// No known format begins like this.
     #[error(
-        "this is no map file that can be read; what is read: PNG (.png), PGM (.pgm), TIFF and GeoTIFF (.tif), PDS3 \
-         image with its label (.img), ESRI ASCII grid (.asc), MovingAI map (.map) and ROS map with its image (.yaml)"
+        "unrecognized map format (expected PNG (.png), PGM (.pgm), TIFF or GeoTIFF (.tif), PDS3 image with its label (.img), \
+         ESRI ASCII grid (.asc), MovingAI map (.map) or ROS map with its image (.yaml))"
     )]
     Unknown,
     /// The file contradicts its format.
@@ -73,7 +73,7 @@ pub enum FormatError {
         problem: String,
     },
     /// More cells than [`MAX_CELL_COUNT`].
-    #[error("the map has {width} × {height} cells; at most {MAX_CELL_COUNT} can be read")]
+    #[error("the map has {width} × {height} cells, but the maximum is {MAX_CELL_COUNT}")]
     TooLarge {
         /// Columns.
         width: u64,

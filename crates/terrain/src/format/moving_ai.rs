@@ -5,7 +5,7 @@ use super::{FormatError, Meaning, Raster, checked_cell_count};
 const FORMAT: &str = "MovingAI map";
 
 pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
-    let text = std::str::from_utf8(bytes).map_err(|_| malformed("it is not text".into()))?;
+    let text = std::str::from_utf8(bytes).map_err(|_| malformed("the file is not text".into()))?;
     let mut lines = text.lines();
     let (mut width, mut height) = (None, None);
     for line in lines.by_ref() {
@@ -15,21 +15,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             (Some("width"), Some(value)) => width = Some(size(value)?),
             (Some("height"), Some(value)) => height = Some(size(value)?),
             (Some("map"), None) => break,
-            _ => return Err(malformed(format!("`{line}` is no line of the header"))),
+            _ => return Err(malformed(format!("unexpected line in the header: `{line}`"))),
         }
     }
     let (Some(width), Some(height)) = (width, height) else {
-        return Err(malformed("the header does not give `width` and `height`".into()));
+        return Err(malformed("the header needs `width` and `height`".into()));
     };
     let count = checked_cell_count(u64::from(width), u64::from(height))?;
     if text.len() < count {
-        return Err(malformed(format!("it is too short for {width} × {height} cells")));
+        return Err(malformed(format!("the file is too short for {width} × {height} cells")));
     }
     let mut samples = Vec::with_capacity(count);
     for row in 0..height {
         let line = lines.next().unwrap_or_default().trim_end_matches('\r');
         if line.chars().count() != width as usize {
-            return Err(malformed(format!("row {} has not {width} cells: `{line}`", row + 1)));
+            return Err(malformed(format!("row {} must have {width} cells: `{line}`", row + 1)));
         }
         for character in line.chars() {
             samples.push(match character {
@@ -43,7 +43,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
 }
 
 fn size(word: &str) -> Result<u32, FormatError> {
-    word.parse().map_err(|_| malformed(format!("`{word}` is no size")))
+    word.parse().map_err(|_| malformed(format!("`{word}` is not a size")))
 }
 
 fn malformed(problem: String) -> FormatError {

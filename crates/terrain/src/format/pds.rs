@@ -203,7 +203,7 @@ fn read_label(bytes: &[u8], attached: bool) -> Result<(RawLayout, Vec<f64>), For
     let label = Label::parse(bytes);
     let size = |keyword: &str| match label.number(keyword) {
         Some(number) if number >= 0.0 && number.fract() == 0.0 && number < 4e9 => Ok(number as u32),
-        _ => Err(malformed(format!("its label does not give {keyword}"))),
+        _ => Err(malformed(format!("its label needs {keyword}"))),
     };
     let (width, height) = (size("LINE_SAMPLES")?, size("LINES")?);
     let (name, bits) = (label.value("SAMPLE_TYPE").unwrap_or_default(), size("SAMPLE_BITS")?);
@@ -214,12 +214,12 @@ fn read_label(bytes: &[u8], attached: bool) -> Result<(RawLayout, Vec<f64>), For
         Some(written) if is_absent(written) => Ok(None),
         Some(written) => (label.number(keyword).or_else(|| sample_type.of_bits(written)))
             .map(Some)
-            .ok_or_else(|| malformed(format!("its {keyword} is no number: {written}"))),
+            .ok_or_else(|| malformed(format!("its {keyword} must be a number, not {written}"))),
     };
     let factor = |keyword: &str| match label.value(keyword) {
         Some(written) if !is_absent(written) => match label.number(keyword).filter(|it| it.is_finite()) {
             Some(number) => Ok(Some(number)),
-            None => Err(malformed(format!("its {keyword} is no number: {written}"))),
+            None => Err(malformed(format!("its {keyword} must be a number, not {written}"))),
         },
         _ => Ok(None),
     };
@@ -272,12 +272,12 @@ impl Label {
     pub(super) fn image_start(&self, attached: bool) -> Result<u64, FormatError> {
         let Some(pointer) = self.value("^IMAGE") else {
             if attached {
-                return Err(malformed("its label does not say where ^IMAGE is".into()));
+                return Err(malformed("its label needs ^IMAGE".into()));
             }
             return Ok(0);
         };
         if attached && pointer.contains('"') {
-            return Err(malformed(format!("this is its label alone; the image is in {pointer}")));
+            return Err(malformed(format!("this file is only the label; the image is in {pointer}")));
         }
         // Of a file and a place in it, as in ("FILE.IMG", 3), the place counts.
         let place = pointer.trim_matches(['(', ')']).split(',').next_back().unwrap_or_default().trim();
@@ -333,7 +333,7 @@ impl Label {
         match self.word("UNIT").as_deref() {
             None | Some("M" | "METER" | "METERS" | "METRE" | "METRES") => Ok(1.0),
             Some("KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES") => Ok(1000.0),
-            Some(unit) => Err(unsupported(format!("its values are in {unit}, which is no unit of heights"))),
+            Some(unit) => Err(unsupported(format!("use one of in {unit}, which is no unit of heights"))),
         }
     }
 

@@ -8,9 +8,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let mut tokens = Tokens { bytes, at: 0 };
     let magic = tokens.next()?;
     let (width, height) = (tokens.number("the width")?, tokens.number("the height")?);
-    let greatest = tokens.number("the greatest grey level")?;
+    let greatest = tokens.number("the maximum gray level")?;
     if !(1..=65_535).contains(&greatest) {
-        return Err(malformed(format!("the greatest grey level is {greatest}, not within 1 to 65535")));
+        return Err(malformed(format!("the maximum gray level must be from 1 to 65535, not {greatest}")));
     }
     let count = checked_cell_count(u64::from(width), u64::from(height))?;
     let samples = if magic == b"P5" {
@@ -32,7 +32,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     } else {
         // A sample takes at least a digit and a space.
         if bytes.len() - tokens.at < 2 * count - 1 {
-            return Err(malformed(format!("it ends before its {count} samples")));
+            return Err(malformed(format!("the file ends before its {count} samples")));
         }
         (0..count).map(|_| tokens.number("a sample").map(|sample| sample as f32)).collect::<Result<_, _>>()?
     };
@@ -74,7 +74,7 @@ impl<'a> Tokens<'a> {
             self.at += 1;
         }
         if start == self.at {
-            Err(malformed("it ends too early".into()))
+            Err(malformed("the file ends too early".into()))
         } else {
             Ok(&self.bytes[start..self.at])
         }

@@ -63,18 +63,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let (yaml, image) = parts(bytes);
     let about = describe(yaml)?;
     if image.is_empty() {
-        return Err(unsupported(format!(
-            "its image {} is a file of its own, which is needed, too",
-            about.image
-        )));
+        return Err(unsupported(format!("its image {} is also needed", about.image)));
     }
     if is_description(image) {
-        return Err(malformed(format!("{} is no image", about.image)));
+        return Err(malformed(format!("{} is not an image", about.image)));
     }
     let image = super::read_raster(image, &ImportOptions::default())?;
     let (Meaning::Levels { greatest: Some(greatest) } | Meaning::InvertedLevels { greatest }) = image.meaning
     else {
-        return Err(unsupported(format!("its image {} has no grey levels; PGM and PNG have", about.image)));
+        return Err(unsupported(format!("its image {} needs gray levels; use PGM or PNG", about.image)));
     };
     let samples = image.samples.iter().map(|&level| about.cell(f64::from(level), greatest)).collect();
     Ok(Raster {
@@ -137,7 +134,7 @@ fn keys(yaml: &[u8]) -> Result<Vec<(String, String)>, FormatError> {
         }
         if let Some(item) = words.strip_prefix("- ") {
             let (_, list) =
-                found.last_mut().ok_or_else(|| malformed(format!("`{line}` belongs to no key")))?;
+                found.last_mut().ok_or_else(|| malformed(format!("`{line}` does not belong to a key")))?;
             let before = list.trim_end_matches(']').trim_start_matches('[').to_owned();
             let comma = if before.is_empty() { "" } else { ", " };
             *list = format!("[{before}{comma}{}]", item.trim());
@@ -148,7 +145,7 @@ fn keys(yaml: &[u8]) -> Result<Vec<(String, String)>, FormatError> {
             .filter(|(key, value)| {
                 is_word(key.trim()) && (value.is_empty() || value.starts_with(char::is_whitespace))
             })
-            .ok_or_else(|| malformed(format!("`{}` is no key with a value", shortened(line))))?;
+            .ok_or_else(|| malformed(format!("`{}` is not a key with a value", shortened(line))))?;
         found.push((key.trim().to_owned(), unquoted(value.trim()).to_owned()));
     }
     Ok(found)
@@ -178,13 +175,13 @@ fn describe(yaml: &[u8]) -> Result<Description, FormatError> {
         }
     }
     if about.image.is_empty() {
-        return Err(malformed("it names no `image`".into()));
+        return Err(malformed("it needs `image`".into()));
     }
     if !(about.resolution_m.is_finite() && about.resolution_m > 0.0) {
-        return Err(malformed("its `resolution` is not a number of metres above 0".into()));
+        return Err(malformed("its `resolution` must be a number of meters greater than 0".into()));
     }
     if about.origin_m[0].is_nan() {
-        return Err(malformed("it has no `origin`".into()));
+        return Err(malformed("it needs `origin`".into()));
     }
     if about.free_threshold > about.occupied_threshold {
         let problem = format!(
@@ -208,7 +205,7 @@ fn origin(value: &str) -> Result<[f64; 2], FormatError> {
     };
     if yaw.abs() > 1e-9 {
         return Err(unsupported(format!(
-            "it is turned by {yaw} rad (`origin`); turn its image, so that the yaw is 0"
+            "it is rotated by {yaw} rad (`origin`); rotate its image so that the yaw is 0"
         )));
     }
     Ok([east, north])

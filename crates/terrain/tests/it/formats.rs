@@ -458,7 +458,7 @@ fn a_broken_file_is_an_error_that_says_what_is_wrong() {
         (b"P2 3 3 70000\n", "70000"),
         (b"P2 2 2 9\n1 2 3", "ends"),
         (b"ncols 2\nnrows 2\ncellsize 1\n1 2 3", "3 values for 2 × 2"),
-        (b"ncols 2\ncellsize 1\n1 2 3", "`nrows` is missing"),
+        (b"ncols 2\ncellsize 1\n1 2 3", "expected `nrows`"),
         (b"ncols 2\nnrows 1\ncellsize 1\n1 b", "value 2 is `b`"),
         (b"type octile\nheight 1\nwidth 3\nmap\n.?.\n", "a cell `?`"),
         (b"type octile\nheight 2\nwidth 3\nmap\n...\n..\n", "row 2"),

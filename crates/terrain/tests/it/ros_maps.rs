@@ -112,7 +112,7 @@ fn what_is_not_read_is_refused_with_its_reason() {
         (YAML.replace("0.65", "0.1"), "`free_thresh` 0.196 is above `occupied_thresh` 0.1"),
         (YAML.replace("0.65", "65"), "not within 0 to 1"),
         (YAML.replace("negate: 0", "negate: maybe"), "`negate` is maybe"),
-        (YAML.replace("origin", "orogin"), "it has no `origin`"),
+        (YAML.replace("origin", "orogin"), "it needs `origin`"),
         (YAML.replace("-12.5, ", ""), "not [x, y, yaw]"),
         (format!("{YAML}mode: best"), "`mode` is best"),
     ];

@@ -64,15 +64,15 @@ pub(super) fn interval(bounds: &Bounds, values: &dyn Values) -> Result<Interval,
 /// The interval of two evaluated sides, or what is wrong with it.
 pub(super) fn checked_interval(lower: Bound, upper: Bound, span: Span) -> Result<Interval, Diagnostic> {
     let Bound::Finite(least) = lower else {
-        return Err(Diagnostic::error(E_BOUNDS, span, "the lower bound is infinite: nothing could ever end")
-            .with_hint("only the upper bound may be `inf`"));
+        return Err(Diagnostic::error(E_BOUNDS, span, "the minimum must be finite")
+            .with_hint("only the maximum may be `inf`"));
     };
     if least.is_negative() {
-        let message = format!("the lower bound {lower} is negative: an end cannot come before its start");
+        let message = format!("the minimum {lower} is negative: an end cannot come before its start");
         return Err(Diagnostic::error(E_BOUNDS, span, message));
     }
     if lower > upper {
-        let message = format!("the lower bound {lower} is greater than the upper bound {upper}");
+        let message = format!("the minimum {lower} is greater than the maximum {upper}");
         return Err(Diagnostic::error(E_BOUNDS, span, message).with_hint("write the smaller bound first"));
     }
     Ok(Interval { lower: least, upper })
@@ -102,9 +102,9 @@ pub(super) fn value(expr: &Expr, values: &dyn Values) -> Result<Bound, Diagnosti
             .ok_or_else(|| Diagnostic::error(E_BOUNDS, expr.span, BoundError::Overflow.to_string())),
         ExprKind::Infinity => Ok(Bound::Infinite),
         ExprKind::Name(name) => values.number(name).ok_or_else(|| {
-            Diagnostic::error(E_NAME, expr.span, format!("`{name}` stands for no number here")).with_hint(
-                "expressions may name constants, the bound parameters of the surrounding activity's header, such as `l` \
-                 and `u` in `Name()[l,u] = { … }`, and its parameters that stand for numbers",
+            Diagnostic::error(E_NAME, expr.span, format!("`{name}` is not a number here")).with_hint(
+                "use constants, numeric parameters, or the bounds in the activity's header, such as `l` and `u` in \
+                 `Name()[l,u] = { … }`",
             )
         }),
         ExprKind::Percent(inner) => {

@@ -67,7 +67,7 @@ impl<'program> Expander<'program> {
         // Static recursion was refused before; names that are passed as arguments can still close a cycle.
         if self.active.contains(&activity.name.text.as_str()) {
             let message =
-                format!("activities may not call themselves, and `{callee}` does through its arguments");
+                format!("an activity cannot call itself, but `{callee}` does through its arguments");
             self.diagnostics.push(Diagnostic::error(recursion::CODE, name.span, message));
             return self.nothing(span, entry);
         }
@@ -265,11 +265,7 @@ impl<'program> Expander<'program> {
     fn number(&mut self, expr: &Expr, scope: &Scope) -> Rational {
         let value = bounds::value(expr, &scope.values(&self.constants)).and_then(|value| {
             value.finite().map(Time::units).ok_or_else(|| {
-                Diagnostic::error(
-                    bounds::E_BOUNDS,
-                    expr.span,
-                    "an argument is a number, and this is infinite",
-                )
+                Diagnostic::error(bounds::E_BOUNDS, expr.span, "a numeric argument must be finite")
             })
         });
         // What has no value is reported, and stands for some number until then.
@@ -282,7 +278,7 @@ impl<'program> Expander<'program> {
     fn intersect(&mut self, call: &Invocation<'_>, limit: Interval, declared_span: Span) -> Interval {
         call.interval.intersect(limit).unwrap_or_else(|| {
             let message = format!(
-                "`{}` takes {limit}, and is called with {}: no duration is in both",
+                "`{}` is declared with {limit}, which does not overlap {}",
                 call.name.text, call.interval
             );
             let span = call.bounds_span().unwrap_or(if call.span == Span::default() {

@@ -79,7 +79,8 @@ impl Expander<'_> {
             };
             let Some(fact) = self.fact(&condition, activity.scope) else { continue };
             if !self.vocabulary.is_lasting(&fact.variable) {
-                let message = format!("`{}` is no state variable, so it cannot be set", fact.variable);
+                let message =
+                    format!("`{}` cannot be set, because it is not a state variable", fact.variable);
                 let hint =
                     format!("declare it: `state {} : {{{}, …}} = …;`", fact.variable, effect.value.text);
                 self.diagnostics
@@ -128,7 +129,7 @@ impl Expander<'_> {
         if let Some(total) = sum.checked_add(value) {
             *sum = total;
         } else {
-            let message = "these amounts are too large, or too fine, to be added exactly";
+            let message = "these amounts are too large or too precise to add exactly";
             self.diagnostics.push(Diagnostic::error(E_BOUNDS, span, message));
         }
     }

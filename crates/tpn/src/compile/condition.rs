@@ -146,7 +146,7 @@ impl<'program> Expander<'program> {
             return Some(fact);
         }
         let message = format!(
-            "`{}` keeps the value that it is given: say which one, `{}` leaves it open",
+            "an assertion must set exactly one value of the state `{}`, but `{}` allows several",
             fact.variable,
             fact.text()
         );

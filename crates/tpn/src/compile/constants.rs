@@ -57,7 +57,7 @@ impl<'program> Constants<'program> {
     fn evaluate(&mut self, declared: &'program ConstantDecl, found: &mut Vec<Diagnostic>) {
         match bounds::value(&declared.value, self) {
             Ok(Bound::Infinite) => {
-                let message = format!("the constant `{}` is infinite: it is a number", declared.name.text);
+                let message = format!("the constant `{}` must be finite", declared.name.text);
                 found.push(Diagnostic::error(E_BOUNDS, declared.value.span, message));
             }
             Ok(value) => {

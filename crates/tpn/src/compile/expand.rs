@@ -79,11 +79,7 @@ impl<'program> Expander<'program> {
                 Invocation { name: &primitive.name, interval, written: None, span: primitive.name.span };
             self.primitive(&primitive.name.text, &arguments, &call, Entry::Free, &Scope::default())
         } else {
-            return Err(Diagnostic::error(
-                E_UNDEF,
-                Span::default(),
-                format!("there is no activity `{name}`"),
-            ));
+            return Err(Diagnostic::error(E_UNDEF, Span::default(), format!("unknown activity `{name}`")));
         };
         let arc = piece.occurrence.and_then(|occurrence| self.builder.arc_of(occurrence));
         Ok(Root { block: piece.block, start: piece.start, end: piece.end, arc })
@@ -220,7 +216,7 @@ impl<'program> Expander<'program> {
             match copies {
                 None => {
                     let message =
-                        format!("`repeat` takes a number of copies: 0, 1, 2, …, and this is {value}");
+                        format!("`repeat` needs a whole number of copies of at least 0, but this is {value}");
                     Err(Diagnostic::error(bounds::E_BOUNDS, count.span, message))
                 }
                 Some(copies) if copies > MAX_NODES => {

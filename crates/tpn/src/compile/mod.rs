@@ -182,11 +182,11 @@ fn find_scenario<'program>(
     };
     found.ok_or_else(|| {
         let message = match name {
-            Some(name) => format!("there is no scenario `{name}`"),
-            None => "the file has no scenario, so there is nothing to plan".to_owned(),
+            Some(name) => format!("unknown scenario `{name}`"),
+            None => "the file needs a scenario to plan".to_owned(),
         };
         Diagnostic::error(E_NOSCENARIO, Span::default(), message)
-            .with_hint("write `scenario Name[0,100] = { … }`, or plan one activity by itself")
+            .with_hint("add `scenario Name[0,100] = { … }`, or plan one activity")
     })
 }
 

@@ -200,15 +200,18 @@ impl<'program> Vocabulary<'program> {
         let Some(location) = &fact.sees else { return Ok(fact) };
         let span = condition.sees.as_ref().map_or(condition.span, |location| location.span);
         let Some(domain) = self.places.get(&fact.variable) else {
-            let message = format!("`{}` is not the place of a vehicle, so it sees nothing", fact.variable);
+            let message = format!(
+                "`{}` cannot be in `visible(…)`: only the place of a vehicle can, as in `V.at`",
+                fact.variable
+            );
             return Err(Diagnostic::error(E_VALUE, condition.variable.span, message).with_hint(
-                "`V.at in visible(L)` holds while the vehicle V is where it sees the location L",
+                "`V.at in visible(L)` is true while the vehicle V is at a location from which it sees L",
             ));
         };
         if !domain.contains(&location.as_str()) {
-            let message = format!("there is no location `{location}`");
+            let message = format!("unknown location `{location}`");
             return Err(Diagnostic::error(E_VALUE, span, message)
-                .with_hint("`visible(L)` names a location, or a parameter that stands for one"));
+                .with_hint("`visible(L)` needs a location or a parameter"));
         }
         let mut known = self.hidden.borrow_mut();
         let hidden = known.entry((fact.variable.clone(), location.clone())).or_insert_with(|| {
@@ -254,15 +257,14 @@ impl<'program> Vocabulary<'program> {
                 // What is written is looked up by the language, what a parameter stands for is known here.
                 Some((_, "mode")) if fact.variable == condition.variable.text => Ok(()),
                 Some((_, "mode")) => {
-                    let message = format!("no state variable `{}` is declared", fact.variable);
+                    let message = format!("unknown state variable `{}`", fact.variable);
                     let hint = format!("declare it: `state {} from plant;`", fact.variable);
                     Err(Diagnostic::error(E_UNDEF, condition.variable.span, message).with_hint(hint))
                 }
                 Some((owner, _)) => {
-                    let message =
-                        format!("there is no vehicle `{owner}`, so nothing is known of where it is");
+                    let message = format!("unknown vehicle `{owner}`");
                     Err(Diagnostic::error(E_UNDEF, condition.variable.span, message)
-                        .with_hint("`V.at` is where the vehicle V of `vehicle V : MODEL at PLACE;` stands"))
+                        .with_hint("`V.at` needs a declaration `vehicle V : MODEL at PLACE;`"))
                 }
             };
         };
@@ -271,7 +273,7 @@ impl<'program> Vocabulary<'program> {
         let span = condition.values.get(wrong).map_or(condition.span, |value| value.span);
         let message = match fact.values.get(wrong) {
             Some(value) => format!("`{value}` is not a value of `{}`", fact.variable),
-            None => format!("`{}` is a variable: say which value it has", fact.variable),
+            None => format!("expected a value for the variable `{}`", fact.variable),
         };
         let hint = format!("`{}` is one of {}", fact.variable, domain.join(", "));
         Err(Diagnostic::error(E_VALUE, span, message).with_hint(hint))

@@ -47,7 +47,8 @@ impl<'program> Expander<'program> {
                 let (lowest, highest, first) =
                     (self.amount(least, &scope), self.amount(greatest, &scope), self.amount(level, &scope));
                 if lowest > highest {
-                    let message = format!("the least level {lowest} is above the greatest one {highest}");
+                    let message =
+                        format!("the minimum level {lowest} is greater than the maximum level {highest}");
                     self.diagnostics.push(Diagnostic::error(E_BOUNDS, span, message));
                     return None;
                 }
@@ -64,13 +65,11 @@ impl<'program> Expander<'program> {
     /// The value of an amount, which is finite and not negative; nothing, with a diagnostic, otherwise.
     pub(super) fn amount(&mut self, written: &Expr, scope: &super::scope::Scope) -> Rational {
         let value = bounds::value(written, &scope.values(&self.constants)).and_then(|value| {
-            let finite = value.finite().map(Time::units).ok_or("this amount is infinite");
+            let finite = value.finite().map(Time::units).ok_or("an amount must be finite");
             finite
-                .and_then(
-                    |amount| {
-                        if amount.is_negative() { Err("this amount is negative") } else { Ok(amount) }
-                    },
-                )
+                .and_then(|amount| {
+                    if amount.is_negative() { Err("an amount must not be negative") } else { Ok(amount) }
+                })
                 .map_err(|message| Diagnostic::error(E_BOUNDS, written.span, message))
         });
         value.unwrap_or_else(|error| {
@@ -132,10 +131,10 @@ impl<'program> Expander<'program> {
             if change == Change::Produces { Some(interval.lower) } else { interval.upper.finite() };
         let is_finite = interval.upper.finite().is_some();
         let Some(duration) = duration.filter(|_| is_finite) else {
-            let message = "an amount per time needs to know how long it takes, and this may take for ever";
+            let message = "an amount per time needs a finite duration, but this one is infinite";
             self.diagnostics.push(
                 Diagnostic::error(E_BOUNDS, written.span, message)
-                    .with_hint("give the activity a finite upper bound, or an amount without `per`"),
+                    .with_hint("give the activity a finite maximum, or an amount without `per`"),
             );
             return Rational::default();
         };
@@ -144,7 +143,7 @@ impl<'program> Expander<'program> {
             .and_then(|units| duration.units().checked_div(units))
             .and_then(|times| times.checked_mul(value));
         total.unwrap_or_else(|| {
-            let message = "this amount is too large, or too fine, to be exact";
+            let message = "this amount is too large or too precise to represent exactly";
             self.diagnostics.push(Diagnostic::error(E_BOUNDS, written.span, message));
             Rational::default()
         })
@@ -154,7 +153,7 @@ impl<'program> Expander<'program> {
         if let Some(known) = self.resources.get(name.text.as_str()) {
             return *known;
         }
-        let message = format!("there is no resource `{}`", name.text);
+        let message = format!("unknown resource `{}`", name.text);
         self.diagnostics.push(
             Diagnostic::error(E_UNDEF, name.span, message)
                 .with_hint(format!("declare it: `resource {};`", name.text)),
@@ -168,14 +167,15 @@ impl<'program> Expander<'program> {
         let name = &resource.name;
         let problem = match (resource.supply, used.change) {
             (Supply::Reusable { capacity }, Change::Uses) => (used.amount > capacity).then(|| {
-                let message = format!("this uses {} of `{name}`, which has only {capacity}", used.amount);
+                let message =
+                    format!("this uses {} of `{name}`, but its capacity is {capacity}", used.amount);
                 (called, message)
             }),
             (Supply::Reservoir { least, greatest, .. }, Change::Consumes | Change::Produces) => {
                 let range = greatest.checked_sub(least).unwrap_or_default();
                 (used.amount > range).then(|| {
                     let message = format!(
-                        "this {} {} of `{name}`, which never holds more than {range} to take or to give",
+                        "this {} {} of `{name}`, but its minimum and maximum level are only {range} apart",
                         used.change.word(),
                         used.amount
                     );
@@ -184,14 +184,15 @@ impl<'program> Expander<'program> {
             }
             (Supply::Reusable { .. }, change) => {
                 let message = format!(
-                    "`{name}` is free again after its use: it is used, and nothing {} it",
+                    "`{name}` has a capacity, so activities use it, and nothing {} it",
                     change.word()
                 );
                 Some((written, message))
             }
-            (Supply::Reservoir { .. }, Change::Uses) => {
-                Some((written, format!("`{name}` is a reservoir: it is consumed and produced, not used")))
-            }
+            (Supply::Reservoir { .. }, Change::Uses) => Some((
+                written,
+                format!("`{name}` has a level, so activities consume or produce it, and cannot use it"),
+            )),
         };
         if let Some((span, message)) = problem {
             self.diagnostics.push(Diagnostic::error(E_RESOURCE, span, message));

@@ -169,7 +169,7 @@ impl Constraints {
         let reasons: Vec<String> =
             cycle.iter().map(|edge| describe(network, self.reasons[edge.reason as usize])).collect();
         let events = cycle.iter().map(|edge| node_name(network, NodeId(edge.from))).collect();
-        let message = format!("these constraints contradict each other: {}", reasons.join("; "));
+        let message = format!("these constraints are inconsistent: {}", reasons.join("; "));
         Violation::new(Rule::Temporal, message).with_events(events)
     }
 
@@ -226,16 +226,16 @@ fn describe(network: &Network, reason: Reason) -> String {
         }
         Reason::Link(link) if labels::is_lasting(network, link.ask) => {
             let (ask, tell) = (network.label_name(link.ask), network.label_name(link.tell));
-            format!("{ask} begins when {tell} is ready")
+            format!("{ask} must start when {tell} is ready")
         }
         Reason::Link(link) => {
-            format!("{} lies inside {}", network.label_name(link.ask), network.label_name(link.tell))
+            format!("{} must be inside {}", network.label_name(link.ask), network.label_name(link.tell))
         }
         Reason::Order(order) => {
-            format!("{} comes before {}", network.label_name(order.first), network.label_name(order.then))
+            format!("{} must come before {}", network.label_name(order.first), network.label_name(order.then))
         }
         Reason::Uses(order) => {
-            format!("{} comes before {}", network.use_name(order.first), network.use_name(order.then))
+            format!("{} must come before {}", network.use_name(order.first), network.use_name(order.then))
         }
         Reason::Departure(movement) => {
             let (arrival, before) =

@@ -108,7 +108,8 @@ fn part(
         let Some(upper) = constraints.greatest(id).filter(|&upper| lower >= 0 && lower <= upper) else {
             let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
             let (lower, upper) = (Bound::Finite(arc.lower), arc.upper);
-            let message = format!("nature cannot choose how long {from} to {to} takes: [{lower},{upper}]");
+            let message =
+                format!("the contingent duration from {from} to {to} needs finite bounds: [{lower},{upper}]");
             return Err(Box::new(Violation::new(Rule::Form, message).with_events(vec![from, to])));
         };
         parted.links.push(Link { start: arc.from.0, end: arc.to.0, lower, upper });
@@ -162,14 +163,17 @@ fn describe(
             }
         }
     }
-    let looked =
-        if is_strong { "no times chosen beforehand keep" } else { "no execution can be sure to keep" };
+    let looked = if is_strong {
+        "no schedule fixed in advance can keep"
+    } else {
+        "no execution strategy can guarantee"
+    };
     let what = if kept.is_empty() { "that they end together".to_owned() } else { kept.join("; ") };
     let ranges = ranges.join(", ");
     let message = if ranges.is_empty() {
-        format!("these constraints contradict each other: {what}")
+        format!("these constraints are inconsistent: {what}")
     } else {
-        format!("{ranges}, as nature chooses, and {looked} this: {what}")
+        format!("{ranges} (uncontrolled), and {looked} this: {what}")
     };
     Violation::new(Rule::Controllability, message).with_events(events)
 }

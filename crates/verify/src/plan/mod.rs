@@ -62,7 +62,7 @@ pub fn check_plan(network: &Network, plan: &Plan) -> Verdict {
         return Verdict::new(violations);
     }
     let Some(constraints) = Constraints::new(network, plan) else {
-        let message = "the bounds are too large, or their denominators too different, to be checked exactly";
+        let message = "the bounds are too large, or their denominators too different, to check exactly";
         return Verdict::new(vec![Violation::new(Rule::Form, message)]);
     };
     let distances = match Distances::new(network.nodes.len(), constraints.edges.clone()) {
@@ -101,15 +101,15 @@ fn check_links(network: &Network, plan: &Plan, violations: &mut Vec<Violation>) 
         let names = vec![network.label_name(link.ask), network.label_name(link.tell)];
         *linked.entry(link.ask).or_default() += 1;
         let wrong = if ask.mode != LabelMode::Ask || tell.mode != LabelMode::Tell {
-            Some("a causal link leads from an assertion to a requirement")
+            Some("a causal link must lead from an assertion to a requirement")
         } else if !labels::is_selected(network, plan, link.ask)
             || !labels::is_selected(network, plan, link.tell)
         {
-            Some("a causal link joins intervals that are not selected")
+            Some("a causal link joins intervals that the plan does not select")
         } else if !tell.literal.supports(&ask.literal) {
             Some("the assertion does not make the requirement hold")
         } else if lasting::is_own_effect(network, link.tell, link.ask) {
-            Some("an activity does not rest on its own effect")
+            Some("an activity cannot rely on its own effect")
         } else {
             None
         };
@@ -124,7 +124,7 @@ fn check_links(network: &Network, plan: &Plan, violations: &mut Vec<Violation>) 
         }
         let name = network.label_name(label);
         let message = match linked.get(&label) {
-            None => format!("nothing is linked to {name}"),
+            None => format!("{name} has no causal link"),
             Some(1) => continue,
             Some(count) => format!("{name} has {count} causal links"),
         };
@@ -166,7 +166,7 @@ impl Checker<'_> {
     /// Networks of programs have no such intervals; those that are read may.
     fn backward(&self, span: Span) -> Violation {
         let events = vec![node_name(self.network, span.start), node_name(self.network, span.end)];
-        let message = format!("what begins at {} may end before, at {}", events[0], events[1]);
+        let message = format!("an interval that starts at {} may end earlier, at {}", events[0], events[1]);
         Violation::new(Rule::Form, message).with_events(events)
     }
 

@@ -60,7 +60,7 @@ impl Stated {
         match (self.take(one, other), self.take(other, one)) {
             (true, false) => Ok(Side::InOrder),
             (false, true) => Ok(Side::Reversed),
-            (true, true) => Err(format!("{} and {} are ordered both ways", names().0, names().1)),
+            (true, true) => Err(format!("{} and {} are ordered in both directions", names().0, names().1)),
             (false, false) if self.is_cut => Ok(Side::Omitted),
             (false, false) => {
                 Err(format!("the plan does not say which of {} and {} is first", names().0, names().1))
@@ -90,7 +90,7 @@ impl Stated {
             if !self.is_said(ordering.first, ordering.then) && !self.is_said(ordering.then, ordering.first) {
                 let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
                 complain(
-                    format!("{first} was put before {then}, which the order of conflicts does not say"),
+                    format!("{first} comes before {then}, but the plan's conflict order does not say so"),
                     (ordering.first, ordering.then),
                 );
             }
@@ -135,7 +135,7 @@ impl Checker<'_> {
             if !self.is_before(first, then, stated) {
                 let (first_name, then_name) = (network.label_name(first), network.label_name(then));
                 complain(
-                    format!("{first_name} may overlap {then_name}, which it is said to precede"),
+                    format!("{first_name} must come before {then_name}, but may overlap it"),
                     (first, then),
                 );
             }

@@ -25,7 +25,7 @@ impl Checker<'_> {
             ("end", plan.quality.end.units(), end),
         ] {
             if expected != Some(stated) {
-                let expected = expected.map_or_else(|| "no exact number".to_owned(), |it| it.to_string());
+                let expected = expected.map_or_else(|| "not an exact number".to_owned(), |it| it.to_string());
                 let message = format!("the plan's {name} is {expected}, not {stated}");
                 violations.push(Violation::new(Rule::Quality, message));
             }

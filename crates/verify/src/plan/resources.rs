@@ -15,11 +15,11 @@ pub(super) fn check_use_orderings(network: &Network, plan: &Plan, violations: &m
         let names = vec![network.use_name(first), network.use_name(then)];
         let is_of_one = network.uses[first.index()].resource == network.uses[then.index()].resource;
         let wrong = if first == then {
-            "a use is ordered with itself"
+            "a resource use cannot be ordered with itself"
         } else if !is_of_one {
-            "an ordering joins uses of different resources"
+            "an ordering must join uses of the same resource"
         } else if !is_selected(network, plan, first) || !is_selected(network, plan, then) {
-            "an ordering joins uses that are not selected"
+            "an ordering joins resource uses that the plan does not select"
         } else {
             continue;
         };
@@ -42,7 +42,7 @@ impl Checker<'_> {
         };
         if self.plan.levels.len() != all.len() {
             let message = format!(
-                "the plan tells how far {} resources are used, and there are {}",
+                "the plan lists {} resources, but the mission has {}",
                 self.plan.levels.len(),
                 all.len()
             );
@@ -129,7 +129,7 @@ impl Checker<'_> {
                 high = high.max(reached);
                 if reached > greatest {
                     let message = format!(
-                        "when {user} has produced {}, {name} may be up to {}, and its greatest level is {}",
+                        "when {user} has produced {}, {name} may reach {}, but its maximum is {}",
                         shared.show(event.amount),
                         shared.show(reached),
                         shared.show(greatest)
@@ -140,7 +140,7 @@ impl Checker<'_> {
                 low = low.min(reached);
                 if reached < least {
                     let message = format!(
-                        "when {user} consumes {}, {name} may be down to {}, and its least level is {}",
+                        "when {user} consumes {}, {name} may fall to {}, but its minimum is {}",
                         shared.show(event.amount),
                         shared.show(reached),
                         shared.show(least)
@@ -171,6 +171,6 @@ fn show(levels: Option<Levels>) -> String {
     match levels {
         Some(Levels::Peak(peak)) => format!("is used up to {peak} at a time"),
         Some(Levels::Range { low, high }) => format!("stays within {low} and {high}"),
-        None => "goes beyond what can be told exactly".to_owned(),
+        None => "exceeds what can be represented exactly".to_owned(),
     }
 }

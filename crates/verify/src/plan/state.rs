@@ -21,7 +21,7 @@ impl Checker<'_> {
             if movement.least.is_none() {
                 let names =
                     vec![self.network.label_name(movement.arrival), self.network.label_name(movement.before)];
-                let message = format!("{} cannot be driven from where {} ends", names[0], names[1]);
+                let message = format!("{} cannot be driven from the end of {}", names[0], names[1]);
                 violations.push(Violation::new(Rule::State, message).with_intervals(names));
             }
         }
@@ -57,7 +57,7 @@ impl Checker<'_> {
         }
         for variable in lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(variable, _)| variable) {
             let name = &network.variables[variable.index()].name;
-            let message = format!("the plan orders changes of {name}, and selects none");
+            let message = format!("the plan orders changes of {name}, but selects none");
             violations.push(Violation::new(Rule::State, message));
         }
         let rests = supporters.iter().filter_map(|(ask, tell)| Some((*ask, places.get(tell)? + 1)));
@@ -89,7 +89,7 @@ impl Checker<'_> {
         for (position, &label) in listed.iter().enumerate() {
             let name = network.label_name(label);
             if !seen.insert(label) {
-                complain(format!("{name} is twice in the order of {variable}"), label);
+                complain(format!("{name} appears twice in the order of {variable}"), label);
             } else if is_shown(&label) {
                 if position > 0 {
                     let earlier = network.label_name(listed[0]);
@@ -134,7 +134,7 @@ impl Checker<'_> {
             if !is_in_order || of(first) != of(then) || !is_asked {
                 let names = vec![network.label_name(first), network.label_name(then)];
                 let message = format!(
-                    "{} was put before {}, which the order of changes does not say",
+                    "{} comes before {}, but the plan's order of changes does not say so",
                     names[0], names[1]
                 );
                 violations.push(Violation::new(Rule::State, message).with_intervals(names));
@@ -181,7 +181,7 @@ impl StateCheck<'_> {
             for (earlier, later) in pairs {
                 if !self.checker.entailment.happens_before(earlier.end, later.start) {
                     let message = format!(
-                        "{} may overlap {}, which it is said to precede: {} while {}",
+                        "{} must come before {}, but may overlap it: {} while {}",
                         network.label_name(earlier.label),
                         network.label_name(later.label),
                         self.deed(earlier),
@@ -208,7 +208,7 @@ impl StateCheck<'_> {
             for producer in self.nearest_threats(requirement, self.order[..own].iter().rev()) {
                 if !entailment.happens_before(producer.end, ready) {
                     let message = format!(
-                        "{} may overlap {}, which it is said to precede, when {} needs it",
+                        "{} must come before {}, but may overlap it when {} needs it",
                         network.label_name(producer.label),
                         network.label_name(self.order[own].label),
                         owner_name(network, requirement.label)
@@ -240,7 +240,7 @@ impl StateCheck<'_> {
     fn overlap(&self, requirement: &Requirement, producer: &Producer) -> Violation {
         let network = self.checker.network;
         let message = format!(
-            "{} may overlap {}, which it is said to precede: {} while {} requires {}",
+            "{} must come before {}, but may overlap it: {} while {} requires {}",
             network.label_name(requirement.label),
             network.label_name(producer.label),
             self.deed(producer),

@@ -35,7 +35,7 @@ pub fn check_schedule(network: &Network, plan: &Plan, times: &[Option<Time>]) ->
     if times.len() != network.nodes.len() {
         return Verdict::new(vec![Violation::new(
             Rule::Form,
-            "the schedule is of a network with other nodes",
+            "the schedule belongs to a different network: its nodes differ",
         )]);
     }
     selection::check_selection(network, plan, &mut violations);
@@ -82,7 +82,9 @@ impl Schedule<'_> {
             }
             let names = vec![node_name(self.network, arc.from), node_name(self.network, arc.to)];
             let message = match self.time(arc.to).checked_sub(self.time(arc.from)) {
-                None => format!("the time from {} to {} is too long to be exact", names[0], names[1]),
+                None => {
+                    format!("the time from {} to {} is too long to represent exactly", names[0], names[1])
+                }
                 Some(duration) if duration < arc.lower || Bound::Finite(duration) > arc.upper => format!(
                     "from {} to {} is {}, outside [{},{}]",
                     names[0],
@@ -112,7 +114,7 @@ impl Schedule<'_> {
             });
             if !is_supported {
                 let name = self.network.label_name(ask);
-                let message = format!("{name} is inside no assertion that makes it hold");
+                let message = format!("{name} is not inside an assertion that supports it");
                 violations.push(Violation::new(Rule::Support, message).with_intervals(vec![name]));
             }
         }

@@ -45,7 +45,8 @@ impl Schedule<'_> {
             if !candidates.is_empty() && !candidates.iter().any(has_time) {
                 let mut names = vec![self.network.label_name(moving.label)];
                 names.extend(candidates.iter().map(|it| self.network.label_name(it.label)));
-                let message = format!("{} has not the time it takes from where {} ends", names[0], names[1]);
+                let message =
+                    format!("{} starts too early to drive there from the end of {}", names[0], names[1]);
                 violations.push(Violation::new(Rule::State, message).with_intervals(names));
             }
         }
@@ -118,9 +119,9 @@ impl Schedule<'_> {
         let reason = match threat {
             Some(threat) => {
                 names.push(network.label_name(threat));
-                format!("{} stands against it", names[1])
+                format!("{} contradicts it", names[1])
             }
-            None => "nothing makes it hold".to_owned(),
+            None => "nothing supports it".to_owned(),
         };
         let owner = owner_name(network, requirement.label);
         let message = format!("{owner} requires {text} from {from} to {to}, and {reason}");

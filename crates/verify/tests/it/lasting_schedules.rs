@@ -46,18 +46,18 @@ fn what_is_required_holds_throughout() {
         assert_eq!(arm(at_deploy, at_dig, at_stow), [], "{at_deploy}, {at_dig}, {at_stow}");
     }
     for at_dig in [0, 4] {
-        only(&arm(0, at_dig, 40), Rule::State, &[dig, deploy], "Deploy#1 stands against it");
+        only(&arm(0, at_dig, 40), Rule::State, &[dig, deploy], "Deploy#1 contradicts it");
     }
     for at_stow in [6, 14] {
         only(&arm(0, 5, at_stow), Rule::State, &[dig, stow], "Dig#1 requires ARM=OUT from 5 to 15");
     }
     // Stowed before it is needed.
-    only(&arm(0, 30, 10), Rule::State, &[dig, stow], "Stow#1 stands against it");
+    only(&arm(0, 30, 10), Rule::State, &[dig, stow], "Stow#1 contradicts it");
     // Both at once: then nothing is left of either.
     for (at_stow, words) in [(4, "both about ARM at 4"), (0, "both about ARM at 0")] {
         let found = arm(0, 30, at_stow);
         only(&found[..1], Rule::State, &[deploy, stow], words);
-        only(&found[1..], Rule::State, &[dig, stow], "Stow#1 stands against it");
+        only(&found[1..], Rule::State, &[dig, stow], "Stow#1 contradicts it");
     }
 }
 

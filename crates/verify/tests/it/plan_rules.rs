@@ -168,22 +168,26 @@ fn names_that_the_network_does_not_have_make_no_plan() {
 
 #[test]
 fn choices_are_made_exactly_where_decisions_are_reached() {
-    any(&changed(|_, plan| plan.choices.clear()), Rule::Selection, "D1 is reached, but not decided");
+    any(
+        &changed(|_, plan| plan.choices.clear()),
+        Rule::Selection,
+        "the plan reaches D1, but does not decide it",
+    );
     any(&changed(|_, plan| plan.choices[0].alternative = 2), Rule::Selection, "D1 has no alternative 2");
     let twice = changed(|_, plan| plan.choices.push(plan.choices[0]));
-    only(&twice, Rule::Selection, &[], "D1 is decided twice");
+    only(&twice, Rule::Selection, &[], "the plan decides D1 twice");
     let both = Choice { decision: DecisionId(0), alternative: 1 };
-    any(&changed(|_, plan| plan.choices.push(both)), Rule::Selection, "D1 is decided twice");
+    any(&changed(|_, plan| plan.choices.push(both)), Rule::Selection, "the plan decides D1 twice");
     // Another alternative than the one that is selected.
     let other = changed(|_, plan| plan.choices[0].alternative = 1);
     any(&other, Rule::Selection, "A#1.start is selected, but no selected arc leads to it");
-    any(&other, Rule::Selection, "B#1.start belongs to the plan's choices, but is not selected");
+    any(&other, Rule::Selection, "B#1.start follows from the plan's choices, but is not selected");
     // A decision inside an alternative that is not taken.
     let network = network("scenario S = { choose { A(), { choose { B(), C() } } } }");
     let good = plan(&network, Sketch { choices: &[(1, 0)], ..Sketch::default() });
     assert_eq!(violations(&network, &good), []);
     let more = plan(&network, Sketch { choices: &[(1, 0), (2, 0)], ..Sketch::default() });
-    only(&violations(&network, &more), Rule::Selection, &[], "D2 is decided, but the plan never reaches it");
+    only(&violations(&network, &more), Rule::Selection, &[], "the plan decides D2, but never reaches it");
 }
 
 #[test]
@@ -314,7 +318,7 @@ fn a_tell_that_cannot_contain_the_requirement_is_a_contradiction() {
     let found = violations(&network, &plan(&network, Sketch { links: &[(ASK, TELL)], ..GOOD }));
     let [violation] = &found[..] else { panic!("{found:#?}") };
     assert_eq!(violation.rule, Rule::Temporal);
-    assert!(violation.message.contains(&format!("{ASK} lies inside {TELL}")), "{violation:?}");
+    assert!(violation.message.contains(&format!("{ASK} must be inside {TELL}")), "{violation:?}");
     assert!(violation.message.contains("takes [12,inf]"), "{violation:?}");
     assert!(violation.events.iter().any(|event| event == "D#1.end"), "{violation:?}");
     // It may hold longer than the assertion.
@@ -329,14 +333,14 @@ fn orderings_that_go_round_in_a_cycle_contradict_each_other() {
     let round = said_of(Sketch { added: &[(X, Y), (Y, X)], ..GOOD });
     let [violation] = &round[..] else { panic!("{round:#?}") };
     assert_eq!(violation.rule, Rule::Temporal);
-    for order in [format!("{X} comes before {Y}"), format!("{Y} comes before {X}")] {
+    for order in [format!("{X} must come before {Y}"), format!("{Y} must come before {X}")] {
         assert!(violation.message.contains(&order), "{violation:?}");
     }
     // An interval before itself.
     any(
         &said_of(Sketch { added: &[(X, Y), (X, X)], ..GOOD }),
         Rule::Temporal,
-        &format!("{X} comes before {X}"),
+        &format!("{X} must come before {X}"),
     );
 }
 

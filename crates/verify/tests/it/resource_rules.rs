@@ -215,7 +215,7 @@ fn orderings_join_selected_uses_of_one_resource() {
     round.uses_ordered.push(UseOrdering { first: first.then, then: first.first });
     let found = violations(&network, &round);
     assert!(matches!(found.as_slice(), [it] if it.rule == Rule::Temporal), "{found:#?}");
-    assert!(found[0].message.contains("Uses(Cam)@Shoot#1 comes before Uses(Cam)@Film#1"), "{found:#?}");
+    assert!(found[0].message.contains("Uses(Cam)@Shoot#1 must come before Uses(Cam)@Film#1"), "{found:#?}");
 }
 
 /// Four users in two pairs: which may meet whom decides, not how many there are.

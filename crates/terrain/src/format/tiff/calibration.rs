@@ -20,18 +20,16 @@ impl Calibration {
     pub fn read(decoder: &mut Decoder<'_>, unit_m: Option<f64>) -> Result<Self, FormatError> {
         let no_data = match text(decoder, Tag::GdalNodata)?.as_deref().map(str::trim) {
             None | Some("") => None,
-            Some(written) => Some(
-                written
-                    .parse()
-                    .map_err(|_| malformed(format!("its GDAL_NODATA is no number: `{}`", start(written))))?,
-            ),
+            Some(written) => Some(written.parse().map_err(|_| {
+                malformed(format!("its GDAL_NODATA must be a number, not `{}`", start(written)))
+            })?),
         };
         let metadata = text(decoder, GDAL_METADATA)?.unwrap_or_default();
         let number = |role: &str| match item_of_first_band(&metadata, role) {
             None => Ok(None),
             Some(written) => match written.trim().parse::<f64>() {
                 Ok(number) if number.is_finite() => Ok(Some(number)),
-                _ => Err(malformed(format!("its {role} is no number: `{}`", start(written)))),
+                _ => Err(malformed(format!("its {role} must be a number, not `{}`", start(written)))),
             },
         };
         let (scale, offset) = (number("scale")?.unwrap_or(1.0), number("offset")?.unwrap_or(0.0));
@@ -41,7 +39,7 @@ impl Calibration {
         let unit_m = match item_of_first_band(&metadata, "unittype").map(str::trim) {
             None | Some("") => unit_m.unwrap_or(1.0),
             Some(unit) => metres(unit).ok_or_else(|| {
-                unsupported(format!("its values are in `{}`, which is no known unit of length", start(unit)))
+                unsupported(format!("use one of in `{}`, which is no known unit of length", start(unit)))
             })?,
         };
         Ok(Self { scale, offset, unit_m, no_data })

@@ -17,7 +17,7 @@ pub(super) fn read_mask(bytes: &[u8], decoder: &mut Decoder<'_>) -> Result<Optio
     let (width, height) = decoder.dimensions().map_err(|error| problem(&error))?;
     decoder.seek_to_image(index).map_err(|error| problem(&error))?;
     if decoder.dimensions().map_err(|error| problem(&error))? != (width, height) {
-        return Err(unsupported("its mask has another size than its heights"));
+        return Err(unsupported("its mask and its heights must have the same size"));
     }
     let bits = number(decoder, Tag::BitsPerSample)?.unwrap_or(1);
     if !matches!(bits, 1 | 8) || number(decoder, Tag::SamplesPerPixel)?.unwrap_or(1) != 1 {
@@ -50,7 +50,7 @@ fn mask_index(decoder: &mut Decoder<'_>) -> Result<Option<usize>, FormatError> {
     while let Some(pointer) = next {
         index += 1;
         if index == MAX_DIRECTORY_COUNT {
-            return Err(unsupported(format!("more than {MAX_DIRECTORY_COUNT} images, or images in a ring")));
+            return Err(unsupported(format!("more than {MAX_DIRECTORY_COUNT} images, or images in a cycle")));
         }
         let directory = decoder.read_directory(pointer).map_err(|error| problem(&error))?;
         let kind = decoder.read_directory_tags(&directory).find_tag(Tag::NewSubfileType);
@@ -70,7 +70,7 @@ pub(super) fn without_inversion(bytes: &[u8], decoder: &mut Decoder<'_>) -> Resu
     let order = decoder.byte_order();
     let place = (decoder.ifd_pointer())
         .and_then(|directory| interpretation_place(bytes, order, directory))
-        .ok_or_else(|| malformed("its PhotometricInterpretation is not one number"))?;
+        .ok_or_else(|| malformed("its PhotometricInterpretation must be one number"))?;
     let value = PhotometricInterpretation::BlackIsZero.to_u16();
     let mut copy = bytes.to_vec();
     copy[place..place + 2].copy_from_slice(&match order {

@@ -48,7 +48,7 @@ impl Georeference {
         let (width, height) = (x.abs(), y.abs());
         if (width - height).abs() > SQUARE_TOLERANCE * width.max(height) {
             return Err(unsupported(format!(
-                "its cells are not square: {width} × {height}; make them so, as with \
+                "cells must be square, not {width} × {height}; make them so, as with \
                  `gdalwarp -tr {size} {size} IN.tif OUT.tif`",
                 size = width.max(height)
             )));
@@ -84,8 +84,8 @@ fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
     if let &[x, y, ..] = scale.as_slice() {
         if x < 0.0 || y < 0.0 {
             return Err(unsupported(format!(
-                "its ModelPixelScale is {x} × {y}, which some programs write for north and others for south on \
-                 top; write it anew with the program that wrote it, or with `gdal_translate`"
+                "its ModelPixelScale {x} × {y} is ambiguous (north up or south up); save it again with the original program \
+                 or with `gdal_translate`"
             )));
         }
         // The scale counts rows downwards.
@@ -98,7 +98,7 @@ fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
         }
         if x_of_row.abs().max(y_of_column.abs()) > SQUARE_TOLERANCE * x.abs().max(y.abs()) {
             return Err(unsupported(
-                "its rows are not from west to east; turn them so, as with `gdalwarp IN.tif OUT.tif`",
+                "its rows must run from west to east; convert it, as with `gdalwarp IN.tif OUT.tif`",
             ));
         }
         return Ok(finite([x, y]));
@@ -106,7 +106,7 @@ fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
     // A tie point has six numbers; one alone says only where the map is.
     if doubles(decoder, Tag::ModelTiepointTag)?.len() > 6 {
         return Err(unsupported(
-            "it is laid on the ground by control points; apply them, as with `gdalwarp IN.tif OUT.tif`",
+            "it is georeferenced by control points; apply them, as with `gdalwarp IN.tif OUT.tif`",
         ));
     }
     Ok(None)
@@ -171,9 +171,7 @@ impl Keys {
         };
         let code = self.value(unit).unwrap_or_default();
         metres.filter(|metres| metres.is_finite() && *metres > 0.0).map(Some).ok_or_else(|| {
-            unsupported(format!(
-                "a unit of length of it (EPSG code {code}) is neither metres, kilometres nor feet"
-            ))
+            unsupported(format!("its unit of length (EPSG code {code}) must be meters, kilometers or feet"))
         })
     }
 }

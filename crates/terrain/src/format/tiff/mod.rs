@@ -45,7 +45,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     // The first band of several is the elevation.
     let bands = values.len() / count;
     if alpha_band.is_some_and(|band| band >= bands) {
-        return Err(unsupported("its transparency is stored apart from its heights (INTERLEAVE=BAND)"));
+        return Err(unsupported("its transparency is stored separately from its heights (INTERLEAVE=BAND)"));
     }
     let mut samples: Vec<f32> = values
         .chunks_exact(bands)
@@ -99,13 +99,13 @@ fn refuse_what_holds_no_heights(decoder: &mut Decoder<'_>) -> Result<(), FormatE
     };
     if let Some(name) = name {
         return Err(unsupported(format!(
-            "its compression is {name}; write it with another one: `gdal_translate -co COMPRESS=DEFLATE IN.tif OUT.tif`"
+            "compression {name} is not supported; convert it, as with `gdal_translate -co COMPRESS=DEFLATE IN.tif OUT.tif`"
         )));
     }
     if number(decoder, Tag::PhotometricInterpretation)?
         == Some(PhotometricInterpretation::RGBPalette.to_u16().into())
     {
-        return Err(unsupported("it is a picture of palette colours, which are no heights"));
+        return Err(unsupported("it has palette colors instead of heights"));
     }
     match number(decoder, Tag::BitsPerSample)? {
         Some(8 | 16 | 32 | 64) => {}
@@ -114,7 +114,7 @@ fn refuse_what_holds_no_heights(decoder: &mut Decoder<'_>) -> Result<(), FormatE
     match number(decoder, Tag::Orientation)? {
         None | Some(1) => Ok(()),
         Some(orientation) => Err(unsupported(format!(
-            "its Orientation is {orientation}: only images from the top left (1) are read"
+            "its Orientation is {orientation}, but only images from the top left (1) are supported"
         ))),
     }
 }

@@ -220,7 +220,7 @@ impl<'search> Search<'search> {
     fn without_order(&self, instant: &Instant, place: usize, refusal: &Refusal) -> Violation {
         let name = node_name(self.network(), instant.nodes[place]);
         let message = format!(
-            "no order of the events at {} that follows the text keeps every rule: with {name} next, {}",
+            "no order of the events at {} follows the text and satisfies every rule: with {name} next, {}",
             Bound::Finite(instant.time),
             refusal.message
         );
@@ -233,7 +233,7 @@ impl<'search> Search<'search> {
         let left = instant.nodes.iter().zip(&placed.has_come).filter(|(_, has_come)| !**has_come);
         let names: Vec<String> = left.map(|(&node, _)| node_name(self.network(), node)).collect();
         let message = format!(
-            "the events at {} have no order that follows the text: each of {} would be after another one",
+            "the events at {} have no order that follows the text: each of {} would have to come after another",
             Bound::Finite(instant.time),
             names.join(", ")
         );
@@ -243,7 +243,7 @@ impl<'search> Search<'search> {
 
 fn too_many(instant: &Instant) -> Violation {
     let message = format!(
-        "the events at {} have too many orders to be checked: the search gave up after {MAX_WAYS} ways to place some of them",
+        "the events at {} have too many orders to check: the search stopped after {MAX_WAYS} attempts",
         Bound::Finite(instant.time)
     );
     Violation::new(Rule::Form, message)

@@ -132,8 +132,11 @@ impl Search<'_> {
             return Ok(());
         }
         let name = |label: LabelId| self.network().label_name(label);
-        let message =
-            format!("{} has not the time it takes from where {} ends", name(moving.label), name(before[0]));
+        let message = format!(
+            "{} starts too early to drive there from the end of {}",
+            name(moving.label),
+            name(before[0])
+        );
         Err(self.refusal(message, &[moving.label, before[0]]))
     }
 
