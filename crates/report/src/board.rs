@@ -56,12 +56,12 @@ pub(crate) fn signatures(record: &Record, review: &Review) -> String {
             rows.push(row);
         }
     }
-    let rows = table(&["Role", "Name", "Date", "With these words", "Entry", "Signature"], rows);
+    let rows = table(&["Role", "Name", "Date", "Comment", "Entry", "Signature"], rows);
     let blockers = standing.blockers();
     let open = if blockers.is_empty() {
         String::new()
     } else {
-        format!("<p>In the way of an approval: {}.</p>\n", escaped(&blockers.join(", ")))
+        format!("<p>Blocked by: {}.</p>\n", escaped(&blockers.join(", ")))
     };
     format!(
         "<div class=\"signatures\">\n<h2>Signatures</h2>\n{open}{rows}</div>\n{}",
@@ -96,7 +96,7 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
         escaped(short(&entry.content_hash))
     );
     if since.is_nothing() {
-        out.push_str("<p>Text, plan, checklist, flight rules and runs with chance are the same.</p>\n");
+        out.push_str("<p>Text, plan, checklist, flight rules and Monte Carlo results are unchanged.</p>\n");
         return out;
     }
     if !since.text.is_empty() {
@@ -125,7 +125,7 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
 fn plan(since: &Since) -> String {
     let heading = "<h3>Plan</h3>\n";
     match &since.plan {
-        None => format!("{heading}<p>The approved plan was not kept.</p>\n"),
+        None => format!("{heading}<p>The approved plan was not saved.</p>\n"),
         Some(plan) if plan.is_same() => String::new(),
         Some(plan) => {
             let rows =
@@ -148,7 +148,7 @@ fn text(changes: &[TextChange]) -> String {
     let more = lines.len().saturating_sub(MAX_TEXT_LINES);
     lines.truncate(MAX_TEXT_LINES);
     if more > 0 {
-        lines.push(format!("and {more} more lines that are not listed here"));
+        lines.push(format!("and {more} more lines, not listed"));
     }
     lines.join("\n")
 }
@@ -177,10 +177,10 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
         let of = entry.act.of().map(|of| format!(" entry {}", number(of))).unwrap_or_default();
         let taken_back = withdrawn.get(entry.digest());
         let state = match taken_back {
-            Some(by) => word("attention", &format!("taken back by {}", escaped(&by.by))),
+            Some(by) => word("attention", &format!("withdrawn by {}", escaped(&by.by))),
             None if entry.content_hash == review.content_hash => word("passed", "current"),
             None if matches!(entry.act, Act::Rules { .. }) => String::new(),
-            None => word("information", "other content"),
+            None => word("information", "different content"),
         };
         vec![
             (index + 1).to_string(),
@@ -197,7 +197,7 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
     let rows = table(&headings, rows);
     let heads: Vec<String> = record.heads().map(|head| format!("<code>{}</code>", escaped(head))).collect();
     format!(
-        "<h2>History of the review</h2>\n{rows}<p class=\"muted\">Each entry is sealed over the ones before. Last entry: {}</p>\n",
+        "<h2>History of the review</h2>\n{rows}<p class=\"muted\">Each entry contains the hash of the previous one. Last entry: {}</p>\n",
         heads.join(", ")
     )
 }

@@ -209,7 +209,7 @@ pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
             ends => format!("; pinned: {ends}"),
         };
         let description = format!(
-            "Starts from {} to {}, ends from {} to {} {} after the start of the mission{pinned}; {}, content {}",
+            "Starts {} to {}, ends {} to {} {} after the start of the mission{pinned}; {}, content {}",
             row.start.earliest.readable(),
             row.start.latest.readable(),
             row.end.earliest.readable(),

@@ -111,8 +111,8 @@ fn facts(document: &Document<'_>, record: &Record) -> String {
     let [passed, attention, failed] = review.counts();
     let information = review.count(Status::Information);
     let verdict = match review.status {
-        Status::Information | Status::Passed => "everything is as it should be",
-        Status::Attention => "some lines deserve a look",
+        Status::Information | Status::Passed => "passed",
+        Status::Attention => "needs attention",
         Status::Failed => "not ready",
     };
     let unit = match document.snapshot.program.options.time_unit {
@@ -126,7 +126,7 @@ fn facts(document: &Document<'_>, record: &Record) -> String {
     };
     format!(
         "<dl class=\"facts\">\n<dt>Verdict</dt><dd>{}: {verdict}</dd>\n\
-         <dt>Checklist</dt><dd>{passed} passed, {attention} for attention, {failed} failed; {information} for information</dd>\n\
+         <dt>Checklist</dt><dd>{passed} passed, {attention} need attention, {failed} failed; {information} for information</dd>\n\
          <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
          <dt>Map, seed</dt><dd>{}, {}</dd>\n\
          <dt>Board</dt><dd>{}</dd>\n\

@@ -68,9 +68,9 @@ pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
     let rows: Vec<Vec<String>> = of_status(Status::Failed).chain(of_status(Status::Attention)).collect();
     let mut out = String::from("<h2>Summary</h2>\n");
     if rows.is_empty() {
-        out.push_str("<p class=\"muted\">Nothing has failed, and nothing is for attention.</p>\n");
+        out.push_str("<p class=\"muted\">Nothing failed, and nothing needs attention.</p>\n");
     } else {
-        out.push_str(&table(&["", "Section", "What", "Held against", "Acknowledged by", "Where"], rows));
+        out.push_str(&table(&["", "Section", "What", "Criterion", "Acknowledged by", "Where"], rows));
     }
     out
 }
@@ -190,14 +190,12 @@ pub(crate) fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String
     let on_screen = is_printed.iter().filter(|it| !**it).count();
     if on_screen > 0 {
         out.push_str(&format!(
-            "<tr class=\"in-print\"><td colspan=\"{columns}\">and {on_screen} more that are not printed: they stand in this \
-             file on the screen</td></tr>\n"
+            "<tr class=\"in-print\"><td colspan=\"{columns}\">and {on_screen} more, not printed; open this file on a screen \
+             to see them</td></tr>\n"
         ));
     }
     if more > 0 {
-        out.push_str(&format!(
-            "<tr><td colspan=\"{columns}\">and {more} more that are not listed here</td></tr>\n"
-        ));
+        out.push_str(&format!("<tr><td colspan=\"{columns}\">and {more} more, not listed</td></tr>\n"));
     }
     out.push_str("</tbody></table>\n");
     out
@@ -217,7 +215,7 @@ fn time(time: Bound) -> String {
 
 fn lines(lines: &[&Line]) -> String {
     table(
-        &["", "What", "Held against", "Where"],
+        &["", "What", "Criterion", "Where"],
         lines.iter().map(|line| vec![status(line.status), escaped(&line.text), criterion(line), place(line)]),
     )
 }
@@ -248,7 +246,7 @@ fn choices(review: &Review) -> String {
             ]
         })
     });
-    table(&["", "Choice", "Alternative", "Taken, or why not", "Where"], rows)
+    table(&["", "Choice", "Alternative", "Reason", "Where"], rows)
 }
 
 /// Its name, and its text where that says more.
@@ -273,7 +271,7 @@ fn links(review: &Review) -> String {
             place(&link.line),
         ]
     });
-    table(&["", "Needed", "Carried by", "#Holds before", "#Outlasts by", "Held against", "Where"], rows)
+    table(&["", "Needed", "Supported by", "#Holds before", "#Outlasts by", "Criterion", "Where"], rows)
 }
 
 fn resources(review: &Review) -> String {
@@ -302,10 +300,7 @@ fn resources(review: &Review) -> String {
             place(&resource.line),
         ]
     });
-    table(
-        &["", "Resource", "There is", "Used or left in every schedule", "Margin", "Held against", "Where"],
-        rows,
-    )
+    table(&["", "Resource", "Capacity", "Range over all schedules", "Margin", "Criterion", "Where"], rows)
 }
 
 fn conflicts(review: &Review) -> String {
@@ -321,7 +316,7 @@ fn conflicts(review: &Review) -> String {
             place(&conflict.line),
         ]
     });
-    table(&["", "First", "Then", "#Apart", "Ordered by", "Held against", "Where"], rows)
+    table(&["", "First", "Then", "#Apart", "Ordered by", "Criterion", "Where"], rows)
 }
 
 /// Events of the program first; the points of paths, which are many and follow from them, in a table of their own.
@@ -353,14 +348,14 @@ pub(crate) fn robustness(review: &Review, found: Option<&Robustness>) -> String 
         out.push_str(&lines(&[line]));
     }
     let Some(found) = found.filter(|found| found.tally.runs > 0) else {
-        out.push_str("<p class=\"muted\">No runs with chance were made.</p>\n");
+        out.push_str("<p class=\"muted\">No Monte Carlo runs.</p>\n");
         return out;
     };
     let tally = &found.tally;
     let (low, high) = tally.interval();
     let percent = |part: f64| format!("{:.1} %", part * 100.0);
     out.push_str(&format!(
-        "<p>{} of {} runs reached the end: {} (95 % confidence: {} to {}). {} of them had to plan again.</p>\n",
+        "<p>{} of {} runs reached the end: {} (95% confidence: {} to {}). {} of them had to replan.</p>\n",
         tally.succeeded,
         tally.runs,
         percent(tally.probability()),
@@ -381,7 +376,7 @@ pub(crate) fn robustness(review: &Review, found: Option<&Robustness>) -> String 
         })
         .collect();
     if !rows.is_empty() {
-        out.push_str(&table(&["Event", "#Not kept", "#Ended the run", "For example"], rows));
+        out.push_str(&table(&["Event", "#Violated", "#Ended the run", "Example"], rows));
     }
     out
 }
@@ -407,12 +402,12 @@ fn traverses(review: &Review) -> String {
         "",
         "Traverse",
         "Vehicles",
-        "By way of",
+        "Via",
         "#Length, m",
         "#Duration",
         "#Clearance, m",
         "#Slope, °",
-        "Held against",
+        "Criterion",
         "Where",
     ];
     table(&headings, rows)
@@ -437,7 +432,7 @@ mod tests {
         assert!(printed.len() <= 3 + PRINTED_HEIGHT / 18, "{}", printed.len());
         let on_screen = html.matches("class=\"on-screen\"").count();
         assert!(html.contains(&format!("and {on_screen} more that are not printed")));
-        assert!(html.contains("and 79000 more that are not listed here"));
+        assert!(html.contains("and 79000 more, not listed"));
         assert!(!table(&["", "What"], (0..MAX_ROWS).map(row)).contains("not listed"));
     }
 

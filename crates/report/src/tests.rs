@@ -103,7 +103,7 @@ fn the_summary_comes_first_and_each_page_has_its_number_and_the_hash() {
     let summary = &page[at("<h2>Summary</h2>")..at("<h2>Signatures</h2>")];
     assert!(summary.contains("outlasts it by 0 to 45 min") && summary.contains("margin more than 0 min"));
     let fine = report("primitive A()[1,2]; scenario S[0,9] = { A() }", "fine.rmpl");
-    assert!(fine.contains("Nothing has failed, and nothing is for attention."));
+    assert!(fine.contains("Nothing failed, and nothing needs attention."));
 }
 
 #[test]
@@ -369,12 +369,12 @@ fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
     assert!(page.contains("approved with comments</span>: Reviewer 1 of 1"), "{page}");
     assert!(page.contains("Ada &lt;A&gt; (Reviewer): As meant."), "who acknowledged stands in the summary");
     assert!(page.contains("resolved entry 1") && page.contains("Mind the wind."));
-    assert!(page.contains("Text, plan, checklist, flight rules and runs with chance are the same."));
+    assert!(page.contains("Text, plan, checklist, flight rules and Monte Carlo results are unchanged."));
     assert!(page.contains(record.heads().next().expect("a last entry")));
     let approved = record.entries().last().expect("the approval").digest().to_owned();
     record.add(who("Grace", &planned.review), Act::Withdraw { of: approved, text: "Too early.".to_owned() });
     let page = page_with(&planned, &record);
-    assert!(page.contains("taken back by Grace") && !page.contains("approved with comments"));
+    assert!(page.contains("withdrawn by Grace") && !page.contains("approved with comments"));
 }
 
 #[test]

@@ -56,13 +56,13 @@ impl Fate {
             Self::Taken => "taken".to_owned(),
             Self::Impossible { reason, .. } => format!("impossible: {reason}"),
             Self::AlsoPossible => {
-                "not needed: there is a plan with it too, and this one was found first".to_owned()
+                "not needed: a plan with it also exists, but this one was found first".to_owned()
             }
             Self::NoBetter { at_best: Some(worth) } => {
-                format!("not taken: with it and the choices before it {worth} at best")
+                format!("not chosen: with it and the previous choices, {worth} at best")
             }
-            Self::NoBetter { at_best: None } => "not taken: no plan with it is better".to_owned(),
-            Self::NotExamined => "not examined: too large a search for a review".to_owned(),
+            Self::NoBetter { at_best: None } => "not chosen: no better plan uses it".to_owned(),
+            Self::NotExamined => "not checked: search too large".to_owned(),
         }
     }
 }
@@ -183,9 +183,9 @@ impl<'input> Examiner<'input> {
             spans.extend(reason.spans);
         }
         match more {
-            0 if told.is_empty() => told.push("there is no plan with it".to_owned()),
+            0 if told.is_empty() => told.push("no plan with it exists".to_owned()),
             0 => {}
-            1 => told.push("and one other".to_owned()),
+            1 => told.push("and 1 other".to_owned()),
             _ => told.push(format!("and {more} others")),
         }
         Fate::Impossible { reason: told.join("; "), spans }

@@ -229,7 +229,7 @@ fn a_board_has_roles_with_names_of_their_own() {
     }
     let document = rules().to_json();
     assert_eq!(FlightRules::from_json(&document), Ok(rules()));
-    assert!(rules().in_words("min").contains(&"who approves: 2 Science, 1 Mobility".to_owned()));
+    assert!(rules().in_words("min").contains(&"required approvals: 2 Science, 1 Mobility".to_owned()));
 }
 
 #[test]

@@ -174,9 +174,9 @@ pub struct ResourceReview {
     pub supply: Supply,
     /// How far the plan uses it, over all schedules.
     pub levels: Levels,
-    /// What stays free of a reusable resource, and above the least level of a reservoir.
+    /// What stays free of a reusable resource, and above the minimum level of a reservoir.
     pub spare: Rational,
-    /// What stays free below the greatest level of a reservoir.
+    /// What stays free below the maximum level of a reservoir.
     pub room: Option<Rational>,
 }
 
@@ -295,11 +295,11 @@ impl Section {
             Self::States => "States and vehicles",
             Self::Resources => "Resources",
             Self::Overlaps => "Activities that may overlap",
-            Self::Durations => "Durations that the plan narrows",
+            Self::Durations => "Durations narrowed by the plan",
             Self::Events => "Windows and slack",
             Self::Traverses => "Traverses",
             Self::SeparationViolations => "Conflicts between vehicles",
-            Self::MissionRules => "Rules of the mission",
+            Self::MissionRules => "Mission rules",
             Self::Robustness => "Robustness",
             Self::Warnings => "Warnings in the text",
         }
@@ -365,21 +365,19 @@ impl Review {
     pub fn nothing(&self, section: Section) -> &'static str {
         match section {
             Section::Warnings => "The text has no errors and no warnings.",
-            Section::MissionRules => "The flight rules have none in the mission's own language.",
-            _ if !self.is_planned() => "There is no plan to look at.",
-            Section::Plan | Section::Events => "There is nothing to look at.",
+            Section::MissionRules => "There are no mission rules.",
+            _ if !self.is_planned() => "There is no plan.",
+            Section::Plan | Section::Events => "Nothing to check.",
             Section::Choices => "The plan has no choice to make.",
-            Section::CausalLinks => "Nothing requires a condition.",
-            Section::Conflicts => {
-                "No two conditions of the plan contradict each other, so there is no threat."
-            }
-            Section::States => "Nothing in the plan needs or changes a state, and no vehicle moves.",
+            Section::CausalLinks => "No activity requires a condition.",
+            Section::Conflicts => "No two conditions of the plan conflict, so there is no threat.",
+            Section::States => "The plan does not use states, and no vehicle moves.",
             Section::Resources => "No resource is used.",
-            Section::Overlaps => "No vehicle does two things or more.",
-            Section::Durations => "Every duration, taken alone, can be used as it is declared.",
+            Section::Overlaps => "No vehicle has more than one activity.",
+            Section::Durations => "The plan allows the full declared range of each duration on its own.",
             Section::Traverses => "No vehicle drives.",
-            Section::SeparationViolations => "No two vehicles come too near each other.",
-            Section::Robustness => "No runs with chance were made.",
+            Section::SeparationViolations => "No two vehicles come too close to each other.",
+            Section::Robustness => "No Monte Carlo runs.",
         }
     }
 

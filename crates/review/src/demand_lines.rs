@@ -99,8 +99,8 @@ impl DemandLines<'_> {
         let count = self.plan.causal_links.iter().filter(is_lasting).count();
         let text = match count {
             0 => return None,
-            1 => "the one requirement of a state rests on a change that holds".to_owned(),
-            _ => format!("every requirement of a state rests on a change that holds: {count} requirements"),
+            1 => "the requirement of a state is supported".to_owned(),
+            _ => format!("all {count} requirements of states are supported"),
         };
         Some(self.places.line(self.status, text, None, Vec::new(), Vec::new()))
     }
@@ -116,7 +116,7 @@ impl DemandLines<'_> {
             let place = self.network.value_names(tell).join(", ");
             let verb = if ask.text.starts_with("not(") { "does not see" } else { "sees" };
             let owner = self.owner(link.ask).map(|owner| format!(" during {owner}")).unwrap_or_default();
-            let scope = "rocks and declared obstacles do not count";
+            let scope = "rocks and declared obstacles are ignored";
             let text = format!("{vehicle} {verb} {} from {place}{owner}; {scope}", sight.location);
             let names = self.owner(link.ask).map(str::to_owned).into_iter().collect();
             let (start, end) = self.network.interval(link.ask);
@@ -214,15 +214,12 @@ impl DemandLines<'_> {
                 let [capacity, peak] = [capacity, peak].map(Rational::readable);
                 let text = match spare {
                     _ if spare.is_positive() => {
-                        format!(
-                            "of {name}, at most {peak} of {capacity} are used at a time, {} to spare",
-                            spare.readable()
-                        )
+                        format!("{name}: peak use {peak} of {capacity} ({} to spare)", spare.readable())
                     }
                     _ if spare.is_zero() => {
-                        format!("of {name}, all {capacity} are used at a time, none to spare")
+                        format!("{name}: peak use {capacity} of {capacity} (none to spare)")
                     }
-                    _ => format!("of {name}, {peak} are used at a time, and there are {capacity}"),
+                    _ => format!("{name}: peak use {peak} exceeds the capacity {capacity}"),
                 };
                 (text, spare, None)
             }
@@ -231,14 +228,14 @@ impl DemandLines<'_> {
                 let [low, high] = [low, high].map(Rational::readable);
                 let [least, greatest] = [least, greatest].map(Rational::readable);
                 let above = if spare.is_zero() {
-                    format!("down to its least level {least}")
+                    format!("reaches its minimum {least}")
                 } else {
-                    format!("{} above its least level {least}", spare.readable())
+                    format!("{} above its minimum {least}", spare.readable())
                 };
                 let below = if room.is_zero() {
-                    format!("up to its greatest {greatest}")
+                    format!("reaches its maximum {greatest}")
                 } else {
-                    format!("{} below its greatest {greatest}", room.readable())
+                    format!("{} below its maximum {greatest}", room.readable())
                 };
                 (format!("{name} stays between {low} and {high}: {above}, {below}"), spare, Some(room))
             }
@@ -251,8 +248,7 @@ impl DemandLines<'_> {
             _ if is_short => (Status::Failed, text),
             Some(detours) if is_tight => {
                 let more = detours.readable();
-                let text =
-                    format!("{text}; drives around rocks that the map does not show may take {more} more");
+                let text = format!("{text}; detours around unmapped rocks may take {more} more");
                 (self.status.max(Status::Attention), text)
             }
             _ => (self.status, text),

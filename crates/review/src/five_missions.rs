@@ -222,8 +222,8 @@ fn runs(succeeded: u64) -> Robustness {
 fn subject(text: &str) -> &str {
     let found_either_way = [
         ("there is a plan", "there is no plan"),
-        ("the independent checker finds", "the independent checker objects"),
-        ("whatever nature chooses", "that the plan withstands what nature chooses"),
+        ("the independent checker accepts", "the independent checker rejects"),
+        ("dynamically controllable", "controllability is not verified"),
     ];
     for (well, ill) in found_either_way {
         if text.starts_with(well) || text.starts_with(ill) {
@@ -236,7 +236,7 @@ fn subject(text: &str) -> &str {
 /// Whether the checker objects to something that a line is about.
 fn blames(review: &Review, line: &super::Line) -> bool {
     let mut objections =
-        review.plan.iter().filter(|it| it.text.starts_with("the independent checker objects"));
+        review.plan.iter().filter(|it| it.text.starts_with("the independent checker rejects"));
     // A line about all of something is about whatever is wrong with it.
     objections.any(|objection| {
         line.names.is_empty()

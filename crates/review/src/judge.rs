@@ -35,7 +35,7 @@ impl Line {
 }
 
 /// Where what the checker examines is judged.
-const CHECKER: &str = "the independent checker finds the plan valid";
+const CHECKER: &str = "the independent checker accepts the plan";
 
 impl MissionRule {
     /// What was found of a rule, as a line. What has not been evaluated never counts as held.
@@ -46,23 +46,22 @@ impl MissionRule {
         let (status, text) = match found.map(|it| &it.outcome) {
             Some(Outcome::Holds) => (Status::Passed, format!("{name}: holds in every schedule of the plan")),
             Some(Outcome::NeverApplies) => {
-                (Status::Information, format!("{name}: the plan never comes to what it is about"))
+                (Status::Information, format!("{name}: does not apply to this plan"))
             }
             Some(Outcome::Broken(when)) => {
-                (broken, format!("{name}: a schedule of the plan breaks it, {when}"))
+                (broken, format!("{name}: a schedule of the plan violates it, {when}"))
             }
-            Some(Outcome::Unsure(when)) => (
-                Status::Attention,
-                format!("{name}: the mission does not say enough to be sure of it, {when}"),
-            ),
+            Some(Outcome::Unsure(when)) => {
+                (Status::Attention, format!("{name}: the mission does not say enough to decide it, {when}"))
+            }
             Some(Outcome::Undecided) => {
-                (Status::Attention, format!("{name}: there are too many cases to decide whether it holds"))
+                (Status::Attention, format!("{name}: not decided, because there are too many cases"))
             }
             Some(Outcome::Unreadable { column, message }) => (
                 Status::Failed,
                 format!("{name}: cannot be read in this mission: {message} (character {column})"),
             ),
-            Some(Outcome::NoPlan) => (Status::Failed, format!("{name}: there is no plan to hold against it")),
+            Some(Outcome::NoPlan) => (Status::Failed, format!("{name}: there is no plan to check")),
             None => (Status::Failed, format!("{name}: has not been evaluated yet")),
         };
         let mut line = Line::new(status, text);
@@ -104,21 +103,19 @@ impl Review {
             line.criterion = Some(CHECKER.to_owned());
         }
         for choice in &mut self.choices {
-            choice.line.criterion = Some(
-                "every other alternative was examined, with the choices before it as they are".to_owned(),
-            );
+            choice.line.criterion =
+                Some("every other alternative was checked, with the previous choices unchanged".to_owned());
         }
         for line in &mut self.separation_violations {
-            line.criterion = Some("vehicles keep 1 m beyond their radii (this program)".to_owned());
+            line.criterion = Some("vehicles keep 1 m of clearance (this program)".to_owned());
         }
         for line in &mut self.overlaps {
             line.criterion = Some(
-                "what may go together is declared: in order, `unordered`, or by resources taken whole (the mission)".to_owned(),
+                "activities may overlap only if the mission declares it: by an order, `unordered`, or resources used entirely (the mission)".to_owned(),
             );
         }
         for line in &mut self.durations {
-            line.criterion =
-                Some("a plan can use a duration as the mission declares it (the mission)".to_owned());
+            line.criterion = Some("the plan allows the full declared duration (the mission)".to_owned());
         }
         self.mission_rules = rules.rules.iter().map(|rule| rule.line(&self.findings)).collect();
         self.mission_rules.extend(self.reserves_of_nothing(rules));
@@ -170,8 +167,7 @@ impl Review {
         let is_here = |name: &str| self.resources.iter().any(|resource| resource.name == name);
         let missing = rules.reserves.iter().filter(|(name, _)| self.is_planned() && !is_here(name));
         let line = |(name, reserve): (&SmolStr, &Rational)| {
-            let text =
-                format!("{name}: a reserve of it is asked for, and the plan has no resource of this name");
+            let text = format!("{name}: a reserve is required, but the plan has no resource with this name");
             let mut line = Line::new(Status::Attention, text);
             let wanted = at_least(&reserve.readable(), reserve.is_positive(), "");
             line.criterion = Some(format!("reserve {wanted} (flight rules of this mission)"));
@@ -202,7 +198,7 @@ impl Review {
                 let is_kept = traverse.slope_max_rad <= most_rad + 1e-9;
                 let status = if is_kept { Status::Passed } else { Status::Failed };
                 let criterion = format!("slope at most {most_deg:.1}°");
-                traverse.line.judge_as(status, &criterion, "what the vehicles can climb");
+                traverse.line.judge_as(status, &criterion, "vehicle limits");
             }
         }
     }
@@ -236,7 +232,7 @@ fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
         format!("only {} of {} runs", tally.runs, settings.runs)
     };
     let mut text = format!(
-        "{} of {made} with chance reached the end (seed {}; 95 % confidence: {} to {})",
+        "{} of {made} reached the end (Monte Carlo, seed {}; 95% confidence: {} to {})",
         percent(rate),
         settings.seed,
         percent(low),
@@ -245,15 +241,15 @@ fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
     // The plan that is reviewed did not hold in these.
     match tally.succeeded_by_replanning {
         0 => {}
-        1 => text.push_str(", one of them by another plan"),
-        several => text.push_str(&format!(", {several} of them by another plan")),
+        1 => text.push_str(", 1 of them after replanning"),
+        several => text.push_str(&format!(", {several} of them after replanning")),
     }
     let is_by_chance = settings.uncertainty.leaves_something_to_chance(review.runs_programs);
     if !is_by_chance {
-        text.push_str("; nothing was left to chance in them");
+        text.push_str("; nothing in the runs was random");
     }
     if !review.traverses.is_empty() && settings.uncertainty.traverses == Traverses::Drawn {
-        text.push_str("; no vehicle drove in them: durations of traverses were drawn");
+        text.push_str("; traverses were not simulated: their durations were sampled");
     }
     let checked = match (found.is_complete() && is_by_chance, rules.success_rate) {
         (false, _) => Status::Attention,
@@ -272,7 +268,7 @@ fn success(rules: &FlightRules, found: &Robustness, review: &Review) -> Line {
             _ => Status::Passed,
         };
         let criterion = format!(
-            "success rate at least {}, below {} it has failed, and enough runs to be confident of the latter",
+            "success rate at least {}, failed below {}, with enough runs to be confident of the latter",
             percent(wanted.wanted),
             percent(wanted.least)
         );

@@ -95,21 +95,36 @@ impl<'source> Places<'source> {
     }
 }
 
+/// The line of a mission that has a plan.
+pub(crate) const PLAN: &str = "there is a plan";
+
+/// The line of a plan that the checker finds valid.
+pub(crate) const ACCEPTED: &str = "the independent checker accepts the plan";
+
+/// How the lines of a plan that the checker finds invalid begin.
+pub(crate) const REJECTED: &str = "the independent checker rejects the plan: ";
+
+/// How the line of a dynamically controllable plan begins.
+pub(crate) const DYNAMIC: &str = "dynamically controllable: ";
+
+/// How the line of a strongly controllable plan begins.
+pub(crate) const STRONG: &str = "strongly controllable: ";
+
 fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     let Some(network) = &snapshot.network else {
-        return vec![places.plain(Status::Failed, "the text has errors, so there is no plan")];
+        return vec![places.plain(Status::Failed, "there is no plan, because the text has errors")];
     };
     let Some(planning) = &snapshot.planning else {
         let why = match snapshot.stage {
             Stage::Compiled | Stage::Improving => "planning has not finished",
-            Stage::Complete => "nothing was planned",
+            Stage::Complete => "the mission has not been planned",
         };
         return vec![places.plain(Status::Failed, why)];
     };
     let mut lines = if planning.outcome.plans.is_empty() {
         failure(planning, network, places)
     } else {
-        let mut lines = vec![places.plain(Status::Passed, "there is a plan")];
+        let mut lines = vec![places.plain(Status::Passed, PLAN)];
         lines.extend(emptiness(planning, network, places));
         lines.extend(controllability(planning, network, places));
         lines.extend(natures(planning, network, places));
@@ -128,7 +143,7 @@ fn emptiness(planning: &Planning, network: &Network, places: &Places<'_>) -> Opt
     let does_something = network.arcs.iter().zip(&plan.selected_arcs).any(|(arc, &is_selected)| {
         is_selected && matches!(arc.kind, ArcKind::Activity | ArcKind::Assertion | ArcKind::Path)
     });
-    let text = "nothing is done in this plan: it has no activity and asserts nothing";
+    let text = "the plan is empty: it has no activities and no assertions";
     (!does_something).then(|| places.plain(Status::Attention, text))
 }
 
@@ -160,22 +175,20 @@ fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) 
         (Controllability::None, _) => (
             Status::Attention,
             format!(
-                "the plan chooses durations that are nature's, as `option controllability = none` says: {ranges}"
+                "the plan chooses contingent durations, because of `option controllability = none`: {ranges}"
             ),
         ),
         (_, status @ (Status::Attention | Status::Failed)) => {
-            (status, format!("that the plan withstands what nature chooses is not confirmed: {ranges}"))
+            (status, format!("controllability is not verified for these contingent durations: {ranges}"))
         }
         (Controllability::Strong, status) => (
             status,
-            format!(
-                "one schedule suits whatever nature chooses of these durations (strongly controllable): {ranges}"
-            ),
+            format!("{STRONG}one schedule works for all values of these contingent durations: {ranges}"),
         ),
         (Controllability::Dynamic, status) => (
             status,
             format!(
-                "whatever nature chooses of these durations, as it is observed, the plan can be executed to its end (dynamically controllable): {ranges}"
+                "{DYNAMIC}execution succeeds for all values of these contingent durations, as they are observed: {ranges}"
             ),
         ),
     };
@@ -194,7 +207,7 @@ fn natures(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<L
         }
         let name = occurrence.name.to_string();
         let range = format!("{} to {}", arc.lower.readable(), arc.upper.readable());
-        let text = format!("not controlled: nature ends {name} {range} after it began");
+        let text = format!("uncontrolled: {name} ends {range} after its start");
         let nodes = vec![occurrence.end];
         Some(places.line(Status::Information, text, occurrence.span, vec![name], nodes))
     };
@@ -208,11 +221,11 @@ const MAX_RANGES: usize = 6;
 fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     let assumed = snapshot.problems.iter().filter(|problem| problem.code == exogenous::CODE.0);
     let line = |problem: &snapshot::Problem| {
-        let chosen = problem.message.strip_prefix(exogenous::BEGINNING).unwrap_or(&problem.message);
-        let text = match chosen.split_once(": ") {
-            Some(("what", what)) => format!("assumes that the world does what suits the plan: {what}"),
-            Some((_, when)) => format!("assumes that the world acts when it suits the plan: {when}"),
-            None => format!("assumes that the world suits the plan: {chosen}"),
+        let message = problem.message.as_str();
+        let text = match (message.strip_prefix(exogenous::WHEN), message.strip_prefix(exogenous::WHAT)) {
+            (Some(when), _) => format!("assumes favorable timing of external events: {when}"),
+            (None, Some(what)) => format!("assumes favorable external events: {what}"),
+            (None, None) => format!("assumes favorable external events: {message}"),
         };
         places.line(Status::Attention, text, Some(problem.span), Vec::new(), Vec::new())
     };
@@ -222,7 +235,7 @@ fn assumptions(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
 fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
     let outcome = &planning.outcome;
     let what = outcome.unplannable_message(network).unwrap_or_else(|| match outcome.status {
-        kirk::Status::Limit => "planning was stopped before it had an answer".to_owned(),
+        kirk::Status::Limit => "planning was stopped before it had a result".to_owned(),
         kirk::Status::NoPlan | kirk::Status::Plan | kirk::Status::Error => "there is no plan".to_owned(),
     });
     let mut lines = vec![places.plain(Status::Failed, what)];
@@ -233,16 +246,16 @@ fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<L
             places.line(Status::Failed, reason.message.clone(), span, names, Vec::new())
         }));
         if failure.is_of_gap {
-            let text = format!("it would have a plan: {}", kirk::GAP_LABEL);
+            let text = format!("fix: {}", kirk::GAP_LABEL);
             lines.push(places.line(Status::Attention, text, None, Vec::new(), Vec::new()));
         }
         lines.extend(planning.repairs.iter().map(|repair| {
-            let text = format!("it would have a plan: {}", repair.label);
+            let text = format!("fix: {}", repair.label);
             let span = repair.edits.first().map(|edit| edit.span);
             places.line(Status::Attention, text, span, Vec::new(), Vec::new())
         }));
         lines.extend(failure.relaxations.iter().map(|change| {
-            let text = format!("it would have a plan: {}", change.label);
+            let text = format!("fix: {}", change.label);
             places.line(Status::Attention, text, change.span, Vec::new(), Vec::new())
         }));
     }
@@ -252,18 +265,18 @@ fn failure(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<L
 fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
     match &planning.verdict {
         Some(verdict) if verdict.valid => {
-            vec![places.plain(Status::Passed, "the independent checker finds the plan valid")]
+            vec![places.plain(Status::Passed, ACCEPTED)]
         }
         Some(verdict) => verdict
             .violations
             .iter()
             .map(|violation| {
                 let names = violation.events.iter().chain(&violation.intervals).cloned().collect();
-                let text = format!("the independent checker objects: {}", violation.message);
+                let text = format!("{REJECTED}{}", violation.message);
                 places.line(Status::Failed, text, None, names, Vec::new())
             })
             .collect(),
-        None => vec![places.plain(Status::Failed, "the plan has not been checked independently")],
+        None => vec![places.plain(Status::Failed, "the independent checker has not checked the plan")],
     }
 }
 
@@ -283,14 +296,15 @@ fn worth(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<
     if tpn::worth::measures(network).contains(&Measure::End) {
         text.push_str("; the end is that of the earliest schedule");
     }
-    Some(places.plain(status, format!("the plan is worth: {text}")))
+    Some(places.plain(status, format!("objective: {text}")))
 }
 
 fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
     let line = |traverse: &snapshot::Undrivable| {
         let occurrence = network.occurrences.get(traverse.occurrence.index())?;
         let name = occurrence.name.to_string();
-        let text = format!("{name} can't be driven {}, so its alternative was given up", traverse.reason);
+        let text =
+            format!("{name} can't be driven {}, so the planner chose another alternative", traverse.reason);
         let nodes = vec![occurrence.start, occurrence.end];
         Some(places.line(Status::Attention, text, occurrence.span, vec![name], nodes))
     };

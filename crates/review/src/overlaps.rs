@@ -47,18 +47,16 @@ pub(super) fn overlaps(
         let rest = match (found.pairs.is_empty(), found.num_declared) {
             _ if found.is_cut => Some((
                 Status::Attention,
-                format!(
-                    "{name} does too much to look at every two of its activities: whether more may overlap is not known"
-                ),
+                format!("{name} has too many activities to check all pairs; there may be more overlaps"),
             )),
             (true, 0) => {
-                Some((checked, format!("no two activities of {name} overlap in any schedule of the plan")))
+                Some((checked, format!("no activities of {name} overlap in any schedule of the plan")))
             }
             (true, _) => Some((
                 checked,
                 format!(
-                    "no two activities of {name} overlap in any schedule of the plan, but for those that each take a resource of \
-                     their own"
+                    "no activities of {name} overlap in any schedule of the plan, except those that each use a resource \
+                     entirely"
                 ),
             )),
             (false, _) => None,
@@ -256,7 +254,7 @@ impl Pair {
             _ => String::new(),
         };
         let text = format!(
-            "{who} may overlap on {vehicle}: in some schedule of the plan {} and {} are both under way, at a time{when}",
+            "{who} may overlap on {vehicle}: in some schedule of the plan, {} and {} are in progress at the same time{when}",
             one.name, other.name
         );
         let names = vec![one.name.to_string(), other.name.to_string(), vehicle.to_owned()];

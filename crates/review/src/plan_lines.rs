@@ -97,7 +97,7 @@ impl<'input> PlanLines<'input> {
                 (self.checked, text)
             } else {
                 let text = format!(
-                    "{} provides {} and outlasts it by {}",
+                    "{} supports {} and outlasts it by {}",
                     interval_text(&tell),
                     interval_text(&ask),
                     self.range_text(margin)
@@ -130,7 +130,7 @@ impl<'input> PlanLines<'input> {
             (_, Some(owner)) => format!("{owner} makes {value} hold {lead} before {needs} needs it"),
         };
         let after = match self.next_change(link.tell).map(|(_, next)| owner_of(next)) {
-            None => "nothing changes it afterwards".to_owned(),
+            None => "nothing changes it later".to_owned(),
             Some(next) if next == Some(needs) => format!("{needs} itself changes it then"),
             Some(next) => {
                 let margin = self.range_text(margin);
@@ -163,12 +163,12 @@ impl<'input> PlanLines<'input> {
                 let (first, then) = (network.label_name(order.first), network.label_name(order.then));
                 let is_added = added.contains(order);
                 let by = if is_added {
-                    "the planner has put them in this order"
+                    "the planner chose this order"
                 } else {
-                    "the program's own bounds keep them in this order"
+                    "the mission's bounds imply this order"
                 };
                 let text = format!(
-                    "{} is over {} before {} begins; {by}",
+                    "{} ends {} before {} starts; {by}",
                     interval_text(&first),
                     self.range_text(gap),
                     interval_text(&then)
@@ -204,11 +204,11 @@ impl<'input> PlanLines<'input> {
                 let used = &network.uses[order.first.index()];
                 let resource = &network.resources[used.resource.index()];
                 let why = if is_way(resource) {
-                    "so that they do not meet".to_owned()
+                    "so that they do not collide".to_owned()
                 } else if resource.name.contains('#') {
                     "as parts of one `unordered`".to_owned()
                 } else {
-                    format!("for the sake of {}", resource.name)
+                    format!("because of {}", resource.name)
                 };
                 let owner = |used: tpn::UseId| {
                     let owner = network.uses[used.index()].owner?;
@@ -219,7 +219,7 @@ impl<'input> PlanLines<'input> {
                     owner(order.then).unwrap_or_else(|| then.clone()),
                 );
                 let text = format!(
-                    "{earlier} comes {} before {later}; the planner has put them in this order {why}",
+                    "{earlier} comes {} before {later}; the planner chose this order {why}",
                     self.range_text(gap)
                 );
                 let line =
@@ -280,10 +280,10 @@ impl<'input> PlanLines<'input> {
                 let name = occurrence.name.to_string();
                 let declared = match upper {
                     Bound::Finite(upper) => format!("[{},{}]", lower.readable(), upper.readable()),
-                    Bound::Infinite => format!("{} or any time longer", lower.readable()),
+                    Bound::Infinite => format!("{} or longer", lower.readable()),
                 };
                 let text = format!(
-                    "{name} is declared to take {declared}, and the plan holds only if it takes {}",
+                    "{name} is declared with {declared}, but the plan is valid only if it takes {}",
                     self.range_text(used)
                 );
                 let nodes = vec![occurrence.start, occurrence.end];
@@ -304,9 +304,9 @@ impl<'input> PlanLines<'input> {
                 let name = self.network.event_name(event);
                 let earliest = window.earliest.readable();
                 let text = match window.latest {
-                    Bound::Infinite => format!("{name} may happen at any time from {earliest} on"),
+                    Bound::Infinite => format!("{name} may happen at {earliest} or later"),
                     Bound::Finite(latest) if latest == window.earliest => {
-                        format!("{name} happens at {earliest}, without slack")
+                        format!("{name} happens at {earliest}, with no slack")
                     }
                     latest @ Bound::Finite(_) => {
                         format!("{name} may happen from {earliest} to {}", latest.readable())
@@ -374,7 +374,7 @@ impl<'input> PlanLines<'input> {
         };
         let clearance = match clearance_m {
             Some(clearance_m) => format!("{whose} {clearance_m:.2} m clear of obstacles"),
-            None => "no obstacle near".to_owned(),
+            None => "no obstacle nearby".to_owned(),
         };
         let slope = match slope_limit_rad {
             Some(_) => format!(", slope up to {:.1}°", traverse.slope_max_rad.to_degrees()),
@@ -382,17 +382,14 @@ impl<'input> PlanLines<'input> {
         };
         let limits = match needed_s {
             Some(needed_s) if is_too_short => {
-                format!(", too short for the limits of its vehicles, which need {needed_s:.1} s")
+                format!(", too short for the vehicle limits, which need {needed_s:.1} s")
             }
-            Some(_) => ", within the limits of its vehicles".to_owned(),
+            Some(_) => ", within the vehicle limits".to_owned(),
             None => String::new(),
         };
         let driving = if is_tight {
             let most = driven_s / unit_s;
-            format!(
-                "; drivers may need {most:.1} {} where the map does not show everything",
-                unit(self.snapshot)
-            )
+            format!("; unmapped obstacles may extend it to {most:.1} {}", unit(self.snapshot))
         } else {
             String::new()
         };
@@ -465,7 +462,7 @@ impl<'input> PlanLines<'input> {
         let why = other.map_or_else(String::new, |other| format!(", where {other} stands"));
         let (leader, place) = (name(leader)?, &location.name.text);
         let text = format!(
-            "{leader} stops {short_m:.2} m short of {place} in {}{why}, and counts as at {place}",
+            "{leader} stops {short_m:.2} m short of {place} in {}{why}; the plan counts it as at {place}",
             occurrence.name
         );
         let names = [leader, occurrence.name.as_str()].into_iter().chain(other).map(str::to_owned).collect();
@@ -529,9 +526,9 @@ fn choice_text(name: &str, alternatives: &[Alternative]) -> String {
     let others: Vec<&str> =
         alternatives.iter().filter(|it| it.fate != Fate::Taken).map(|it| it.name.as_str()).collect();
     match others.len() {
-        0 => format!("{name} takes {taken}, its only alternative"),
-        1..=MAX_NAMED => format!("{name} takes {taken} rather than {}", others.join(" or ")),
-        count => format!("{name} takes {taken} rather than one of {count} others"),
+        0 => format!("{name} selects {taken}, its only alternative"),
+        1..=MAX_NAMED => format!("{name} selects {taken} instead of {}", others.join(" or ")),
+        count => format!("{name} selects {taken} instead of one of {count} others"),
     }
 }
 

@@ -73,14 +73,16 @@ impl FlightRules {
         let is_share = |share: f64| (0.0..=1.0).contains(&share);
         let mut reserves = self.reserves.values().chain(&self.reserve);
         match self.success_rate {
-            _ if self.margin.is_some_and(Time::is_negative) => Some("a margin is not negative"),
-            _ if !is_length(self.clearance_m) => Some("a clearance is not negative"),
-            _ if !is_length(self.slope_deg) => Some("a slope is not negative"),
-            _ if reserves.any(|it| it.is_negative()) => Some("a reserve is not negative"),
+            _ if self.margin.is_some_and(Time::is_negative) => Some("a margin must not be negative"),
+            _ if !is_length(self.clearance_m) => Some("a clearance must not be negative"),
+            _ if !is_length(self.slope_deg) => Some("a slope must not be negative"),
+            _ if reserves.any(|it| it.is_negative()) => Some("a reserve must not be negative"),
             Some(rate) if !is_share(rate.wanted) || !is_share(rate.least) => {
-                Some("a success rate is from 0 to 1")
+                Some("a success rate must be from 0 to 1")
             }
-            Some(rate) if rate.least > rate.wanted => Some("what fails is no more than what is wanted"),
+            Some(rate) if rate.least > rate.wanted => {
+                Some("the failure threshold must not exceed the target success rate")
+            }
             _ => self.problem_of_rules().or_else(|| seat::problem(&self.board)),
         }
     }
@@ -89,18 +91,15 @@ impl FlightRules {
         let mut names: Vec<&str> = self.rules.iter().map(|rule| rule.name.trim()).collect();
         names.sort_unstable();
         if names.len() > MAX_RULES {
-            return Some("there are at most 200 rules of a mission");
+            return Some("at most 200 mission rules are allowed");
         }
         if names.first().is_some_and(|name| name.is_empty()) {
-            return Some("each rule of the mission has a name");
+            return Some("every mission rule needs a name");
         }
         if names.windows(2).any(|pair| pair[0] == pair[1]) {
-            return Some("two rules of the mission have one name");
+            return Some("mission rules must have different names");
         }
-        self.rules
-            .iter()
-            .any(|it| it.rule.trim().is_empty())
-            .then_some("each rule of the mission says something")
+        self.rules.iter().any(|it| it.rule.trim().is_empty()).then_some("a mission rule must not be empty")
     }
 
     /// Reads a document `{"format": "enroute-rules/1", …}`; what it does not name is as by default, and `null` is no rule.
@@ -108,8 +107,12 @@ impl FlightRules {
         let mut value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
         match value.as_object_mut().and_then(|members| members.remove("format")) {
             Some(format) if format == RULES_FORMAT => {}
-            Some(format) => return Err(format!("its format is {format}, not \"{RULES_FORMAT}\"")),
-            None => return Err(format!("these are no flight rules: \"format\" is not \"{RULES_FORMAT}\"")),
+            Some(format) => return Err(format!("its format is {format}, but must be \"{RULES_FORMAT}\"")),
+            None => {
+                return Err(format!(
+                    "this is not a flight rules file: \"format\" must be \"{RULES_FORMAT}\""
+                ));
+            }
         }
         let rules: Self = serde_json::from_value(value).map_err(|error| error.to_string())?;
         rules.problem().map_or(Ok(rules), |problem| Err(problem.to_owned()))
@@ -132,35 +135,38 @@ impl FlightRules {
     /// Each rule in words.
     pub fn in_words(&self, unit: &str) -> Vec<String> {
         let mut words = vec![match self.margin {
-            None => "margins are not looked at".to_owned(),
+            None => "margins must be not checked".to_owned(),
             Some(margin) => {
-                format!("margins are {}", at_least(&margin.readable(), margin.is_positive(), unit))
+                format!("margins must be {}", at_least(&margin.readable(), margin.is_positive(), unit))
             }
         }];
         words.push(match self.clearance_m {
-            None => "clearance is not looked at".to_owned(),
-            Some(clearance_m) => format!("clearance is at least {clearance_m} m"),
+            None => "clearance is not checked".to_owned(),
+            Some(clearance_m) => format!("clearance must be at least {clearance_m} m"),
         });
         words.push(match self.slope_deg {
-            None => "slopes are held against the vehicles alone".to_owned(),
-            Some(slope_deg) => format!("slopes are at most {slope_deg}°"),
+            None => "slopes must be within the vehicle limits".to_owned(),
+            Some(slope_deg) => format!("slopes must be at most {slope_deg}°"),
         });
         words.push(match self.reserve {
-            None => "reserves are not looked at".to_owned(),
+            None => "reserves are not checked".to_owned(),
             Some(reserve) => {
                 format!(
-                    "of each resource {} is left",
+                    "the reserve of each resource must be {}",
                     at_least(&reserve.readable(), reserve.is_positive(), "")
                 )
             }
         });
         words.extend(self.reserves.iter().map(|(name, reserve)| {
-            format!("of {name} {} is left", at_least(&reserve.readable(), reserve.is_positive(), ""))
+            format!(
+                "the reserve of {name} must be {}",
+                at_least(&reserve.readable(), reserve.is_positive(), "")
+            )
         }));
         words.push(match self.success_rate {
-            None => "success rates are not looked at".to_owned(),
+            None => "success rates are not checked".to_owned(),
             Some(rate) => format!(
-                "at least {} of the runs with chance reach the end; less than {} is a failure",
+                "at least {} of the Monte Carlo runs must reach the end; less than {} is a failure",
                 percent(rate.wanted),
                 percent(rate.least)
             ),
@@ -171,7 +177,7 @@ impl FlightRules {
             format!("{}: {}{source}{waivable}", rule.name, rule.rule)
         }));
         let seats = self.board.iter().map(|seat| format!("{} {}", seat.approvals, seat.role));
-        words.push(format!("who approves: {}", seats.collect::<Vec<_>>().join(", ")));
+        words.push(format!("required approvals: {}", seats.collect::<Vec<_>>().join(", ")));
         words
     }
 }

@@ -57,7 +57,7 @@ impl LineChange {
     pub fn sentence(&self) -> String {
         match (&self.before, &self.after) {
             (Some(before), Some(after)) if before.status == after.status => {
-                format!("{}, other words: {} → {}", after.status.name(), before.text, after.text)
+                format!("{}, new wording: {} → {}", after.status.name(), before.text, after.text)
             }
             (Some(before), Some(after)) if before.text == after.text => {
                 format!("{}, was {}: {}", after.status.name(), before.status.name(), after.text)

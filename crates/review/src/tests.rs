@@ -69,10 +69,10 @@ fn an_alternative_of_a_best_plan_says_what_it_would_come_to() {
     assert_eq!(
         sentences,
         [
-            "not taken: with it and the choices before it reward 6, end 10 at best",
+            "not chosen: with it and the previous choices, reward 6, end 10 at best",
             "taken",
             "taken",
-            "not taken: with it and the choices before it reward 10, end 20 at best"
+            "not chosen: with it and the previous choices, reward 10, end 20 at best"
         ]
     );
 }
@@ -216,29 +216,22 @@ fn states_and_resources_are_reviewed_with_their_margins() {
     let review = reviewed(LASTING);
     assert_eq!(
         texts(&review, Section::States),
-        [
-            "every requirement of a state rests on a change that holds: 2 requirements",
-            "ARM is IN, then OUT (Deploy#1)",
-        ]
+        ["all 2 requirements of states are supported", "ARM is IN, then OUT (Deploy#1)",]
     );
     assert_eq!(
         texts(&review, Section::Resources),
         [
-            "Battery stays between 10 and 60: 10 above its least level 0, 40 below its greatest 100",
-            "of Power, at most 2 of 3 are used at a time, 1 to spare",
+            "Battery stays between 10 and 60: 10 above its minimum 0, 40 below its maximum 100",
+            "Power: peak use 2 of 3 (1 to spare)",
         ]
     );
-    assert!(
-        texts(&review, Section::Plan).contains(&"the plan is worth: cost 7".to_owned()),
-        "{:?}",
-        review.plan
-    );
+    assert!(texts(&review, Section::Plan).contains(&"objective: cost 7".to_owned()), "{:?}", review.plan);
     assert_eq!(review.status, Status::Passed, "{review:?}");
     assert_eq!(
         texts(&review, Section::CausalLinks),
         [
             "ARM=IN holds from the start, 0 min before Deploy#1 needs it; Deploy#1 itself changes it then",
-            "Deploy#1 sets ARM=OUT 0 min before Dig#1 needs it; nothing changes it afterwards",
+            "Deploy#1 sets ARM=OUT 0 min before Dig#1 needs it; nothing changes it later",
         ]
     );
 }

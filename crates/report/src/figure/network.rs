@@ -36,7 +36,7 @@ pub(crate) fn network(snapshot: &Snapshot, review: &Review) -> Vec<Figure> {
             .filter(move |line| line.status == wanted && !line.nodes.is_empty())
             .map(|line| Detail { words: line.text.clone(), nodes: line.nodes.clone() })
     });
-    let caption = "What the plan selects is drawn strongly; windows stand below events.";
+    let caption = "Bold: selected by the plan. Numbers below events: time windows.";
     drawn(snapshot, None, ("Temporal plan network", caption), details)
 }
 
@@ -52,8 +52,8 @@ pub(crate) fn network_since(snapshot: &Snapshot, approved: &Subject) -> Vec<Figu
         let occurrence = &network.occurrences[occurrence.index()];
         Detail { words: occurrence.name.to_string(), nodes: vec![occurrence.start, occurrence.end] }
     });
-    let caption = "“new” is not in the approved plan; dashed, with “was”, could start at other times in it; what is \
-                   crossed below is gone.";
+    let caption = "“new”: not in the approved plan. Dashed, with “was”: different times in the approved plan. Crossed out: \
+                   no longer in the plan.";
     drawn(snapshot, Some(&before), ("Network of the plan over the approved one", caption), details)
 }
 
@@ -77,8 +77,7 @@ fn drawn(
     for (words, sheet) in sheets(network, details) {
         let rest = if sheet.blocks.iter().any(|block| block.form == BlockForm::Collapsed) {
             format!(
-                " {} of {} events are drawn; boxes stand for what has no room on paper. The whole drawing stands in this \
-                 file on the screen.",
+                " {} of {} events are drawn; boxes replace the rest. Open this file on a screen for the complete drawing.",
                 sheet.nodes.len(),
                 network.nodes.len()
             )

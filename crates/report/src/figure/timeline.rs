@@ -46,8 +46,8 @@ pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Vec<Figure> {
     };
     let mut chart = Chart::new(&snapshot.program, network, plan, OPTIONS, &BTreeSet::new());
     chart.add_rules(rule_tracks(review), &BTreeSet::new());
-    let caption = "Solid: the earliest schedule. Pale: all the time in which it may happen. Green rows are conditions. \
-                   Flight rules: a thin line where the plan is held against them, a filled stretch where it breaks them.";
+    let caption = "Solid: the earliest schedule. Pale: all possible times. Green rows: conditions. Flight rules: a thin line \
+                   where the rule applies, a filled part where the plan breaks it.";
     sheets(snapshot, &chart, (network, plan), ("Timeline of the plan", caption))
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn timeline_since(snapshot: &Snapshot, approved: &Subject) -> Vec<Fig
     let options = ChartOptions { states: false, resources: false, ..OPTIONS };
     let mut chart = Chart::new(&snapshot.program, network, plan, options, &BTreeSet::new());
     chart.compare_with(&before, network, plan);
-    let caption = "Dashed: when it could be in the approved plan. “new” is not in it, and what is dashed alone is gone.";
+    let caption = "Dashed: times in the approved plan. “new”: not in the approved plan. Only dashed: no longer in the plan.";
     sheets(snapshot, &chart, (network, plan), ("Timeline of the plan over the approved one", caption))
 }
 
@@ -99,7 +99,7 @@ fn sheets(
     let left_out: usize = left_out.map(|(_, rows)| rows.len()).sum();
     let Some(Figure { caption: words, .. }) = figures.first_mut() else { return figures };
     if left_out > 0 {
-        words.push_str(&format!(" {left_out} rows are not printed: they stand in this file on the screen."));
+        words.push_str(&format!(" {left_out} rows are not printed. Open this file on a screen to see them."));
     }
     words.insert_str(0, &format!("{caption} "));
     figures

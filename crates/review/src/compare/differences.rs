@@ -111,7 +111,7 @@ fn item_difference(row: &Row, before: &Side, after: &Side) -> Option<Difference>
 }
 
 fn links(before: &Side, after: &Side) -> Vec<Difference> {
-    let text = |tell: &String| format!("carried by {tell}");
+    let text = |tell: &String| format!("supported by {tell}");
     names(&before.links, &after.links)
         .into_iter()
         .filter_map(|ask| {

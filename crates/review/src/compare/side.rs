@@ -142,7 +142,7 @@ impl Side {
                 Some(plan) => plan,
                 None => return Ok(side),
             },
-            Some(_) => return Err(shape("`plans` is not a list")),
+            Some(_) => return Err(shape("`plans` must be a list")),
             None => document,
         };
         side.is_planned = true;
@@ -150,7 +150,7 @@ impl Side {
             let alternative = alternative
                 .as_u64()
                 .and_then(|number| u32::try_from(number).ok())
-                .ok_or_else(|| shape("a choice is the number of an alternative"))?;
+                .ok_or_else(|| shape("a choice must be the number of an alternative"))?;
             side.choices.insert(decision.clone(), Taken { alternative, text: None });
         }
         side.items = items(plan)?;
@@ -167,7 +167,7 @@ impl Side {
                 Some([Value::String(first), Value::String(then)]) => {
                     side.orderings.insert([first.clone(), then.clone()]);
                 }
-                _ => return Err(shape("`conflict_order` is a list of pairs of names")),
+                _ => return Err(shape("`conflict_order` must be a list of pairs of names")),
             }
         }
         if let Some(stated) = plan.get("state_order") {
@@ -204,7 +204,7 @@ fn items(plan: &Value) -> Result<BTreeMap<String, Item>, SideError> {
     let mut ends: BTreeMap<&str, [Option<Window>; 2]> = BTreeMap::new();
     for (event, window) in members(plan, "windows")? {
         let read = read_window(window)
-            .ok_or_else(|| shape(&format!("the window of `{event}` is not a pair of exact times")))?;
+            .ok_or_else(|| shape(&format!("the window of `{event}` must be a pair of exact times")))?;
         if let Some(name) = event.strip_suffix(".start") {
             ends.entry(name).or_default()[0] = Some(read);
         } else if let Some(name) = event.strip_suffix(".end") {

@@ -104,7 +104,7 @@ impl Tried {
             }
             (Verdict::Contradicted, Some(found)) => format!("contradicted by a schedule: {}", found.text),
             (Verdict::Survived, _) => format!("survived {}", self.how()),
-            _ => "not tried: neither a schedule nor a run can decide it".to_owned(),
+            _ => "not tried: schedules and runs cannot decide it".to_owned(),
         }
     }
 }

@@ -10,6 +10,7 @@ use tpn::{LabelId, Levels, Network, NodeId, OccurrenceId, Plan};
 
 use super::instant::Scheduled;
 use crate::demand_lines::in_any_order;
+use crate::lines;
 use crate::overlaps::{occupied, owners};
 use crate::{Outcome, Review, Section, TimeRange, flight_rule};
 
@@ -63,11 +64,9 @@ impl Promise {
         let found = match section {
             Section::Plan => {
                 let text = review.plan[index].text.as_str();
-                if text.starts_with("the independent checker") || text == "there is a plan" {
+                if [lines::PLAN, lines::ACCEPTED].contains(&text) || text.starts_with(lines::REJECTED) {
                     Some(Self::Valid)
-                } else if text.contains("(dynamically controllable)")
-                    || text.contains("(strongly controllable)")
-                {
+                } else if [lines::DYNAMIC, lines::STRONG].iter().any(|it| text.starts_with(it)) {
                     Some(Self::Runs)
                 } else {
                     None
@@ -213,7 +212,7 @@ impl Promise {
                 });
                 Some(late.map(|pair| {
                     let [first, then] = pair.map(Time::readable);
-                    format!("what comes first is over at {first}, and what follows at {then}")
+                    format!("the first change ends at {first}, but the next one already at {then}")
                 }))
             }
             Self::Apart(all) => {
@@ -278,7 +277,7 @@ impl Promise {
                 // What was never started says nothing.
                 let started = came(&format!("{activity}.start"))?;
                 let Some(ended) = came(&format!("{activity}.end")) else {
-                    return Some(Some("it did not come to its end".to_owned()));
+                    return Some(Some("it did not end".to_owned()));
                 };
                 let lasted = ended.checked_sub(started)?;
                 let is_in = lasted >= range.least && Bound::Finite(lasted) <= range.greatest;
@@ -321,7 +320,7 @@ fn out_of_order(log: &[Entry], variable: &SmolStr, order: &[(usize, String)]) ->
         let Some(by) = by else { continue };
         match order.iter().find(|(_, name)| name == by.as_str()) {
             Some(&(rank, _)) if rank >= next => next = rank,
-            Some(_) => return Some(format!("at {} {by} comes late", entry.time.readable())),
+            Some(_) => return Some(format!("at {} {by} is too late", entry.time.readable())),
             None => return Some(format!("at {} {by} makes it {value}", entry.time.readable())),
         }
     }
@@ -351,6 +350,6 @@ fn overlap(all: &[Performed], times: impl Fn(&Performed) -> Option<[Time; 2]>) -
     pairs.find_map(|((one, [_, end]), (other, [start, _]))| {
         let is_declared = one.is_occupying && other.is_occupying;
         (start < end && !is_declared)
-            .then(|| format!("at {} {} and {} are under way", start.readable(), one.name, other.name))
+            .then(|| format!("at {} {} and {} are both in progress", start.readable(), one.name, other.name))
     })
 }
