@@ -91,13 +91,13 @@ fn with_known_signs(text: &str) -> String {
 /// What every kind of problem means, one section each.
 fn diagnostics() -> String {
     let mut text =
-        "# Diagnostics\n\nWhat each kind of problem means, with an example and the same, mended.\n"
+        "# Diagnostics\n\nThe meaning of each error and warning, with an example and a corrected version.\n"
             .to_owned();
     for explanation in rmpl::diagnostics::EXPLANATIONS {
         let page = explanation.markdown();
         let page = page
             .replacen("# ", "## ", 1)
-            .replace("\n## Example", "\nFor example:")
+            .replace("\n## Example", "\nExample:")
             .replace("\n## What to do\n", "");
         text.push_str(&format!("\n{page}"));
     }

@@ -180,7 +180,7 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
         };
         let mut note = |outcome: Result<Answer, LessonError>| match outcome {
             Ok(found) if answer.is_none() => answer = Some(found),
-            Ok(_) => errors.push(LessonError::new(line, "a question has one answer")),
+            Ok(_) => errors.push(LessonError::new(line, "a question must have exactly one answer")),
             Err(error) => errors.push(error),
         };
         match key {
@@ -189,7 +189,7 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
             "task" => note(expression().map(Answer::Task)),
             "within" => match value.parse() {
                 Ok(number) => within = number,
-                Err(_) => errors.push(LessonError::new(line, format!("`{value}` is no number"))),
+                Err(_) => errors.push(LessonError::new(line, format!("`{value}` is not a number"))),
             },
             "hint" => hint = value,
             "because" => because = value,
@@ -199,8 +199,8 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
             },
             other => {
                 let message = format!(
-                    "`ask` knows no `{other}`; it has number, within, word, task, hint, because and solution, and \
-                     choices that begin with `- [ ]`, `- [x]` or `- [if …]`"
+                    "unknown key `{other}` in `ask`; use number, within, word, task, hint, because, solution, or choices \
+                     that start with `- [ ]`, `- [x]` or `- [if …]`"
                 );
                 errors.push(LessonError::new(line, message));
             }
@@ -211,17 +211,17 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
     }
     if !choices.is_empty() && answer.is_none() {
         if choices.len() < 2 {
-            errors.push(LessonError::new(fence, "there are at least two choices"));
+            errors.push(LessonError::new(fence, "a question needs at least two choices"));
         }
         answer = Some(Answer::Choice(choices));
     }
     if question.is_empty() {
-        errors.push(LessonError::new(fence, "the question is missing: it comes first, in words"));
+        errors.push(LessonError::new(fence, "the question is missing: write its text first"));
     }
     if answer.is_none() && errors.len() == before {
         errors.push(LessonError::new(
             fence,
-            "what is right is missing: `number:`, `word:`, `task:` or choices",
+            "the answer is missing: add `number:`, `word:`, `task:` or choices",
         ));
     }
     Some(Ask { line: fence, text: question, answer: answer?, hint, because, solution })
@@ -229,7 +229,7 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
 
 /// `[x] words`, `[ ] words` or `[if expression] words`.
 fn choice(written: &str) -> Result<Choice, String> {
-    let form = || format!("a choice begins with `- [ ]`, `- [x]` or `- [if …]`, not with `- {written}`");
+    let form = || format!("a choice must start with `- [ ]`, `- [x]` or `- [if …]`, not with `- {written}`");
     let (mark, text) = written.strip_prefix('[').and_then(|rest| rest.split_once(']')).ok_or_else(form)?;
     let is_right = match mark.trim() {
         "" => Expression::Constant(Value::Truth(false)),
@@ -251,7 +251,7 @@ fn action(line: u32, value: &str) -> Result<Action, String> {
     match quoted.and_then(|inside| inside.split_once("\" becomes \"")) {
         Some((before, after)) => Ok(Action::Replace(before.to_owned(), after.to_owned())),
         None => Err(format!(
-            "a solution is `\"these words\" becomes \"those words\"` or a command, not `{value}`"
+            "a solution must be `\"these words\" becomes \"those words\"` or a command, not `{value}`"
         )),
     }
 }

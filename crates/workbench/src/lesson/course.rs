@@ -43,7 +43,7 @@ pub const COURSE: &[Chapter] = &[
         ],
     },
     Chapter {
-        title: "Time and means",
+        title: "Time and resources",
         lessons: lessons!["09" "dispatching", "10" "states", "11" "resources", "12" "objectives", "13" "controllability"],
     },
     Chapter { title: "Paths", lessons: lessons!["14" "rrt"] },
@@ -56,7 +56,7 @@ pub const COURSE: &[Chapter] = &[
             "18" "estimation",
         ],
     },
-    Chapter { title: "All together", lessons: lessons!["19" "whole-mission"] },
+    Chapter { title: "A complete mission", lessons: lessons!["19" "whole-mission"] },
 ];
 
 /// The lesson of this name.

@@ -68,7 +68,7 @@ impl Expression {
         let expression = reader.condition()?;
         match reader.rest.trim() {
             "" => Ok(expression),
-            rest => Err(format!("`{rest}` does not belong here")),
+            rest => Err(format!("unexpected `{rest}`")),
         }
     }
 
@@ -201,14 +201,14 @@ impl<'a> Reader<'a> {
     fn term(&mut self) -> Result<Expression, String> {
         self.rest = self.rest.trim_start();
         let Some(first) = self.rest.chars().next() else {
-            return Err("something is missing at its end".to_owned());
+            return Err("unexpected end".to_owned());
         };
         match first {
             '(' => {
                 self.rest = &self.rest[1..];
                 let inside = self.condition()?;
                 self.rest = self.rest.trim_start();
-                self.rest = self.rest.strip_prefix(')').ok_or("a `)` is missing")?;
+                self.rest = self.rest.strip_prefix(')').ok_or("expected `)`")?;
                 Ok(inside)
             }
             '-' => {
@@ -217,17 +217,17 @@ impl<'a> Reader<'a> {
                 Ok(both(nought, Operator::Minus, self.term()?))
             }
             '"' => {
-                let (text, rest) = self.rest[1..].split_once('"').ok_or("a `\"` is missing")?;
+                let (text, rest) = self.rest[1..].split_once('"').ok_or("expected `\"`")?;
                 self.rest = rest;
                 Ok(Expression::Constant(Value::Text(text.to_owned())))
             }
             '0'..='9' => {
                 let digits = self.taken(|letter| letter.is_ascii_digit() || letter == '.');
-                let number = digits.parse().map_err(|_| format!("`{digits}` is no number"))?;
+                let number = digits.parse().map_err(|_| format!("`{digits}` is not a number"))?;
                 Ok(Expression::Constant(Value::Number(number)))
             }
             'a'..='z' => self.fact(),
-            other => Err(format!("`{other}` is not understood")),
+            other => Err(format!("unexpected `{other}`")),
         }
     }
 
@@ -235,14 +235,16 @@ impl<'a> Reader<'a> {
         let name = self.taken(|letter| letter.is_ascii_lowercase() || letter == '-').trim_end_matches('-');
         let fact = facts::by_name(name).ok_or_else(|| {
             let known: Vec<&str> = facts::all().map(|fact| fact.name).collect();
-            format!("nothing is known by the name `{name}`; known are {}", known.join(", "))
+            format!("unknown name `{name}`; use one of {}", known.join(", "))
         })?;
         let argument = if self.rest.starts_with('(') { self.argument()? } else { "" };
         match (fact.of, argument) {
             (facts::Of::Nothing, "") | (facts::Of::Maybe(_), _) => {}
-            (facts::Of::Nothing, _) => return Err(format!("`{name}` is of nothing: write it without `(…)`")),
+            (facts::Of::Nothing, _) => {
+                return Err(format!("`{name}` takes no argument: write it without `(…)`"));
+            }
             (facts::Of::Something(what), "") => {
-                return Err(format!("`{name}` is of something: `{name}({what})`"));
+                return Err(format!("`{name}` needs an argument: `{name}({what})`"));
             }
             (facts::Of::Something(_), _) => {}
         }
@@ -264,7 +266,7 @@ impl<'a> Reader<'a> {
                 _ => {}
             }
         }
-        Err("a `)` is missing".to_owned())
+        Err("expected `)`".to_owned())
     }
 
     fn taken(&mut self, belongs: impl Fn(char) -> bool) -> &'a str {

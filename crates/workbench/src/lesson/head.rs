@@ -13,7 +13,10 @@ pub(super) fn read(lesson: &mut Lesson, head: Option<&Head>, errors: &mut Vec<Le
     let mut others = Vec::new();
     let entries = entries(&head.text, head.line, |line, text| others.push((line, text)));
     for (line, text) in others {
-        errors.push(LessonError::new(line, format!("`{text}` is no line of the form `key: value`")));
+        errors.push(LessonError::new(
+            line,
+            format!("expected a line of the form `key: value`, found `{text}`"),
+        ));
     }
     for (line, key, value) in entries {
         match key {
@@ -22,14 +25,15 @@ pub(super) fn read(lesson: &mut Lesson, head: Option<&Head>, errors: &mut Vec<Le
                 has_mission = true;
                 match mission_file::example(&value) {
                     Some(example) => lesson.mission = LessonMission::Example(example.name),
-                    None => errors.push(LessonError::new(line, format!("there is no example `{value}`"))),
+                    None => errors.push(LessonError::new(line, format!("unknown example `{value}`"))),
                 }
             }
             "search" => {
                 if let Some(search) = search(&value) {
                     lesson.search = search;
                 } else {
-                    let message = "`search` is `chronological`, `conflict-directed`, `best-first` or `both`";
+                    let message =
+                        "`search` must be `chronological`, `conflict-directed`, `best-first` or `both`";
                     errors.push(LessonError::new(line, message));
                 }
             }
@@ -37,13 +41,13 @@ pub(super) fn read(lesson: &mut Lesson, head: Option<&Head>, errors: &mut Vec<Le
                 if let Some(expects) = expectation(&value) {
                     lesson.expects = expects;
                 } else {
-                    let message = "`expects` is `plan`, `no plan`, `errors` or `program`";
+                    let message = "`expects` must be `plan`, `no plan`, `errors` or `program`";
                     errors.push(LessonError::new(line, message));
                 }
             }
             other => {
                 let message = format!(
-                    "the head of a lesson knows no `{other}`; it has `about`, `mission`, `search` and `expects`"
+                    "unknown key `{other}` in the head of a lesson; use `about`, `mission`, `search` or `expects`"
                 );
                 errors.push(LessonError::new(line, message));
             }

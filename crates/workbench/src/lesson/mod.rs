@@ -152,13 +152,15 @@ impl Lesson {
             }
         }
         if lesson.title.is_empty() {
-            errors
-                .push(LessonError::new(1, "a lesson begins with its title: `# Why the planner backtracks`"));
+            errors.push(LessonError::new(
+                1,
+                "a lesson must start with its title, such as `# Why the planner backtracks`",
+            ));
             lesson.stops.insert(0, Stop { line: 1, ..Stop::default() });
         }
         if !has_mission {
-            let message = "a lesson has a mission: name an example in its head (`mission: enroute`), or write one \
-                           between ```rmpl and ``` before anything else";
+            let message = "a lesson needs a mission: name an example in its head (`mission: enroute`), or write one between \
+                           ```rmpl and ``` at the beginning";
             errors.push(LessonError::new(1, message));
         }
         errors.sort();
@@ -195,7 +197,7 @@ impl Lesson {
     fn take(&mut self, block: Block, errors: &mut Vec<LessonError>) {
         let Some(stop) = self.stops.last_mut() else {
             if !matches!(block.content, Content::Rule) {
-                errors.push(LessonError::new(block.line, "the title comes first: `# …`"));
+                errors.push(LessonError::new(block.line, "the title must come first: `# …`"));
             }
             return;
         };
@@ -208,7 +210,7 @@ impl Lesson {
                 if stop.ask.is_some() {
                     errors.push(LessonError::new(
                         block.line,
-                        "a stop asks one question; begin another stop with `##`",
+                        "a step can ask only one question; start another step with `##`",
                     ));
                 }
                 stop.ask = ask::read(text, block.line, errors);

@@ -17,7 +17,7 @@ pub(super) fn check(block: &Block, errors: &mut Vec<LessonError>) {
     });
     errors.append(&mut told);
     for link in manual::broken_links(std::slice::from_ref(block), "lessons") {
-        errors.push(LessonError::new(line, format!("the manual has nothing at `{link}`")));
+        errors.push(LessonError::new(line, format!("the manual has no page or section `{link}`")));
     }
 }
 

@@ -138,7 +138,10 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Sho
     let mut others = Vec::new();
     let entries = entries(text, fence, |line, text| others.push((line, text)));
     for (line, text) in others {
-        errors.push(LessonError::new(line, format!("`{text}` is no line of the form `key: value`")));
+        errors.push(LessonError::new(
+            line,
+            format!("expected a line of the form `key: value`, found `{text}`"),
+        ));
     }
     for (line, key, value) in entries {
         if let Err(message) = take(&mut show, line, key, &value) {
@@ -154,7 +157,7 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
         "workspace" => {
             let workspace = Workspace::by_name(value).ok_or_else(|| {
                 format!(
-                    "there is no workspace `{value}`; there are {}",
+                    "unknown workspace `{value}`; use one of {}",
                     Workspace::ALL.map(Workspace::name).join(", ")
                 )
             })?;
@@ -164,7 +167,7 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
             show.side = match value {
                 "chronological" => 0,
                 "conflict-directed" => 1,
-                _ => return Err("`search` is `chronological` or `conflict-directed`".to_owned()),
+                _ => return Err("`search` must be `chronological` or `conflict-directed`".to_owned()),
             };
         }
         "step" => show.step = Some((line, step(value)?)),
@@ -172,22 +175,21 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
         "near" => {
             show.near = value.split(',').map(panel).collect::<Result<_, _>>()?;
             if let Some(other) = show.near.iter().find(|panel| !panel.is_zoomable()) {
-                return Err(format!("`{}` cannot be zoomed", other.name()));
+                return Err(format!("the panel the panel `{}` cannot be zoomed", other.name()));
             }
         }
         "time" => {
-            let time: exact::Time = value.parse().map_err(|_| format!("`{value}` is no time"))?;
+            let time: exact::Time = value.parse().map_err(|_| format!("`{value}` is not a time"))?;
             show.time = Some(time.to_f64());
         }
         "moments" => show.moments = Some(count(value)?),
         "samples" => show.samples = Some(count(value)? as u32),
         "planner" => {
             let planners = Planners::named(value);
-            show.planner = Some(planners.ok_or_else(|| format!("there is no path planner `{value}`"))?);
+            show.planner = Some(planners.ok_or_else(|| format!("unknown path planner `{value}`"))?);
         }
         "mission" => {
-            let example =
-                mission_file::example(value).ok_or_else(|| format!("there is no example `{value}`"))?;
+            let example = mission_file::example(value).ok_or_else(|| format!("unknown example `{value}`"))?;
             show.mission = Some(example.name);
         }
         "do" => {
@@ -196,8 +198,8 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
         }
         other => {
             return Err(format!(
-                "`show` knows no `{other}`; it has panels, workspace, mission, search, step, select, near, time, moments, \
-                 samples, planner and do"
+                "unknown key `{other}` in `show`; use panels, workspace, mission, search, step, select, near, time, moments, \
+                 samples, planner or do"
             ));
         }
     }
@@ -205,14 +207,14 @@ fn take(show: &mut Show, line: u32, key: &str, value: &str) -> Result<(), String
 }
 
 fn count(value: &str) -> Result<usize, String> {
-    value.parse().map_err(|_| format!("`{value}` is no count"))
+    value.parse().map_err(|_| format!("`{value}` is not a count"))
 }
 
 fn panel(name: &str) -> Result<PanelKind, String> {
     let name = name.trim();
     PanelKind::by_name(name).ok_or_else(|| {
         let known = PanelKind::ALL.map(PanelKind::name).join(", ");
-        format!("there is no panel `{name}`; there are {known}")
+        format!("unknown panel `{name}`; use one of {known}")
     })
 }
 
@@ -224,7 +226,7 @@ fn panels(value: &str) -> Result<Vec<Vec<Vec<PanelKind>>>, String> {
     let all: Vec<PanelKind> = rows.iter().flatten().flatten().copied().collect();
     for (at, panel) in all.iter().enumerate() {
         if all[..at].contains(panel) {
-            return Err(format!("`{}` stands there twice", panel.name()));
+            return Err(format!("the panel `{}` is listed twice", panel.name()));
         }
     }
     Ok(rows)
@@ -249,14 +251,14 @@ fn step(value: &str) -> Result<StepTarget, String> {
         "second" => Which::Nth(2),
         "third" => Which::Nth(3),
         "last" => Which::Last,
-        _ => {
-            Which::Nth(nth().ok_or_else(|| format!("`{which}` is not first, second, third, 4th, … or last"))?)
-        }
+        _ => Which::Nth(
+            nth().ok_or_else(|| format!("expected first, second, third, 4th, … or last, found `{which}`"))?,
+        ),
     };
     let found = StepKind::ALL.into_iter().find(|(name, _)| *name == kind.trim());
     let (_, kind) = found.ok_or_else(|| {
         let known: Vec<&str> = StepKind::ALL.iter().map(|(name, _)| *name).collect();
-        format!("there is no kind of step `{kind}`; there are {}", known.join(", "))
+        format!("unknown kind of step `{kind}`; use one of {}", known.join(", "))
     })?;
     Ok(StepTarget::Kind { which, kind, with: with.trim().to_owned() })
 }
@@ -265,6 +267,6 @@ fn step(value: &str) -> Result<StepTarget, String> {
 pub(super) fn command_of(value: &str) -> Result<(String, Value), String> {
     let (id, arguments) = value.split_once(' ').unwrap_or((value, "{}"));
     let arguments =
-        serde_json::from_str(arguments).map_err(|error| format!("`{arguments}` is no JSON: {error}"))?;
+        serde_json::from_str(arguments).map_err(|error| format!("`{arguments}` is not JSON: {error}"))?;
     Ok((id.to_owned(), arguments))
 }

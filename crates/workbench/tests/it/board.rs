@@ -173,7 +173,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     let told = app.json()["review"]["history"].clone();
     app.run(Command::WriteReport);
     let page = app.world.saved_text();
-    for part in ["History of the review", "taken back by Grace", "Since the last approval", "Mind the slope."]
+    for part in ["History of the review", "withdrawn by Grace", "Since the last approval", "Mind the slope."]
     {
         assert!(page.contains(part), "{part}");
     }

@@ -204,9 +204,9 @@ fn a_task_is_not_done_by_something_else() {
     };
     assert!(!is_done("rrt", "Walls", "obstacle Scarp", &wall(10.0, 10.0)), "the gap is open");
     assert!(is_done("rrt", "Walls", "obstacle Scarp", &wall(122.0, 145.0)));
-    assert!(!is_done("bounds", "A bound more", "[0,70]", "[0,70"), "a broken text proves nothing");
-    assert!(!is_done("threats", "All in order", "DIG [5,5]", "DIG [50,50]"), "the day is as long");
-    assert!(is_done("threats", "All in order", "[0,20]", "[0, 14]"));
+    assert!(!is_done("bounds", "One more bound", "[0,70]", "[0,70"), "a broken text proves nothing");
+    assert!(!is_done("threats", "All threats resolved", "DIG [5,5]", "DIG [50,50]"), "the day is as long");
+    assert!(is_done("threats", "All threats resolved", "[0,20]", "[0, 14]"));
 }
 
 #[test]

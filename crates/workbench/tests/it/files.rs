@@ -167,7 +167,7 @@ fn a_file_that_is_added_is_imported_and_one_that_nothing_imports_is_an_error() {
     }
     let alone = text(&app).replace("import \"world.rmpl\";\n", "");
     apply(&mut app, vec![Command::SetSource(alone)]);
-    assert_eq!(problems(&app), ["nothing imports the file `world.rmpl`"]);
+    assert_eq!(problems(&app), ["the file `world.rmpl` is never imported"]);
     apply(&mut app, vec![Command::Editor(EditorCommand::Format)]);
     assert_eq!(files(&app)[1..], ["world.rmpl"]);
 }
