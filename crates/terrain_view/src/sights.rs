@@ -1,4 +1,4 @@
-//! Lines of sight that conditions ask for: from each place to the location that has to be in sight, and where the ground
+//! Lines of sight that conditions ask for: from each place to the location that must be visible, and where the ground
 //! blocks them (SPEC 10.5).
 
 use std::collections::BTreeSet;

@@ -89,7 +89,7 @@ fn the_checklist_is_computed_when_the_reviewer_comes() {
     // SPEC 3.6: the drive is over 0 to 45 minutes before path 1 closes. A margin that may be 0 has not passed.
     assert!(has(
         &app,
-        "needs attention: Tell(PATH1=OK)#1 provides PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
+        "needs attention: Tell(PATH1=OK)#1 supports PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
     ));
     assert!(has(&app, "Causal links, attention, 1 attention"));
     assert!(has(&app, "Robustness, not run yet"));

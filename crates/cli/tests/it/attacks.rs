@@ -145,8 +145,8 @@ fn a_terrain_that_cannot_be_read_is_told_whatever_the_mission_does() {
     let moves = format!("{vehicle}scenario M[0,100] = {{ Go(B) }}\n");
     written(&folder, "no-map.png", "no map");
     for (asset, told) in [
-        ("/etc/passwd", "there is no terrain called \"/etc/passwd\""),
-        ("../secret.asc", "there is no terrain called \"../secret.asc\""),
+        ("/etc/passwd", "unknown terrain \"/etc/passwd\""),
+        ("../secret.asc", "unknown terrain \"../secret.asc\""),
         ("no-map.png", "the terrain \"no-map.png\" cannot be used"),
     ] {
         for rest in

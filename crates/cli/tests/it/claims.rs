@@ -45,7 +45,9 @@ fn a_sum_is_of_one_resource() {
     );
     let report = answer(&enroute(&["report", &mission, "--format", "json"])).to_string();
     assert!(
-        report.contains("Charge#1 and Clear#1 share Memory and Battery, and no order of them fits"),
+        report.contains(
+            "Charge#1 and Clear#1 share Memory and Battery, but they do not fit one after the other"
+        ),
         "{report}"
     );
     assert!(!report.contains("take 10"), "{report}");

@@ -79,7 +79,7 @@ fn a_mission_drives_over_a_map_file_that_lies_beside_it() {
     let missing = file("nowhere.rmpl", &text.replace("valley.pgm", "nowhere.pgm"));
     let output = enroute(&["plan", &missing]);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert!(String::from_utf8_lossy(&output.stderr).contains("there is no terrain called \"nowhere.pgm\""));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("unknown terrain \"nowhere.pgm\""));
     std::fs::write(folder.join("broken.pgm"), b"P5 40 40 255\n..").expect("the folder can be written to");
     let broken = file("broken.rmpl", &text.replace("valley.pgm", "broken.pgm"));
     let output = enroute(&["simulate", &broken]);
@@ -143,7 +143,7 @@ fn a_disturbed_level_is_in_the_log_and_one_out_of_range_is_refused() {
     assert_eq!(places, [&Value::Null, &json!("A")]);
     let refused = disturbed("101");
     assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("the level of Battery is from 0 to 100"));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("the level of Battery must be from 0 to 100"));
 }
 
 #[test]

@@ -94,7 +94,7 @@ fn what_a_file_says_in_vain_is_said_at_every_verdict() {
         })
         .to_string(),
     );
-    let expected = "planning does not honour what this file says: a cost, a duration that is not controllable, a guard, \
+    let expected = "ignored when planning: a cost, a duration that is not controllable, a guard, \
                     a limit on cost";
     for command in ["check", "plan", "simulate", "report", "tpn"] {
         let output = enroute(&[command, text(&file), "--format", "json"]);
@@ -163,7 +163,10 @@ fn a_network_becomes_a_mission_with_the_same_windows_or_says_why_not() {
     let output = enroute(&["tpn", text(&file), "--as", "rmpl"]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("the node `n5` is left by nothing, and is not the network's end (`a3`)"), "{said}");
+    assert!(
+        said.contains("the node `n5` has no outgoing arc, but is not the end of the network (`a3`)"),
+        "{said}"
+    );
     let output = enroute(&["tpn", text(&file), "--as", "rmpl", "--format", "json"]);
     assert_eq!((&told(&output)["rmpl"], output.status.code()), (&json!(null), Some(1)));
 }

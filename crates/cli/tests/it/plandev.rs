@@ -108,7 +108,7 @@ fn plans_that_cannot_be_read_say_which_directive_is_at_fault() {
     let mut without_type = directive(1, "A", "00:00:00", None, true);
     without_type["type"] = Value::Null;
     for (activities, told) in [
-        (vec![directive(1, "A", "-00:00:01", None, true)], "directive 1 begins outside of the plan"),
+        (vec![directive(1, "A", "-00:00:01", None, true)], "directive 1 starts outside the plan"),
         (vec![directive(1, "A", "00:00:00", Some(4), true)], "directive 1 is anchored to 4"),
         (vec![directive(1, "A", "1 mon", None, true)], "directive 1: `1 mon` is not an interval"),
         (vec![directive(1, "A", "1:00", None, true); 2], "two directives 1"),
