@@ -30,6 +30,8 @@ pub struct Found {
 }
 
 const FILES: &[(&str, &str)] = &[
+    ("tutorial", include_str!("../../../docs/tutorial.md")),
+    ("troubleshooting", include_str!("../../../docs/troubleshooting.md")),
     ("language", include_str!("../../../docs/language.md")),
     ("missions", include_str!("../../../docs/missions.md")),
     ("network", include_str!("../../../docs/network.md")),
@@ -39,6 +41,7 @@ const FILES: &[(&str, &str)] = &[
     ("execution", include_str!("../../../docs/execution.md")),
     ("robustness", include_str!("../../../docs/robustness.md")),
     ("reviews", include_str!("../../../docs/reviews.md")),
+    ("what-verified-means", include_str!("../../../docs/what-verified-means.md")),
     ("controllability", include_str!("../../../docs/controllability.md")),
     ("control-programs", include_str!("../../../docs/control-programs.md")),
     ("esterel", include_str!("../../../docs/esterel.md")),
@@ -144,14 +147,14 @@ pub const fn about_topic(topic: Topic) -> (&'static str, &'static str) {
         Topic::Options => "options",
         Topic::Statements => "statements",
         Topic::Conditions => "conditions",
-        Topic::States => "state-that-lasts",
+        Topic::States => "state-variables",
         Topic::Resources => "resources",
         Topic::EarlyEnds => "activities-that-can-be-ended-early",
         Topic::Objectives => "objectives",
         Topic::Bounds => "bounds",
         Topic::ThreadBounds => "bounds-between-threads",
         Topic::Files => "missions-of-several-files",
-        Topic::Nature => "what-nature-chooses",
+        Topic::Nature => "uncontrollable-durations",
         Topic::Parameters => "parameters",
         Topic::World => "the-world",
         Topic::Programs => "activities-that-run-programs",

@@ -159,7 +159,7 @@ fn the_manual_is_asked_about_the_word_at_the_caret_and_about_the_place_under_the
     let at = |word: &str| source.find(word).expect("a word") + 1;
     for (word, expected) in [
         ("maintaining", "language#conditions"),
-        ("S : {A", "language#state-that-lasts"),
+        ("S : {A", "language#state-variables"),
         ("capacity", "language#resources"),
         ("choose", "language#statements"),
         ("2*10", "language#bounds"),
