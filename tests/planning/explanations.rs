@@ -23,9 +23,9 @@ const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learne
     This Together Try Whatever a after again all allow allows alone and another any arcs as at back be before besides \
     block blocks both bounded but can cannot choice choices choose chooses chosen come comes conflict contain contradiction delays do \
     duration durations each end ends event events failed failure first fit follows for found from go gaps greatest happens has have \
-    here if impossible in inf instead is it its keeping keeps kept last lasts learned least leave leaves left let long mission more most \
+    here if impossible in inf instead is it its keeping keeps kept last lasts learned least leave leaves left let long lower maximum minimum mission more most \
     move moves much must need needs neither never no node none not nothing of on once one ones only order ordering other \
-    others out plan program put rest rests room rule ruled rules s search so some start take takes teaches text than that the \
+    others out plan planner program put raise remaining rest rests room rule ruled rules running s search so some start take takes teaches text than that the \
     their them then there these they time times to together too try up wait was what whatever which with would";
 
 /// More such words, of the messages about steps of a search.
@@ -44,11 +44,15 @@ const TELLING: [(&str, Has); 10] = [
         it.labels.iter().any(|it| it.mode == LabelMode::Ask)
     }),
     ("Set Tell hold holds set", |it| !it.labels.is_empty()),
-    ("apart way", |it| has_conflict(it, |_| true)),
+    ("apart drive overlap separate separating way", |it| has_conflict(it, |_| true)),
     ("between conflicting gap gaps intervals touch", |it| has_conflict(it, |label| !it.is_lasting(label))),
-    ("above below drawn enough filled fits give helps level share use", |it| !it.uses.is_empty()),
+    ("above below capacity consumed drawn enough filled fits give helps level produced share use", |it| {
+        !it.uses.is_empty()
+    }),
     ("gives support supports", |it| !it.labels.is_empty() || !it.uses.is_empty()),
-    ("controllable nature took", |it| (0..it.arcs.len()).any(|arc| it.is_uncertain(ArcId::from_index(arc)))),
+    ("controllable earlier environment every met planned schedule uncontrolled works", |it| {
+        (0..it.arcs.len()).any(|arc| it.is_uncertain(ArcId::from_index(arc)))
+    }),
     ("Best best better far improve less optimal", |it| !it.objective.is_empty()),
     ("alternative", |it| !it.decisions.is_empty()),
     ("because ground line near", |it| !it.sights.is_empty()),
@@ -65,7 +69,7 @@ fn adds_up(sentence: &str) -> bool {
     let Some((needs, allows)) = sentence.split_once(", but ") else { return true };
     let number = |words: &str| words.rsplit(' ').next().and_then(|word| word.parse::<f64>().ok());
     let (allows, excess) = allows.split_once(": ").unwrap_or((allows, ""));
-    let excess = excess.split_once(" too much").and_then(|(excess, _)| number(excess));
+    let excess = excess.split_once(" too long").and_then(|(excess, _)| number(excess));
     match (number(needs).filter(|_| needs.contains("at least")), number(allows)) {
         (Some(needed), Some(allowed)) => {
             needed > allowed && excess.is_none_or(|excess| needed - allowed == excess)
@@ -84,7 +88,7 @@ fn told_needs(sentence: &str) -> Option<usize> {
         names.split('{').map(|part| part.split_once('}').map_or(part, |(_, rest)| rest)).collect();
     let names = names.rsplit(": ").next()?;
     let is_named =
-        !["keeping them apart", "coming one after the other", "their order in the program"].contains(&names);
+        !["separating them", "running them one after the other", "their order in the mission"].contains(&names);
     let (first, last) = names.rsplit_once(" and ").unwrap_or((names, ""));
     let parts = first.split(", ").chain((!last.is_empty()).then_some(last));
     let count = |part: &str| match part.strip_suffix(" times)").and_then(|it| it.rsplit('(').next()) {
@@ -235,7 +239,7 @@ fn why_an_alternative_was_not_taken_rests_on_the_choices_of_the_plan() {
                     || (rest_on.iter().all(|it| is_given(it) || is_later(it)) && told.len() > 1);
                 // The order of the program alone never takes time.
                 let is_glue =
-                    ["order in the program", "there is no plan"].iter().any(|it| reason.contains(it));
+                    ["order in the mission", "no plan with it exists"].iter().any(|it| reason.contains(it));
                 let has_strangers = !strangers(network, &text, reason).is_empty();
                 if !is_of_plan || is_glue || has_strangers || !told.iter().all(|it| adds_up(it)) {
                     wrong.push(format!("{name}, {itself} (plan {made:?}): {reason}"));

@@ -291,7 +291,7 @@ fn that_a_plan_withstands_nature_has_not_passed_on_the_planner_s_word() {
         let review = reviewed_with(source, verdict);
         let line = review.plan.iter().find(|line| line.names == ["Drive#1"]).expect("nature chooses");
         assert_eq!(line.status, status, "{line:?}");
-        assert!(line.text.contains("is not confirmed"), "{line:?}");
+        assert!(line.text.contains("is not verified"), "{line:?}");
     }
 }
 
@@ -323,13 +323,13 @@ fn what_nature_chooses_has_the_first_line_of_its_own() {
              scenario S[0,{most}] = {{ Drive(); delay; Dig() }}"
         )
     };
-    let (status, text) = line(&drive("", 60), "whatever nature chooses").expect("nature chooses");
+    let (status, text) = line(&drive("", 60), "dynamically controllable").expect("nature chooses");
     assert_eq!(status, Status::Passed);
     assert!(text.ends_with("Drive#1 [20, 40]"), "{text}");
     // A schedule that does not look is harder to find, and here the drive's end is what the delay waits for.
-    assert!(line(&drive("option controllability = strong;", 60), "one schedule suits").is_some());
+    assert!(line(&drive("option controllability = strong;", 60), "strongly controllable").is_some());
     // What is planned as if nature did not choose is never passed.
-    let none = line(&drive("option controllability = none;", 44), "the plan chooses durations");
+    let none = line(&drive("option controllability = none;", 44), "the plan chooses contingent durations");
     assert_eq!(none.expect("it is said").0, Status::Attention);
     // And what nature can break has no plan.
     assert!(line(&drive("", 44), "whatever").is_none());

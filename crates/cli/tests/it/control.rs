@@ -591,7 +591,7 @@ fn check_finds_in_programs_and_plants_what_run_refuses() {
         (
             "probabilities",
             plant.replace("(TRANSITION", "(FAULT Off On 0) (FAULT On Off 0.7) (FAULT On On 0.6) (TRANSITION"),
-            &["`0` is not a probability", "more than 1 together"],
+            &["`0` is not a probability", "add up to more than 1"],
         ),
     ];
     for (name, text, parts) in cases {

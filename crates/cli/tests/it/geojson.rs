@@ -86,5 +86,5 @@ fn an_origin_is_asked_for_and_only_of_geojson() {
     let network = enroute(&["tpn", mission, "--format", "json"]);
     let network = written("flat.tpn.json", &text(&network));
     let wrong = enroute(&["import", network.to_str().expect("a path"), "--metres"]);
-    assert!(String::from_utf8_lossy(&wrong.stderr).contains("is no GeoJSON"), "{wrong:?}");
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("is not GeoJSON"), "{wrong:?}");
 }

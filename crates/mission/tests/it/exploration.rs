@@ -67,7 +67,7 @@ fn a_path_that_is_closed_at_100_while_rovers_are_on_it_is_left_for_the_other() {
     let ran = run(EXPLORATION, &[closed_at(100)]);
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
     assert_eq!(violations(&ran), ["Tell(PATH1=OK)#1 was withdrawn at 100, but the plan needs it until 260"]);
-    assert!(told(&ran, "Group-Traverse-Path#1").iter().any(|text| text.starts_with("is ended early")));
+    assert!(told(&ran, "Group-Traverse-Path#1").iter().any(|text| text.starts_with("is being ended early")));
     assert_eq!([value(&ran, "RIDGE-IS"), value(&ran, "SHELF-IS")], [Some("ANALYSED"); 2]);
     let named = |name: &str| {
         ran.log
@@ -118,7 +118,7 @@ fn what_one_rover_has_met_another_one_drives_around() {
     // The first one stands at EAST, so that the second stops beside it.
     let told = told(&ran, "Drive#3");
     let [around, beside] = told.as_slice() else { panic!("{told:?}") };
-    assert!(around.contains("around what was seen before"), "{around}");
+    assert!(around.contains("around an obstacle that was seen before"), "{around}");
     assert!(beside.contains("short of EAST, where First stands"), "{beside}");
     // It is where the first one was, and not as near to it.
     let nearest_m = |drive: usize| {
@@ -168,7 +168,7 @@ fn what_only_sonars_hear_is_driven_around_and_shared() {
     let on_slab = |ray: &&nalgebra::Point2<f32>| nalgebra::distance(&ray.cast::<f64>(), &place) < 1.7;
     assert_eq!(rays.filter(on_slab).count(), 0, "no range finder has seen it");
     let around = told(&ran, "Drive#3");
-    assert!(around.iter().any(|text| text.contains("around what was seen before")), "{around:?}");
+    assert!(around.iter().any(|text| text.contains("around an obstacle that was seen before")), "{around:?}");
     // One that stands higher is seen.
     let ran = run(source, &[slab(false)]);
     let rays = ran.drives[0].vehicles[0].frames.iter().flat_map(|frame| &frame.rays_m);

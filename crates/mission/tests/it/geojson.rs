@@ -145,18 +145,18 @@ fn what_is_left_out_is_said() {
 fn what_cannot_be_placed_is_refused_with_its_reason() {
     let collection = |features: &[Value]| json!({ "type": "FeatureCollection", "features": features });
     let mut projected = collection(&[point("A", [500_000.0, 4_000_000.0])]);
-    assert!(refusal(&projected).contains("no longitude and latitude in degrees"), "{}", refusal(&projected));
+    assert!(refusal(&projected).contains("not a longitude and latitude in degrees"), "{}", refusal(&projected));
     projected["crs"] = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::32633" } });
     assert!(refusal(&projected).contains("EPSG::32633, which is not read"));
     let far = collection(&[point("A", [0.0, 0.0]), point("B", [90.0, 0.0])]);
     assert!(refusal(&far).contains("B: it is 10008 km from the origin"), "{}", refusal(&far));
-    assert!(refusal(&collection(&[])).contains("no Point, Polygon"));
+    assert!(refusal(&collection(&[])).contains("needs a Point, Polygon"));
     let mut flat = point("Dot", [0.0, 0.0]);
     flat["properties"]["radius_m"] = json!(0.0001);
-    assert!(refusal(&metres(&[flat])).contains("no radius of an obstacle"));
-    assert!(refusal(&json!({ "type": "Topology" })).contains("no GeoJSON"));
+    assert!(refusal(&metres(&[flat])).contains("must be greater than 0"));
+    assert!(refusal(&json!({ "type": "Topology" })).contains("not GeoJSON"));
     assert!(
-        refusal(&metres(&[polygon(&json!([[[0, 0], [1, 1], [0, 0]]]))])).contains("less than three corners")
+        refusal(&metres(&[polygon(&json!([[[0, 0], [1, 1], [0, 0]]]))])).contains("at least three corners")
     );
     assert!(refusal(&metres(&[polygon(&json!([[[0, 0], [1, null], [2, 2]]]))])).contains("pair of numbers"));
 }

@@ -118,7 +118,7 @@ fn a_program_that_never_ends_stops_the_mission_when_its_time_is_over() {
     let start = time(&ran, "Insert#1.start").expect("it was started");
     let said = ran.outcome.log.iter().any(|entry| match &entry.happening {
         Happening::Violation { reason, .. } => {
-            start.checked_add(16.into()) == Some(entry.time) && reason.contains("did not reach its end")
+            start.checked_add(16.into()) == Some(entry.time) && reason.contains("did not end within")
         }
         _ => false,
     });

@@ -146,7 +146,7 @@ fn a_closed_gap_is_reported_and_another_way_taken_which_takes_longer() {
     let behind = run(DETOUR, &[obstacle(3, Point2::new(214.0, 68.0), 6.0)]);
     assert_eq!(behind.ending, Ending::Finished, "{:?}", behind.log.last());
     assert!(
-        progress(&behind).iter().any(|text| text.contains("takes another way")),
+        progress(&behind).iter().any(|text| text.contains("takes another path")),
         "{:?}",
         behind.log.last()
     );
@@ -165,7 +165,7 @@ fn what_a_rover_loses_by_standing_reaches_the_plan() {
     let tight = DETOUR.replace("Carry(GAP, LANDER)[10,60]", "Carry(GAP, LANDER)[10,20]");
     assert_ne!(tight, DETOUR);
     let violated = run(&tight, &[stand("Scout", 5, 15)]);
-    assert!(violations(&violated)[0].contains("had to come by"), "{:?}", violations(&violated));
+    assert!(violations(&violated)[0].contains("did not happen by"), "{:?}", violations(&violated));
     let is_replanned = |entry: &executive::Entry| matches!(entry.happening, Happening::Replanned { .. });
     assert!(
         violated.log.iter().any(is_replanned),

@@ -81,7 +81,7 @@ fn a_goal_out_of_reach_says_why() {
     assert_eq!(
         commands(&broken, &[("d", "Dead")], &[("v", "Open")]),
         Err(vec![
-            "`v` goes from Closed to Open only with d=On, which is out of reach: no commanded transition of `d` leads from Dead to On"
+            "`v` goes from Closed to Open only with d=On, which cannot be reached: no commanded transition of `d` leads from Dead to On"
                 .into()
         ])
     );

@@ -85,6 +85,6 @@ fn what_deserves_a_look_has_a_sheet_of_its_own_where_the_network_is_too_large() 
     let details: Vec<&&str> = sheets.iter().filter(|it| it.contains("<figcaption>In detail: ")).collect();
     assert!(!details.is_empty() && details.len() <= 4, "{}", details.len());
     for detail in details {
-        assert!(detail.contains("events are drawn; boxes stand for what has no room on paper"));
+        assert!(detail.contains("events are drawn; boxes replace the rest"));
     }
 }

@@ -256,7 +256,7 @@ scenario S[0,20] = { Drill(), { delay; Brush() } }";
     });
     let fell = tried.iter().find(|it| it.line.section == Section::Overlaps).expect("a line");
     let found = fell.counterexample.as_ref().expect("the two overlap in some schedule");
-    assert!(found.text.contains("are under way"), "{found:?}");
+    assert!(found.text.contains("are both in progress"), "{found:?}");
     let (log, ending) = replayed(&mut core, &evaluated, &found.script);
     assert!(ending == Ending::Finished && !log.is_empty());
 }

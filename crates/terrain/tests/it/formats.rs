@@ -171,7 +171,7 @@ fn an_ascii_grid_has_square_cells() {
     let grid = |dy: &str| format!("ncols 2\nnrows 1\ndx 2.5\ndy {dy}\n1 2\n");
     assert_eq!(read(grid("2.5").as_bytes()).unwrap().cell_size_m, Some(2.5));
     let message = read(grid("5").as_bytes()).unwrap_err().to_string();
-    assert!(message.contains("not square: 2.5 × 5"), "{message}");
+    assert!(message.contains("must be square, not 2.5 × 5"), "{message}");
 }
 
 #[test]
@@ -362,7 +362,7 @@ fn a_label_without_its_image_says_where_the_image_is() {
     let label = String::from_utf8(pds_with("")[..512].to_vec()).unwrap();
     let message =
         read(label.replace("^IMAGE = 2", "^IMAGE = (\"A.IMG\", 1)").as_bytes()).unwrap_err().to_string();
-    assert!(message.contains("label alone") && message.contains("\"A.IMG\""), "{message}");
+    assert!(message.contains("only the label") && message.contains("\"A.IMG\""), "{message}");
 }
 
 #[test]
@@ -450,8 +450,8 @@ fn crc32(bytes: &[u8]) -> u32 {
 #[test]
 fn a_broken_file_is_an_error_that_says_what_is_wrong() {
     let cases: [(&[u8], &str); 13] = [
-        (b"", "no map file"),
-        (b"hello, world", "no map file"),
+        (b"", "unrecognized map format"),
+        (b"hello, world", "unrecognized map format"),
         (b"P5 3 3 255\n12345", "9 bytes, and 5 follow"),
         (b"P5 3 x 255\n", "the height should be a number but is `x`"),
         (b"P5 0 3 255\n", "no cells"),

@@ -108,7 +108,7 @@ fn a_description_names_its_image() {
 fn what_is_not_read_is_refused_with_its_reason() {
     let refusals = [
         (YAML.replace("0.000000]", "1.5708]"), "turned by 1.5708 rad"),
-        (YAML.replace("0.050000", "-1"), "`resolution` is not a number of metres above 0"),
+        (YAML.replace("0.050000", "-1"), "`resolution` must be a number of meters greater than 0"),
         (YAML.replace("0.65", "0.1"), "`free_thresh` 0.196 is above `occupied_thresh` 0.1"),
         (YAML.replace("0.65", "65"), "not within 0 to 1"),
         (YAML.replace("negate: 0", "negate: maybe"), "`negate` is maybe"),
@@ -123,5 +123,5 @@ fn what_is_not_read_is_refused_with_its_reason() {
     let alone = read_raster(YAML.as_bytes(), &ImportOptions::default()).expect_err("no image").to_string();
     assert!(alone.contains("its image site.pgm is a file of its own"), "{alone}");
     let heights = raster(YAML, b"ncols 1\nnrows 1\ncellsize 1\n5\n").expect_err("no grey levels").to_string();
-    assert!(heights.contains("has no grey levels"), "{heights}");
+    assert!(heights.contains("needs gray levels"), "{heights}");
 }

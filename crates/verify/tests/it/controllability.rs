@@ -44,7 +44,7 @@ fn a_drive_that_nature_draws_out_cannot_end_within_a_narrower_range() {
     only(
         &said(&network, Sketch::default()),
         &["Drive#1.start", "Drive#1.end"],
-        &["Drive#1 takes [20,40], as nature chooses", "[30,35]"],
+        &["Drive#1 takes [20,40] (uncontrolled)", "[30,35]"],
     );
     network.controllability = Controllability::None;
     assert_eq!(said(&network, Sketch::default()), [], "read as ordinary");
@@ -80,7 +80,7 @@ fn durations_that_only_look_at_each_other_need_no_times_beforehand() {
     only(
         &said(&network, Sketch::default()),
         &["Drive#1.start", "Drive#1.end"],
-        &["Drive#1 takes [20,40]", "no times chosen beforehand", "[5,10]"],
+        &["Drive#1 takes [20,40]", "no schedule fixed in advance", "[5,10]"],
     );
 }
 
@@ -164,7 +164,7 @@ fn nature_does_not_choose_within_no_bounds() {
     let found = said(&network, Sketch::default());
     let [violation] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!(violation.rule, Rule::Form);
-    assert!(violation.message.contains("nature cannot choose"), "{violation:?}");
+    assert!(violation.message.contains("needs finite bounds"), "{violation:?}");
 }
 
 /// A network of `events` events without names, the first of which is the start.

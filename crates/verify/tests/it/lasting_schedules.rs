@@ -170,7 +170,7 @@ fn twelve_events_at_one_instant_are_decided() {
     without_order(&violations(&text(6, &both), &[], 9), Rule::State, "which does not hold then");
     // Of many more it is said that they were not decided.
     let found = violations(&text(20, &both), &[], 9);
-    only(&found, Rule::Form, &[], "the search gave up");
+    only(&found, Rule::Form, &[], "the search stopped");
 }
 
 /// What is about different things goes on beside each other, however much there is of it.

@@ -117,8 +117,8 @@ fn a_plan_of_another_network_is_refused_before_it_is_looked_at() {
     let refused = |change: fn(&mut Plan), words: &str| {
         only(&changed(|_, plan| change(plan)), Rule::Form, &[], words);
     };
-    refused(|plan| plan.selected_nodes.truncate(3), "other nodes");
-    refused(|plan| plan.selected_arcs.push(true), "other arcs");
+    refused(|plan| plan.selected_nodes.truncate(3), "its nodes differ");
+    refused(|plan| plan.selected_arcs.push(true), "its arcs differ");
     refused(|plan| plan.windows.clear(), "one window for each node");
     refused(|plan| plan.causal_links[0].tell = LabelId(99), "unknown interval");
     refused(|plan| plan.causal_links[0].ask = LabelId(u32::MAX), "unknown interval");
@@ -202,7 +202,7 @@ fn every_node_and_arc_that_is_selected_or_left_out_wrongly_is_named() {
         let (selection, others): (Vec<_>, Vec<_>) = found.iter().partition(|it| it.rule == Rule::Selection);
         assert!(others.iter().all(|it| it.rule == Rule::Support), "arc {index}: {found:#?}");
         let [violation] = &selection[..] else { panic!("arc {index}: {found:#?}") };
-        let words = if good.selected_arcs[index] { "is not selected" } else { "belongs to no choice" };
+        let words = if good.selected_arcs[index] { "is not selected" } else { "does not follow from the plan's choices" };
         assert!(violation.message.contains(words), "{violation:?}");
         let arc = &network.arcs[index];
         for (event, node) in violation.events.iter().zip([arc.from, arc.to]) {
@@ -265,7 +265,7 @@ fn an_activity_without_its_body_is_not_expanded() {
 
 #[test]
 fn a_requirement_has_exactly_one_link_to_a_tell_that_supports_it() {
-    only(&said_of(Sketch { links: &[], ..GOOD }), Rule::Support, &[ASK], "nothing is linked to");
+    only(&said_of(Sketch { links: &[], ..GOOD }), Rule::Support, &[ASK], "has no causal link");
     let twice = Sketch { links: &[(ASK, TELL), (ASK, "Tell(c)@Tell(c)#2")], ..GOOD };
     only(&said_of(twice), Rule::Support, &[ASK], "has 2 causal links");
     only(
@@ -279,7 +279,7 @@ fn a_requirement_has_exactly_one_link_to_a_tell_that_supports_it() {
     // The two ends exchanged, which leaves the requirement without a link.
     let turned = said_of(Sketch { links: &[(TELL, ASK)], ..GOOD });
     has(&turned[0], Rule::Support, &[TELL, ASK], "from an assertion to a requirement");
-    has(&turned[1], Rule::Support, &[ASK], "nothing is linked to");
+    has(&turned[1], Rule::Support, &[ASK], "has no causal link");
     let tells = said_of(Sketch { links: &[(ASK, TELL), (X, X)], ..GOOD });
     only(&tells, Rule::Support, &[X, X], "from an assertion to a requirement");
     let itself = said_of(Sketch { links: &[(ASK, ASK)], ..GOOD });
@@ -302,10 +302,10 @@ fn links_join_what_the_plan_selects() {
     assert_eq!(said(&[(1, 1)], &[(ask, beside), ("Ask(c)@B#1", beside)]), []);
     // To a Tell of an alternative that is not taken.
     let found = said(&[(1, 1)], &[(ask, chosen), ("Ask(c)@B#1", beside)]);
-    only(&found, Rule::Support, &[ask, chosen], "not selected");
+    only(&found, Rule::Support, &[ask, chosen], "does not select");
     // Of an Ask that is not taken.
     let found = said(&[(1, 0)], &[(ask, chosen), ("Ask(c)@B#1", beside)]);
-    only(&found, Rule::Support, &["Ask(c)@B#1", beside], "not selected");
+    only(&found, Rule::Support, &["Ask(c)@B#1", beside], "does not select");
 }
 
 #[test]
@@ -357,7 +357,7 @@ fn the_order_of_a_conflict_is_said_once_and_holds() {
     let unsaid = said_of(Sketch { order: &[], added: &[], ..GOOD });
     only(&unsaid, Rule::Conflict, &[X, Y], "does not say which of");
     let both = said_of(Sketch { order: &[(X, Y), (Y, X)], ..GOOD });
-    only(&both, Rule::Conflict, &[X, Y], "ordered both ways");
+    only(&both, Rule::Conflict, &[X, Y], "ordered in both directions");
     let loose = said_of(Sketch { added: &[], ..GOOD });
     only(&loose, Rule::Conflict, &[X, Y], "may overlap");
     let turned = said_of(Sketch { order: &[(Y, X)], ..GOOD });
@@ -367,7 +367,7 @@ fn the_order_of_a_conflict_is_said_once_and_holds() {
     // Added, and said of no conflict.
     let later = "Tell(c)@Tell(c)#2";
     let unsaid = said_of(Sketch { added: &[(X, Y), (TELL, later)], ..GOOD });
-    only(&unsaid, Rule::Conflict, &[TELL, later], "which the order of conflicts does not say");
+    only(&unsaid, Rule::Conflict, &[TELL, later], "but the plan's conflict order does not say so");
 }
 
 #[test]
@@ -527,7 +527,7 @@ fn the_largest_bounds_do_not_overflow() {
     let mut round = plan(&crate::missions::network(TEXT), GOOD);
     assert!(violations(&network, &round).iter().all(|it| it.rule == Rule::Window));
     round.orderings_added.push(Ordering { first: label(&network, Y), then: label(&network, X) });
-    any(&violations(&network, &round), Rule::Temporal, "contradict each other");
+    any(&violations(&network, &round), Rule::Temporal, "are inconsistent");
 }
 
 /// Every way to link and order the intervals of a plan wrongly by one entry.

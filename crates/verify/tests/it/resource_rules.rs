@@ -86,7 +86,7 @@ fn three_users_are_too_many_and_two_are_not() {
         &violations(&network, &plan),
         Rule::Resource,
         &[],
-        "tells how far 0 resources are used, and there are 1",
+        "lists 0 resources, but the mission has 1",
     );
 }
 
@@ -97,7 +97,7 @@ fn charging_comes_before_driving() {
     // 4 at first, 9 when charged, 3 when driving begins.
     accepted(text, &[(charge, drive)], &[range(3, 9)], 13);
     let (network, plan) = made(text, &[], &[range(-2, 9)], 8);
-    let words = "when Drive#1 consumes 6, Batt may be down to -2, and its least level is 0";
+    let words = "when Drive#1 consumes 6, Batt may fall to -2, but its minimum is 0";
     only(&violations(&network, &plan), Rule::Resource, &[drive], words);
     for wrong in [range(2, 9), range(3, 10), range(4, 9)] {
         let (network, plan) = made(text, &[(charge, drive)], &[wrong], 13);
@@ -113,13 +113,13 @@ fn what_is_produced_at_one_instant_counts_if_it_is_before_what_is_consumed() {
     accepted(text, &[(produced, consumed)], &[range(0, 5)], 15);
     for (order, low) in [(&[][..], -5), (&[(consumed, produced)], -5)] {
         let (network, plan) = made(text, order, &[range(low, if order.is_empty() { 5 } else { 0 })], 15);
-        let words = "when B#1 consumes 5, Bat may be down to -5, and its least level is 0";
+        let words = "when B#1 consumes 5, Bat may fall to -5, but its minimum is 0";
         only(&violations(&network, &plan), Rule::Resource, &[consumed], words);
     }
     // In a sequence the text says which is first.
     let text = CONSUMED_FIRST;
     let (network, plan) = made(text, &[], &[range(-5, 0)], 0);
-    only(&violations(&network, &plan), Rule::Resource, &["Consumes(Bat)@C#1"], "may be down to -5");
+    only(&violations(&network, &plan), Rule::Resource, &["Consumes(Bat)@C#1"], "may fall to -5");
     accepted(&text.replace("C(); P()", "P(); C()"), &[], &[range(0, 5)], 0);
 }
 
@@ -137,7 +137,7 @@ fn a_reservoir_does_not_overflow() {
     let (fill, drain) = ("Produces(Tank)@Fill#1", "Consumes(Tank)@Drain#1");
     accepted(text, &[(drain, fill)], &[range(3, 8)], 0);
     let (network, plan) = made(text, &[(fill, drain)], &[range(7, 12)], 0);
-    let words = "when Fill#1 has produced 4, Tank may be up to 12, and its greatest level is 10";
+    let words = "when Fill#1 has produced 4, Tank may reach 12, but its maximum is 10";
     only(&violations(&network, &plan), Rule::Resource, &[fill], words);
     // Neither is before the other where each is said to be.
     let (network, plan) = made(text, &[(drain, fill), (fill, drain)], &[range(7, 8)], 0);
@@ -197,9 +197,9 @@ fn orderings_join_selected_uses_of_one_resource() {
     assert_eq!(violations(&network, &good), []);
     for (first, then, words) in [
         (SHOOT, SHOOT, "ordered with itself"),
-        (SHOOT, "Uses(Power)@Film#1", "different resources"),
-        (SHOOT, "Uses(Cam)@Shoot#2", "not selected"),
-        ("Uses(Cam)@Shoot#2", FILM, "not selected"),
+        (SHOOT, "Uses(Power)@Film#1", "the same resource"),
+        (SHOOT, "Uses(Cam)@Shoot#2", "does not select"),
+        ("Uses(Cam)@Shoot#2", FILM, "does not select"),
     ] {
         let mut wrong = good.clone();
         wrong.uses_ordered = vec![UseOrdering { first: used(&network, first), then: used(&network, then) }];

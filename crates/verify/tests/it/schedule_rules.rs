@@ -71,7 +71,7 @@ fn every_selected_event_has_one_time() {
     let (network, plan) = good();
     let times = earliest_schedule(&plan);
     let short = check_schedule(&network, &plan, &times[1..]);
-    only(&short.violations, Rule::Form, &[], "other nodes");
+    only(&short.violations, Rule::Form, &[], "its nodes differ");
     let mut missing = times.clone();
     missing[event(&network, "D#1.end").index()] = None;
     only(&check_schedule(&network, &plan, &missing).violations, Rule::Form, &["D#1.end"], "has no time");
@@ -126,7 +126,7 @@ fn times_that_are_too_far_apart_are_refused() {
     let mut times = earliest_schedule(&plan);
     times[event(&network, "scenario#1.start").index()] = Some(time(i64::MIN));
     let verdict = check_schedule(&network, &plan, &times);
-    assert!(verdict.violations.iter().any(|it| it.message.contains("too long to be exact")), "{verdict:#?}");
+    assert!(verdict.violations.iter().any(|it| it.message.contains("too long to represent exactly")), "{verdict:#?}");
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn requirements_lie_inside_one_assertion() {
     }
     // Before, across the gap between the two, and after.
     for (start, end) in [(0, 2), (1, 3), (9, 12), (10, 12), (11, 13), (19, 22), (30, 32)] {
-        only(&at(start, end), Rule::Support, &["Ask(c)@D#1"], "inside no assertion");
+        only(&at(start, end), Rule::Support, &["Ask(c)@D#1"], "not inside an assertion");
     }
 }
 

@@ -144,7 +144,7 @@ fn the_order_of_a_variable_lists_each_change_once() {
             let mut twice = order.to_vec();
             twice.push(missing);
             let found = said_of(text, Sketch { states: &[&twice], ..good });
-            only(&found[..1], Rule::State, &[missing], "is twice in the order of ARM");
+            only(&found[..1], Rule::State, &[missing], "appears twice in the order of ARM");
         }
         let none = said_of(text, Sketch { states: &[], ..good });
         assert!(none.iter().any(|it| it.message.contains("does not say where")), "{none:#?}");
@@ -183,7 +183,7 @@ fn changes_do_not_overlap() {
 fn requirements_are_linked_to_one_producer_of_their_value() {
     let text = case!("s04_threat_both_ways").0;
     let found = said_of(text, Sketch { links: &[], ..STOW_FIRST });
-    only(&found, Rule::Support, &[DIG], "nothing is linked to");
+    only(&found, Rule::Support, &[DIG], "has no causal link");
     let found = said_of(text, Sketch { links: &[(DIG, STOW)], ..STOW_FIRST });
     only(&found, Rule::Support, &[DIG, STOW], "does not make the requirement hold");
     let found = said_of(text, Sketch { links: &[(DIG, DEPLOY), (DIG, DEPLOY)], ..STOW_FIRST });
@@ -213,12 +213,12 @@ fn nothing_rests_on_its_own_effect() {
     let good = Sketch { links: &[(needs, DEPLOY)], states: &[&[FIRST, DEPLOY, shake]], ..Sketch::default() };
     assert_eq!(said_of(text, good), []);
     let found = said_of(text, Sketch { links: &[(needs, shake)], ..good });
-    only(&found, Rule::Support, &[needs, shake], "does not rest on its own effect");
+    only(&found, Rule::Support, &[needs, shake], "cannot rely on its own effect");
     // Without Deploy no schedule is right either.
     let network = network(&text.replace("Deploy() }", "Wait()[1,1] }"));
     let plan = plan(&network, Sketch::default());
     let verdict = check_schedule(&network, &plan, &earliest_schedule(&plan));
-    only(&verdict.violations, Rule::State, &[needs, FIRST], "stands against it");
+    only(&verdict.violations, Rule::State, &[needs, FIRST], "contradicts it");
 }
 
 /// The gap is for variables that do not last: what is required may begin the moment it is so.
@@ -255,7 +255,7 @@ fn assertions_keep_their_value_and_leave_it_behind() {
     let sketch =
         Sketch { links: &[(pass, one)], states: &[&[shut, one, two]], added: &added, ..Sketch::default() };
     let found = said_of(&text.replace("GATE=OPEN [4,4]", "GATE=OPEN [1,4]"), sketch);
-    only(&found, Rule::State, &[one, two], "which the order of changes does not say");
+    only(&found, Rule::State, &[one, two], "but the plan's order of changes does not say so");
 }
 
 /// Several values at one instant have an order, and it decides what holds afterwards.
@@ -292,7 +292,7 @@ fn ties_are_decided_by_an_order_without_circles() {
     // What was added is another order than the one that is stated.
     let found = sketch([a, c, b], &[(c, a), (a, b), (c, b)]);
     assert!(
-        found.iter().any(|it| it.message.contains("which the order of changes does not say")),
+        found.iter().any(|it| it.message.contains("but the plan's order of changes does not say so")),
         "{found:#?}"
     );
     // C is last, and Use requires B.
@@ -452,13 +452,13 @@ fn movements_take_their_time_from_where_they_start() {
     assert_eq!(said_at(&late), []);
     let found = said_at(&early);
     assert_eq!(found.len(), 2, "{found:#?}");
-    only(&found[..1], Rule::State, &[rock, first], "has not the time it takes");
-    only(&found[1..], Rule::State, &[hill, rock], "has not the time it takes");
+    only(&found[..1], Rule::State, &[rock, first], "starts too early to drive there");
+    only(&found[1..], Rule::State, &[hill, rock], "starts too early to drive there");
     // The other way round HILL is driven to from HOME, which cannot be.
     let mut other = plan(&network, Sketch { states: &[&[first, hill, rock]], ..Sketch::default() });
     other.windows = early.windows.clone();
     let found = violations(&network, &other);
     let is_said =
-        |it: &Violation| it.rule == Rule::State && it.message.contains("cannot be driven from where Init");
+        |it: &Violation| it.rule == Rule::State && it.message.contains("cannot be driven from the end of Init");
     assert!(found.iter().any(is_said), "{found:#?}");
 }

@@ -108,20 +108,20 @@ fn a_whole_lesson_is_read() {
 
 #[test]
 fn a_mistake_is_told_with_its_line_and_what_would_be_right() {
-    check("{{nonsense}}", 7, "nothing is known by the name `nonsense`");
+    check("{{nonsense}}", 7, "unknown name `nonsense`");
     check("{{earliest}}", 7, "`earliest(Drive#1.start)`");
     check("{{steps + }}", 7, "missing");
-    check("[a](language.md#nowhere)", 7, "the manual has nothing at");
-    check("```show\nstop: 3\n```", 8, "`show` knows no `stop`");
-    check("```show\npanels: nowhere\n```", 8, "there is no panel `nowhere`");
+    check("[a](language.md#nowhere)", 7, "the manual has no page or section");
+    check("```show\nstop: 3\n```", 8, "unknown key `stop` in `show`");
+    check("```show\npanels: nowhere\n```", 8, "unknown panel `nowhere`");
     check("```show\npanels: plan / plan\n```", 8, "twice");
     check("```show\n\nstep: 3rd nonsense\n```", 9, "negative cycle");
     check("```show\nstep: any failure\n```", 8, "last");
     check("```show\nnear: plan\n```", 8, "cannot be zoomed");
     check("```show\nwords\n```", 8, "key: value");
     check("```show\ndo: no.command\n```", 8, "there is no command");
-    check("```show\nmission: nowhere\n```", 8, "there is no example");
-    check("```ask\nWhat?\n```", 7, "what is right is missing");
+    check("```show\nmission: nowhere\n```", 8, "unknown example");
+    check("```ask\nWhat?\n```", 7, "the answer is missing");
     check("```ask\nnumber: 3\n```", 7, "the question is missing");
     check("```ask\nWhat?\nnumber: 3\nword: choice(D1)\n```", 10, "one answer");
     check("```ask\nWhat?\n- [x] one\n```", 7, "at least two");
@@ -130,7 +130,7 @@ fn a_mistake_is_told_with_its_line_and_what_would_be_right() {
     let ask = read.stops[1].ask.as_ref().expect("it asks");
     let Answer::Choice(choices) = &ask.answer else { panic!("{ask:?}") };
     assert_eq!((choices[0].text.as_str(), ask.hint.as_str(), errors.len()), ("one and more", "a b", 0));
-    check("```ask\nWhat?\n- [x] one\n- two\n- [ ] three\n```", 10, "a choice begins with");
+    check("```ask\nWhat?\n- [x] one\n- two\n- [ ] three\n```", 10, "a choice must start with");
     check("```ask\nWhat?\ntask: plan\nsolution: \"a\" instead\n```", 10, "becomes");
     let two = "```ask\nA?\nnumber: 1\n```\n\n```ask\nB?\nnumber: 1\n```";
     check(two, 12, "one question");
@@ -139,7 +139,7 @@ fn a_mistake_is_told_with_its_line_and_what_would_be_right() {
 #[test]
 fn a_lesson_needs_a_title_and_a_mission() {
     assert!(errors("").iter().any(|(line, text)| *line == 1 && text.contains("title")));
-    assert!(errors("# T\n").iter().any(|(_, text)| text.contains("has a mission")));
+    assert!(errors("# T\n").iter().any(|(_, text)| text.contains("needs a mission")));
     assert_eq!(errors("# T\n\n```rmpl\nscenario S { }\n```\n"), []);
     assert_eq!(errors("---\nmission: nowhere\nsearch: fast\nmood: good\n---\n# T\n").len(), 3);
 }

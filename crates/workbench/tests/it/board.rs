@@ -87,7 +87,7 @@ fn a_report_has_only_the_signatures_that_hold_for_its_content() {
     let lapsed = report(&mut app);
     assert!(lapsed.0.contains("lapsed") && lapsed.0.contains("Grace approved"), "{lapsed:?}");
     assert_eq!(named(&lapsed), [false, false], "{lapsed:?}");
-    assert!(lapsed.1.contains("In the way of an approval"), "{lapsed:?}");
+    assert!(lapsed.1.contains("Blocked by"), "{lapsed:?}");
 }
 
 #[test]
@@ -414,7 +414,7 @@ fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
     assert_eq!(again.json()["robustness"]["runs"], 20);
     again.run(Command::WriteReport);
     let page = again.world.saved_text();
-    assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
+    assert!(page.contains("of 20 runs reached the end (Monte Carlo, seed 5;"));
 }
 
 #[test]

@@ -323,7 +323,7 @@ fn places_in_geojson_become_a_file_of_the_mission() {
     let mut app = started();
     let before = text_of(&app);
     open(&mut app, "site.geojson", b"{\"type\": \"FeatureCollection\", \"features\": []}");
-    assert!(app.json()["toasts"].to_string().contains("it has no Point, Polygon"));
+    assert!(app.json()["toasts"].to_string().contains("the file needs a Point, Polygon"));
     assert_eq!(text_of(&app), before);
 }
 

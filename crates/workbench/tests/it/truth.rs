@@ -175,7 +175,7 @@ fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
     let line = lines(&app, "robustness");
     let [line] = line.as_slice() else { panic!("one line: {line:?}") };
     let text = line["text"].as_str().expect("words");
-    assert!(text.contains("of 20 runs with chance reached the end (seed 5;"), "{text}");
+    assert!(text.contains("of 20 runs reached the end (Monte Carlo, seed 5;"), "{text}");
     assert!(line["criterion"].as_str().is_some_and(|it| it.starts_with("success rate at least 95 %")));
     // Of another text nothing is known.
     let source = app.session.source();
@@ -188,7 +188,7 @@ fn runs_with_chance_are_kept_by_content_and_held_against_the_rule() {
     app.world.saved.borrow_mut().clear();
     app.run(Command::WriteReport);
     let page = app.world.saved_text();
-    assert!(page.contains("of 20 runs with chance reached the end (seed 5;"));
+    assert!(page.contains("of 20 runs reached the end (Monte Carlo, seed 5;"));
 }
 
 #[test]

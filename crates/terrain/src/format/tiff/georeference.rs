@@ -48,7 +48,7 @@ impl Georeference {
         let (width, height) = (x.abs(), y.abs());
         if (width - height).abs() > SQUARE_TOLERANCE * width.max(height) {
             return Err(unsupported(format!(
-                "cells must be square, not {width} × {height}; make them so, as with \
+                "its cells must be square, not {width} × {height}; resample it, as with \
                  `gdalwarp -tr {size} {size} IN.tif OUT.tif`",
                 size = width.max(height)
             )));
