@@ -87,8 +87,8 @@ fn told_needs(sentence: &str) -> Option<usize> {
     let names: String =
         names.split('{').map(|part| part.split_once('}').map_or(part, |(_, rest)| rest)).collect();
     let names = names.rsplit(": ").next()?;
-    let is_named =
-        !["separating them", "running them one after the other", "their order in the mission"].contains(&names);
+    let is_named = !["separating them", "running them one after the other", "their order in the mission"]
+        .contains(&names);
     let (first, last) = names.rsplit_once(" and ").unwrap_or((names, ""));
     let parts = first.split(", ").chain((!last.is_empty()).then_some(last));
     let count = |part: &str| match part.strip_suffix(" times)").and_then(|it| it.rsplit('(').next()) {

@@ -113,6 +113,9 @@ pub struct Relaxation {
     pub label: String,
 }
 
+/// What the lines of a failing run say of an end that nature chooses.
+pub const NATURE_ENDS: &str = "the environment ends";
+
 /// What [`Failure::is_of_gap`] offers, as an imperative.
 pub const GAP_LABEL: &str = "allow conflicting conditions to touch: option threat_gap = 0;";
 

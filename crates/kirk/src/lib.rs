@@ -38,7 +38,7 @@ use tpn::{Choice, Network};
 
 pub use demanding::has_open_order;
 pub use explain::{explain_choices, is_conflict};
-pub use failure::{Failure, FailureKind, GAP_LABEL, Member, Reason, Relaxation};
+pub use failure::{Failure, FailureKind, GAP_LABEL, Member, NATURE_ENDS, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 pub use planner::Planner;
 pub use replay::{Replay, ReplayStep};

@@ -5,7 +5,7 @@ use exact::{Rational, Time};
 use rmpl::program::{Change, LabelMode};
 use tpn::{Arc, ArcId, ArcKind, Choice, EventRef, LabelId, Network, OccurrenceKind, Supply, Use};
 
-use crate::failure::{FailureKind, Member};
+use crate::failure::{FailureKind, Member, NATURE_ENDS};
 use crate::trace::{Constraint, CycleMember};
 
 /// A reason to be told.
@@ -451,7 +451,7 @@ pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
         let time = event.time.readable();
         if let Some(natures) = event.natures {
             let name = arc_name(network, &network.arcs[natures.index()]);
-            return Some(format!("at {time} the environment ends {name}"));
+            return Some(format!("at {time} {NATURE_ENDS} {name}"));
         }
         let is_named = !network.nodes[event.event.index()].events.is_empty();
         is_named.then(|| format!("at {time} {}", tpn::plan_json::node_name(network, event.event)))

@@ -325,7 +325,7 @@ fn rules_of_the_mission() {
     let short = OPEN.replace("do { A() } maintaining P=OK", "A()").replace("[20,20]", "[9,9]");
     let (status, text, _) = held(&short, "never A while P=OK", false);
     assert_eq!(status, Status::Failed, "{text}");
-    assert!(text.contains("a schedule of the plan breaks it, from 5 to 9,"), "{text}");
+    assert!(text.contains("a schedule of the plan violates it, from 5 to 9,"), "{text}");
     assert_eq!(held(&short, "never A while P=OK", true).0, Status::Attention, "it may be waived");
     assert_eq!(held(&short, "P=OK while A", false).0, Status::Attention, "nothing says what it is from 9 on");
     assert_eq!(held(OPEN, "P=OFF", true).0, Status::Failed, "it cannot be read");

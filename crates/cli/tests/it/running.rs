@@ -103,7 +103,10 @@ fn disturbances_that_mean_nothing_are_refused_where_they_are_read() {
         (r#"{"kind": "duration", "activity": "Dig#1", "duration": "soon"}"#, "`soon` is not a number"),
         (r#"{"kind": "slow", "activity": "Dig#1", "factor": 0}"#, "greater than 0 and at most 1"),
         (r#"{"kind": "late", "condition": "Tell(c)#1", "at": "-1/2"}"#, "before the mission starts"),
-        (r#"{"kind": "obstacle", "at": 0, "x": 1, "y": 1, "radius": 0}"#, "radius of an obstacle must be greater than 0"),
+        (
+            r#"{"kind": "obstacle", "at": 0, "x": 1, "y": 1, "radius": 0}"#,
+            "radius of an obstacle must be greater than 0",
+        ),
     ] {
         let script = file("nothing.json", &format!(r#"{{"disturbances": [{disturbance}]}}"#));
         let output = enroute(&["simulate", &mission, "--disturb", &script]);

@@ -145,7 +145,11 @@ fn what_is_left_out_is_said() {
 fn what_cannot_be_placed_is_refused_with_its_reason() {
     let collection = |features: &[Value]| json!({ "type": "FeatureCollection", "features": features });
     let mut projected = collection(&[point("A", [500_000.0, 4_000_000.0])]);
-    assert!(refusal(&projected).contains("not a longitude and latitude in degrees"), "{}", refusal(&projected));
+    assert!(
+        refusal(&projected).contains("not a longitude and latitude in degrees"),
+        "{}",
+        refusal(&projected)
+    );
     projected["crs"] = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::32633" } });
     assert!(refusal(&projected).contains("EPSG::32633, which is not read"));
     let far = collection(&[point("A", [0.0, 0.0]), point("B", [90.0, 0.0])]);

@@ -168,7 +168,7 @@ fn show_run(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Reas
     ui.add_space(space::XS);
     ui.label(theme::strong("Counterexample").small());
     for line in lines {
-        let color = if line.contains(" ends ") { tokens.nature } else { tokens.text_muted };
+        let color = if line.contains(kirk::NATURE_ENDS) { tokens.nature } else { tokens.text_muted };
         ui.label(RichText::new(line).small().color(color));
     }
     ui.label(RichText::new(end).small().color(tokens.threat));

@@ -202,7 +202,11 @@ fn every_node_and_arc_that_is_selected_or_left_out_wrongly_is_named() {
         let (selection, others): (Vec<_>, Vec<_>) = found.iter().partition(|it| it.rule == Rule::Selection);
         assert!(others.iter().all(|it| it.rule == Rule::Support), "arc {index}: {found:#?}");
         let [violation] = &selection[..] else { panic!("arc {index}: {found:#?}") };
-        let words = if good.selected_arcs[index] { "is not selected" } else { "does not follow from the plan's choices" };
+        let words = if good.selected_arcs[index] {
+            "is not selected"
+        } else {
+            "does not follow from the plan's choices"
+        };
         assert!(violation.message.contains(words), "{violation:?}");
         let arc = &network.arcs[index];
         for (event, node) in violation.events.iter().zip([arc.from, arc.to]) {

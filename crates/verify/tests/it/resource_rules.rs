@@ -82,12 +82,7 @@ fn three_users_are_too_many_and_two_are_not() {
         only(&violations(&network, &plan), Rule::Resource, &[], "but it is used up to 5 at a time");
     }
     let (network, plan) = made(text, &[(heat, lamp)], &[], 20);
-    only(
-        &violations(&network, &plan),
-        Rule::Resource,
-        &[],
-        "lists 0 resources, but the mission has 1",
-    );
+    only(&violations(&network, &plan), Rule::Resource, &[], "lists 0 resources, but the mission has 1");
 }
 
 #[test]

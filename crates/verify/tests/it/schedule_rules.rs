@@ -126,7 +126,10 @@ fn times_that_are_too_far_apart_are_refused() {
     let mut times = earliest_schedule(&plan);
     times[event(&network, "scenario#1.start").index()] = Some(time(i64::MIN));
     let verdict = check_schedule(&network, &plan, &times);
-    assert!(verdict.violations.iter().any(|it| it.message.contains("too long to represent exactly")), "{verdict:#?}");
+    assert!(
+        verdict.violations.iter().any(|it| it.message.contains("too long to represent exactly")),
+        "{verdict:#?}"
+    );
 }
 
 #[test]

@@ -458,7 +458,8 @@ fn movements_take_their_time_from_where_they_start() {
     let mut other = plan(&network, Sketch { states: &[&[first, hill, rock]], ..Sketch::default() });
     other.windows = early.windows.clone();
     let found = violations(&network, &other);
-    let is_said =
-        |it: &Violation| it.rule == Rule::State && it.message.contains("cannot be driven from the end of Init");
+    let is_said = |it: &Violation| {
+        it.rule == Rule::State && it.message.contains("cannot be driven from the end of Init")
+    };
     assert!(found.iter().any(is_said), "{found:#?}");
 }
