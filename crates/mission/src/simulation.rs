@@ -178,7 +178,7 @@ impl<'run> Driving<'run> {
         let &leader = course.drive.vehicles.first()?;
         let there =
             standing::nearest_other(world, &course.drive.vehicles, (location_m, short_m), self.standing_m());
-        let why = there.map_or_else(String::new, |other| format!(", where {} stands", name(other)));
+        let why = there.map_or_else(String::new, |other| format!(", where {} is parked", name(other)));
         Some(format!("{} stops {short_m:.2} m short of {}{why}", name(leader), location.name.text))
     }
 

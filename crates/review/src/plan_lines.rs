@@ -459,7 +459,7 @@ impl<'input> PlanLines<'input> {
         let places = self.snapshot.motions.iter().filter_map(place);
         let there = standing::nearest_other(world, &traverse.vehicles, (location_m, short_m), places);
         let other = there.and_then(name);
-        let why = other.map_or_else(String::new, |other| format!(", where {other} stands"));
+        let why = other.map_or_else(String::new, |other| format!(", where {other} is parked"));
         let (leader, place) = (name(leader)?, &location.name.text);
         let text = format!(
             "{leader} stops {short_m:.2} m short of {place} in {}{why}; the plan counts it as at {place}",

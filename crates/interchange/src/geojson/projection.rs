@@ -177,7 +177,7 @@ impl fmt::Display for Projection {
             Self::Metres => out.write_str("meters as in the file"),
             Self::Degrees { origin_deg: [lon, lat], radius_m } => write!(
                 out,
-                "metres east and north of longitude {lon}, latitude {lat}, on a sphere with a radius of {radius_m} m"
+                "meters east and north of longitude {lon}, latitude {lat}, on a sphere with a radius of {radius_m} m"
             ),
         }
     }

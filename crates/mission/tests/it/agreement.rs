@@ -72,7 +72,7 @@ fn a_vehicle_that_stops_beside_its_goal_says_so() {
         primitive Drive(r, to)[1,30] moves r speed (0.01, 0.5); scenario S[0,100] = { Drive(Alpha, B) }";
     let execution = executed(source, 0);
     let short = execution.log.iter().find_map(|entry| match &entry.happening {
-        Happening::Progress { text, .. } if text.contains("short of B, where Beta stands") => Some(text),
+        Happening::Progress { text, .. } if text.contains("short of B, where Beta is parked") => Some(text),
         _ => None,
     });
     assert!(short.is_some(), "{:?}", execution.log);

@@ -119,7 +119,7 @@ fn what_one_rover_has_met_another_one_drives_around() {
     let told = told(&ran, "Drive#3");
     let [around, beside] = told.as_slice() else { panic!("{told:?}") };
     assert!(around.contains("around an obstacle that was seen before"), "{around}");
-    assert!(beside.contains("short of EAST, where First stands"), "{beside}");
+    assert!(beside.contains("short of EAST, where First is parked"), "{beside}");
     // It is where the first one was, and not as near to it.
     let nearest_m = |drive: usize| {
         let frames = &ran.drives[drive].vehicles[0].frames;

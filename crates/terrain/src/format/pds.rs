@@ -333,7 +333,7 @@ impl Label {
         match self.word("UNIT").as_deref() {
             None | Some("M" | "METER" | "METERS" | "METRE" | "METRES") => Ok(1.0),
             Some("KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES") => Ok(1000.0),
-            Some(unit) => Err(unsupported(format!("use one of in {unit}, which is no unit of heights"))),
+            Some(unit) => Err(unsupported(format!("{unit} is not a unit of height"))),
         }
     }
 
