@@ -52,10 +52,8 @@ pub fn is_of_command(key: Option<Key>, place: Option<Key>, pressed: Modifiers) -
 }
 
 /// Ctrl+Shift+P, with which Firefox opens a private window.
-const CTRL_SHIFT_P: Chord = Chord {
-    modifiers: chord::Modifiers { command: true, shift: true, alt: false },
-    key: chord::Key::P,
-};
+const CTRL_SHIFT_P: Chord =
+    Chord { modifiers: chord::Modifiers { command: true, shift: true, alt: false }, key: chord::Key::P };
 
 /// The command's keys as menus and lists write them, those first that the browser does not keep for itself. A menu shows
 /// the first.

@@ -232,19 +232,29 @@ mod tests {
                 [typed("/", "Slash", NONE), typed("/", "Digit7", SHIFT), typed("/", "Period", SHIFT)]
             }
             // With Ctrl, a French keyboard's digits are pressed as they are: their signs are others.
-            chord::Key::Num0 if chord.modifiers.command => ["0", "0", "à"].map(|key| typed(key, "Digit0", NONE)),
-            chord::Key::Num1 if chord.modifiers.command => ["1", "1", "&"].map(|key| typed(key, "Digit1", NONE)),
-            chord::Key::Num2 if chord.modifiers.command => ["2", "2", "é"].map(|key| typed(key, "Digit2", NONE)),
+            chord::Key::Num0 if chord.modifiers.command => {
+                ["0", "0", "à"].map(|key| typed(key, "Digit0", NONE))
+            }
+            chord::Key::Num1 if chord.modifiers.command => {
+                ["1", "1", "&"].map(|key| typed(key, "Digit1", NONE))
+            }
+            chord::Key::Num2 if chord.modifiers.command => {
+                ["2", "2", "é"].map(|key| typed(key, "Digit2", NONE))
+            }
             chord::Key::Num3 if chord.modifiers.command => {
                 ["3", "3", "\""].map(|key| typed(key, "Digit3", NONE))
             }
-            chord::Key::Num4 if chord.modifiers.command => ["4", "4", "'"].map(|key| typed(key, "Digit4", NONE)),
+            chord::Key::Num4 if chord.modifiers.command => {
+                ["4", "4", "'"].map(|key| typed(key, "Digit4", NONE))
+            }
             chord::Key::Num0 => {
                 [typed("0", "Digit0", NONE), typed("0", "Digit0", NONE), typed("0", "Digit0", SHIFT)]
             }
             chord::Key::Z => [typed("z", "KeyZ", NONE), typed("z", "KeyY", NONE), typed("z", "KeyW", NONE)],
             chord::Key::Y => [typed("y", "KeyY", NONE), typed("y", "KeyZ", NONE), typed("y", "KeyY", NONE)],
-            chord::Key::M => [typed("m", "KeyM", NONE), typed("m", "KeyM", NONE), typed("m", "Semicolon", NONE)],
+            chord::Key::M => {
+                [typed("m", "KeyM", NONE), typed("m", "KeyM", NONE), typed("m", "Semicolon", NONE)]
+            }
             _ => return None,
         })
     }
@@ -264,7 +274,8 @@ mod tests {
                         let mut modifiers = wanted.modifiers | held;
                         modifiers.ctrl |= modifiers.command;
                         let found: Vec<_> = matching(key, place, modifiers).collect();
-                        let fit = |(_, press, keys): &(_, Press, KeyboardShortcut)| (*press, specificity(*keys));
+                        let fit =
+                            |(_, press, keys): &(_, Press, KeyboardShortcut)| (*press, specificity(*keys));
                         let mine = found.iter().filter(|(it, ..)| it.id == spec.id).map(fit).max();
                         let best = found.iter().filter(|(it, ..)| it.scope == spec.scope).map(fit).max();
                         assert!(mine.is_some(), "{} on keyboard {keyboard}: {press:?}", spec.id);

@@ -25,7 +25,8 @@ use egui::Ui;
 pub use action::EditorAction;
 pub use keyboard::{Keyboard, typed};
 pub use view::{
-    Diagnostic, EditorView, Highlight, LanguageService, Mark, MenuEntry, Popup, PopupItem, Reveal, Severity, Signature,
+    Diagnostic, EditorView, Highlight, LanguageService, Mark, MenuEntry, Popup, PopupItem, Reveal, Severity,
+    Signature,
 };
 
 /// The widget: it keeps only what concerns nobody else, such as where the text is scrolled to.

@@ -41,13 +41,13 @@ impl Drag {
             Some(shown) => shown.layout.offset_at(view, x),
             None => document.offset_in_row(line, nth, (x / geometry.character_width).max(0.0) as usize),
         };
-        let is_pressed = |button| {
-            ui.input(|input| input.pointer.button_pressed(button)) && crate::is_pressed(response)
-        };
+        let is_pressed =
+            |button| ui.input(|input| input.pointer.button_pressed(button)) && crate::is_pressed(response);
         let caret = document.caret();
         let is_selected = (caret.anchor.min(caret.head)..caret.anchor.max(caret.head)).contains(&offset);
         // A menu is about what is under the pointer, and so is what Linux pastes with the middle button.
-        let pastes = ui.ctx().os() == egui::os::OperatingSystem::Nix && is_pressed(egui::PointerButton::Middle);
+        let pastes =
+            ui.ctx().os() == egui::os::OperatingSystem::Nix && is_pressed(egui::PointerButton::Middle);
         if pastes || is_pressed(egui::PointerButton::Secondary) && !is_selected {
             self.anchor = offset;
             actions.push(EditorAction::Text(TextCommand::Select { anchor: offset, head: offset }));

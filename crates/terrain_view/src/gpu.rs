@@ -217,9 +217,8 @@ impl TerrainImage {
     fn record(&self, state: &RenderState, targets: &Targets, frame: &Frame) {
         let device = &state.device;
         state.queue.write_buffer(&self.view_buffer, 0, bytemuck::bytes_of(&frame.view));
-        let vertex_buffer = |contents: &[u8]| {
-            filled_buffer(state, "terrain shapes", contents, wgpu::BufferUsages::VERTEX)
-        };
+        let vertex_buffer =
+            |contents: &[u8]| filled_buffer(state, "terrain shapes", contents, wgpu::BufferUsages::VERTEX);
         let patches: Vec<[u32; 4]> =
             frame.patches.iter().map(|patch| [patch.cell[0], patch.cell[1], patch.stride, 0]).collect();
         let patch_buffer = vertex_buffer(bytemuck::cast_slice(&patches));

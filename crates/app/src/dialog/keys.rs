@@ -51,9 +51,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         wanted.is_empty() || keys.to_lowercase().contains(&wanted) || title.to_lowercase().contains(&wanted)
     };
     let of_commands = Group::ALL.into_iter().map(|group| {
-        let rows = all_commands().filter(|spec| spec.group == group && !spec.keys.is_empty()).map(|spec| {
-            (chord::texts(ui.ctx(), spec, context.state).join("  or  "), spec.title)
-        });
+        let rows = all_commands()
+            .filter(|spec| spec.group == group && !spec.keys.is_empty())
+            .map(|spec| (chord::texts(ui.ctx(), spec, context.state).join("  or  "), spec.title));
         (group.title(), rows.collect::<Vec<_>>())
     });
     let of_editor = EDITOR_KEYS.map(|(keys, title)| (keys.to_owned(), title)).to_vec();

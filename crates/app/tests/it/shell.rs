@@ -48,13 +48,19 @@ fn no_text_of_the_bars_lies_over_another_in_a_narrow_window() {
     for width in [333.0, 426.0, 500.0, 560.0, 640.0] {
         let mut app = support::start_in(Rc::default(), |builder| builder.with_size([width, 400.0]));
         app.settle();
-        for bar in [egui::Rect::from_x_y_ranges(0.0..=2_000.0, 0.0..=40.0), egui::Rect::from_x_y_ranges(0.0..=2_000.0, 374.0..=402.0)] {
+        for bar in [
+            egui::Rect::from_x_y_ranges(0.0..=2_000.0, 0.0..=40.0),
+            egui::Rect::from_x_y_ranges(0.0..=2_000.0, 374.0..=402.0),
+        ] {
             let texts = app.texts(bar);
             assert!(!texts.is_empty(), "{width} points: nothing is in the bar");
             for (at, (text, rect)) in texts.iter().enumerate() {
                 assert!(rect.right() <= width, "{width} points: {text} is cut off: {rect:?}");
                 for (other, beside) in &texts[at + 1..] {
-                    assert!(!rect.shrink(0.5).intersects(beside.shrink(0.5)), "{width} points: {text} and {other}");
+                    assert!(
+                        !rect.shrink(0.5).intersects(beside.shrink(0.5)),
+                        "{width} points: {text} and {other}"
+                    );
                 }
             }
         }

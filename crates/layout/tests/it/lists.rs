@@ -281,10 +281,7 @@ fn what_a_value_is_for_is_said_in_words() {
     };
     assert_eq!(words(BarKind::Value, tell), ["ARM is OUT, set by Deploy#1", "required by Dig#1"]);
     assert_eq!(words(BarKind::Changing, tell), ["ARM is changing: Deploy#1 sets it to OUT"]);
-    assert_eq!(
-        words(BarKind::Value, label("Init(ARM=IN)")),
-        ["ARM is initially IN", "no activity needs it"]
-    );
+    assert_eq!(words(BarKind::Value, label("Init(ARM=IN)")), ["ARM is initially IN", "no activity needs it"]);
     assert_eq!(
         words(BarKind::Need, ask),
         ["Dig#1 requires ARM=OUT throughout", "supported by Set(ARM=OUT)@Deploy#1"]

@@ -156,7 +156,8 @@ impl TerrainPanel {
                     ground.width, ground.height
                 );
                 let font = egui::TextStyle::Body.resolve(ui.style());
-                let galley = painter.layout(words, font, context.tokens.text_muted, rect.width() - 2.0 * space::L);
+                let galley =
+                    painter.layout(words, font, context.tokens.text_muted, rect.width() - 2.0 * space::L);
                 painter.galley(rect.center() - galley.size() / 2.0, galley, context.tokens.text_muted);
             }
             (Some(state), Some(image)) => {

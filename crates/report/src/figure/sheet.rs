@@ -48,6 +48,10 @@ impl Figure {
 pub(crate) fn html(heading: &str, figures: &[Figure]) -> String {
     let on_paper = figures.iter().position(|figure| !matches!(figure.medium, Medium::Screen));
     let (first, rest) = figures.split_at(on_paper.map_or(0, |first| first + 1));
-    let html = |figures: &[Figure]| figures.iter().map(Figure::html).collect::<String>();
-    format!("<div class=\"together\">\n<h2>{heading}</h2>\n{}</div>\n{}", html(first), html(rest))
+    format!("<div class=\"together\">\n<h2>{heading}</h2>\n{}</div>\n{}", drawings(first), drawings(rest))
+}
+
+/// Drawings one after the other, as HTML.
+pub(crate) fn drawings(figures: &[Figure]) -> String {
+    figures.iter().map(Figure::html).collect()
 }

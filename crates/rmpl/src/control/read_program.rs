@@ -243,7 +243,8 @@ impl Reader<'_> {
             "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" => {
                 self.error("E-FORM", head.span, format!("{} cannot be inside an expression", head.upper))
                     .hint = Some(
-                    "move it out of the definition: declare classes, components and options at the top level".into(),
+                    "move it out of the definition: declare classes, components and options at the top level"
+                        .into(),
                 );
                 ExpressionKind::Unreadable
             }

@@ -2,8 +2,8 @@
 
 use interchange::is_network_file;
 use link::Response;
-use text_editing::TextCommand;
 use review::rules::RULES_FORMAT;
+use text_editing::TextCommand;
 
 use crate::command::Command;
 use crate::effect::Effect;

@@ -271,7 +271,8 @@ impl AppState {
             return self.maps.open_file(name, bytes, &mut self.window);
         }
         let known = refusal(&bytes).map(|reason| reason.to_string());
-        let reason = known.or_else(|| encoding_refusal(name, &bytes)).unwrap_or_else(|| NO_MISSION.to_owned());
+        let reason =
+            known.or_else(|| encoding_refusal(name, &bytes)).unwrap_or_else(|| NO_MISSION.to_owned());
         let text = format!("Couldn't open {name}: {reason}. Your current mission is unchanged.");
         self.window.failed(text);
     }
@@ -344,7 +345,9 @@ fn encoding_refusal(name: &str, bytes: &[u8]) -> Option<String> {
     };
     let first_bad = str::from_utf8(bytes).err()?.valid_up_to();
     let line = bytes[..first_bad].split(|&byte| byte == b'\n').count();
-    Some(format!("line {line} is not UTF-8; the text seems to be in {encoding}. Save it as UTF-8 in your editor"))
+    Some(format!(
+        "line {line} is not UTF-8; the text seems to be in {encoding}. Save it as UTF-8 in your editor"
+    ))
 }
 
 /// Whether a file is a mission: its name says so, or it reads as one.

@@ -17,10 +17,10 @@ use smol_str::{SmolStr, format_smolstr};
 use text_editing::Document;
 
 pub use command::LibraryCommand;
-pub(crate) use mission::{joined, print};
 pub use mission::{
     FORMAT, MAIN_TEXT, MapFile, Mission, MissionError, MissionId, MissionKind, TextFile, Version,
 };
+pub(crate) use mission::{joined, print};
 pub(crate) use picture::picture;
 pub use template::{TEMPLATES, Template, template};
 

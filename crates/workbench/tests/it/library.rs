@@ -200,7 +200,8 @@ fn damage_is_noticed_and_another_copy_leaves_it_aside() {
     wait(&mut app);
     drop(app);
     world.storage.borrow_mut().clear();
-    let key = world.shelf.borrow().keys().find(|key| key.starts_with("mission/")).cloned().expect("a mission");
+    let key =
+        world.shelf.borrow().keys().find(|key| key.starts_with("mission/")).cloned().expect("a mission");
     let whole = world.shelf.borrow()[&key].clone();
     // One letter of the text is another one; the JSON is as good as before.
     let damaged = String::from_utf8_lossy(&whole).replace("Sortie", "Sortje").into_bytes();

@@ -170,7 +170,8 @@ impl Firefox {
     /// The page printed on A4, as a PDF.
     pub fn print(&mut self) -> Result<Vec<u8>> {
         let margin = json!({ "top": 1.6, "bottom": 1.8, "left": 1.5, "right": 1.5 });
-        let paper = json!({ "context": self.context, "margin": margin, "page": { "width": 21.0, "height": 29.7 } });
+        let paper =
+            json!({ "context": self.context, "margin": margin, "page": { "width": 21.0, "height": 29.7 } });
         let answer = self.call("browsingContext.print", &paper)?;
         Ok(BASE64.decode(answer["data"].as_str().unwrap_or_default().as_bytes())?)
     }

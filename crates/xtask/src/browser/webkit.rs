@@ -165,7 +165,8 @@ fn read_answer(stream: &mut TcpStream) -> Result<Vec<u8>> {
     loop {
         if let Some(start) = received.windows(4).position(|bytes| bytes == b"\r\n\r\n") {
             let head = String::from_utf8_lossy(&received[..start]).to_ascii_lowercase();
-            let length = head.lines().find_map(|line| line.strip_prefix("content-length:")?.trim().parse().ok());
+            let length =
+                head.lines().find_map(|line| line.strip_prefix("content-length:")?.trim().parse().ok());
             let end = start + 4 + length.unwrap_or(usize::MAX - start - 4);
             if received.len() >= end {
                 return Ok(received[start + 4..end].to_vec());

@@ -294,7 +294,8 @@ fn whatever_the_browser_refuses_the_page_starts_plans_and_says_what_is_not_kept(
 
 #[test]
 fn without_workers_the_text_can_be_edited() -> Result<()> {
-    let script = "window.Worker = class { constructor() { throw new DOMException('refused', 'SecurityError'); } };";
+    let script =
+        "window.Worker = class { constructor() { throw new DOMException('refused', 'SecurityError'); } };";
     let page = Opened::after(script, Graphics::WebGl2)?;
     page.tab.wait_until_ready()?;
     page.wait_for("state.toasts.length > 0")?;
@@ -314,7 +315,8 @@ fn no_larger_texture_is_asked_for_than_there_is() -> Result<()> {
     let page = Opened::after(script, Graphics::WebGl2)?;
     page.tab.wait_until_ready()?;
     page.wait_for("state.status === 'plan' && state.renderer === 'webgl2'")?;
-    let side = page.tab.evaluate("document.getElementById('canvas').style.getPropertyValue('--largest-side')")?;
+    let side =
+        page.tab.evaluate("document.getElementById('canvas').style.getPropertyValue('--largest-side')")?;
     assert_eq!(side, "2048");
     Ok(())
 }

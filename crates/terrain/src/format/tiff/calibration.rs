@@ -38,9 +38,8 @@ impl Calibration {
         }
         let unit_m = match item_of_first_band(&metadata, "unittype").map(str::trim) {
             None | Some("") => unit_m.unwrap_or(1.0),
-            Some(unit) => metres(unit).ok_or_else(|| {
-                unsupported(format!("`{}` is not a known unit of length", start(unit)))
-            })?,
+            Some(unit) => metres(unit)
+                .ok_or_else(|| unsupported(format!("`{}` is not a known unit of length", start(unit))))?,
         };
         Ok(Self { scale, offset, unit_m, no_data })
     }
