@@ -586,25 +586,33 @@ impl Solver {
         if !self.is_in_textual_order || self.burst == 0 || self.record.is_some() {
             return;
         }
-        let (level, before) = (self.trail.level(), (self.stats.expanded, self.num_left));
+        let level = self.trail.level();
+        let before = BeforeBurst {
+            expanded: self.stats.expanded,
+            backtracks: self.stats.backtracks,
+            num_left: self.num_left,
+            is_returning: self.is_returning,
+        };
         for _ in 0..self.burst {
             if !self.decide(Deciding::AtOnce) {
                 break;
             }
             if self.propagate_choices().is_err() {
-                return self.give_up_burst(level, before);
+                return self.give_up_burst(level, &before);
             }
         }
         self.trail.premise = Premise::Structure;
         let swept = self.sweeps.sweep_new(&self.differences, &mut self.trail, self.theory_head);
         match swept.and_then(|()| self.propagate(stop)) {
             Ok(_) => self.burst = self.burst.saturating_mul(2),
-            Err(_) => self.give_up_burst(level, before),
+            Err(_) => self.give_up_burst(level, &before),
         }
     }
 
-    fn give_up_burst(&mut self, level: u32, before: (u64, usize)) {
-        (self.stats.expanded, self.num_left) = before;
+    fn give_up_burst(&mut self, level: u32, before: &BeforeBurst) {
+        self.stats.expanded = before.expanded;
+        self.stats.backtracks = before.backtracks;
+        (self.num_left, self.is_returning) = (before.num_left, before.is_returning);
         self.retract(level);
         // The next few decisions are made one by one.
         self.burst = 0;
@@ -817,6 +825,14 @@ impl Solver {
             self.activity.bump(choice_point);
         }
     }
+}
+
+/// What a burst of decisions changes beside the trail.
+struct BeforeBurst {
+    expanded: u64,
+    backtracks: u64,
+    num_left: usize,
+    is_returning: bool,
 }
 
 /// The restart sequence of Luby, Sinclair and Zuckerman: 1, 1, 2, 1, 1, 2, 4, …
