@@ -4,6 +4,8 @@
 //! Vehicles that start together and are moved together by one traverse keep formation and count as one here. Those that fly
 //! are above those that drive, and neither makes the other go aside.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Point2, Vector2, distance};
 use rmpl::program::{Program, World};
 
@@ -25,15 +27,15 @@ pub fn start_slots(program: &Program) -> Vec<usize> {
             .any(|moves| names.iter().all(|name| moves.vehicles.iter().any(|it| it.text == **name)))
     };
     let mut slots: Vec<usize> = Vec::with_capacity(vehicles.len());
+    // The vehicles so far that start at a location, those that fly apart from those that drive.
+    let mut starting: BTreeMap<(&str, bool), Vec<usize>> = BTreeMap::new();
     for (vehicle, declared) in vehicles.iter().enumerate() {
-        let flies = |vehicle: usize| vehicle::flies(&program.world, vehicle as u32);
-        let before = || {
-            let starts_here = |other: &usize| vehicles[*other].start.text == declared.start.text;
-            (0..vehicle).filter(starts_here).filter(move |&other| flies(other) == flies(vehicle))
-        };
-        let group = before().find(|&other| drive_together(other, vehicle));
-        let free = before().map(|other| slots[other] + 1).max().unwrap_or(0);
-        slots.push(group.map_or(free, |group| slots[group]));
+        let flies = vehicle::flies(&program.world, vehicle as u32);
+        let before = starting.entry((declared.start.text.as_str(), flies)).or_default();
+        let group = before.iter().find(|&&other| drive_together(other, vehicle));
+        let free = before.iter().map(|&other| slots[other] + 1).max().unwrap_or(0);
+        slots.push(group.map_or(free, |&group| slots[group]));
+        before.push(vehicle);
     }
     slots
 }
@@ -82,15 +84,27 @@ pub fn start_m(program: &Program, vehicle: usize) -> Option<Point2<f64>> {
 /// Where each vehicle stands before it first moves that has a place of its own there, in metres; nothing for one that
 /// starts in a formation with another.
 pub fn own_starts_m(program: &Program) -> Vec<Option<Point2<f64>>> {
-    let vehicles = &program.world.vehicles;
+    let world = &program.world;
+    let spacings_m = [false, true].map(|fly| spacing_m(program, fly));
+    let mut locations: BTreeMap<&str, Point2<f64>> = BTreeMap::new();
+    for location in &world.locations {
+        locations.entry(&location.name.text).or_insert_with(|| location.position_m.into());
+    }
     let slots = start_slots(program);
-    let place = |vehicle: usize| (&vehicles[vehicle].start.text, slots[vehicle]);
-    let all = 0..vehicles.len();
-    let flies = |vehicle: usize| vehicle::flies(&program.world, vehicle as u32);
-    let shares =
-        |one: usize, other: usize| one != other && place(one) == place(other) && flies(one) == flies(other);
-    let is_alone = |vehicle: usize| !all.clone().any(|other| shares(vehicle, other));
-    all.clone().map(|vehicle| start_m(program, vehicle).filter(|_| is_alone(vehicle))).collect()
+    let starts = world.vehicles.iter().zip(slots).enumerate().map(|(vehicle, (declared, slot))| {
+        (declared.start.text.as_str(), slot, vehicle::flies(world, vehicle as u32))
+    });
+    let starts: Vec<(&str, usize, bool)> = starts.collect();
+    let mut counts: BTreeMap<(&str, usize, bool), usize> = BTreeMap::new();
+    for &start in &starts {
+        *counts.entry(start).or_default() += 1;
+    }
+    let own = starts.into_iter().map(|start| {
+        let (location, slot, flies) = start;
+        let location_m = locations.get(location).filter(|_| counts[&start] == 1)?;
+        Some(place_m(*location_m, slot, spacings_m[usize::from(flies)]))
+    });
+    own.collect()
 }
 
 /// The vehicle that is nearest to a place and nearer than so many metres, of those with `places` that are none of `vehicles` and,
