@@ -10,6 +10,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     let mut words = text.split_ascii_whitespace().peekable();
     let (mut width, mut height, mut cell_size_m, mut cell_height_m, mut no_data) =
         (None, None, None, None, None);
+    let (mut corner, mut center) = ([None; 2], [None; 2]);
     while let Some(keyword) =
         words.next_if(|word| word.starts_with(|first: char| first.is_ascii_alphabetic()) && !is_absent(word))
     {
@@ -25,8 +26,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             "cellsize" | "dx" => cell_size_m = Some(number),
             "dy" => cell_height_m = Some(number),
             "nodata_value" => no_data = Some(number),
-            // Where the map lies on its planet is up to the mission.
-            "xllcorner" | "yllcorner" | "xllcenter" | "yllcenter" => {}
+            "xllcorner" => corner[0] = Some(number),
+            "yllcorner" => corner[1] = Some(number),
+            "xllcenter" => center[0] = Some(number),
+            "yllcenter" => center[1] = Some(number),
             _ => return Err(malformed(format!("unknown keyword `{keyword}` in the header"))),
         }
     }
@@ -59,12 +62,15 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     if samples.len() < count {
         return Err(malformed(format!("the file has {} values for {width} × {height} cells", samples.len())));
     }
+    let half_cell_m = 0.5 * cell_size_m.unwrap_or(super::DEFAULT_CELL_SIZE_M);
+    let of_axis = |axis: usize| corner[axis].or_else(|| Some(center[axis]? - half_cell_m));
+    let origin_m = of_axis(0).zip(of_axis(1)).map(|(east, north)| [east, north]);
     Ok(Raster {
         width,
         height,
         samples,
         cell_size_m,
-        origin_m: None,
+        origin_m: origin_m.filter(|origin| origin.iter().all(|metres| metres.is_finite())),
         meaning: Meaning::Levels { greatest: None },
     })
 }

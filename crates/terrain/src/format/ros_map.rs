@@ -94,9 +94,12 @@ impl Description {
             _ => 1.0 - share,
         };
         let is_known = level.is_finite() && (self.mode != Mode::Raw || occupied <= 1.0);
-        if is_known && occupied < self.free_threshold {
+        // A level at a threshold is beyond it, as in nav2: maps say `free_thresh: 0.0` and mean white.
+        if is_known && occupied >= self.occupied_threshold {
+            1.0
+        } else if is_known && occupied <= self.free_threshold {
             0.0
-        } else if is_known && (occupied > self.occupied_threshold || self.mode == Mode::Scale) {
+        } else if is_known && self.mode == Mode::Scale {
             1.0
         } else {
             f32::NAN

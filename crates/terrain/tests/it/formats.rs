@@ -163,7 +163,23 @@ fn an_ascii_grid_is_read_with_its_cell_size_and_holes() {
     assert_eq!(raster.samples[..2], [1.0, 2.0]);
     assert!(raster.samples[2].is_nan());
     assert_eq!(raster.samples[3..], [4.0, 5.5, -60.0]);
-    assert_eq!(raster.into_terrain().height_at(nalgebra::Point2::new(1.0, 1.0)), Some(4.0));
+    // It lies where it says, by its corner or by the middle of its south-western cell.
+    assert_eq!(raster.origin_m, Some([100.0, 200.0]));
+    assert_eq!(raster.into_terrain().height_at(nalgebra::Point2::new(101.0, 201.0)), Some(4.0));
+    let by_center = read(text.replace("corner", "center").as_bytes()).unwrap();
+    assert_eq!(by_center.origin_m, Some([98.75, 198.75]));
+    let half = read(text.replace("yllcorner 200.0\n", "").as_bytes()).unwrap();
+    assert_eq!(half.origin_m, None);
+}
+
+#[test]
+fn a_map_of_corners_has_one_row_and_one_column_less() {
+    let text = "type octile-corner\nheight 3\nwidth 4\nmap\nabcd\nabcd\nabcd\n.T.x\ng@sx\nxxxx\n";
+    let raster = read(text.as_bytes()).unwrap();
+    assert_eq!((raster.width, raster.height), (3, 2));
+    assert_eq!(raster.samples, [0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
+    assert!(read(text.replace("octile-corner", "octile").as_bytes()).is_err());
+    assert!(read(b"type octile-corner\nheight 1\nwidth 1\nmap\na\n.\n").is_err());
 }
 
 #[test]

@@ -124,6 +124,27 @@ fn matrix(x: f64, x_of_row: f64, y_of_column: f64, y: f64) -> Value {
 }
 
 #[test]
+fn a_map_in_meters_lies_where_its_tie_point_says() {
+    let scale = || Value::Doubles(vec![10.0, 10.0, 0.0]);
+    let tie = |column: f64, row: f64| Value::Doubles(vec![column, row, 0.0, 500.0, 900.0, 0.0]);
+    let keys =
+        |model: u16, raster: u16| Value::Shorts(vec![1, 1, 0, 2, 1024, 0, 1, model, 1025, 0, 1, raster]);
+    let origin = |image: Image| read(image).origin_m;
+    let plain = || Image::plain().with(SCALE, scale());
+    // Two rows of 10 m lie below the north-west corner.
+    assert_eq!(origin(plain().with(TIE_POINTS, tie(0.0, 0.0)).with(KEYS, keys(1, 1))), Some([500.0, 880.0]));
+    assert_eq!(origin(plain().with(TIE_POINTS, tie(1.0, 2.0)).with(KEYS, keys(1, 1))), Some([490.0, 900.0]));
+    // The middle of the north-western cell.
+    assert_eq!(origin(plain().with(TIE_POINTS, tie(0.0, 0.0)).with(KEYS, keys(1, 2))), Some([495.0, 885.0]));
+    // Degrees are no place on a plane.
+    assert_eq!(origin(plain().with(TIE_POINTS, tie(0.0, 0.0)).with(KEYS, keys(2, 1))), None);
+    assert_eq!(origin(plain()), None);
+    let mut matrix = vec![0.0; 16];
+    (matrix[0], matrix[3], matrix[5], matrix[7]) = (10.0, 500.0, 10.0, 900.0);
+    assert_eq!(origin(Image::plain().with(MATRIX, Value::Doubles(matrix))), Some([500.0, 900.0]));
+}
+
+#[test]
 fn a_plain_file_is_read_in_both_byte_orders() {
     for big_endian in [false, true] {
         let bytes = file(vec![Image::plain()], big_endian);

@@ -46,6 +46,15 @@ fn a_scaled_map_is_free_where_it_surely_is_and_a_raw_one_has_percents() {
 }
 
 #[test]
+fn a_level_at_a_threshold_is_beyond_it() {
+    // White is 0 occupied, and black 1.
+    for mode in ["trinary", "scale"] {
+        let yaml = format!("{YAML}mode: {mode}\n").replace("0.196", "0.0").replace("0.65", "1.0");
+        assert_eq!(first_row(&yaml, IMAGE), if mode == "scale" { "###." } else { "#??." }, "{mode}");
+    }
+}
+
+#[test]
 fn levels_count_by_the_greatest_of_their_image() {
     let deep = b"P2 3 1 1000 0 500 1000";
     assert_eq!(first_row(YAML, deep), "#?.");

@@ -9,6 +9,9 @@ const SQUARE_TOLERANCE: f64 = 1e-4;
 /// `GTModelTypeGeoKey`: 2 says that coordinates are in degrees.
 const MODEL_TYPE: u16 = 1024;
 const GEOGRAPHIC: u16 = 2;
+/// `GTRasterTypeGeoKey`: 2 says that coordinates are those of the middle of a cell.
+const RASTER_TYPE: u16 = 1025;
+const PIXEL_IS_POINT: u16 = 2;
 /// `GeodeticCRSGeoKey`: a code of the EPSG registry, which is about the Earth.
 const GEODETIC_CRS: u16 = 2048;
 /// `EllipsoidSemiMajorAxisGeoKey`, in metres.
@@ -30,6 +33,8 @@ const EARTH_RADIUS_M: f64 = 6_378_137.0;
 pub(super) struct Georeference {
     /// Metres per cell, if the file says.
     pub cell_size_m: Option<f64>,
+    /// The south-west corner in metres, if the file says and its coordinates are not degrees.
+    pub origin_m: Option<[f64; 2]>,
     /// Metres for each unit of heights, if the file says.
     pub vertical_unit_m: Option<f64>,
     rows_from_south: bool,
@@ -43,7 +48,8 @@ impl Georeference {
         let vertical_unit_m = keys.unit_m(VERTICAL_UNIT, None)?;
         let Some([x, y]) = steps(decoder)? else {
             let (rows_from_south, columns_from_east) = (false, false);
-            return Ok(Self { cell_size_m: None, vertical_unit_m, rows_from_south, columns_from_east });
+            let (cell_size_m, origin_m) = (None, None);
+            return Ok(Self { cell_size_m, origin_m, vertical_unit_m, rows_from_south, columns_from_east });
         };
         let (width, height) = (x.abs(), y.abs());
         if (width - height).abs() > SQUARE_TOLERANCE * width.max(height) {
@@ -53,13 +59,17 @@ impl Georeference {
                 size = width.max(height)
             )));
         }
-        let unit_m = if keys.value(MODEL_TYPE) == Some(GEOGRAPHIC) {
+        let is_in_degrees = keys.value(MODEL_TYPE) == Some(GEOGRAPHIC);
+        let unit_m = if is_in_degrees {
             keys.radius_m().to_radians()
         } else {
             keys.unit_m(HORIZONTAL_UNIT, Some(HORIZONTAL_UNIT_SIZE))?.unwrap_or(1.0)
         };
+        let is_point = keys.value(RASTER_TYPE) == Some(PIXEL_IS_POINT);
+        let corner = if is_in_degrees { None } else { south_west(decoder, [x, y], is_point)? };
         Ok(Self {
             cell_size_m: Some(width * unit_m),
+            origin_m: corner.map(|corner| corner.map(|coordinate| coordinate * unit_m)),
             vertical_unit_m,
             rows_from_south: y > 0.0,
             columns_from_east: x < 0.0,
@@ -110,6 +120,30 @@ fn steps(decoder: &mut Decoder<'_>) -> Result<Option<[f64; 2]>, FormatError> {
         ));
     }
     Ok(None)
+}
+
+/// The least coordinates that the cells have, whose steps are known; `None` if the file does not say.
+fn south_west(
+    decoder: &mut Decoder<'_>,
+    steps: [f64; 2],
+    is_point: bool,
+) -> Result<Option<[f64; 2]>, FormatError> {
+    let (width, height) = decoder.dimensions().map_err(|error| problem(&error))?;
+    let (tie, matrix) =
+        (doubles(decoder, Tag::ModelTiepointTag)?, doubles(decoder, Tag::ModelTransformationTag)?);
+    // A place in the image, in columns and rows, and its coordinates.
+    let (image, ground) = match (tie.as_slice(), matrix.as_slice()) {
+        (&[column, row, _, x, y, ..], _) => ([column, row], [x, y]),
+        (_, &[_, _, _, x, _, _, _, y, ..]) => ([0.0, 0.0], [x, y]),
+        _ => return Ok(None),
+    };
+    let half = if is_point { 0.5 } else { 0.0 };
+    let least = |axis: usize, count: u32| {
+        let at = |cells: f64| ground[axis] + (cells - half - image[axis]) * steps[axis];
+        at(0.0).min(at(f64::from(count)))
+    };
+    let corner = [least(0, width), least(1, height)];
+    Ok(corner.iter().all(|coordinate| coordinate.is_finite()).then_some(corner))
 }
 
 fn finite(steps: [f64; 2]) -> Option<[f64; 2]> {

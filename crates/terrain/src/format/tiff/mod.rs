@@ -65,7 +65,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         Some(greatest) if zero_is_white => Meaning::InvertedLevels { greatest },
         greatest => Meaning::Levels { greatest },
     };
-    Ok(Raster { width, height, samples, cell_size_m: georeference.cell_size_m, origin_m: None, meaning })
+    let Georeference { cell_size_m, origin_m, .. } = georeference;
+    Ok(Raster { width, height, samples, cell_size_m, origin_m, meaning })
 }
 
 fn open(bytes: &[u8]) -> Result<Decoder<'_>, FormatError> {
