@@ -147,6 +147,9 @@ impl Objects {
         let [wait, start, end] = ["wait for", "start of", "end of"].map(|what| format!("{what} {place}"));
         let kind = activity.get("type").and_then(Value::as_str).filter(|kind| !kind.is_empty());
         let kind = kind.ok_or_else(|| missing(&place, "`type`"))?;
+        // Aerie names a directive after its type until somebody gives it a name.
+        let name = activity.get("name").and_then(Value::as_str).map(str::trim);
+        let name = name.filter(|name| !name.is_empty()).unwrap_or(kind);
         let arguments = activity.get("arguments").and_then(Value::as_object).into_iter().flatten();
         let arguments: Vec<String> = arguments.map(|(name, value)| format!("{name}={value}")).collect();
         let taken = activity.get("metadata").and_then(|metadata| metadata.get(DURATION));
@@ -155,7 +158,7 @@ impl Objects {
         self.node(&end);
         let arc = json!({
             "tpn-type": "activity",
-            "name": kind,
+            "name": name,
             "args": arguments,
             "end-node": end,
             "controllable": taken.is_some(),

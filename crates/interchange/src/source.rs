@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::geojson;
 use crate::plan_schema::{Document, PlanSchemaError};
 use crate::plandev::{self, PlanDevError};
 use crate::ptpn::{self, PtpnError, is_ptpn};
@@ -20,6 +21,9 @@ pub enum ReadError {
     /// It is a plan of `PlanDev` that cannot be read.
     #[error(transparent)]
     PlanDev(#[from] PlanDevError),
+    /// It is JSON of another kind.
+    #[error("this is {0}")]
+    Other(&'static str),
     /// It is no plan-schema file either.
     #[error(transparent)]
     PlanSchema(#[from] PlanSchemaError),
@@ -76,6 +80,9 @@ impl Source {
             if plandev::is_plan(&value) {
                 return Ok(Self::PlanSchema(Box::new(plandev::read(&value)?)));
             }
+            if let Some(kind) = kind_of_other(&value) {
+                return Err(ReadError::Other(kind));
+            }
         }
         Ok(Self::PlanSchema(Box::new(Document::parse(text)?)))
     }
@@ -97,9 +104,67 @@ impl Source {
     }
 }
 
+/// What a document in JSON is that has no network, as far as its members tell, and what to do with it.
+fn kind_of_other(document: &Value) -> Option<&'static str> {
+    let has = |key: &str| document.get(key).is_some();
+    let format = document.get("format").and_then(Value::as_str).unwrap_or_default();
+    let ours = [
+        (
+            "enroute-plan/",
+            "a plan that Enroute wrote, not its mission; give it to `enroute verify` with the mission",
+        ),
+        ("enroute-review/", "a review history; use `enroute review`"),
+        ("enroute-simulate/", "the log of a simulation, not a network"),
+        ("enroute-robustness/", "a Monte Carlo result; use `enroute report --robustness`"),
+        ("enroute-schedule/", "a schedule that Enroute exported, not a network"),
+        ("enroute-", "a document of Enroute that has no network"),
+    ];
+    if let Some((_, kind)) = ours.into_iter().find(|(start, _)| format.starts_with(start)) {
+        return Some(kind);
+    }
+    if geojson::is_geojson(document) {
+        return Some("GeoJSON; use `enroute import`");
+    }
+    if ["spans", "resources", "realProfiles", "simulationEvents"].iter().filter(|key| has(key)).count() > 1
+        || has("simulation_dataset_id")
+    {
+        return Some("the result of a simulation in PlanDev (Aerie), not a plan; export the plan");
+    }
+    if has("openmct") && has("rootId") {
+        return Some("an export of Open MCT objects; an Open MCT plan has no network");
+    }
+    let is_open_mct = |group: &Value| {
+        let first = group.as_array().and_then(|group| group.first());
+        first.is_some_and(|first| ["start", "end"].iter().all(|key| first.get(key).is_some()))
+    };
+    let groups = document.as_object().filter(|groups| !groups.is_empty());
+    if groups.is_some_and(|groups| groups.values().all(is_open_mct)) {
+        return Some("a plan of Open MCT: it has times, but no network that could be planned");
+    }
+    if has("$schema") && has("properties") {
+        return Some("a JSON Schema, not a network");
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn other_documents_are_called_what_they_are() {
+        for (text, told) in [
+            (r#"{"Group": [{"name": "a", "start": 1, "end": 2, "type": "g"}]}"#, "a plan of Open MCT"),
+            (r#"{"openmct": {}, "rootId": "x"}"#, "Open MCT objects"),
+            (r#"{"spans": [], "resources": {}}"#, "simulation in PlanDev"),
+            (r#"{"type": "Point", "coordinates": [1, 2]}"#, "GeoJSON"),
+            (r#"{"format": "enroute-plan/1", "plans": []}"#, "a plan that Enroute wrote"),
+            (r#"{"format": "enroute-path/1"}"#, "a document of Enroute"),
+        ] {
+            let error = Source::read(text).expect_err("it is no network").to_string();
+            assert!(error.contains(told), "{text}: {error}");
+        }
+    }
 
     #[test]
     fn networks_and_missions_are_told_apart_by_how_they_begin() {

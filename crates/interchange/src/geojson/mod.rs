@@ -102,6 +102,7 @@ pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, Ge
         return Err(GeoJsonError::Empty);
     }
     let frame = Frame::of_file(&document)?.overridden(wanted);
+    projection::check_mercator(&document, reader.positions())?;
     let projection = frame.projection(reader.positions())?;
     let mut lines = format!("// Places and obstacles of {}: {projection}.\n", one_line(name));
     match reader.lines {

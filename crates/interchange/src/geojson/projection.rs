@@ -33,7 +33,8 @@ impl Frame {
     pub fn of_file(document: &Value) -> Result<Self, GeoJsonError> {
         let said = |problem: &str| GeoJsonError::Shape(format!("`{FRAME}` {problem}"));
         let Some(frame) = document.get(FRAME) else {
-            return known_system(document).map(|()| Self::default());
+            let is_metres = System::of(document)? == System::Metres;
+            return Ok(Self { is_metres, ..Self::default() });
         };
         match frame.get("units").and_then(Value::as_str) {
             Some("metres") => return Ok(Self { is_metres: true, ..Self::default() }),
@@ -82,13 +83,75 @@ impl Frame {
     }
 }
 
-/// Refuses the `crs` of `GeoJSON` before RFC 7946, unless it means degrees.
-fn known_system(document: &Value) -> Result<(), GeoJsonError> {
-    let Some(system) = document.get("crs").filter(|system| !system.is_null()) else { return Ok(()) };
-    let name = system.get("properties").and_then(|it| it.get("name")).and_then(Value::as_str);
-    let name = name.unwrap_or("a reference system without a name");
-    let is_degrees = ["CRS84", ":4326"].iter().any(|known| name.ends_with(known));
-    if is_degrees { Ok(()) } else { Err(GeoJsonError::ReferenceSystem(super::one_line(name))) }
+/// What coordinates are in, by the `crs` that `GeoJSON` had before RFC 7946.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum System {
+    Degrees,
+    Metres,
+}
+
+impl System {
+    /// That of a whole file: of its own `crs`, or of those of its features, which have to agree.
+    fn of(document: &Value) -> Result<Self, GeoJsonError> {
+        let own = Self::named(document)?;
+        let mut of_all = None;
+        for feature in document.get("features").and_then(Value::as_array).into_iter().flatten() {
+            let geometry = feature.get("geometry").unwrap_or(&Value::Null);
+            let of_feature =
+                Self::named(geometry)?.or(Self::named(feature)?).or(own).unwrap_or(Self::Degrees);
+            if of_all.is_some_and(|of_all| of_all != of_feature) {
+                let problem = "degrees for some features and meters for others";
+                return Err(GeoJsonError::ReferenceSystem(problem.to_owned()));
+            }
+            of_all = Some(of_feature);
+        }
+        let of_geometry = document.get("geometry").map(Self::named).transpose()?.flatten();
+        Ok(of_all.or(of_geometry).or(own).unwrap_or(Self::Degrees))
+    }
+
+    /// What a `crs` says. Meters are those of UTM, and of the Web Mercator, in which plans of buildings and yards are drawn
+    /// around (0, 0), where it is true.
+    fn named(holder: &Value) -> Result<Option<Self>, GeoJsonError> {
+        let Some(system) = holder.get("crs").filter(|system| !system.is_null()) else { return Ok(None) };
+        let name = system.get("properties").and_then(|it| it.get("name")).and_then(Value::as_str);
+        let name = name.unwrap_or("a reference system without a name");
+        let code = name.rsplit([':', '/']).next().unwrap_or_default();
+        match code.parse::<u32>() {
+            _ if code == "CRS84" => Ok(Some(Self::Degrees)),
+            Ok(4326) => Ok(Some(Self::Degrees)),
+            Ok(WEB_MERCATOR | 32_601..=32_660 | 32_701..=32_760 | 25_828..=25_838) => Ok(Some(Self::Metres)),
+            _ => Err(GeoJsonError::ReferenceSystem(super::one_line(name))),
+        }
+    }
+}
+
+/// The EPSG code of the Web Mercator.
+const WEB_MERCATOR: u32 = 3857;
+
+/// How far from (0, 0) lengths in the Web Mercator are wrong by less than 0.2 %.
+const TRUE_MERCATOR_METRES: f64 = 400_000.0;
+
+/// Refuses positions in the Web Mercator where its meters are longer than those on the ground.
+pub(super) fn check_mercator(
+    document: &Value,
+    mut positions: impl Iterator<Item = [f64; 2]>,
+) -> Result<(), GeoJsonError> {
+    let mut is_true = || positions.all(|[_, north]| north.abs() < TRUE_MERCATOR_METRES);
+    if names_mercator(document) && !is_true() {
+        let problem = "EPSG:3857 far from the equator, where its meters are too short";
+        return Err(GeoJsonError::ReferenceSystem(problem.to_owned()));
+    }
+    Ok(())
+}
+
+fn names_mercator(document: &Value) -> bool {
+    let features = document.get("features").and_then(Value::as_array).into_iter().flatten();
+    let holders = features.flat_map(|feature| [Some(feature), feature.get("geometry")]);
+    let mut holders = holders.chain([Some(document), document.get("geometry")]).flatten();
+    holders.any(|holder| {
+        let name = holder.pointer("/crs/properties/name").and_then(Value::as_str).unwrap_or_default();
+        name.ends_with("3857")
+    })
 }
 
 /// From a file's coordinates to metres east and north, and back.

@@ -16,6 +16,11 @@ fn seconds_of(unit: &str) -> Option<Rational> {
     }
 }
 
+/// Months or years, if there are none of them.
+fn no_months(number: &str) -> Option<Time> {
+    minutes(number, Rational::new(1, 1)?).filter(|length| *length == Time::ZERO)
+}
+
 fn minutes(number: &str, seconds_each: Rational) -> Option<Time> {
     if !number.starts_with(|first: char| first.is_ascii_digit()) {
         return None;
@@ -23,8 +28,8 @@ fn minutes(number: &str, seconds_each: Rational) -> Option<Time> {
     Time::from_units(number.parse().ok()?).checked_mul(seconds_each.checked_div(Rational::new(60, 1)?)?)
 }
 
-/// `1 day -02:30:00.5`, `-1 day, 23:00:00`, `7200 seconds 5 microseconds` or `P1DT2H`: parts are signed by themselves. None of
-/// months and years, which have no exact length.
+/// `1 day -02:30:00.5`, `-1 day, 23:00:00`, `7200 seconds 5 microseconds` or `P1DT2H`: parts are signed by themselves. Months and
+/// years have no exact length, so only 0 of them are an interval.
 pub(super) fn minutes_of(text: &str) -> Option<Time> {
     let text = text.trim();
     if let Some(parts) = text.strip_prefix('P') {
@@ -40,7 +45,10 @@ pub(super) fn minutes_of(text: &str) -> Option<Time> {
             None => (false, word.strip_prefix('+').unwrap_or(word)),
         };
         let length = match digits.split(':').collect::<Vec<_>>().as_slice() {
-            [_] => minutes(digits, seconds_of(words.next()?)?)?,
+            [_] => match words.next()? {
+                "year" | "years" | "mon" | "mons" | "month" | "months" => no_months(digits)?,
+                unit => minutes(digits, seconds_of(unit)?)?,
+            },
             parts if parts.len() <= 3 => {
                 let each = [Rational::new(3_600, 1), Rational::new(60, 1), Rational::new(1, 1)];
                 let parts = parts.iter().zip(each).map(|(number, each)| minutes(number, each?));
@@ -60,8 +68,10 @@ fn iso_minutes(parts: &str) -> Option<Time> {
         return None;
     }
     let mut sum = Time::ZERO;
-    let units: [(&str, &[(char, &str)]); 2] =
-        [(days, &[('W', "week"), ('D', "day")]), (clock, &[('H', "hour"), ('M', "minute"), ('S', "second")])];
+    let units: [(&str, &[(char, &str)]); 2] = [
+        (days, &[('Y', "year"), ('M', "month"), ('W', "week"), ('D', "day")]),
+        (clock, &[('H', "hour"), ('M', "minute"), ('S', "second")]),
+    ];
     for (mut rest, units) in units {
         while !rest.is_empty() {
             let end = rest.find(|it: char| it.is_ascii_alphabetic())?;
@@ -72,7 +82,10 @@ fn iso_minutes(parts: &str) -> Option<Time> {
                 Some(digits) => (true, digits),
                 None => (false, number),
             };
-            let length = minutes(digits, seconds_of(unit)?)?;
+            let length = match *unit {
+                "year" | "month" => no_months(digits)?,
+                unit => minutes(digits, seconds_of(unit)?)?,
+            };
             sum = if is_negative { sum.checked_sub(length)? } else { sum.checked_add(length)? };
             rest = &rest[end + letter.len_utf8()..];
         }
@@ -158,6 +171,9 @@ mod tests {
             ("PT1H30M", 90, 1),
             ("P1DT-0.5S", 24 * 60 * 120 - 1, 120),
             ("P2W", 14 * 24 * 60, 1),
+            ("P0Y0M0DT0H5M", 5, 1),
+            ("P0Y0M", 0, 1),
+            ("0 years 0 mons 1 days", 24 * 60, 1),
         ] {
             assert_eq!(minutes_of(text), Time::new(numerator, denominator), "{text}");
         }

@@ -142,6 +142,33 @@ fn what_is_left_out_is_said() {
 }
 
 #[test]
+fn a_reference_system_of_the_file_or_of_its_features_may_be_in_meters() {
+    let system = |code: u32| json!({ "type": "name", "properties": { "name": format!("urn:ogc:def:crs:EPSG::{code}") } });
+    let collection = |features: &[Value]| json!({ "type": "FeatureCollection", "features": features });
+    let lines = |file: &Value| declarations("a.geojson", &file.to_string(), &Frame::default());
+    for code in [3857, 32_633, 25_832] {
+        let mut of_file = collection(&[point("A", [12.5, -3.0])]);
+        of_file["crs"] = system(code);
+        let mut feature = point("A", [12.5, -3.0]);
+        feature["crs"] = system(code);
+        for file in [of_file, collection(&[feature.clone()]), feature] {
+            let lines = lines(&file).expect("it is GeoJSON");
+            assert!(lines.contains("location A (12.5, -3);"), "{code}: {lines}");
+        }
+    }
+    let mut degrees = collection(&[point("A", [12.5, -3.0])]);
+    degrees["features"][0]["crs"] = system(4326);
+    assert!(lines(&degrees).expect("it is GeoJSON").contains("location A (0, 0);"));
+    let mut mixed = collection(&[point("A", [1.0, 1.0]), point("B", [1.0, 1.0])]);
+    mixed["features"][1]["crs"] = system(3857);
+    assert!(refusal(&mixed).contains("degrees for some features"), "{}", refusal(&mixed));
+    // Far from the equator its meters are shorter than those on the ground.
+    let mut far = collection(&[point("A", [0.0, 8_000_000.0])]);
+    far["crs"] = system(3857);
+    assert!(refusal(&far).contains("EPSG:3857 far from the equator"), "{}", refusal(&far));
+}
+
+#[test]
 fn what_cannot_be_placed_is_refused_with_its_reason() {
     let collection = |features: &[Value]| json!({ "type": "FeatureCollection", "features": features });
     let mut projected = collection(&[point("A", [500_000.0, 4_000_000.0])]);
@@ -150,8 +177,8 @@ fn what_cannot_be_placed_is_refused_with_its_reason() {
         "{}",
         refusal(&projected)
     );
-    projected["crs"] = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::32633" } });
-    assert!(refusal(&projected).contains("EPSG::32633, which is not read"));
+    projected["crs"] = json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::31467" } });
+    assert!(refusal(&projected).contains("EPSG::31467 are not supported"));
     let far = collection(&[point("A", [0.0, 0.0]), point("B", [90.0, 0.0])]);
     assert!(refusal(&far).contains("B: it is 10008 km from the origin"), "{}", refusal(&far));
     assert!(refusal(&collection(&[])).contains("needs a Point, Polygon"));
