@@ -10,6 +10,13 @@ pub fn utc_text(unix_millis: i64) -> String {
     time.map(|time| time.strftime("%Y-%m-%dT%H:%M:%SZ").to_string()).unwrap_or_default()
 }
 
+/// Whether the seconds of a date with time are 60.
+fn is_leap_second(date: &str) -> bool {
+    let clock = date.split_once(['T', 't', ' ']).map_or("", |(_, clock)| clock);
+    let seconds = clock.split(':').nth(2).or_else(|| clock.get(4..)).unwrap_or_default();
+    seconds.starts_with("60")
+}
+
 /// The moment at which a mission starts, and the unit that its times count from there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Calendar {
@@ -19,8 +26,12 @@ pub struct Calendar {
 
 impl Calendar {
     /// Reads an ISO 8601 date, `2004-01-25`, or date with time, `2004-01-25T05:05:00Z`; without an offset it is UTC.
-    /// `None` if it is neither, or before the year 0, which dates of four digits cannot say.
+    /// `None` if it is neither, before the year 0, which dates of four digits cannot say, or a leap second, which has no
+    /// moment of its own here.
     pub fn new(epoch: &str, unit: TimeUnit) -> Option<Self> {
+        if is_leap_second(epoch) {
+            return None;
+        }
         let in_utc = || {
             let local: civil::DateTime = epoch.parse().ok()?;
             Some(local.to_zoned(TimeZone::UTC).ok()?.timestamp())
