@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(WRONG));
     };
-    let options = Options { most_states: args.k, seed: args.seed, ..Options::default() };
+    let options = Options { most_states: args.k, seed: args.seed };
     let inputs = injections(system, &args.inject)?;
     if let Some(runs) = args.monte_carlo {
         let seed = args.seed.unwrap_or(0);
