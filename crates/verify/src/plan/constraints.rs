@@ -222,7 +222,7 @@ fn describe(network: &Network, reason: Reason) -> String {
         Reason::Arc(arc) => {
             let arc = &network.arcs[arc.index()];
             let (from, to) = (node_name(network, arc.from), node_name(network, arc.to));
-            format!("{from} to {to} takes [{},{}]", Bound::Finite(arc.lower), arc.upper)
+            format!("{from} to {to} takes [{},{}]", arc.lower.readable(), arc.upper.readable())
         }
         Reason::Link(link) if labels::is_lasting(network, link.ask) => {
             let (ask, tell) = (network.label_name(link.ask), network.label_name(link.tell));

@@ -147,7 +147,7 @@ fn describe(
                 let arc = &network.arcs[id.index()];
                 let (who, names) = name(network, arc);
                 let lower = constraints.unscaled(constraints.least(id)).unwrap_or(arc.lower);
-                ranges.push(format!("{who} takes [{},{}]", Bound::Finite(lower), arc.upper));
+                ranges.push(format!("{who} takes [{},{}]", lower.readable(), arc.upper.readable()));
                 for name in names {
                     if !events.contains(&name) {
                         events.push(name);
