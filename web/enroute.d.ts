@@ -506,6 +506,10 @@ export type Review = {
   aside: string | null;
   /** Why the history is not kept beyond this visit, if it is not. */
   unkept: string | null;
+  /** The waivers that count, oldest first. */
+  waivers: Array<ReviewWaiver>;
+  /** The people whose signatures count here. */
+  people: Array<ReviewPerson>;
 };
 
 /** How many lines of a review stand how. */
@@ -576,6 +580,35 @@ export type HistoryEntry = {
   planHash: string;
   /** Whether somebody took it back. */
   withdrawn: boolean;
+  /** The public key that it names, in 64 hexadecimal digits; `null` in histories of earlier versions. */
+  key: string | null;
+  signature: "valid" | "unknown" | "broken" | "unsigned";
+  /** Why it does not count in spite of its signature, or what else is odd about it. */
+  problem: string | null;
+  /** Whether it counts. */
+  counts: boolean;
+};
+
+/** An item that may be as it is until some day. */
+export type ReviewWaiver = {
+  /** The entry of the history. */
+  id: string;
+  /** What the item says. */
+  item: string;
+  reason: string;
+  by: string;
+  /** The day on which it lapses: `2026-01-31`. */
+  until: string;
+  state: "in-force" | "about-to-lapse" | "lapsed";
+};
+
+/** Somebody whose signatures count here. */
+export type ReviewPerson = {
+  name: string;
+  /** The public key, in 64 hexadecimal digits. */
+  key: string;
+  /** Whether that person can sign here. */
+  own: boolean;
 };
 
 /** Somebody has approved a plan. */

@@ -216,6 +216,12 @@ impl Host for NativeHost {
         (since_1970.as_nanos() as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ process.rotate_left(32)
     }
 
+    fn secret_bytes(&mut self) -> Option<[u8; 32]> {
+        let mut bytes = [0; 32];
+        getrandom::fill(&mut bytes).ok()?;
+        Some(bytes)
+    }
+
     fn open_file(&mut self, kind: FileKind) {
         self.background().run(move || {
             let path = rfd::FileDialog::new()

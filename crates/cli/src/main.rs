@@ -8,6 +8,7 @@ mod input;
 mod opened;
 mod output;
 mod target;
+mod trust;
 
 use std::process::ExitCode;
 

@@ -214,6 +214,12 @@ impl Host for PageHost {
         half() << 32 | half()
     }
 
+    fn secret_bytes(&mut self) -> Option<[u8; 32]> {
+        let mut bytes = [0; 32];
+        web_sys::window()?.crypto().ok()?.get_random_values_with_u8_array(&mut bytes).ok()?;
+        Some(bytes)
+    }
+
     fn open_file(&mut self, kind: FileKind) {
         let extensions = kind.extensions().iter().map(|&extension| extension.to_owned()).collect();
         let chosen = if kind == FileKind::Mission && self.glue.saves_in_place() {

@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 use markup::escaped;
 use review::record::{Act, Entry, LineKey, Rate, short};
 use review::since::{LineChange, TextChange};
-use review::{PlanStatus, Present, Record, Review, Since, Standing, Status, since, standing};
+use review::{
+    PlanStatus, Present, Record, Review, Signature, Since, Standing, Status, WaiverState, since, standing,
+};
 
 use crate::Document;
 use crate::figure;
@@ -81,8 +83,35 @@ fn open_comments(standing: &Standing<'_>) -> String {
 
 /// Who acknowledged a line and why, if somebody has.
 pub(crate) fn acknowledgement(acknowledged: &BTreeMap<&LineKey, &Entry>, key: &LineKey) -> String {
-    let entry = acknowledged.get(key);
-    entry.map(|entry| format!("{}: {}", who(entry), lines_of(entry.act.text()))).unwrap_or_default()
+    let Some(entry) = acknowledged.get(key) else { return String::new() };
+    let until = match &entry.act {
+        Act::Waive { until, .. } => format!(" (waived until {})", escaped(until)),
+        _ => String::new(),
+    };
+    format!("{}: {}{until}", who(entry), lines_of(entry.act.text()))
+}
+
+/// The waivers, whether in force or lapsed; nothing where there are none.
+pub(crate) fn waivers(record: &Record) -> String {
+    let waivers = record.waivers();
+    if waivers.is_empty() {
+        return String::new();
+    }
+    let rows = waivers.iter().map(|waiver| {
+        let look = match waiver.state {
+            WaiverState::InForce => "passed",
+            WaiverState::AboutToLapse => "attention",
+            WaiverState::Lapsed => "failed",
+        };
+        vec![
+            word(look, waiver.state.name()),
+            escaped(&waiver.line.text),
+            lines_of(waiver.entry.act.text()),
+            who(waiver.entry),
+            escaped(waiver.until),
+        ]
+    });
+    format!("<h2>Waivers</h2>\n{}", table(&["", "Item", "Reason", "Who", "Lapses on"], rows))
 }
 
 /// What differs since the last approval; nothing where nobody has approved.
@@ -171,10 +200,13 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
         return String::new();
     }
     let withdrawn = record.withdrawn();
-    let numbers: Vec<&str> = record.entries().iter().map(review::sealed::Sealed::digest).collect();
-    let number = |digest: &str| numbers.iter().position(|it| *it == digest).map_or(0, |index| index + 1);
-    let rows = record.entries().iter().enumerate().map(|(index, entry)| {
-        let of = entry.act.of().map(|of| format!(" entry {}", number(of))).unwrap_or_default();
+    let rows = record.checked().enumerate().map(|(index, (entry, check))| {
+        let of = entry.act.of().map(|of| format!(" entry {}", record.number(of))).unwrap_or_default();
+        let look = match check.signature {
+            _ if check.counts() => "passed",
+            Signature::Broken => "failed",
+            Signature::Valid | Signature::Unknown | Signature::Unsigned => "attention",
+        };
         let taken_back = withdrawn.get(entry.digest());
         let state = match taken_back {
             Some(by) => word("attention", &format!("withdrawn by {}", escaped(&by.by))),
@@ -189,15 +221,16 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
             format!("{}{of}", entry.act.name()),
             words(entry),
             state,
+            word(look, &escaped(&check.words())),
             format!("<code>{}</code>", escaped(short(&entry.content_hash))),
             format!("<code>{}</code>", escaped(short(entry.digest()))),
         ]
     });
-    let headings = ["#", "When", "Who", "What", "Words", "", "Content", "Entry"];
+    let headings = ["#", "When", "Who", "What", "Words", "", "Signature", "Content", "Entry"];
     let rows = table(&headings, rows);
     let heads: Vec<String> = record.heads().map(|head| format!("<code>{}</code>", escaped(head))).collect();
     format!(
-        "<h2>History of the review</h2>\n{rows}<p class=\"muted\">Each entry contains the hash of the previous one. Last entry: {}</p>\n",
+        "<h2>History of the review</h2>\n{rows}<p class=\"muted\">Each entry is signed, with the entries before it. Only entries with valid signatures of trusted keys count. Last entry: {}</p>\n",
         heads.join(", ")
     )
 }
@@ -216,7 +249,9 @@ fn words(entry: &Entry) -> String {
     let text = lines_of(entry.act.text());
     match &entry.act {
         Act::Comment { about: Some(about), .. } => format!("<i>{}</i><br>{text}", escaped(about)),
-        Act::Acknowledge { line, .. } => format!("<i>{}</i><br>{text}", escaped(&line.text)),
+        Act::Acknowledge { line, .. } | Act::Waive { line, .. } => {
+            format!("<i>{}</i><br>{text}", escaped(&line.text))
+        }
         _ => text,
     }
 }

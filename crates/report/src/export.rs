@@ -28,6 +28,23 @@ pub struct About<'a> {
 }
 
 impl About<'_> {
+    /// How the schedule stands, for programs: pinned events make it another one than the board has looked at.
+    fn status(&self) -> Value {
+        if self.pins.is_empty() { json!(self.status) } else { json!("pinned") }
+    }
+
+    fn is_approved(&self) -> bool {
+        self.pins.is_empty() && self.status.is_approved()
+    }
+
+    /// The same for people.
+    pub(crate) fn status_in_words(&self) -> String {
+        if self.pins.is_empty() {
+            return self.status.name().to_owned();
+        }
+        format!("pinned, not approved (its plan: {})", self.status.name())
+    }
+
     fn is_pinned(&self, node: NodeId) -> bool {
         self.pins.iter().any(|(pinned, _)| *pinned == node)
     }
@@ -99,7 +116,7 @@ pub fn csv(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
             about.utc(row.start.earliest),
             about.utc(row.end.earliest),
             about.pinned(occurrence),
-            about.status.name().to_owned(),
+            about.status_in_words(),
             about.content_hash.to_owned(),
         ];
         out.push_str(&cells.map(|cell| csv_cell(&cell)).join(","));
@@ -146,7 +163,8 @@ pub fn json(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
         "format": "enroute-schedule/1",
         "diagnostics": [],
         "content_hash": about.content_hash,
-        "plan_status": about.status,
+        "plan_status": about.status(),
+        "plan_status_without_pins": about.status,
         "unit": unit(snapshot),
         "epoch": about.calendar.map(|calendar| calendar.epoch().to_string()),
         "pinned": pinned.collect::<Vec<Value>>(),
@@ -172,7 +190,7 @@ pub fn open_mct(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
             "textColor": text_color,
             "unit": unit(snapshot),
             "pinned": about.pinned(occurrence),
-            "planStatus": about.status.name(),
+            "planStatus": about.status_in_words(),
             "contentHash": about.content_hash,
         });
         let entries = groups.entry(group).or_insert_with(|| Value::Array(Vec::new()));
@@ -199,7 +217,7 @@ pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
         write(line);
     }
     write(&format!("X-ENROUTE-CONTENT-HASH:{content_hash}"));
-    write(&format!("X-ENROUTE-PLAN-STATUS:{}", about.status.name()));
+    write(&format!("X-ENROUTE-PLAN-STATUS:{}", about.status_in_words()));
     write(&format!("X-ENROUTE-TIME-UNIT:{}", unit(snapshot)));
     for row in rows {
         let occurrence = &network.occurrences[row.occurrence.index()];
@@ -215,7 +233,7 @@ pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
             row.end.earliest.readable(),
             row.end.latest.readable(),
             unit(snapshot),
-            about.status.name(),
+            about.status_in_words(),
             review::record::short(content_hash)
         );
         write("BEGIN:VEVENT");
@@ -229,7 +247,7 @@ pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
         write(&format!("SUMMARY:{}", calendar_text(&occurrence.name)));
         write(&format!("DESCRIPTION:{}", calendar_text(&description)));
         write(&format!("CATEGORIES:{}", calendar_text(open_mct_group(occurrence).0)));
-        write(if about.status.is_approved() { "STATUS:CONFIRMED" } else { "STATUS:TENTATIVE" });
+        write(if about.is_approved() { "STATUS:CONFIRMED" } else { "STATUS:TENTATIVE" });
         write("END:VEVENT");
     }
     write("END:VCALENDAR");

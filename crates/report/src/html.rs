@@ -65,6 +65,7 @@ fn content(document: &Document<'_>, record: &Record) -> String {
     let mut out = facts(document, record);
     out.push_str(&tables::summary(document.review, document.record));
     out.push_str(&board::signatures(record, document.review));
+    out.push_str(&board::waivers(record));
     out.push_str(&board::changes(document, record));
     out.push_str(&tables::sections(document.review));
     out.push_str(&tables::robustness(document.review, document.robustness));

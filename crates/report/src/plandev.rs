@@ -39,7 +39,7 @@ pub fn plandev(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
             "metadata": {
                 DURATION: interval(duration, unit)?,
                 "enroute_content_hash": about.content_hash,
-                "enroute_plan_status": about.status.name(),
+                "enroute_plan_status": about.status_in_words(),
             },
             "name": occurrence.name,
             "start_offset": interval(row.start.earliest, unit)?,

@@ -44,7 +44,7 @@ pub(crate) fn sections(review: &Review) -> String {
 
 /// What has failed and what deserves a look, of all sections, before anything else.
 pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
-    let acknowledged = record.map(Record::acknowledgements).unwrap_or_default();
+    let acknowledged = record.map(Record::acknowledgments).unwrap_or_default();
     let acknowledged = &acknowledged;
     let of_status = |wanted: Status| {
         let rows = Section::ALL.iter().flat_map(move |&section| {

@@ -5,8 +5,9 @@ mod paper;
 use std::sync::Arc;
 
 use link::Response;
+use review::keys::{KeyRing, Person, SecretKey};
 use review::record::{Act, LineKey, Subject, Who};
-use review::{PlanStatus, Record, Review, Section, review};
+use review::{PlanStatus, Present, Record, Review, Section, review, standing};
 use rmpl::program::TimeUnit;
 use snapshot::{Goal, Snapshot};
 use terrain::Terrain;
@@ -334,6 +335,24 @@ fn who(by: &str, review: &Review) -> Who {
     }
 }
 
+/// The key of a person.
+fn key(name: &str) -> SecretKey {
+    let mut bytes = [7; 32];
+    bytes.iter_mut().zip(name.bytes()).for_each(|(byte, letter)| *byte = letter);
+    SecretKey::from_bytes(bytes)
+}
+
+/// A record of a board of people whose keys are trusted.
+fn judged() -> Record {
+    let mut ring = KeyRing::default();
+    for name in ["Ada <A>", "Grace"] {
+        ring.add(Person::new(name, key(name))).expect("a name of its own");
+    }
+    let mut record = Record::default();
+    record.judge(&ring.trust(), "2026-01-02T03:04:05Z");
+    record
+}
+
 /// What is approved of a mission.
 fn subject(planned: &Planned) -> Subject {
     let (network, plan) =
@@ -345,26 +364,31 @@ fn subject(planned: &Planned) -> Subject {
 #[test]
 fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
     let planned = planned(SCENARIO);
-    let mut record = Record::default();
+    let mut record = judged();
     assert!(page_with(&planned, &record).contains("draft</span>: Reviewer 0 of 1"));
     let about = Some("Group-Wait#1".to_owned());
     let text = "Long wait.\nIs that <intended>?".to_owned();
-    record.add(who("Grace", &planned.review), Act::Comment { about, text });
+    let to = Some(key("Ada <A>").public());
+    record.add(who("Grace", &planned.review), Act::Comment { about, to, text }, &key("Grace"));
     let asked = record.entries()[0].digest().to_owned();
     let page = page_with(&planned, &record);
     assert!(page.contains("in review</span>") && page.contains("<h3>Open comments</h3>"));
     assert!(page.contains("Long wait.<br>Is that &lt;intended&gt;?") && page.contains("1 comment is open"));
-    record.add(who("Ada <A>", &planned.review), Act::Resolve { of: asked, text: "Yes.".to_owned() });
+    let resolve = Act::Resolve { of: asked, text: "Yes.".to_owned() };
+    record.add(who("Ada <A>", &planned.review), resolve, &key("Ada <A>"));
     for section in Section::ALL {
         for line in planned.review.lines(section) {
             let line = LineKey::new(section, line);
             record.add(
                 who("Ada <A>", &planned.review),
                 Act::Acknowledge { line, text: "As meant.".to_owned() },
+                &key("Ada <A>"),
             );
         }
     }
-    record.approve(who("Ada <A>", &planned.review), subject(&planned), "Mind the wind.".to_owned());
+    let relied_on = standing(&record, &Present::of_review(&planned.review)).relied_on;
+    let ada = who("Ada <A>", &planned.review);
+    record.approve(ada, subject(&planned), "Mind the wind.".to_owned(), relied_on, &key("Ada <A>"));
     let page = page_with(&planned, &record);
     assert!(page.contains("approved with comments</span>: Reviewer 1 of 1"), "{page}");
     assert!(page.contains("Ada &lt;A&gt; (Reviewer): As meant."), "who acknowledged stands in the summary");
@@ -372,20 +396,30 @@ fn a_report_has_the_history_of_the_board_its_status_and_who_took_what_back() {
     assert!(page.contains("Text, plan, checklist, flight rules and Monte Carlo results are unchanged."));
     assert!(page.contains(record.heads().next().expect("a last entry")));
     let approved = record.entries().last().expect("the approval").digest().to_owned();
-    record.add(who("Grace", &planned.review), Act::Withdraw { of: approved, text: "Too early.".to_owned() });
+    let withdraw = Act::Withdraw { of: approved, text: "Too early.".to_owned() };
+    record.add(who("Ada <A>", &planned.review), withdraw.clone(), &key("Grace"));
     let page = page_with(&planned, &record);
-    assert!(page.contains("withdrawn by Grace") && !page.contains("approved with comments"));
+    assert!(page.contains("approved with comments"), "the key is Grace's");
+    assert!(
+        page.contains("valid: the key is that of “Grace”, and the entry names “Ada &lt;A&gt;”"),
+        "{page}"
+    );
+    record.add(who("Ada <A>", &planned.review), withdraw, &key("Ada <A>"));
+    let page = page_with(&planned, &record);
+    assert!(page.contains("withdrawn by Ada &lt;A&gt;") && !page.contains("approved with comments"));
 }
 
 #[test]
 fn a_report_of_an_edited_mission_says_that_the_approval_lapsed_and_what_differs() {
     let before = planned("primitive A()[1,2]; scenario S[0,9] = { A() }");
     let after = planned("primitive A()[3,4]; scenario S[0,9] = { A() }");
-    let mut record = Record::default();
-    record.approve(who("Ada", &before.review), subject(&before), String::new());
+    let mut record = judged();
+    let ada = who("Ada <A>", &before.review);
+    record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada <A>"));
     assert!(page_with(&before, &record).contains("approved</span>: Reviewer 1 of 1"));
     let page = page_with(&after, &record);
-    let lapsed = "approval lapsed</span>: Reviewer 0 of 1; Ada approved 2026-01-02 03:04 UTC: text, map";
+    let lapsed =
+        "approval lapsed</span>: Reviewer 0 of 1; Ada &lt;A&gt; approved 2026-01-02 03:04 UTC: text, map";
     assert!(page.contains(lapsed), "{page}");
     assert!(page.contains("<del>− primitive A()[1,2]; scenario S[0,9] = { A() }</del>"));
     assert!(page.contains("<ins>+ primitive A()[3,4]; scenario S[0,9] = { A() }</ins>"));
@@ -396,8 +430,9 @@ fn a_report_of_an_edited_mission_says_that_the_approval_lapsed_and_what_differs(
 fn a_report_draws_the_network_over_the_approved_one() {
     let before = planned("primitive A()[1,2]; primitive B()[1,1]; scenario S[0,9] = { A(); B() }");
     let after = planned("primitive A()[2,3]; primitive C()[4,4]; scenario S[0,9] = { A(); C() }");
-    let mut record = Record::default();
-    record.approve(who("Ada", &before.review), subject(&before), String::new());
+    let mut record = judged();
+    let ada = who("Ada <A>", &before.review);
+    record.approve(ada, subject(&before), String::new(), Vec::new(), &key("Ada <A>"));
     assert!(!page_with(&before, &record).contains("over the approved one"), "nothing differs");
     let page = page_with(&after, &record);
     let drawing = page.split("Network of the plan over the approved one").nth(1).expect("the drawing");
@@ -429,13 +464,14 @@ fn schedules_say_what_they_are_of_how_that_stands_and_what_is_pinned() {
     let row = table.lines().find(|line| line.starts_with("Group-Wait#1,")).expect("the wait");
     assert!(
         row.ends_with(&format!(
-            ",500,500,45,0,min,2004-01-25T12:00:00Z,2004-01-25T13:25:00Z,end,approved,{HASH}"
+            ",500,500,45,0,min,2004-01-25T12:00:00Z,2004-01-25T13:25:00Z,end,\"pinned, not approved (its plan: approved)\",{HASH}"
         )),
         "{row}"
     );
     let document = export::json(&planned.snapshot, &about).expect("a plan");
     assert_eq!(document["format"], "enroute-schedule/1");
-    assert_eq!((&document["content_hash"], &document["plan_status"]), (&HASH.into(), &"approved".into()));
+    assert_eq!((&document["content_hash"], &document["plan_status"]), (&HASH.into(), &"pinned".into()));
+    assert_eq!(document["plan_status_without_pins"], "approved");
     assert_eq!((&document["unit"], &document["epoch"]), (&"min".into(), &EPOCH.into()));
     assert_eq!(document["pinned"][0]["time"], 500);
     let events = document["pinned"][0]["events"].as_array().expect("names");
@@ -447,16 +483,19 @@ fn schedules_say_what_they_are_of_how_that_stands_and_what_is_pinned() {
     let without = export::json(&planned.snapshot, &self::about(None)).expect("a plan");
     assert!(without["epoch"].is_null() && without["activities"][0]["start"]["earliest_utc"].is_null());
     let ics = export::icalendar(&planned.snapshot, &about).expect("a calendar").replace("\r\n ", "");
-    for line in [&format!("X-ENROUTE-CONTENT-HASH:{HASH}"), "X-ENROUTE-TIME-UNIT:min", "STATUS:CONFIRMED"] {
+    for line in [&format!("X-ENROUTE-CONTENT-HASH:{HASH}"), "X-ENROUTE-TIME-UNIT:min", "STATUS:TENTATIVE"] {
         assert!(ics.contains(&format!("{line}\r\n")), "{line}");
     }
-    assert!(ics.contains("pinned: end\\; approved\\, content 001122334455"), "{ics}");
+    assert!(
+        ics.contains("pinned: end\\; pinned\\, not approved (its plan: approved)\\, content 001122334455"),
+        "{ics}"
+    );
     let plan = export::open_mct(&planned.snapshot, &about).expect("a calendar");
     let wait = plan["Activities"].as_array().expect("a list").iter().find(|it| it["name"] == "Group-Wait#1");
     let wait = wait.expect("the wait");
     assert_eq!(
         (&wait["pinned"], &wait["planStatus"], &wait["unit"]),
-        (&"end".into(), &"approved".into(), &"min".into())
+        (&"end".into(), &"pinned, not approved (its plan: approved)".into(), &"min".into())
     );
     assert!(export::open_mct(&planned.snapshot, &self::about(None)).is_none());
 }

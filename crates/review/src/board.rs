@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+use super::keys::PublicKey;
 use super::record::{Act, Entry, LineKey, Record, Subject};
 use super::seat::Seat;
-use super::{FlightRules, Line, Review, Section, Status};
+use super::{FlightRules, Line, Review, Section, Status, Waiver};
 
 /// How a plan stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,16 +67,69 @@ impl<'a> Present<'a> {
         }
     }
 
-    /// What is another than in `approval`, which approved `subject`; nothing if it counts.
-    pub fn difference(&self, approval: &Entry, subject: &Subject) -> Option<&'static str> {
+    /// What is another than in `approval` of `record`, which approved `subject`; nothing if it counts.
+    pub fn difference(&self, record: &Record, approval: &Entry, subject: &Subject) -> Option<&'static str> {
+        self.difference_by(&Accepted::new(record), approval, subject)
+    }
+
+    fn difference_by(
+        &self,
+        accepted: &Accepted<'_>,
+        approval: &Entry,
+        subject: &Subject,
+    ) -> Option<&'static str> {
         let is_known = !approval.plan_hash.is_empty();
         match self.plan_hash {
             _ if approval.content_hash != self.content_hash => Some("text, map, goal or seed are others"),
             Some(plan_hash) if is_known && approval.plan_hash != plan_hash => Some("the plan is another one"),
             _ if subject.rules != *self.rules => Some("the flight rules are others"),
+            _ if self.review.is_some_and(|review| !accepted.are_signed(approval, review)) => {
+                Some("the acknowledgments are others")
+            }
             _ => None,
         }
     }
+}
+
+/// The acknowledgments, and the waivers in force, by what they are about.
+struct Accepted<'a>(BTreeMap<&'a LineKey, Vec<&'a Entry>>);
+
+impl<'a> Accepted<'a> {
+    fn new(record: &'a Record) -> Self {
+        let mut accepted: BTreeMap<&LineKey, Vec<&Entry>> = BTreeMap::new();
+        for entry in record.standing_entries() {
+            if let Act::Acknowledge { line, .. } = &entry.act {
+                accepted.entry(line).or_default().push(entry);
+            }
+        }
+        for Waiver { entry, line, state, .. } in record.waivers() {
+            if state.is_in_force() {
+                accepted.entry(line).or_default().push(entry);
+            }
+        }
+        Self(accepted)
+    }
+
+    fn of(&self, section: Section, line: &Line) -> &[&'a Entry] {
+        self.0.get(&LineKey::new(section, line)).map(Vec::as_slice).unwrap_or_default()
+    }
+
+    /// Whether an approval has signed an acknowledgment or a waiver that still holds for each line for attention that
+    /// somebody has accepted.
+    fn are_signed(&self, approval: &Entry, review: &Review) -> bool {
+        let signed: BTreeSet<&str> = approval.acknowledged.iter().map(String::as_str).collect();
+        for_attention(review).all(|(section, line)| {
+            let accepted = self.of(section, line);
+            accepted.is_empty() || accepted.iter().any(|entry| signed.contains(entry.digest()))
+        })
+    }
+}
+
+fn for_attention(review: &Review) -> impl Iterator<Item = (Section, &Line)> {
+    let lines = Section::ALL
+        .into_iter()
+        .flat_map(|section| review.lines(section).into_iter().map(move |line| (section, line)));
+    lines.filter(|(_, line)| line.status == Status::Attention)
 }
 
 /// How a plan stands with its board.
@@ -88,8 +142,12 @@ pub struct Standing<'a> {
     pub lapsed: Option<(&'a Entry, &'static str)>,
     /// Comments that are not resolved, oldest first.
     pub open_comments: Vec<&'a Entry>,
-    /// Lines for attention that nobody has acknowledged.
+    /// Lines for attention that nobody has acknowledged, and that no waiver in force is about.
     pub unacknowledged: Vec<(Section, &'a Line)>,
+    /// The digests of the acknowledgments and waivers that an approval of the present plan relies on, and signs.
+    pub relied_on: Vec<String>,
+    /// The waivers, oldest first.
+    pub waivers: Vec<Waiver<'a>>,
     /// Lines that have failed.
     pub failed: usize,
     /// What there is nothing to approve without, if it is missing: a review of the very content, and a plan in it.
@@ -109,17 +167,23 @@ pub struct Approvals<'a> {
 
 /// How what `present` names stands by what `record` has. Nothing else is looked at.
 pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
-    let withdrawn = record.withdrawn();
-    let is_standing = |entry: &&'a Entry| !withdrawn.contains_key(entry.digest());
-    let approvals: Vec<(&Entry, &Subject)> = (record.entries().iter().filter(is_standing))
-        .filter_map(|entry| Some((entry, record.subject(entry)?)))
-        .collect();
-    let current = approvals.iter().filter(|(entry, subject)| present.difference(entry, subject).is_none());
+    let approvals: Vec<(&Entry, &Subject)> =
+        record.standing_entries().filter_map(|entry| Some((entry, record.subject(entry)?))).collect();
+    let accepted = Accepted::new(record);
+    let current = approvals
+        .iter()
+        .filter(|(entry, subject)| present.difference_by(&accepted, entry, subject).is_none());
     let seats = seats(&present.rules.board, &current.map(|(entry, _)| *entry).collect::<Vec<_>>());
     let open_comments = open_comments(record);
-    let unacknowledged = present.review.map(|review| unacknowledged(record, review)).unwrap_or_default();
+    let (mut unacknowledged, mut relied_on) = (Vec::new(), BTreeSet::new());
+    for (section, line) in present.review.into_iter().flat_map(for_attention) {
+        match accepted.of(section, line) {
+            [] => unacknowledged.push((section, line)),
+            entries => relied_on.extend(entries.iter().map(|entry| entry.digest().to_owned())),
+        }
+    }
     let failed = present.review.map_or(0, |review| review.count(Status::Failed));
-    let lapsed = lapsed(&approvals, present);
+    let lapsed = lapsed(&approvals, &accepted, present);
     let is_blocked = !open_comments.is_empty() || !unacknowledged.is_empty() || failed > 0;
     let is_complete = is_complete(&seats);
     let mut given = seats.iter().flat_map(|seat| &seat.given);
@@ -130,7 +194,7 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
         PlanStatus::InReview
     } else if lapsed.is_some() {
         PlanStatus::Lapsed
-    } else if record.entries().iter().any(|entry| !matches!(entry.act, Act::Rules { .. })) {
+    } else if record.counted().any(|entry| !matches!(entry.act, Act::Rules { .. })) {
         PlanStatus::InReview
     } else {
         PlanStatus::Draft
@@ -140,24 +204,32 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
         Some(review) if !review.is_planned() => Some("there is no plan"),
         Some(_) => None,
     };
-    Standing { status, seats, lapsed, open_comments, unacknowledged, failed, missing }
+    Standing {
+        status,
+        seats,
+        lapsed,
+        open_comments,
+        unacknowledged,
+        relied_on: relied_on.into_iter().collect(),
+        waivers: record.waivers(),
+        failed,
+        missing,
+    }
 }
 
-/// The approvals of each role; a person counts once in a role.
+/// The approvals of each role; a key counts once, by its first approval in a role of the board.
 fn seats<'a>(board: &'a [Seat], approvals: &[&'a Entry]) -> Vec<Approvals<'a>> {
-    let seat = |seat: &'a Seat| {
-        let mut people = BTreeSet::new();
-        let is_first = |entry: &&&'a Entry| entry.role == seat.role && people.insert(person(&entry.by));
-        let given = approvals.iter().rev().filter(is_first).copied().collect();
-        Approvals { role: &seat.role, wanted: seat.approvals as usize, given }
-    };
-    board.iter().map(seat).collect()
-}
-
-/// A person by name, however it is spelled: by its letters and digits alone, for spaces, dashes and what nobody sees make
-/// no other person.
-fn person(name: &str) -> String {
-    name.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    let empty =
+        |seat: &'a Seat| Approvals { role: &seat.role, wanted: seat.approvals as usize, given: Vec::new() };
+    let mut seats: Vec<Approvals<'a>> = board.iter().map(empty).collect();
+    let mut keys = BTreeSet::new();
+    for &entry in approvals {
+        let seat = seats.iter_mut().find(|seat| entry.role == seat.role);
+        if let Some(seat) = seat.filter(|_| keys.insert(&entry.key)) {
+            seat.given.push(entry);
+        }
+    }
+    seats
 }
 
 fn is_complete(seats: &[Approvals<'_>]) -> bool {
@@ -167,10 +239,11 @@ fn is_complete(seats: &[Approvals<'_>]) -> bool {
 /// The latest approval that completed a board, of something else than the present.
 fn lapsed<'a>(
     approvals: &[(&'a Entry, &'a Subject)],
+    accepted: &Accepted<'_>,
     present: &Present<'_>,
 ) -> Option<(&'a Entry, &'static str)> {
     approvals.iter().rev().find_map(|(last, subject)| {
-        let difference = present.difference(last, subject)?;
+        let difference = present.difference_by(accepted, last, subject)?;
         let same = approvals.iter().filter(|(entry, other)| {
             entry.content_hash == last.content_hash
                 && entry.plan_hash == last.plan_hash
@@ -185,40 +258,27 @@ fn lapsed<'a>(
 pub fn open_comments(record: &Record) -> Vec<&Entry> {
     let mut open: Vec<&Entry> = Vec::new();
     let mut resolved: Vec<&Entry> = Vec::new();
-    for entry in record.entries() {
+    for entry in record.counted() {
         match &entry.act {
             Act::Comment { .. } => open.push(entry),
             Act::Resolve { of, .. } => resolved.extend(open.extract_if(.., |it| it.digest() == of)),
             Act::Reopen { of, .. } => open.extend(resolved.extract_if(.., |it| it.digest() == of)),
             Act::Withdraw { of, .. } => open.retain(|it| it.digest() != of),
-            Act::Acknowledge { .. } | Act::Approve { .. } | Act::Rules { .. } => {}
+            Act::Acknowledge { .. } | Act::Waive { .. } | Act::Approve { .. } | Act::Rules { .. } => {}
         }
     }
     open
 }
 
-/// The lines for attention that nobody has acknowledged.
-fn unacknowledged<'a>(record: &Record, review: &'a Review) -> Vec<(Section, &'a Line)> {
-    let acknowledged = record.acknowledgements();
-    let lines = Section::ALL
-        .into_iter()
-        .flat_map(|section| review.lines(section).into_iter().map(move |line| (section, line)));
-    let is_left = |(section, line): &(Section, &Line)| {
-        line.status == Status::Attention && !acknowledged.contains_key(&LineKey::new(*section, line))
-    };
-    lines.filter(is_left).collect()
-}
-
 impl Record {
-    /// Who acknowledged which line last; each holds for a line as long as it says the same.
-    pub fn acknowledgements(&self) -> BTreeMap<&LineKey, &Entry> {
-        let withdrawn = self.withdrawn();
-        let standing = self.entries().iter().filter(|entry| !withdrawn.contains_key(entry.digest()));
-        let acknowledged = standing.filter_map(|entry| match &entry.act {
-            Act::Acknowledge { line, .. } => Some((line, entry)),
-            _ => None,
-        });
-        acknowledged.collect()
+    /// Who acknowledged which line, or waived it, last; each holds for a line as long as it says the same at the same
+    /// place.
+    pub fn acknowledgments(&self) -> BTreeMap<&LineKey, &Entry> {
+        let mut last = BTreeMap::new();
+        for (line, entries) in Accepted::new(self).0 {
+            last.extend(entries.last().map(|entry| (line, *entry)));
+        }
+        last
     }
 }
 
@@ -241,16 +301,17 @@ impl Standing<'_> {
             .collect()
     }
 
-    /// Whether somebody may approve in a role; `Err` says why not.
-    pub fn may_approve(&self, name: &str, role: &str) -> Result<(), String> {
+    /// Whether the owner of a key may approve in a role; `Err` says why not.
+    pub fn may_approve(&self, key: &PublicKey, role: &str) -> Result<(), String> {
         let blockers = self.blockers();
-        let Some(seat) = self.seats.iter().find(|seat| seat.role == role) else {
+        if !self.seats.iter().any(|seat| seat.role == role) {
             return Err(format!("the board has no role \"{role}\""));
-        };
-        match seat.given.iter().find(|entry| person(&entry.by) == person(name)) {
+        }
+        let is_own = |entry: &&&Entry| entry.key.as_ref() == Some(key);
+        let given = self.seats.iter().find_map(|seat| Some((seat, seat.given.iter().find(is_own)?)));
+        match given {
             _ if !blockers.is_empty() => Err(blockers.join(", ")),
-            _ if person(name).is_empty() => Err("an approval needs a name".to_owned()),
-            Some(_) => Err(format!("{} has approved as {role} already", name.trim())),
+            Some((seat, entry)) => Err(format!("{} has approved as {} already", entry.by, seat.role)),
             None => Ok(()),
         }
     }

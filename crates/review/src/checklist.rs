@@ -101,6 +101,9 @@ pub struct Line {
     pub names: Vec<String>,
     /// The events of the network that it is about.
     pub nodes: Vec<NodeId>,
+    /// Where in the network it is, with what is before and after it: another place is another line, even with the same
+    /// words. Empty for a line that is about no place.
+    pub place: String,
 }
 
 impl Line {
@@ -115,6 +118,7 @@ impl Line {
             line_number: None,
             names: Vec::new(),
             nodes: Vec::new(),
+            place: String::new(),
         }
     }
 }

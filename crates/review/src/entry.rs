@@ -1,20 +1,88 @@
 //! The entries of a review's history: who did what about which content, and what was approved.
 
+use std::ops::Deref;
+
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use snapshot::Goal;
 use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
+use super::keys::{PublicKey, SecretKey};
 use super::sealed::Sealed;
 use super::{FlightRules, Line, Review, Section, Status};
 
-/// An entry of the history; nothing changes it any more.
-pub type Entry = Sealed<Said>;
+/// An entry of the history with its signature; nothing changes it any more.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    said: Sealed<Said>,
+    signature: String,
+    /// Whether the signature is that of the key that the entry names.
+    is_signed: bool,
+}
 
-/// What an entry says.
+/// Changes when the meaning of the signed bytes does.
+const DOMAIN: &str = "enroute-signature/1\n";
+
+impl Entry {
+    /// What somebody said, signed.
+    pub fn signed(said: Said, secret: &SecretKey) -> Self {
+        let said = Sealed::new(Said { key: Some(secret.public()), ..said });
+        let signature = secret.sign(signed_bytes(said.digest()).as_bytes());
+        Self { said, signature, is_signed: true }
+    }
+
+    /// What was said, with what is written as its signature.
+    pub fn new(said: Sealed<Said>, signature: String) -> Self {
+        let message = signed_bytes(said.digest());
+        let is_signed = said.key.as_ref().is_some_and(|key| key.verify(message.as_bytes(), &signature));
+        Self { said, signature, is_signed }
+    }
+
+    /// What was said.
+    pub fn said(&self) -> &Sealed<Said> {
+        &self.said
+    }
+
+    /// What is written of it.
+    pub fn raw(&self) -> &Value {
+        self.said.raw()
+    }
+
+    /// The SHA-256 of what is written of it, in hexadecimal: what is signed.
+    pub fn digest(&self) -> &str {
+        self.said.digest()
+    }
+
+    /// The signature in hexadecimal; empty if there is none.
+    pub fn signature(&self) -> &str {
+        &self.signature
+    }
+
+    /// Whether the signature is that of the key that the entry names.
+    pub fn is_signed(&self) -> bool {
+        self.is_signed
+    }
+}
+
+impl Deref for Entry {
+    type Target = Said;
+
+    fn deref(&self) -> &Said {
+        &self.said
+    }
+}
+
+fn signed_bytes(digest: &str) -> String {
+    format!("{DOMAIN}{digest}")
+}
+
+/// What an entry says. All of it is signed, with the entries before it by their digests.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Said {
     pub by: String,
+    /// Whose signature it has; none in histories of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key: Option<PublicKey>,
     /// In which role; empty if in none.
     pub role: String,
     /// When, as an ISO 8601 time in UTC.
@@ -23,6 +91,12 @@ pub struct Said {
     pub content_hash: String,
     /// The plan that it is about: see [`super::plan_hash`]; empty if none was known.
     pub plan_hash: String,
+    /// The digest of the flight rules that were in force, those of the board among them.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub rules: String,
+    /// Of an approval: the digests of the acknowledgments and waivers that it relies on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub acknowledged: Vec<String>,
     /// The digests of the entries that were the last ones: one, or several where histories were joined.
     pub former: Vec<String>,
     /// What was done.
@@ -37,6 +111,9 @@ pub enum Act {
     Comment {
         /// What it is about, by the names of all output; the whole mission if nothing is named.
         about: Option<String>,
+        /// Who is to answer it, if somebody is named.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        to: Option<PublicKey>,
         text: String,
     },
     /// Resolved a comment.
@@ -48,6 +125,14 @@ pub enum Act {
         line: LineKey,
         /// Why it may be so.
         text: String,
+    },
+    /// Waived a line for attention until some day.
+    Waive {
+        line: LineKey,
+        /// Why it may be so until then.
+        text: String,
+        /// The day, in UTC, on which the waiver lapses: `2026-01-31`.
+        until: String,
     },
     Approve {
         /// The digest of what was approved: a [`Subject`].
@@ -69,6 +154,7 @@ impl Act {
             Self::Resolve { .. } => "resolved",
             Self::Reopen { .. } => "reopened",
             Self::Acknowledge { .. } => "acknowledged",
+            Self::Waive { .. } => "waived",
             Self::Approve { .. } => "approved",
             Self::Withdraw { .. } => "took back",
             Self::Rules { .. } => "set the flight rules",
@@ -82,6 +168,7 @@ impl Act {
             | Self::Resolve { text, .. }
             | Self::Reopen { text, .. }
             | Self::Acknowledge { text, .. }
+            | Self::Waive { text, .. }
             | Self::Approve { text, .. }
             | Self::Withdraw { text, .. } => text,
             Self::Rules { .. } => "",
@@ -92,26 +179,33 @@ impl Act {
     pub fn of(&self) -> Option<&str> {
         match self {
             Self::Resolve { of, .. } | Self::Reopen { of, .. } | Self::Withdraw { of, .. } => Some(of),
-            Self::Comment { .. } | Self::Acknowledge { .. } | Self::Approve { .. } | Self::Rules { .. } => {
-                None
-            }
+            Self::Comment { .. }
+            | Self::Acknowledge { .. }
+            | Self::Waive { .. }
+            | Self::Approve { .. }
+            | Self::Rules { .. } => None,
         }
     }
 }
 
-/// What tells a line of a checklist from others: an acknowledgement holds as long as the line says the same.
+/// What tells a line of a checklist from others: an acknowledgment holds as long as the line says the same at the same
+/// place of the network.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct LineKey {
     pub section: Section,
     pub text: String,
     /// What it is held against.
     pub criterion: Option<String>,
+    /// Where in the network it is, with what is before and after it: see [`Line::place`].
+    #[serde(default)]
+    pub place: String,
 }
 
 impl LineKey {
     /// The key of a line.
     pub fn new(section: Section, line: &Line) -> Self {
-        Self { section, text: line.text.clone(), criterion: line.criterion.clone() }
+        let Line { text, criterion, place, .. } = line.clone();
+        Self { section, text, criterion, place }
     }
 }
 

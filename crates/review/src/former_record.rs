@@ -71,7 +71,7 @@ pub(super) fn read(document: Value) -> Result<Record, serde_json::Error> {
     let mut parts = Vec::new();
     for comment in former.comments {
         let Comment { author, time, about, text, content_hash } = comment;
-        parts.push((who(author, "", time, content_hash), Part::Act(Act::Comment { about, text })));
+        parts.push((who(author, "", time, content_hash), Part::Act(Act::Comment { about, to: None, text })));
     }
     for SignOff { name, time, content_hash, counts, source, goal, seed, rules } in former.sign_offs {
         let (lines, plan, robustness) = (Vec::new(), Value::Null, None);
@@ -85,8 +85,11 @@ pub(super) fn read(document: Value) -> Result<Record, serde_json::Error> {
     let mut record = Record::new(&former.mission);
     for (who, part) in parts {
         match part {
-            Part::Act(act) => record.add(who, act),
-            Part::Approval(subject) => record.approve(who, *subject, String::new()),
+            Part::Act(act) => record.add_unsigned(who, act),
+            Part::Approval(subject) => {
+                let subject = record.keep_subject(*subject);
+                record.add_unsigned(who, Act::Approve { subject, text: String::new() });
+            }
         }
     }
     Ok(record)

@@ -204,7 +204,7 @@ impl Review {
     }
 
     /// Every line that a rule may judge.
-    fn every_line(&mut self) -> impl Iterator<Item = &mut Line> {
+    pub(super) fn every_line(&mut self) -> impl Iterator<Item = &mut Line> {
         self.plan
             .iter_mut()
             .chain(self.choices.iter_mut().map(|it| &mut it.line))

@@ -6,6 +6,7 @@
 
 mod alternatives;
 pub mod board;
+pub mod check;
 mod checklist;
 pub mod compare;
 pub mod contradict;
@@ -16,8 +17,11 @@ pub mod flight_rule;
 mod former_record;
 mod hash;
 mod judge;
+pub mod keys;
 mod lines;
+pub mod names;
 mod overlaps;
+mod place;
 mod plan_lines;
 pub mod record;
 pub mod rules;
@@ -25,9 +29,11 @@ pub mod schedule;
 pub mod sealed;
 pub mod seat;
 pub mod since;
+pub mod waivers;
 
 pub use alternatives::{Alternative, Fate};
 pub use board::{PlanStatus, Present, Standing, standing};
+pub use check::{Check, Signature};
 pub use checklist::{
     ChoiceReview, ConflictReview, EventReview, Line, LinkReview, ResourceReview, Review, Section, Status,
     TimeRange, TraverseReview,
@@ -38,9 +44,12 @@ pub use lines::review;
 pub use record::Record;
 pub use rules::{FlightRules, SuccessRate};
 pub use since::{Since, since};
+pub use waivers::{Waiver, WaiverState};
 
 #[cfg(test)]
 mod board_tests;
+#[cfg(test)]
+mod cheats;
 #[cfg(test)]
 mod five_missions;
 #[cfg(test)]

@@ -9,6 +9,7 @@ use snapshot::{Planning, Snapshot, Stage};
 use tpn::{ArcKind, Network, NodeId};
 
 use super::demand_lines::status_by_checker;
+use super::place::find_places;
 use super::plan_lines::PlanLines;
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
@@ -54,6 +55,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         review.events = lines.events();
         review.traverses = lines.traverses();
     }
+    find_places(&mut review, snapshot);
     review.judge(&FlightRules::default(), None);
     review
 }

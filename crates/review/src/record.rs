@@ -1,26 +1,38 @@
 //! What a board adds to a review: an append-only history of who said, acknowledged, approved and took back what, as a
 //! document that is kept with the mission (SPEC 16.2).
 //!
-//! Each entry names the content and the plan that it is about, and is sealed over the entries before it: one that is
-//! altered, missing or put elsewhere is noticed when the document is read. It is no signature: whoever writes the whole
-//! document again is found out by the last digest alone, which a report prints.
+//! Each entry names the content and the plan that it is about, is sealed over the entries before it, and is signed: one
+//! that is altered, missing or put elsewhere is noticed when the document is read, and only what trusted keys have signed
+//! counts ([`Record::judge`]). Whoever leaves out the last entries is found out by the last digest alone, which a report
+//! prints.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
+use jiff::Timestamp;
 use serde_json::{Map, Value, json};
 
+use super::check::{Check, check, moment};
 pub use super::entry::{Act, Entry, LineKey, Rate, Runs, Said, SeenLine, Subject, Who, seen_lines};
+use super::keys::{SecretKey, Trust};
 use super::sealed::Sealed;
 use super::{FlightRules, former_record};
 
 /// The history of one mission's review, with what was approved and the runs that were made.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Record {
     /// The mission's name.
     pub mission: String,
     /// Each entry after those that it was made after.
     entries: Vec<Entry>,
+    /// What was found of each entry, for `trust` at `now`.
+    checks: Vec<Check>,
+    /// Whose signatures count.
+    trust: Trust,
+    /// When the entries were checked.
+    now: Option<Timestamp>,
+    /// Where each entry is, by its digest.
+    numbers: BTreeMap<String, usize>,
     /// The digests of the entries that no other was made after.
     heads: BTreeSet<String>,
     /// What approvals are about, by its digest.
@@ -37,7 +49,10 @@ pub const MAX_RUNS_KEPT: usize = 8;
 static USUAL_RULES: LazyLock<FlightRules> = LazyLock::new(FlightRules::default);
 
 /// The format of the document.
-pub const FORMAT: &str = "enroute-review/2";
+pub const FORMAT: &str = "enroute-review/3";
+
+/// The format of the version before, whose entries are not signed.
+const UNSIGNED_FORMAT: &str = "enroute-review/2";
 
 /// How the formats of all versions begin.
 const FORMATS: &str = "enroute-review/";
@@ -71,6 +86,17 @@ pub fn is_record(document: &Value) -> bool {
     document["format"].as_str().is_some_and(|format| format.starts_with(FORMATS))
 }
 
+/// Two records are the same if they have the same in them, whoever looks at them.
+impl PartialEq for Record {
+    fn eq(&self, other: &Self) -> bool {
+        let parts = |it: &Self| (it.mission.clone(), it.heads.clone());
+        parts(self) == parts(other)
+            && self.entries == other.entries
+            && self.subjects == other.subjects
+            && self.runs == other.runs
+    }
+}
+
 impl Record {
     /// The record of a mission of which nobody has said anything.
     pub fn new(mission: &str) -> Self {
@@ -87,9 +113,48 @@ impl Record {
         &self.entries
     }
 
+    /// The entries, each with what was found of it.
+    pub fn checked(&self) -> impl DoubleEndedIterator<Item = (&Entry, &Check)> {
+        self.entries.iter().zip(&self.checks)
+    }
+
+    /// The entries that count: those that trusted keys have signed, and whose signers may do what they did.
+    pub fn counted(&self) -> impl DoubleEndedIterator<Item = &Entry> {
+        self.checked().filter(|(_, check)| check.counts()).map(|(entry, _)| entry)
+    }
+
+    /// The entries that count and have not been taken back.
+    pub fn standing_entries(&self) -> impl DoubleEndedIterator<Item = &Entry> {
+        let withdrawn = self.withdrawn();
+        self.counted().filter(move |entry| !withdrawn.contains_key(entry.digest()))
+    }
+
+    /// Checks the entries again: for whom some keys are trusted, and at which time (ISO 8601, in UTC). Until then nothing
+    /// counts.
+    pub fn judge(&mut self, trust: &Trust, now: &str) {
+        self.now = moment(now);
+        self.trust = trust.clone();
+        self.check_again();
+    }
+
+    fn check_again(&mut self) {
+        let of = |entry| check(self, entry, &self.trust, self.now);
+        self.checks = self.entries.iter().map(of).collect();
+    }
+
+    /// When the entries were checked.
+    pub(super) fn now(&self) -> Option<Timestamp> {
+        self.now
+    }
+
     /// The entry of this digest.
     pub fn entry(&self, digest: &str) -> Option<&Entry> {
-        self.entries.iter().find(|entry| entry.digest() == digest)
+        self.entries.get(*self.numbers.get(digest)?)
+    }
+
+    /// The number of an entry, from 1; 0 if there is none.
+    pub fn number(&self, digest: &str) -> usize {
+        self.numbers.get(digest).map_or(0, |index| index + 1)
     }
 
     /// What an approval is about.
@@ -110,12 +175,14 @@ impl Record {
             self.heads.remove(former);
         }
         self.heads.insert(entry.digest().to_owned());
+        self.checks.push(check(self, &entry, &self.trust, self.now));
+        self.numbers.insert(entry.digest().to_owned(), self.entries.len());
         self.entries.push(entry);
     }
 
     /// The entries that have been taken back, by whom.
     pub fn withdrawn(&self) -> BTreeMap<&str, &Entry> {
-        let withdrawals = self.entries.iter().filter_map(|entry| match &entry.act {
+        let withdrawals = self.counted().filter_map(|entry| match &entry.act {
             Act::Withdraw { of, .. } => Some((of.as_str(), entry)),
             _ => None,
         });
@@ -124,9 +191,7 @@ impl Record {
 
     /// The latest approval that has not been taken back, with what was approved.
     pub fn last_approval(&self) -> Option<(&Entry, &Subject)> {
-        let withdrawn = self.withdrawn();
-        let standing = self.entries.iter().rev().filter(|entry| !withdrawn.contains_key(entry.digest()));
-        standing.into_iter().find_map(|entry| Some((entry, self.subject(entry)?)))
+        self.standing_entries().rev().find_map(|entry| Some((entry, self.subject(entry)?)))
     }
 
     /// The flight rules: those that were set last, otherwise the usual ones.
@@ -136,25 +201,52 @@ impl Record {
 
     /// The flight rules that were set last, with who set them.
     pub fn ruled(&self) -> Option<(&Entry, &FlightRules)> {
-        self.entries.iter().rev().find_map(|entry| match &entry.act {
+        self.counted().rev().find_map(|entry| match &entry.act {
             Act::Rules { rules } => Some((entry, rules)),
             _ => None,
         })
     }
 
-    /// Adds an entry after all others.
-    pub fn add(&mut self, who: Who, act: Act) {
-        let Who { by, role, time, content_hash, plan_hash } = who;
-        let former = self.heads.iter().cloned().collect();
-        self.push(Sealed::new(Said { by, role, time, content_hash, plan_hash, former, act }));
+    /// Adds an entry after all others, signed.
+    pub fn add(&mut self, who: Who, act: Act, secret: &SecretKey) {
+        let said = Said { rules: self.rules().digest(), ..self.said(who, act) };
+        self.push(Entry::signed(said, secret));
     }
 
-    /// Adds an approval of `subject`.
-    pub fn approve(&mut self, who: Who, subject: Subject, text: String) {
+    /// Adds an entry as earlier versions wrote it: without a signature, so that it does not count.
+    pub(super) fn add_unsigned(&mut self, who: Who, act: Act) {
+        self.push(Entry::new(Sealed::new(self.said(who, act)), String::new()));
+    }
+
+    fn said(&self, who: Who, act: Act) -> Said {
+        let Who { by, role, time, content_hash, plan_hash } = who;
+        let former = self.heads.iter().cloned().collect();
+        let (key, rules, acknowledged) = (None, String::new(), Vec::new());
+        Said { by, key, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
+    }
+
+    /// Adds an approval of `subject`, signed; `acknowledged` are the digests of what it relies on: see
+    /// [`Standing::relied_on`](super::Standing::relied_on).
+    pub fn approve(
+        &mut self,
+        who: Who,
+        subject: Subject,
+        text: String,
+        acknowledged: Vec<String>,
+        secret: &SecretKey,
+    ) {
+        let rules = subject.rules.digest();
+        let subject = self.keep_subject(subject);
+        let said = Said { rules, acknowledged, ..self.said(who, Act::Approve { subject, text }) };
+        self.push(Entry::signed(said, secret));
+    }
+
+    /// Keeps what is approved. Returns its digest.
+    pub(super) fn keep_subject(&mut self, subject: Subject) -> String {
         let subject = Sealed::new(subject);
         let digest = subject.digest().to_owned();
         self.subjects.insert(digest.clone(), subject);
-        self.add(who, Act::Approve { subject: digest, text });
+        digest
     }
 
     /// Keeps what runs of a content came to, instead of what runs of the same content came to before.
@@ -172,8 +264,8 @@ impl Record {
 
     /// The document, on several lines.
     pub fn to_json(&self) -> String {
-        let entries =
-            self.entries.iter().map(|entry| json!({ "digest": entry.digest(), "said": entry.raw() }));
+        let entry = |entry: &Entry| json!({ "digest": entry.digest(), "said": entry.raw(), "signature": entry.signature() });
+        let entries = self.entries.iter().map(entry);
         let subjects: Map<String, Value> =
             self.subjects.iter().map(|(digest, subject)| (digest.clone(), subject.raw().clone())).collect();
         let document = json!({
@@ -190,13 +282,13 @@ impl Record {
         text
     }
 
-    /// Reads the document, and checks its history. Documents of the version before have none: what was said and signed
-    /// becomes one, in order of time.
+    /// Reads the document, and checks that its history is whole. Whose signatures count is a matter of [`Record::judge`].
+    /// Documents of the first version have no history: what was said and approved becomes one, in order of time.
     pub fn from_json(text: &str) -> Result<Self, RecordError> {
         let damaged = |error: serde_json::Error| RecordError::Damaged(error.to_string());
         let mut value: Value = serde_json::from_str(text).map_err(damaged)?;
         match value["format"].as_str() {
-            Some(FORMAT) => {}
+            Some(FORMAT | UNSIGNED_FORMAT) => {}
             Some(former_record::FORMAT) => return former_record::read(value).map_err(damaged),
             Some(newer) if newer.starts_with(FORMATS) => {
                 return Err(RecordError::Newer { found: newer.to_owned() });
@@ -236,12 +328,12 @@ impl Record {
         for (index, mut entry) in entries.into_iter().enumerate() {
             // An index would make a member of what is no object, or panic.
             let said = entry.get_mut("said").map(Value::take).unwrap_or_default();
-            let said = Entry::read(said).map_err(damaged)?;
-            record.check(&said, entry["digest"].as_str().unwrap_or_default(), &known).map_err(|why| {
+            let said = Sealed::<Said>::read(said).map_err(damaged)?;
+            record.is_next(&said, entry["digest"].as_str().unwrap_or_default(), &known).map_err(|why| {
                 RecordError::Broken(format!("entry {} ({}, {}) {why}", index + 1, said.by, said.time))
             })?;
             known.insert(said.digest().to_owned());
-            record.push(said);
+            record.push(Entry::new(said, entry["signature"].as_str().unwrap_or_default().to_owned()));
         }
         let heads: BTreeSet<String> = serde_json::from_value(value["heads"].take()).map_err(damaged)?;
         if heads != record.heads {
@@ -251,7 +343,12 @@ impl Record {
     }
 
     /// What is wrong with an entry that comes after the `known` ones.
-    fn check(&self, entry: &Entry, digest: &str, known: &BTreeSet<String>) -> Result<(), &'static str> {
+    fn is_next(
+        &self,
+        entry: &Sealed<Said>,
+        digest: &str,
+        known: &BTreeSet<String>,
+    ) -> Result<(), &'static str> {
         match &entry.act {
             _ if entry.digest() != digest => Err("does not say what it said"),
             _ if known.contains(digest) => Err("is there twice"),
@@ -270,17 +367,26 @@ impl Record {
     /// that it was made after; otherwise they are in order of time.
     pub fn merge(&mut self, other: Self) -> usize {
         let before = self.entries.len();
-        let known: BTreeSet<String> = self.entries.iter().map(|it| it.digest().to_owned()).collect();
-        let new: Vec<Entry> =
-            other.entries.into_iter().filter(|entry| !known.contains(entry.digest())).collect();
+        self.subjects.extend(other.subjects);
+        let mut new = Vec::new();
+        for entry in other.entries {
+            match self.numbers.get(entry.digest()) {
+                None => new.push(entry),
+                // The same words with a signature that is one.
+                Some(&known) if entry.is_signed() => self.entries[known] = entry,
+                Some(_) => {}
+            }
+        }
         if !new.is_empty() {
             let all = std::mem::take(&mut self.entries).into_iter().chain(new).collect();
             self.heads.clear();
+            self.numbers.clear();
+            self.checks.clear();
             for entry in in_order(all) {
                 self.push(entry);
             }
         }
-        self.subjects.extend(other.subjects);
+        self.check_again();
         for runs in other.runs {
             if self.runs_of(&runs.content_hash).is_none_or(|known| known.tally.runs < runs.tally.runs) {
                 self.keep_runs(runs);
@@ -292,7 +398,7 @@ impl Record {
 
 /// Entries in order of time, each after those that it was made after: one order, whatever order they come in.
 fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
-    let all: BTreeSet<&str> = entries.iter().map(Sealed::digest).collect();
+    let all: BTreeSet<&str> = entries.iter().map(Entry::digest).collect();
     let mut waits_for: Vec<usize> = Vec::with_capacity(entries.len());
     let mut after: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     let mut ready = BTreeSet::new();

@@ -4,8 +4,34 @@ use serde_json::{Value, json};
 use snapshot::Goal;
 use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
+use super::keys::{KeyRing, Person, SecretKey, Trust};
 use super::record::{Act, Record, RecordError, Runs, Subject, Who};
-use super::{FlightRules, since};
+use super::{FlightRules, Signature, since};
+
+/// The key of a person of these tests: the same for the same name.
+pub(super) fn key(name: &str) -> SecretKey {
+    let mut bytes = [7; 32];
+    bytes.iter_mut().zip(name.bytes()).for_each(|(byte, letter)| *byte = letter);
+    SecretKey::from_bytes(bytes)
+}
+
+/// Trusts these people.
+pub(super) fn trust(names: &[&str]) -> Trust {
+    let mut ring = KeyRing::default();
+    for name in names {
+        ring.add(Person::new(name, key(name))).expect("a name of its own");
+    }
+    ring.trust()
+}
+
+/// A time after everything in these tests.
+pub(super) const NOW: &str = "2026-02-01T00:00:00Z";
+
+/// A record for somebody who trusts the usual people.
+pub(super) fn judged(mut record: Record) -> Record {
+    record.judge(&trust(&["Chair", "Ada", "Grace", "Katherine"]), NOW);
+    record
+}
 
 pub(super) fn who(by: &str, time: &str) -> Who {
     Who {
@@ -31,7 +57,8 @@ pub(super) fn subject() -> Subject {
 }
 
 pub(super) fn comment(text: &str) -> Act {
-    Act::Comment { about: Some("Group-Wait#1".to_owned()), text: text.to_owned() }
+    let to = Some(key("Grace").public());
+    Act::Comment { about: Some("Group-Wait#1".to_owned()), to, text: text.to_owned() }
 }
 
 fn runs(content_hash: &str, runs: u64) -> Runs {
@@ -40,23 +67,24 @@ fn runs(content_hash: &str, runs: u64) -> Runs {
     Runs::new(content_hash, &Robustness { settings, tally })
 }
 
-/// One of every act.
+/// One of nearly every act.
 fn full() -> Record {
-    let mut record = Record::new("enroute");
+    let mut record = judged(Record::new("enroute"));
     let rules = FlightRules { slope_deg: None, clearance_m: Some(1.0), ..FlightRules::default() };
-    record.add(who("Chair", "2026-01-01T00:00:00Z"), Act::Rules { rules });
-    record.add(who("Ada", "2026-01-02T00:00:00Z"), comment("Why \"this\" path?\nIt is longer."));
-    let asked = record.entries()[1].digest().to_owned();
-    record
-        .add(who("Grace", "2026-01-03T00:00:00Z"), Act::Resolve { of: asked.clone(), text: "Shade.".into() });
-    record.add(
-        who("Ada", "2026-01-04T00:00:00Z"),
-        Act::Reopen { of: asked.clone(), text: "Not at noon.".into() },
-    );
-    record.add(who("Ada", "2026-01-05T00:00:00Z"), Act::Resolve { of: asked, text: String::new() });
-    record.approve(who("Ada", "2026-01-06T00:00:00Z"), subject(), "Watch the margin.".to_owned());
-    let approved = record.entries()[5].digest().to_owned();
-    record.add(who("Ada", "2026-01-07T00:00:00Z"), Act::Withdraw { of: approved, text: "A slip.".into() });
+    let say = |record: &mut Record, by: &str, day: u32, act: Act| {
+        record.add(who(by, &format!("2026-01-{day:02}T00:00:00Z")), act, &key(by));
+        record.entries().last().expect("it was added").digest().to_owned()
+    };
+    say(&mut record, "Chair", 1, Act::Rules { rules: rules.clone() });
+    let of = say(&mut record, "Ada", 2, comment("Why \"this\" path?\nIt is longer."));
+    say(&mut record, "Grace", 3, Act::Resolve { of: of.clone(), text: "Shade.".into() });
+    say(&mut record, "Ada", 4, Act::Reopen { of: of.clone(), text: "Not at noon.".into() });
+    say(&mut record, "Ada", 5, Act::Resolve { of, text: "It is night.".into() });
+    let subject = Subject { rules, ..subject() };
+    let ada = who("Ada", "2026-01-06T00:00:00Z");
+    record.approve(ada, subject, "Watch the margin.".to_owned(), Vec::new(), &key("Ada"));
+    let of = record.entries()[5].digest().to_owned();
+    say(&mut record, "Ada", 7, Act::Withdraw { of, text: "A slip.".into() });
     record.keep_runs(runs("c1", 20));
     record
 }
@@ -65,12 +93,14 @@ fn full() -> Record {
 fn a_record_is_read_back_as_it_was_written() {
     let record = full();
     assert_eq!(Record::from_json(&record.to_json()), Ok(record.clone()));
+    assert_eq!(record.counted().count(), record.entries().len());
     // Programs that write whole numbers without a point leave it whole.
     let value: Value = serde_json::from_str(&record.to_json()).expect("JSON");
     let spelled = value.to_string();
     let otherwise = spelled.replace("\"clearance_m\":1.0,", "\"clearance_m\":1,");
     assert_ne!(spelled, otherwise);
-    assert_eq!(Record::from_json(&otherwise).map(|it| it.rules().clone()), Ok(record.rules().clone()));
+    let read = Record::from_json(&otherwise).map(judged);
+    assert_eq!(read.map(|it| it.rules().clone()), Ok(record.rules().clone()));
     assert_eq!(record.heads().count(), 1);
     assert_eq!(record.runs_of("c1").map(Runs::robustness).expect("runs").tally.runs, 20);
 }
@@ -128,9 +158,9 @@ fn other_documents_and_later_versions_are_refused_as_what_they_are() {
         read("{\"format\":\"enroute-plan/1\"}"),
         Err(RecordError::Format { found }) if found.contains("enroute-plan/1")
     ));
-    assert!(matches!(read("{\"format\":\"enroute-review/3\"}"), Err(RecordError::Newer { .. })));
+    assert!(matches!(read("{\"format\":\"enroute-review/4\"}"), Err(RecordError::Newer { .. })));
     for damaged in
-        ["{", "{\"format\":\"enroute-review/2\"}", "{\"format\":\"enroute-review/1\",\"comments\":[{}]}"]
+        ["{", "{\"format\":\"enroute-review/3\"}", "{\"format\":\"enroute-review/1\",\"comments\":[{}]}"]
     {
         assert!(matches!(read(damaged), Err(RecordError::Damaged(_))), "{damaged}");
     }
@@ -163,9 +193,11 @@ fn what_the_version_before_kept_becomes_a_history_the_same_everywhere() {
     let told: Vec<(&str, &str)> =
         record.entries().iter().map(|entry| (entry.by.as_str(), entry.act.name())).collect();
     assert_eq!(told, [("Grace", "approved"), ("Ada", "commented"), ("Chair", "set the flight rules")]);
-    assert_eq!(record.rules().slope_deg, Some(2.5));
-    let (_, subject) = record.last_approval().expect("an approval");
-    assert_eq!(subject.counts, [1, 2, 0]);
+    // Nobody has signed any of it: it is told, and counts for nothing.
+    let record = judged(record);
+    assert!(record.checked().all(|(_, check)| check.signature == Signature::Unsigned && !check.counts()));
+    assert_eq!((record.last_approval(), record.rules()), (None, &FlightRules::default()));
+    assert_eq!(record.subject(&record.entries()[0]).map(|subject| subject.counts), Some([1, 2, 0]));
     assert_eq!(Record::from_json(&document), Ok(record.clone()));
     let mut twice = record.clone();
     assert_eq!(twice.merge(Record::from_json(&document).expect("the same")), 0);
@@ -176,8 +208,8 @@ fn what_the_version_before_kept_becomes_a_history_the_same_everywhere() {
 fn what_two_people_did_apart_is_joined_to_one_history_whoever_joins_it() {
     let common = full();
     let (mut mine, mut theirs) = (common.clone(), common.clone());
-    mine.add(who("Ada", "2026-01-10T00:00:00Z"), comment("mine"));
-    theirs.add(who("Grace", "2026-01-09T00:00:00Z"), comment("theirs"));
+    mine.add(who("Ada", "2026-01-10T00:00:00Z"), comment("mine"), &key("Ada"));
+    theirs.add(who("Grace", "2026-01-09T00:00:00Z"), comment("theirs"), &key("Grace"));
     theirs.keep_runs(runs("c1", 40));
     theirs.keep_runs(runs("c2", 10));
     let (mut joined, mut other_way) = (mine.clone(), theirs.clone());
@@ -187,7 +219,7 @@ fn what_two_people_did_apart_is_joined_to_one_history_whoever_joins_it() {
     assert_eq!(joined.runs_of("c1").map(|runs| runs.runs), Some(40));
     assert_eq!(joined.merge(theirs), 0, "nothing twice");
     // What comes next closes both.
-    joined.add(who("Chair", "2026-01-11T00:00:00Z"), comment("both read"));
+    joined.add(who("Chair", "2026-01-11T00:00:00Z"), comment("both read"), &key("Chair"));
     assert_eq!(joined.heads().count(), 1);
     let texts: Vec<&str> = joined.entries().iter().skip(7).map(|entry| entry.act.text()).collect();
     assert_eq!(texts, ["theirs", "mine", "both read"]);
@@ -197,11 +229,11 @@ fn what_two_people_did_apart_is_joined_to_one_history_whoever_joins_it() {
 #[test]
 fn entries_stay_after_those_that_they_were_made_after_whatever_their_clocks_say() {
     let mut mine = Record::default();
-    mine.add(who("Ada", "2026-01-05T00:00:00Z"), comment("first"));
+    mine.add(who("Ada", "2026-01-05T00:00:00Z"), comment("first"), &key("Ada"));
     let mut theirs = mine.clone();
     // Grace's clock is slow.
-    theirs.add(who("Grace", "2026-01-01T00:00:00Z"), comment("second"));
-    mine.add(who("Ada", "2026-01-06T00:00:00Z"), comment("third"));
+    theirs.add(who("Grace", "2026-01-01T00:00:00Z"), comment("second"), &key("Grace"));
+    mine.add(who("Ada", "2026-01-06T00:00:00Z"), comment("third"), &key("Ada"));
     mine.merge(theirs);
     let texts: Vec<&str> = mine.entries().iter().map(|entry| entry.act.text()).collect();
     assert_eq!(texts, ["first", "second", "third"]);

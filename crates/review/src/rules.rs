@@ -10,6 +10,7 @@ use serde_json::Value;
 use smol_str::SmolStr;
 
 use super::flight_rule::MissionRule;
+use super::sealed::Sealed;
 use super::seat::{self, Seat};
 
 /// The thresholds of a review.
@@ -116,6 +117,11 @@ impl FlightRules {
         }
         let rules: Self = serde_json::from_value(value).map_err(|error| error.to_string())?;
         rules.problem().map_or(Ok(rules), |problem| Err(problem.to_owned()))
+    }
+
+    /// The SHA-256 of the rules in hexadecimal, those of the board among them.
+    pub fn digest(&self) -> String {
+        Sealed::new(self.clone()).digest().to_owned()
     }
 
     /// The document, on several lines.

@@ -6,6 +6,7 @@ use smol_str::SmolStr;
 
 use crate::host::{FileKind, Save};
 use crate::library::MissionId;
+use crate::state::keys::KeyChange;
 
 /// Something that the host is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,12 @@ pub enum Effect {
     },
     /// Find what reviewers said of the open mission.
     RecallReview,
+    /// Add what another tab has kept of it since.
+    HearReview,
+    /// Change the keys that are kept.
+    ChangeKeys(KeyChange),
+    /// Find the keys that are kept.
+    RecallKeys,
     /// Add to what reviewers said of the open mission.
     JoinReview(Box<Record>),
     /// Keep what came as the review of the open mission and cannot be used.

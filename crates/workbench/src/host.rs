@@ -71,6 +71,9 @@ pub trait Host {
     /// A number that no other run has drawn.
     fn random(&mut self) -> u64;
 
+    /// 32 bytes that nobody can guess, for secret keys; `None` where there is no source of such.
+    fn secret_bytes(&mut self) -> Option<[u8; 32]>;
+
     /// Lets the user choose one file; [`HostEvent::FileOpened`] brings it. Must be called while handling a click or a
     /// key press: browsers refuse otherwise.
     fn open_file(&mut self, kind: FileKind);

@@ -122,6 +122,7 @@ impl Session {
             }
             self.version += 1;
         }
+        self.state.judge_by_the_clock();
         let is_waiting = self.state.snapshots.is_waiting();
         if is_waiting {
             self.state.snapshots.lose_patience(now_secs);
@@ -238,6 +239,11 @@ impl Session {
                 }
                 Effect::ReadMap(id, name) => Keeper::read_map(self.host.as_mut(), &id, &name),
                 Effect::ShowAddress => outside::show_address(&self.state, self.host.as_mut()),
+                Effect::HearReview => outside::hear_review(self.host.as_ref(), &mut self.state),
+                Effect::ChangeKeys(change) => {
+                    outside::change_keys(self.host.as_mut(), &mut self.state, change);
+                }
+                Effect::RecallKeys => outside::recall_keys(self.host.as_ref(), &mut self.state),
                 Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),
                 Effect::Restyle => self.window_effects.push(WindowEffect::Restyle),
             }

@@ -245,6 +245,12 @@ impl Host for TestHost {
         self.world.drawn.get().wrapping_mul(0x9e37_79b9_7f4a_7c15)
     }
 
+    fn secret_bytes(&mut self) -> Option<[u8; 32]> {
+        let mut bytes = [0; 32];
+        bytes[..8].copy_from_slice(&self.random().to_le_bytes());
+        Some(bytes)
+    }
+
     fn reduces_motion(&self) -> bool {
         self.world.reduces_motion.get()
     }

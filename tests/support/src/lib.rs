@@ -9,6 +9,7 @@ use workbench::Session;
 use workbench::command::Command;
 use workbench::outside::Remote as _;
 use workbench::state::chance::ChanceCommand;
+use workbench::state::review::ReviewCommand;
 
 pub use host::{TestHost, World};
 
@@ -71,8 +72,19 @@ impl App {
         assert_eq!(self.json()["robustness"]["runs"], runs);
     }
 
+    /// Creates a key of this name, where there is none, and signs with it from now on where nobody is named.
+    pub fn sign_as(&mut self, name: &str) {
+        if self.session.state().keys.ring().own_named(name).is_none() {
+            self.dispatch("review.createKey", &serde_json::json!({ "name": name }));
+        }
+        self.run(Command::Review(ReviewCommand::SignAs(name.to_owned())));
+    }
+
     /// Acknowledges every line for attention of the review, one by one.
     pub fn acknowledge_all(&mut self, name: &str) {
+        if self.session.state().keys.ring().own_named(name).is_none() {
+            self.sign_as(name);
+        }
         let items = self.json()["review"]["items"].as_array().expect("a list").clone();
         for (index, item) in items.iter().enumerate() {
             if item["status"] == "attention" && item["acknowledged"].is_null() {

@@ -64,6 +64,20 @@ fn type_into(app: &mut App, field: &str, text: &str) {
     app.settle();
 }
 
+/// Creates a key of this name, as a host page does, where there is none.
+fn sign_as(app: &mut App, name: &str) {
+    if !review(app)["people"].as_array().is_some_and(|people| people.iter().any(|it| it["name"] == name)) {
+        app.harness.state_mut().dispatch("review.createKey", &json!({ "name": name })).expect("a name");
+        app.settle();
+    }
+}
+
+/// Creates a key of this name in the panel.
+fn create_key(app: &mut App, name: &str) {
+    type_into(app, "Your name", name);
+    click_exactly(app, "Create key");
+}
+
 fn edit(app: &mut App) {
     let source = app.harness.state().source();
     app.harness.state_mut().set_source(&source.replace("PATH1=OK [450,450]", "PATH1=OK [460,460]"));
@@ -169,6 +183,7 @@ fn a_review_that_is_run_again_is_of_the_present_text_and_the_old_one_is_found_ag
 
 /// Acknowledges every line for attention, as a host page does.
 fn acknowledge_all(app: &mut App) {
+    sign_as(app, "Ada");
     let items = review(app)["items"].as_array().expect("lines").clone();
     for (index, item) in items.iter().enumerate() {
         if item["status"] == "attention" && item["acknowledged"].is_null() {
@@ -182,6 +197,7 @@ fn acknowledge_all(app: &mut App) {
 /// Approves what is shown, as a host page does.
 fn approve(app: &mut App, name: &str) {
     acknowledge_all(app);
+    sign_as(app, name);
     app.harness.state_mut().dispatch("review.approve", &json!({ "name": name })).expect("a current review");
     app.settle();
 }
@@ -189,7 +205,7 @@ fn approve(app: &mut App, name: &str) {
 #[test]
 fn an_approval_is_for_one_content_and_stays_with_it() {
     let mut app = reviewing();
-    type_into(&mut app, "Your name", "Ada Lovelace");
+    create_key(&mut app, "Ada Lovelace");
     // Each line for attention is acknowledged below itself, with the keyboard.
     let left = |app: &App| {
         let items = review(app)["items"].as_array().expect("lines").clone();
@@ -218,7 +234,7 @@ fn an_approval_is_for_one_content_and_stays_with_it() {
     edit(&mut app);
     assert_eq!(review(&app)["signed"]["stale"], true);
     app.harness.get_by_label("Plan: approval lapsed");
-    let refused = app.harness.state_mut().dispatch("review.approve", &json!({ "name": "Ada" }));
+    let refused = app.harness.state_mut().dispatch("review.approve", &json!({ "name": "Ada Lovelace" }));
     assert!(refused.is_err(), "a stale review cannot be approved");
     click(&mut app, "Review again");
     assert!(has(&app, "Since the last approval, text 1, plan "));
@@ -242,11 +258,12 @@ fn an_approval_is_for_one_content_and_stays_with_it() {
 #[test]
 fn a_comment_is_resolved_and_opened_again_by_name() {
     let mut app = reviewing();
-    let asked = json!({ "author": "Grace", "text": "Why so long?" });
+    sign_as(&mut app, "Grace");
+    sign_as(&mut app, "Ada");
+    let asked = json!({ "author": "Grace", "to": "Ada", "text": "Why so long?" });
     app.harness.state_mut().dispatch("review.comment", &asked).expect("a comment");
     app.settle();
     assert!(has(&app, "Comments, 1 open of 1"));
-    type_into(&mut app, "Your name", "Ada");
     click(&mut app, "Resolve… Why so long?");
     type_into(&mut app, "How was it resolved?", "It waits for light.");
     click_exactly(&mut app, "Resolve");
@@ -260,6 +277,7 @@ fn a_comment_is_resolved_and_opened_again_by_name() {
 #[test]
 fn the_board_is_part_of_the_flight_rules() {
     let mut app = reviewing();
+    create_key(&mut app, "Chris");
     click(&mut app, "Add role");
     type_into(&mut app, "Role 2", "Mobility");
     click(&mut app, "Apply rules");
@@ -276,6 +294,7 @@ fn a_mission_without_a_plan_cannot_be_approved() {
     app.settle();
     click(&mut app, "Review again");
     assert_eq!(review(&app)["status"], "failed");
+    sign_as(&mut app, "Ada");
     let refused = app.harness.state_mut().dispatch("review.approve", &json!({ "name": "Ada" }));
     assert!(refused.is_err_and(|error| error.to_string().contains("no plan")));
 }
@@ -326,7 +345,7 @@ fn comments_are_about_what_is_selected_and_are_found_in_the_next_run() {
     let mut app = reviewing();
     app.harness.state_mut().dispatch("go.select", &json!("Group-Wait#1")).expect("an activity");
     app.settle();
-    type_into(&mut app, "Your name", "Grace");
+    create_key(&mut app, "Grace");
     app.harness.get_by_role_and_label(Role::MultilineTextInput, "Comment").focus();
     app.settle();
     let field = app.harness.get_by_role_and_label(Role::MultilineTextInput, "Comment");
@@ -343,6 +362,7 @@ fn comments_are_about_what_is_selected_and_are_found_in_the_next_run() {
 #[test]
 fn a_full_storage_is_said_and_loses_nothing() {
     let mut app = reviewing();
+    sign_as(&mut app, "Grace");
     app.harness
         .state_mut()
         .dispatch("review.comment", &json!({ "author": "Grace", "text": "first" }))
@@ -381,12 +401,13 @@ fn a_full_storage_is_said_and_loses_nothing() {
 #[test]
 fn what_was_said_goes_into_a_file_and_comes_back_from_it() {
     let mut app = reviewing();
+    sign_as(&mut app, "Grace");
     app.harness
         .state_mut()
         .dispatch("review.comment", &json!({ "author": "Grace", "text": "Fine." }))
         .expect("a comment");
     let id = review(&app)["comments"][0]["id"].clone();
-    let resolve = json!({ "name": "Grace", "id": id });
+    let resolve = json!({ "name": "Grace", "id": id, "text": "It is." });
     app.harness.state_mut().dispatch("review.resolve", &resolve).expect("an open comment");
     approve(&mut app, "Grace");
     app.harness.state_mut().dispatch("review.save", &json!(null)).expect("something to save");
@@ -394,12 +415,17 @@ fn what_was_said_goes_into_a_file_and_comes_back_from_it() {
     let (name, bytes) = app.world.saved.borrow().last().cloned().expect("a file");
     assert_eq!(name, "enroute.review.json");
     let document: Value = serde_json::from_slice(&bytes).expect("JSON");
-    assert_eq!(document["format"], "enroute-review/2");
+    assert_eq!(document["format"], "enroute-review/3");
 
     let mut other = reviewing();
     assert_eq!(review(&other)["signed"], Value::Null);
     other.world.open_file(FileKind::Json, &name, &bytes);
     other.settle();
+    assert_eq!(review(&other)["signed"], Value::Null, "nobody knows these keys");
+    // Each key that the history names can be trusted, beside its fingerprint.
+    for name in ["Ada", "Grace"] {
+        click(&mut other, &format!("Trust {name}"));
+    }
     assert_eq!(review(&other)["signed"], review(&app)["signed"]);
     assert_eq!(review(&other)["comments"], review(&app)["comments"]);
     // Once more adds nothing.

@@ -16,6 +16,7 @@ use crate::input::{mission_of, read_text};
 use crate::opened::Opened;
 use crate::output::{Format, NO, WRONG, YES, any_error, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target};
+use crate::trust::Trusted;
 
 /// Compares two plans: what was added, removed, moved, re-chosen or done otherwise.
 ///
@@ -29,6 +30,8 @@ pub struct Args {
     /// The scenario of mission texts; the first of the file by default.
     #[arg(long)]
     scenario: Option<String>,
+    #[command(flatten)]
+    trusted: Trusted,
     #[command(flatten)]
     options: PlanOptions,
 }
@@ -84,10 +87,11 @@ impl Args {
         }
         let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
         if is_record(&value) {
-            let record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
+            let mut record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
+            self.trusted.judge(&mut record)?;
             let approved = record.last_approval();
-            let (_, approved) =
-                approved.with_context(|| format!("nobody has approved in the review {name}"))?;
+            let (_, approved) = approved
+                .with_context(|| format!("nobody whose key is trusted has approved in the review {name}"))?;
             return self.evaluated(path, &approved.source, approved.goal.clone(), approved.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;

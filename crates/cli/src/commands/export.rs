@@ -15,10 +15,10 @@ use serde_json::{Value, json};
 use snapshot::Snapshot;
 
 use crate::commands::import::{parse_degrees, parse_radius};
-use crate::commands::report::read_record;
 use crate::diagnostics::print_problems;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_verbatim};
 use crate::target::{PlanOptions, Target};
+use crate::trust::Trusted;
 
 /// Writes a plan's schedule for other tools.
 #[derive(clap::Args)]
@@ -53,6 +53,8 @@ pub struct Args {
     /// The history of the review, as the page saves it: how the plan stands with its board is written.
     #[arg(long, value_name = "REVIEW.json")]
     review: Option<PathBuf>,
+    #[command(flatten)]
+    trusted: Trusted,
     /// Writes to a file instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -110,7 +112,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 impl Args {
     fn text(&self, snapshot: &Snapshot) -> anyhow::Result<String> {
         let goal = self.target.goal()?;
-        let record = self.review.as_deref().map(read_record).transpose()?;
+        let record = self.review.as_deref().map(|path| self.trusted.read(path)).transpose()?;
         let hash = content_hash(&snapshot.source, snapshot.map.as_ref(), &goal, self.options.seed);
         let status = record.map_or(PlanStatus::Draft, |record| {
             let mut review = review(snapshot, &goal, self.options.seed, &mut || false);

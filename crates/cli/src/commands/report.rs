@@ -14,6 +14,7 @@ use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target};
+use crate::trust::Trusted;
 
 /// Reviews a mission: a checklist of its plan, and a report that prints and needs no network.
 #[derive(clap::Args)]
@@ -26,6 +27,8 @@ pub struct Args {
     /// The history of the review, as the page saves it, to stand in the report.
     #[arg(long, alias = "record", value_name = "REVIEW.json")]
     review: Option<PathBuf>,
+    #[command(flatten)]
+    trusted: Trusted,
     /// Flight rules to hold the plan against; otherwise those of the review, otherwise the usual ones.
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
@@ -44,7 +47,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let (snapshot, ground) = &mission.evaluate(args.options.seed, deadline)?;
     let limit = deadline.enforce(Undecided::Review);
     let mut review = review(snapshot, &args.target.goal()?, args.options.seed, &mut || false);
-    let record = args.review.as_deref().map(read_record).transpose()?.unwrap_or_default();
+    let record = args.review.as_deref().map(|path| args.trusted.read(path)).transpose()?.unwrap_or_default();
     let rules = match &args.rules {
         Some(path) => read_rules(path)?,
         None => record.rules().clone(),
@@ -89,12 +92,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         _ => YES,
     };
     Ok(exit(status))
-}
-
-/// Reads the history of a review, and checks it.
-pub fn read_record(path: &Path) -> anyhow::Result<Record> {
-    let record = Record::from_json(&read_text(path)?);
-    record.with_context(|| format!("cannot use {}", path.display()))
 }
 
 /// Reads flight rules.
@@ -148,6 +145,7 @@ fn line_json(line: &Line, more: Value) -> Value {
         "criterion": line.criterion,
         "span": line.span.map(|span| json!({ "start": span.start, "end": span.end, "line": line.line_number })),
         "names": line.names,
+        "place": line.place,
     });
     if let (Value::Object(members), Value::Object(more)) = (&mut value, more) {
         members.extend(more);

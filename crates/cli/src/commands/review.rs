@@ -1,91 +1,159 @@
-//! `enroute review`: checks the history of a review, and says how its plan stands with its board.
+//! `enroute review verify`: checks the history of a review, and says whether the board approved a content.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::Subcommand;
 use review::record::{Entry, RecordError, Runs, short};
-use review::{PlanStatus, Present, Record, Standing, review, standing};
+use review::{Check, PlanStatus, Present, Record, Review, Standing, Waiver, WaiverState, review, standing};
 use serde_json::{Value, json};
+use snapshot::Goal;
 
 use crate::deadline::Undecided;
 use crate::input::read_text;
+use crate::opened::Opened;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target};
+use crate::trust::Trusted;
 
-/// Checks the history of a review, and says how the plan stands with its board.
-///
-/// The exit status is 0 if the history is as it was written and, where a mission is given, the board has approved that
-/// mission; it is 1 if the history has been altered or the mission is not approved.
+/// Checks reviews without the page.
 #[derive(clap::Args)]
 pub struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Verify(Box<Verify>),
+}
+
+/// Checks a history: each signature, each date, and whether the board approved the content.
+///
+/// The exit status is 0 only if the history is whole and the board has approved the content with valid signatures of
+/// trusted keys; otherwise it is 1.
+#[derive(clap::Args)]
+struct Verify {
     /// The history, as the page saves it; `-` is standard input.
-    review: PathBuf,
-    /// The mission that is to be approved; otherwise what the last entry is about.
+    file: PathBuf,
+    /// The mission that is to be approved; otherwise the text of the last approval.
     #[arg(long, value_name = "FILE")]
     mission: Option<PathBuf>,
     /// The scenario of the mission; the first one by default.
     #[arg(long, requires = "mission")]
     scenario: Option<String>,
     #[command(flatten)]
+    trusted: Trusted,
+    /// An entry that the history must have, by its digest: later entries cannot be left out unnoticed.
+    #[arg(long, value_name = "DIGEST")]
+    has: Option<String>,
+    #[command(flatten)]
     options: PlanOptions,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let text = read_text(&args.review)?;
-    let record = match Record::from_json(&text) {
-        Ok(record) => record,
-        Err(RecordError::Broken(why)) => {
-            match args.options.format {
-                Format::Json => {
-                    print_json(&document("review-check", &[], json!({ "intact": false, "reason": why })))?;
-                }
-                Format::Text => print_text(&format!("the history has been altered: {why}\n"))?,
-            }
-            return Ok(exit(NO));
-        }
-        Err(other) => anyhow::bail!("cannot use {}: {other}", args.review.display()),
-    };
-    let Some(mission) = &args.mission else {
-        let last = record.entries().iter().rev().find(|entry| !entry.content_hash.is_empty());
-        let plan_hash = last.map(|entry| entry.plan_hash.as_str()).filter(|hash| !hash.is_empty());
-        let content_hash = last.map_or("", |entry| entry.content_hash.as_str());
-        let present = Present { content_hash, plan_hash, rules: record.rules(), review: None };
-        args.answer(&record, &standing(&record, &present), content_hash)?;
-        return Ok(exit(YES));
-    };
-    let target =
-        Target { file: mission.clone(), scenario: args.scenario.clone(), activity: None, bounds: None };
-    let deadline = args.options.time_limit.start();
-    let (snapshot, _) = target.open()?.evaluate(args.options.seed, deadline)?;
-    let limit = deadline.enforce(Undecided::Review);
-    let mut review = review(&snapshot, &target.goal()?, args.options.seed, &mut || false);
-    let found = record.runs_of(&review.content_hash).map(Runs::robustness);
-    review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);
-    let standing = standing(&record, &Present::of_review(&review));
-    limit.answered();
-    args.answer(&record, &standing, &review.content_hash)?;
-    Ok(exit(if standing.status.is_approved() { YES } else { NO }))
+    let Command::Verify(args) = &args.command;
+    args.run()
 }
 
-impl Args {
-    fn answer(&self, record: &Record, standing: &Standing<'_>, content_hash: &str) -> anyhow::Result<()> {
-        let blockers = if self.mission.is_some() { standing.blockers() } else { Vec::new() };
-        match self.options.format {
-            Format::Json => {
-                print_json(&document("review-check", &[], body(record, standing, content_hash, &blockers)))
-            }
-            Format::Text => print_text(&words(record, standing, content_hash, &blockers)),
-        }
+/// What was found of a history.
+struct Found<'a> {
+    record: &'a Record,
+    standing: Standing<'a>,
+    content_hash: &'a str,
+    blockers: Vec<String>,
+}
+
+impl Found<'_> {
+    fn is_approved(&self) -> bool {
+        self.standing.status.is_approved() && self.blockers.is_empty()
     }
 }
 
-fn words(record: &Record, standing: &Standing<'_>, content_hash: &str, blockers: &[String]) -> String {
+impl Verify {
+    fn run(&self) -> anyhow::Result<ExitCode> {
+        let mut record = match Record::from_json(&read_text(&self.file)?) {
+            Ok(record) => record,
+            Err(RecordError::Broken(why)) => return self.refuse(&why),
+            Err(other) => anyhow::bail!("cannot use {}: {other}", self.file.display()),
+        };
+        self.trusted.judge(&mut record)?;
+        if let Some(missing) = self.has.as_deref().filter(|digest| record.entry(digest).is_none()) {
+            return self.refuse(&format!("the entry {missing} is not there"));
+        }
+        let review = self.review(&record)?;
+        let (present, content_hash) = match &review {
+            Some(review) => (Present::of_review(review), review.content_hash.as_str()),
+            None => {
+                let last = record.entries().iter().rev().find(|entry| !entry.content_hash.is_empty());
+                let content_hash = last.map_or("", |entry| entry.content_hash.as_str());
+                let rules = record.rules();
+                (Present { content_hash, plan_hash: None, rules, review: None }, content_hash)
+            }
+        };
+        let standing = standing(&record, &present);
+        let mut blockers = standing.blockers();
+        if record.last_approval().is_none() {
+            let none = if self.trusted.is_empty() {
+                "no keys are trusted: name them with --trust"
+            } else {
+                "nobody whose key is trusted has approved"
+            };
+            blockers.push(none.to_owned());
+        }
+        let found = Found { record: &record, standing, content_hash, blockers };
+        match self.options.format {
+            Format::Json => print_json(&document("review-check", &[], body(&found)))?,
+            Format::Text => print_text(&words(&found))?,
+        }
+        Ok(exit(if found.is_approved() { YES } else { NO }))
+    }
+
+    /// The history is not whole.
+    fn refuse(&self, why: &str) -> anyhow::Result<ExitCode> {
+        match self.options.format {
+            Format::Json => {
+                let body = json!({ "intact": false, "approved": false, "reason": why });
+                print_json(&document("review-check", &[], body))?;
+            }
+            Format::Text => print_text(&format!("the history has been altered: {why}\n"))?,
+        }
+        Ok(exit(NO))
+    }
+
+    /// The review of the mission, or of the text that was approved last; nothing if there is neither.
+    fn review(&self, record: &Record) -> anyhow::Result<Option<Review>> {
+        let (mission, goal, seed) = match (&self.mission, record.last_approval()) {
+            (Some(mission), _) => {
+                let (file, scenario) = (mission.clone(), self.scenario.clone());
+                let target = Target { file, scenario, activity: None, bounds: None };
+                (target.open()?, target.goal()?, self.options.seed)
+            }
+            (None, Some((_, approved))) => {
+                let goal: Goal = approved.goal.clone();
+                (Opened::new(&self.file, approved.source.clone(), goal.clone()), goal, approved.seed)
+            }
+            (None, None) => return Ok(None),
+        };
+        let deadline = self.options.time_limit.start();
+        let (snapshot, _) = mission.evaluate(seed, deadline)?;
+        let limit = deadline.enforce(Undecided::Review);
+        let mut review = review(&snapshot, &goal, seed, &mut || false);
+        let found = record.runs_of(&review.content_hash).map(Runs::robustness);
+        review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);
+        limit.answered();
+        Ok(Some(review))
+    }
+}
+
+fn words(found: &Found<'_>) -> String {
+    let Found { record, standing, content_hash, blockers } = found;
     let count = record.entries().len();
     let entries = if count == 1 { "entry" } else { "entries" };
     let mut out = format!("the history is as it was written: {count} {entries}\n");
-    for (index, entry) in record.entries().iter().enumerate() {
-        out.push_str(&format!("{:>4}  {}\n", index + 1, told(record, entry)));
+    for (index, (entry, check)) in record.checked().enumerate() {
+        out.push_str(&format!("{:>4}  {}\n", index + 1, told(record, entry, check)));
     }
     out.push_str(&format!(
         "{}: {}; content {}\n",
@@ -96,8 +164,10 @@ fn words(record: &Record, standing: &Standing<'_>, content_hash: &str, blockers:
     if let (PlanStatus::Lapsed, Some((last, why))) = (standing.status, standing.lapsed) {
         out.push_str(&format!("{} approved {}: {why}\n", last.by, last.time));
     }
-    if !standing.open_comments.is_empty() && blockers.is_empty() {
-        out.push_str(&format!("open comments: {}\n", standing.open_comments.len()));
+    for Waiver { entry, line, until, state } in &standing.waivers {
+        let lapses = if *state == WaiverState::Lapsed { "lapsed" } else { "lapses" };
+        let text = &line.text;
+        out.push_str(&format!("waiver {}, {lapses} {until}, by {}: {text}\n", state.name(), entry.by));
     }
     for blocker in blockers {
         out.push_str(&format!("in the way: {blocker}\n"));
@@ -109,26 +179,29 @@ fn words(record: &Record, standing: &Standing<'_>, content_hash: &str, blockers:
 }
 
 /// An entry in one line.
-fn told(record: &Record, entry: &Entry) -> String {
+fn told(record: &Record, entry: &Entry, check: &Check) -> String {
     let role = if entry.role.is_empty() { String::new() } else { format!(" ({})", entry.role) };
-    let number =
-        |of: &str| record.entries().iter().position(|it| it.digest() == of).map_or(0, |index| index + 1);
-    let of = entry.act.of().map(|of| format!(" entry {}", number(of))).unwrap_or_default();
+    let of = entry.act.of().map(|of| format!(" entry {}", record.number(of))).unwrap_or_default();
     let text = match entry.act.text().replace('\n', " ") {
         text if text.is_empty() => text,
         text => format!(": {text}"),
     };
     let taken_back = record.withdrawn().get(entry.digest()).map(|by| format!(" [taken back by {}]", by.by));
     let taken_back = taken_back.unwrap_or_default();
-    format!("{}  {}{role} {}{of}{text}{taken_back}", entry.time, entry.by, entry.act.name())
+    let check = check.words();
+    format!("{}  {}{role} {}{of}{text}{taken_back} [{check}]", entry.time, entry.by, entry.act.name())
 }
 
-fn body(record: &Record, standing: &Standing<'_>, content_hash: &str, blockers: &[String]) -> Value {
+fn body(found: &Found<'_>) -> Value {
+    let Found { record, standing, content_hash, blockers } = found;
     let withdrawn = record.withdrawn();
-    let entries = record.entries().iter().map(|entry| {
+    let entries = record.checked().map(|(entry, check)| {
         json!({
             "digest": entry.digest(),
             "said": entry.raw(),
+            "signature": check.signature,
+            "problem": check.problem,
+            "counts": check.counts(),
             "withdrawn_by": withdrawn.get(entry.digest()).map(|by| &by.by),
         })
     });
@@ -136,14 +209,25 @@ fn body(record: &Record, standing: &Standing<'_>, content_hash: &str, blockers: 
         let given: Vec<&str> = seat.given.iter().map(|entry| entry.by.as_str()).collect();
         json!({ "role": seat.role, "wanted": seat.wanted, "given": given })
     });
+    let waivers = standing.waivers.iter().map(|waiver| {
+        json!({
+            "item": waiver.line,
+            "reason": waiver.entry.act.text(),
+            "by": waiver.entry.by,
+            "until": waiver.until,
+            "state": waiver.state,
+        })
+    });
     json!({
         "intact": true,
+        "approved": found.is_approved(),
         "mission": record.mission,
         "plan_status": standing.status,
         "content_hash": content_hash,
         "board": seats.collect::<Vec<Value>>(),
         "open_comments": standing.open_comments.len(),
         "blockers": blockers,
+        "waivers": waivers.collect::<Vec<Value>>(),
         "heads": record.heads().collect::<Vec<&str>>(),
         "entries": entries.collect::<Vec<Value>>(),
     })

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::Output;
 
+use review::keys::{KeyRing, Person, SecretKey};
 use serde_json::{Value, json};
 
 use crate::command::enroute;
@@ -125,27 +126,47 @@ fn every_command_that_plans_stops_at_its_time_limit() {
     }
 }
 
-/// The history of a board that approved the mission, as a file; what was approved is taken from a report.
-fn approved_history(name: &str) -> (PathBuf, String) {
+/// A file of these tests.
+fn written_file(name: &str, text: &str) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&path, text).expect("a file");
+    path.to_str().expect("a path in UTF-8").to_owned()
+}
+
+/// Ada's key, and the keys that a board trusts, as a file.
+fn ada(name: &str) -> (SecretKey, String) {
+    let secret = SecretKey::from_bytes([7; 32]);
+    let mut ring = KeyRing::default();
+    ring.add(Person::new("Ada", secret.clone())).expect("a name");
+    (secret, written_file(name, &ring.to_json(false)))
+}
+
+/// The history of a board that approved the mission, as a file, with the keys of the board; what was approved is taken
+/// from a report.
+fn approved_history(name: &str) -> (String, String, String) {
     use review::record::{Act, LineKey, Record, Subject, Who};
     use review::{FlightRules, Section};
     let output = enroute(&["report", SMALL, "--format", "json"]);
     let report: Value = serde_json::from_str(&written(&output)).expect("JSON");
     let text = |member: &str| report[member].as_str().expect("a text").to_owned();
-    let who = |by: &str| Who {
-        by: by.to_owned(),
+    let who = || Who {
+        by: "Ada".to_owned(),
         role: "Reviewer".to_owned(),
-        time: "2026-01-02T03:04:05Z".to_owned(),
+        time: "2024-01-02T03:04:05Z".to_owned(),
         content_hash: text("content_hash"),
         plan_hash: text("plan_hash"),
     };
+    let (secret, keys) = ada(&format!("{name}.keys.json"));
     let mut record = Record::new("small");
+    let ring = KeyRing::from_json(&std::fs::read_to_string(&keys).expect("a file")).expect("keys");
+    record.judge(&ring.trust(), "2024-01-03T00:00:00Z");
     for line in report["plan"].as_array().expect("lines").iter().filter(|line| line["status"] == "attention")
     {
         let said = |member: &str| line[member].as_str().map(str::to_owned);
         let (section, criterion) = (Section::Plan, said("criterion"));
-        let line = LineKey { section, text: said("text").expect("words"), criterion };
-        record.add(who("Ada"), Act::Acknowledge { line, text: "As meant.".to_owned() });
+        let (text, place) = (said("text").expect("words"), said("place").expect("a place"));
+        let line = LineKey { section, text, criterion, place };
+        record.add(who(), Act::Acknowledge { line, text: "As meant.".to_owned() }, &secret);
     }
     let source = std::fs::read_to_string(root().join(SMALL)).expect("the mission");
     let subject = Subject {
@@ -158,10 +179,9 @@ fn approved_history(name: &str) -> (PathBuf, String) {
         plan: Value::Null,
         robustness: None,
     };
-    record.approve(who("Ada"), subject, String::new());
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    std::fs::write(&path, record.to_json()).expect("a file");
-    (path, record.to_json())
+    let relied_on = record.entries().iter().map(|entry| entry.digest().to_owned()).collect();
+    record.approve(who(), subject, String::new(), relied_on, &secret);
+    (written_file(name, &record.to_json()), record.to_json(), keys)
 }
 
 fn root() -> PathBuf {
@@ -171,44 +191,108 @@ fn root() -> PathBuf {
 /// A mission of which nothing fails.
 const SMALL: &str = "tests/conformance/t08_sequence_windows.rmpl";
 
+/// What `enroute review verify` says of a history: its status, and the document.
+fn verified(arguments: &[&str]) -> (Option<i32>, Value) {
+    let output = enroute(&[&["review", "verify", "--format", "json"], arguments].concat());
+    (output.status.code(), serde_json::from_str(&written(&output)).expect("JSON"))
+}
+
 #[test]
 fn a_history_is_checked_and_says_how_the_plan_stands() {
-    let (path, text) = approved_history("approved.review.json");
-    let path = path.to_str().expect("a path in UTF-8");
-    let alone = enroute(&["review", path]);
+    let (path, text, keys) = approved_history("approved.review.json");
+    let alone = enroute(&["review", "verify", &path, "--trust", &keys]);
     assert_eq!(alone.status.code(), Some(0), "{alone:?}");
-    assert!(written(&alone).contains("the history is as it was written"), "{}", written(&alone));
-    let of_mission = enroute(&["review", path, "--mission", SMALL, "--format", "json"]);
-    let answer: Value = serde_json::from_str(&written(&of_mission)).expect("JSON");
-    assert_eq!((of_mission.status.code(), &answer["plan_status"]), (Some(0), &json!("approved")), "{answer}");
+    let said = written(&alone);
+    assert!(said.contains("the history is as it was written") && said.contains("[valid]"), "{said}");
+    let (status, answer) = verified(&[&path, "--trust", &keys, "--mission", SMALL]);
+    assert_eq!((status, &answer["plan_status"]), (Some(0), &json!("approved")), "{answer}");
     assert_eq!((&answer["intact"], &answer["format"]), (&json!(true), &json!("enroute-review-check/1")));
-    let of_other = enroute(&["review", path, "--mission", MISSION]);
+    assert_eq!((&answer["approved"], &answer["blockers"]), (&json!(true), &json!([])));
+    let last = answer["entries"].as_array().and_then(|all| all.last()).expect("an entry").clone();
+    assert_eq!((&last["signature"], &last["counts"]), (&json!("valid"), &json!(true)));
+    let of_other = enroute(&["review", "verify", &path, "--trust", &keys, "--mission", MISSION]);
     assert_eq!(of_other.status.code(), Some(1), "{of_other:?}");
     assert!(written(&of_other).contains("approval lapsed"), "{}", written(&of_other));
+    // Without keys nothing counts.
+    let (status, answer) = verified(&[&path]);
+    assert_eq!((status, &answer["approved"]), (Some(1), &json!(false)));
+    assert!(answer["blockers"].to_string().contains("--trust"), "{answer}");
+    assert!(answer["entries"].as_array().expect("a list").iter().all(|it| it["signature"] == "unknown"));
     // What was altered is said, and is no approval.
-    let altered = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("altered.review.json");
-    std::fs::write(&altered, text.replace("\"by\": \"Ada\"", "\"by\": \"Eve\"")).expect("a file");
-    let altered = altered.to_str().expect("a path in UTF-8");
-    let found = enroute(&["review", altered]);
+    let altered = written_file("altered.review.json", &text.replace("\"by\": \"Ada\"", "\"by\": \"Eve\""));
+    let found = enroute(&["review", "verify", &altered, "--trust", &keys]);
     assert_eq!(found.status.code(), Some(1), "{found:?}");
     assert!(written(&found).contains("has been altered: entry 1 (Eve"), "{}", written(&found));
-    for refused in
-        [enroute(&["report", SMALL, "--review", altered, "--format", "json"]), enroute(&["review", SMALL])]
-    {
+    for refused in [
+        enroute(&["report", SMALL, "--review", &altered, "--format", "json"]),
+        enroute(&["review", "verify", SMALL]),
+        enroute(&["review", "verify", &path, "--trust", &path]),
+    ] {
         assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     }
 }
 
 #[test]
+fn forged_signatures_and_entries_that_are_left_out_are_no_approval() {
+    let (path, text, keys) = approved_history("forged.review.json");
+    let mut document: Value = serde_json::from_str(&text).expect("JSON");
+    let last = document["entries"].as_array().expect("a list").len() - 1;
+    document["entries"][last]["signature"] = json!("00".repeat(64));
+    let forged = written_file("broken.review.json", &document.to_string());
+    let (status, answer) = verified(&[&forged, "--trust", &keys]);
+    assert_eq!((status, &answer["entries"][last]["signature"]), (Some(1), &json!("broken")), "{answer}");
+    assert_eq!(answer["approved"], false);
+    // Signed by a stranger under Ada's name.
+    let mut ring = KeyRing::default();
+    ring.add(Person::new("Ada", SecretKey::from_bytes([8; 32]))).expect("a name");
+    let others = written_file("others.keys.json", &ring.to_json(false));
+    let (status, answer) = verified(&[&path, "--trust", &others]);
+    assert_eq!((status, &answer["entries"][last]["signature"]), (Some(1), &json!("unknown")), "{answer}");
+    // Who knows an entry notices that it is not there.
+    let head = document["heads"][0].as_str().expect("a digest").to_owned();
+    assert_eq!(verified(&[&path, "--trust", &keys, "--has", &head]).0, Some(0));
+    let (status, answer) = verified(&[&path, "--trust", &keys, "--has", &"0".repeat(64)]);
+    assert_eq!((status, &answer["intact"]), (Some(1), &json!(false)));
+    // Unsigned, as earlier versions wrote it.
+    for entry in document["entries"].as_array_mut().expect("a list") {
+        entry.as_object_mut().expect("members").remove("signature");
+    }
+    document["format"] = json!("enroute-review/2");
+    let bare = written_file("unsigned.review.json", &document.to_string());
+    let (status, answer) = verified(&[&bare, "--trust", &keys]);
+    assert_eq!((status, &answer["entries"][0]["signature"]), (Some(1), &json!("unsigned")));
+}
+
+#[test]
 fn reports_and_schedules_say_how_the_plan_stands() {
-    let (path, _) = approved_history("for-report.review.json");
-    let path = path.to_str().expect("a path in UTF-8");
+    let (path, _, keys) = approved_history("for-report.review.json");
+    let (path, keys) = (path.as_str(), keys.as_str());
     let page = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("approved.html");
-    let output = enroute(&["report", SMALL, "--review", path, "-o", page.to_str().expect("a path in UTF-8")]);
+    let output = enroute(&[
+        "report",
+        SMALL,
+        "--review",
+        path,
+        "--trust",
+        keys,
+        "-o",
+        page.to_str().expect("a path in UTF-8"),
+    ]);
     assert!(written(&output).contains("approved: Reviewer 1 of 1"), "{}", written(&output));
     let page = std::fs::read_to_string(page).expect("the report");
     assert!(page.contains("History of the review") && page.contains("approved</span>: Reviewer 1 of 1"));
-    let schedule = enroute(&["export", SMALL, "--as", "json", "--review", path, "--epoch", "2004-01-25"]);
+    let schedule = enroute(&[
+        "export",
+        SMALL,
+        "--as",
+        "json",
+        "--review",
+        path,
+        "--trust",
+        keys,
+        "--epoch",
+        "2004-01-25",
+    ]);
     let schedule: Value = serde_json::from_str(&written(&schedule)).expect("JSON");
     assert_eq!(schedule["plan_status"], "approved");
     assert_eq!(schedule["epoch"], "2004-01-25T00:00:00Z");

@@ -84,7 +84,7 @@ fn what_is_too_hard_for_the_time_limit_is_said_to_be_undecided() {
         &["export", mission, "--as", "csv"],
         &["compare", easy, mission],
         &["compare", mission, easy],
-        &["review", record, "--mission", mission],
+        &["review", "verify", record, "--mission", mission],
     ] {
         let (status, printed) = limited(arguments);
         assert_eq!(status.code(), Some(LIMIT), "{arguments:?}: {printed}");

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use egui::{Button, Frame, Margin, RichText, Ui};
 use review::record::{Act, Entry, short};
+use review::{Check, Signature};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};
@@ -46,11 +47,16 @@ pub(super) fn show(
         return;
     }
     let withdrawn = record.withdrawn();
-    for (index, entry) in entries.iter().enumerate().rev().take(MAX_ENTRIES) {
+    let doubtful = record.checked().filter(|(_, check)| !check.counts()).count();
+    if doubtful > 0 {
+        let one = if doubtful == 1 { "entry does" } else { "entries do" };
+        row::quiet(ui, context, &format!("{doubtful} {one} not count. See the reason next to each."));
+    }
+    let checked: Vec<(&Entry, &Check)> = record.checked().collect();
+    for (index, &(entry, check)) in checked.iter().enumerate().rev().take(MAX_ENTRIES) {
         let taken_back = withdrawn.get(entry.digest()).map(|by| format!("withdrawn by {}", who(by)));
-        let number = |of: &str| entries.iter().position(|it| it.digest() == of).map_or(0, |of| of + 1);
-        let of = entry.act.of().map(|of| format!(" {}", number(of))).unwrap_or_default();
-        show_entry(ui, context, entry, &format!("{}  ", index + 1), &of, taken_back);
+        let of = entry.act.of().map(|of| format!(" {}", record.number(of))).unwrap_or_default();
+        show_entry(ui, context, (entry, check), &format!("{}  ", index + 1), &of, taken_back);
     }
     if entries.len() > MAX_ENTRIES {
         row::quiet(ui, context, "See the file or the report for earlier entries.");
@@ -72,7 +78,7 @@ pub(super) fn show(
 fn show_entry(
     ui: &mut Ui,
     context: &Context<'_>,
-    entry: &Entry,
+    (entry, check): (&Entry, &Check),
     number: &str,
     of: &str,
     taken_back: Option<String>,
@@ -96,12 +102,24 @@ fn show_entry(
                 short(&entry.plan_hash),
                 short(entry.digest())
             ));
+            let (sign, color) = match check.signature {
+                _ if check.counts() => (Icon::Check, tokens.good),
+                Signature::Broken => (Icon::Error, tokens.error),
+                Signature::Valid | Signature::Unknown | Signature::Unsigned => {
+                    (Icon::Warning, tokens.warning)
+                }
+            };
+            icon::label(ui, sign, color);
+            ui.label(RichText::new(check.words()).small().color(color));
             if let Some(taken_back) = taken_back {
                 ui.label(RichText::new(taken_back).small().color(tokens.warning));
             }
         });
         let words = match &entry.act {
             Act::Acknowledge { line, text } => format!("{}: {text}", super::capital::sentence(&line.text)),
+            Act::Waive { line, text, until } => {
+                format!("{}: {text} (until {until})", super::capital::sentence(&line.text))
+            }
             act => act.text().to_owned(),
         };
         if !words.is_empty() {

@@ -7,6 +7,7 @@ pub(crate) mod changes;
 mod contradict;
 mod events;
 mod history;
+mod keys;
 mod lines;
 mod people;
 mod robustness;
@@ -35,6 +36,7 @@ pub struct ReviewPanel {
     whole: BTreeSet<&'static str>,
     people: people::People,
     rules: rules::Rules,
+    keys: keys::Keys,
     changes: changes::Changes,
 }
 
@@ -61,17 +63,19 @@ impl Panel for ReviewPanel {
                 self.changes.show(ui, context, &mut self.closed, commands);
                 if let Some((review, is_stale)) = shown {
                     let selected = row::selected_names(context);
-                    let acknowledged = state.review.record().acknowledgements();
+                    let acknowledged = state.review.record().acknowledgments();
                     let list = List { context, review, is_stale, selected: &selected, acknowledged };
                     self.sections(ui, &list, commands);
                 }
                 self.rules.show(ui, context, &mut self.closed, commands);
-                let Self { people, closed, .. } = self;
+                let Self { people, keys, closed, .. } = self;
+                people.waivers(ui, context, closed, commands);
                 people.comments(ui, context, standing.as_ref(), closed, commands);
                 if let Some(standing) = &standing {
                     people.approval(ui, context, standing, closed, commands);
                 }
                 history::show(ui, context, closed, commands);
+                keys.show(ui, context, people, closed, commands);
             });
         });
     }

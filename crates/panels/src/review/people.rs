@@ -3,12 +3,16 @@
 use std::collections::BTreeSet;
 
 use egui::{Button, ComboBox, Frame, Margin, RichText, TextEdit, Ui};
+use review::check::is_concerned;
+use review::keys::PublicKey;
 use review::record::{Act, Entry, LineKey};
-use review::{Line, Section, Standing};
+use review::waivers::is_day;
+use review::{Check, Line, Section, Standing, WaiverState};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
+use workbench::state::keys::KeyChange;
 use workbench::state::review::{Person, ReviewCommand};
 
 use super::verdict::moment;
@@ -18,9 +22,14 @@ use crate::Context;
 /// What was typed and not sent yet.
 #[derive(Default)]
 pub(super) struct People {
-    name: Option<String>,
+    /// The owner of the key that signs, and the key.
+    me: Option<(String, PublicKey)>,
+    /// The name of a key that is to be created.
+    new_name: String,
     role: String,
     comment: String,
+    /// Who is to answer the comment, if somebody is.
+    addressee: Option<(String, PublicKey)>,
     /// Whether the comment is about the whole mission even though something is selected.
     is_about_mission: bool,
     /// What goes with an approval.
@@ -33,6 +42,8 @@ pub(super) struct People {
 struct Answer {
     about: About,
     text: String,
+    /// The day on which a waiver lapses.
+    until: String,
 }
 
 /// What words are about.
@@ -40,6 +51,8 @@ struct Answer {
 enum About {
     /// A line for attention, which is acknowledged.
     Line(LineKey),
+    /// A line for attention, which is waived.
+    Waived(LineKey),
     /// A comment, which is resolved.
     Resolved(String),
     /// A comment, which is opened again.
@@ -53,15 +66,17 @@ impl About {
     const fn words(&self) -> (&'static str, &'static str) {
         match self {
             Self::Line(_) => ("Acknowledge", "Why is this acceptable?"),
+            Self::Waived(_) => ("Waive", "Why is this acceptable until then?"),
             Self::Resolved(_) => ("Resolve", "How was it resolved?"),
             Self::Reopened(_) => ("Reopen", "Why is it reopened?"),
             Self::Withdrawn(_) => ("Withdraw", "Reason for withdrawing"),
         }
     }
 
-    fn act(self, text: String) -> Act {
+    fn act(self, text: String, until: String) -> Act {
         match self {
             Self::Line(line) => Act::Acknowledge { line, text },
+            Self::Waived(line) => Act::Waive { line, text, until },
             Self::Resolved(of) => Act::Resolve { of, text },
             Self::Reopened(of) => Act::Reopen { of, text },
             Self::Withdrawn(of) => Act::Withdraw { of, text },
@@ -70,23 +85,34 @@ impl About {
 }
 
 impl People {
-    /// Who it is that acts: a name, and a role where the board has several.
-    pub(super) fn identity(&mut self, ui: &mut Ui, context: &Context<'_>) {
+    /// Who it is that acts: the owner of a key, and a role where the board has several.
+    pub(super) fn identity(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let settings = &context.state.settings;
-        if self.name.is_none() {
-            self.name = Some(settings.reviewer.clone());
+        if self.role.is_empty() {
             self.role.clone_from(&settings.reviewer_role);
         }
         let board = &context.state.review.record().rules().board;
         if !board.iter().any(|seat| seat.role == self.role) {
             self.role = board.first().map(|seat| seat.role.clone()).unwrap_or_default();
         }
+        let ring = context.state.keys.ring();
+        let known = ring.own_named(&settings.reviewer).or_else(|| ring.own().next());
+        self.me = known.map(|person| (person.name.clone(), person.key.clone()));
+        let Some((mut name, _)) = self.me.clone() else {
+            self.new_key(ui, "Create a key to sign with", commands);
+            return;
+        };
         ui.horizontal_wrapped(|ui| {
-            row::quiet_word(ui, "Your name");
-            let name = self.name.get_or_insert_default();
-            let width = 180.0_f32.min(ui.available_width());
-            let field = TextEdit::singleline(name).hint_text("Your name").desired_width(width);
-            ui.add(field).accessible_name("Your name");
+            row::quiet_word(ui, "Sign as");
+            let combo = ComboBox::from_id_salt("signer").selected_text(name.clone()).show_ui(ui, |ui| {
+                for person in ring.own() {
+                    ui.selectable_value(&mut name, person.name.clone(), &person.name);
+                }
+            });
+            combo.response.accessible_name("Your key");
+            if name != settings.reviewer {
+                commands.send(Command::Review(ReviewCommand::SignAs(name)));
+            }
             if board.len() > 1 {
                 row::quiet_word(ui, "as");
                 let combo =
@@ -100,12 +126,33 @@ impl People {
         });
     }
 
-    fn person(&self) -> Person {
-        Person { name: self.name.clone().unwrap_or_default(), role: self.role.clone() }
+    /// A field for a name, and the button that creates a key under it.
+    pub(super) fn new_key(&mut self, ui: &mut Ui, label: &str, commands: &mut CommandSender) {
+        ui.horizontal_wrapped(|ui| {
+            row::quiet_word(ui, label);
+            let width = 180.0_f32.min(ui.available_width());
+            let field = TextEdit::singleline(&mut self.new_name).hint_text("Your name").desired_width(width);
+            ui.add(field).accessible_name("Your name");
+            let is_ready = !self.new_name.trim().is_empty();
+            if ui.add_enabled(is_ready, Button::new("Create key")).clicked() {
+                let name = std::mem::take(&mut self.new_name);
+                commands.send(Command::Review(ReviewCommand::ChangeKeys(KeyChange::Create(name))));
+            }
+        });
     }
 
-    fn has_name(&self) -> bool {
-        self.name.as_ref().is_some_and(|name| !name.trim().is_empty())
+    fn person(&self) -> Person {
+        let name = self.me.as_ref().map(|(name, _)| name.clone()).unwrap_or_default();
+        Person { name, role: self.role.clone() }
+    }
+
+    fn has_key(&self) -> bool {
+        self.me.is_some()
+    }
+
+    /// Whether an entry was signed with the key that signs here.
+    fn is_own(&self, entry: &Entry) -> bool {
+        self.me.as_ref().is_some_and(|(_, key)| entry.key.as_ref() == Some(key))
     }
 
     /// Below a line for attention: who acknowledged it, or how to.
@@ -118,36 +165,93 @@ impl People {
         commands: &mut CommandSender,
     ) {
         let Some(entry) = known else {
-            let about = About::Line(LineKey::new(section, line));
+            let key = LineKey::new(section, line);
+            let (acknowledged, waived) = (About::Line(key.clone()), About::Waived(key));
             indented(ui, |ui| {
-                self.ask(ui, &about, "Acknowledge…", &line.text);
-                self.answer(ui, &about, commands);
+                ui.horizontal_wrapped(|ui| {
+                    self.ask(ui, &acknowledged, "Acknowledge…", &line.text);
+                    self.ask(ui, &waived, "Waive…", &line.text);
+                });
+                self.answer(ui, &acknowledged, commands);
+                self.answer(ui, &waived, commands);
             });
             return;
         };
         let about = About::Withdrawn(entry.digest().to_owned());
-        let words = format!("Acknowledged by {}: {}", who(entry), entry.act.text());
+        let done = match &entry.act {
+            Act::Waive { until, .. } => format!("Waived until {until}"),
+            _ => "Acknowledged".to_owned(),
+        };
+        let words = format!("{done} by {}: {}", who(entry), entry.act.text());
         indented(ui, |ui| {
             ui.horizontal_wrapped(|ui| {
                 icon::label(ui, Icon::Check, context.tokens.good);
                 ui.label(RichText::new(words).small().color(context.tokens.text_muted));
-                self.ask(ui, &about, "Withdraw…", &line.text);
+                if self.is_own(entry) {
+                    self.ask(ui, &about, "Withdraw…", &line.text);
+                }
             });
             self.answer(ui, &about, commands);
         });
+    }
+
+    /// The waivers: those in force, those about to lapse, and those that have lapsed.
+    pub(super) fn waivers(
+        &mut self,
+        ui: &mut Ui,
+        context: &Context<'_>,
+        closed: &mut BTreeSet<&'static str>,
+        commands: &mut CommandSender,
+    ) {
+        let waivers = context.state.review.record().waivers();
+        if waivers.is_empty() {
+            return;
+        }
+        let count = |state| waivers.iter().filter(|waiver| waiver.state == state).count();
+        let states = [WaiverState::InForce, WaiverState::AboutToLapse, WaiverState::Lapsed];
+        let notes = states.into_iter().filter(|&state| count(state) > 0);
+        let note = notes.map(|state| format!("{} {}", count(state), state.name())).collect::<Vec<_>>();
+        if !header(ui, context, closed, "Waivers", None, &note.join(", ")) {
+            return;
+        }
+        let tokens = context.tokens;
+        for waiver in waivers {
+            let (sign, color) = match waiver.state {
+                WaiverState::InForce => (Icon::Check, tokens.good),
+                WaiverState::AboutToLapse => (Icon::Warning, tokens.warning),
+                WaiverState::Lapsed => (Icon::Error, tokens.error),
+            };
+            let about = About::Withdrawn(waiver.entry.digest().to_owned());
+            ui.push_id(("waiver", waiver.entry.digest()), |ui| {
+                indented(ui, |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        icon::label(ui, sign, color);
+                        ui.label(strong(format!("{}, {}", waiver.state.name(), waiver.until)).color(color));
+                        ui.label(super::capital::sentence(&waiver.line.text));
+                    });
+                    let words = format!("{}: {}", who(waiver.entry), waiver.entry.act.text());
+                    ui.label(RichText::new(words).small().color(tokens.text_muted));
+                    if self.is_own(waiver.entry) {
+                        self.ask(ui, &about, "Withdraw…", &waiver.line.text);
+                    }
+                    self.answer(ui, &about, commands);
+                });
+            });
+        }
     }
 
     /// A button that begins words about something.
     fn ask(&mut self, ui: &mut Ui, about: &About, label: &str, of: &str) {
         let is_open = self.answer.as_ref().is_some_and(|answer| answer.about == *about);
         if !is_open && ui.button(label).accessible_name(format!("{label} {of}")).clicked() {
-            self.answer = Some(Answer { about: about.clone(), text: String::new() });
+            let (text, until) = (String::new(), String::new());
+            self.answer = Some(Answer { about: about.clone(), text, until });
         }
     }
 
     /// The words about something, if they are being written.
     fn answer(&mut self, ui: &mut Ui, about: &About, commands: &mut CommandSender) {
-        let has_name = self.has_name();
+        let has_key = self.has_key();
         let Some(answer) = self.answer.as_mut().filter(|answer| answer.about == *about) else { return };
         let (send, hint) = about.words();
         let field = TextEdit::singleline(&mut answer.text).hint_text(hint).desired_width(f32::INFINITY);
@@ -155,21 +259,34 @@ impl People {
         if answer.text.is_empty() && !crate::keyboard_navigation::has_focus(ui) {
             field.request_focus();
         }
-        let needs_words = matches!(about, About::Line(_));
-        let is_ready = has_name && !(needs_words && answer.text.trim().is_empty());
+        let is_waiver = matches!(about, About::Waived(_));
+        if is_waiver {
+            let day = TextEdit::singleline(&mut answer.until).hint_text("2026-01-31").desired_width(120.0);
+            ui.horizontal_wrapped(|ui| {
+                row::quiet_word(ui, "Lapses on");
+                ui.add(day).accessible_name("Lapses on");
+            });
+        }
+        let needs_words = is_waiver || matches!(about, About::Line(_) | About::Resolved(_));
+        let is_dated = !is_waiver || is_day(answer.until.trim());
+        let is_ready = has_key && is_dated && !(needs_words && answer.text.trim().is_empty());
         let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let (mut is_sent, mut is_left) = (is_entered && is_ready, false);
         ui.horizontal_wrapped(|ui| {
             let button = ui.add_enabled(is_ready, Button::new(send));
-            let why = if has_name { "enter a reason first" } else { "enter your name at the top first" };
+            let why = match (has_key, is_dated) {
+                (false, _) => "create a key first",
+                (true, false) => "enter a date such as 2026-01-31",
+                (true, true) => "enter a reason first",
+            };
             is_sent |= button.on_disabled_hover_text(why).clicked();
             is_left = ui.button("Cancel").clicked();
-            if !has_name {
-                row::quiet_word(ui, "Enter your name at the top first.");
+            if !has_key {
+                row::quiet_word(ui, "Create a key at the top first.");
             }
         });
-        if is_sent && let Some(Answer { about, text }) = self.answer.take() {
-            let act = about.act(text.trim().to_owned());
+        if is_sent && let Some(Answer { about, text, until }) = self.answer.take() {
+            let act = about.act(text.trim().to_owned(), until.trim().to_owned());
             commands.send(Command::Review(ReviewCommand::Say { by: self.person(), act }));
         } else if is_left {
             self.answer = None;
@@ -186,8 +303,8 @@ impl People {
         commands: &mut CommandSender,
     ) {
         let record = context.state.review.record();
-        let is_comment = |entry: &&Entry| matches!(entry.act, Act::Comment { .. });
-        let comments: Vec<&Entry> = record.entries().iter().filter(is_comment).collect();
+        let is_comment = |(entry, _): &(&Entry, &Check)| matches!(entry.act, Act::Comment { .. });
+        let comments: Vec<(&Entry, &Check)> = record.checked().filter(is_comment).collect();
         let open: &[&Entry] = standing.map_or(&[], |standing| &standing.open_comments);
         let note = match (comments.len(), open.len()) {
             (0, _) => "none".to_owned(),
@@ -198,15 +315,15 @@ impl People {
         }
         let withdrawn = record.withdrawn();
         let is_open = |entry: &Entry| open.iter().any(|it| it.digest() == entry.digest());
-        let (first, then): (Vec<&Entry>, Vec<&Entry>) =
-            comments.into_iter().partition(|entry| is_open(entry));
-        for entry in first.iter().chain(&then) {
+        let (first, then): (Vec<_>, Vec<_>) = comments.into_iter().partition(|(entry, _)| is_open(entry));
+        for (entry, check) in first.into_iter().chain(then) {
             let state = match withdrawn.get(entry.digest()) {
+                _ if !check.counts() => format!("does not count: {}", check.words()),
                 Some(by) => format!("withdrawn by {}", who(by)),
                 None if is_open(entry) => "open".to_owned(),
                 None => resolution(context, entry),
             };
-            let can_change = !withdrawn.contains_key(entry.digest());
+            let can_change = check.counts() && !withdrawn.contains_key(entry.digest());
             ui.push_id(entry.digest(), |ui| {
                 self.comment(ui, context, entry, &state, (is_open(entry), can_change), commands);
             });
@@ -223,7 +340,7 @@ impl People {
         (is_open, can_change): (bool, bool),
         commands: &mut CommandSender,
     ) {
-        let Act::Comment { about, text } = &entry.act else { return };
+        let Act::Comment { about, to, text } = &entry.act else { return };
         let tokens = context.tokens;
         let id = entry.digest().to_owned();
         indented(ui, |ui| {
@@ -237,6 +354,12 @@ impl People {
                 let when = format!("{}{age}: {state}", moment(&entry.time));
                 ui.label(RichText::new(when).small().color(tokens.text_muted));
             });
+            if let Some(to) = to {
+                let mut people = context.state.keys.ring().people().iter();
+                let name = people.find(|person| person.key == *to);
+                let name = name.map_or_else(|| to.fingerprint(), |person| person.name.clone());
+                row::quiet_word(ui, &format!("To {name}"));
+            }
             if let Some(about) = about {
                 let found = context.snapshot.and_then(|snapshot| Selection::by_name(snapshot, about));
                 let link = ui.add_enabled(found.is_some(), egui::Button::new(about));
@@ -253,9 +376,14 @@ impl People {
                 } else {
                     (About::Reopened(id.clone()), "Reopen…")
                 };
+                let is_concerned = self.me.as_ref().is_some_and(|(_, key)| is_concerned(key, entry));
                 ui.horizontal_wrapped(|ui| {
-                    self.ask(ui, &change, label, text);
-                    self.ask(ui, &About::Withdrawn(id.clone()), "Withdraw…", text);
+                    if is_concerned {
+                        self.ask(ui, &change, label, text);
+                    }
+                    if self.is_own(entry) {
+                        self.ask(ui, &About::Withdrawn(id.clone()), "Withdraw…", text);
+                    }
                 });
                 self.answer(ui, &change, commands);
                 self.answer(ui, &About::Withdrawn(id), commands);
@@ -279,17 +407,42 @@ impl People {
                     self.is_about_mission = !is_about;
                 }
             }
+            self.to_whom(ui, context);
             let has_words = !self.comment.trim().is_empty();
-            let button = ui.add_enabled(has_words && self.has_name(), Button::new("Add comment"));
+            let button = ui.add_enabled(has_words && self.has_key(), Button::new("Add comment"));
             if button.clicked() {
                 let text = std::mem::take(&mut self.comment).trim().to_owned();
                 let about = is_about_selected.then_some(selected);
-                let act = Act::Comment { about, text };
+                let to = self.addressee.take().map(|(_, key)| key);
+                let act = Act::Comment { about, to, text };
                 commands.send(Command::Review(ReviewCommand::Say { by: self.person(), act }));
             }
-            if has_words && !self.has_name() {
-                row::quiet_word(ui, "Enter your name at the top to comment.");
+            if has_words && !self.has_key() {
+                row::quiet_word(ui, "Create a key at the top to comment.");
             }
+        });
+    }
+
+    /// Who is to answer the comment that is being written.
+    fn to_whom(&mut self, ui: &mut Ui, context: &Context<'_>) {
+        let me = self.me.as_ref().map(|(_, key)| key);
+        let people = context.state.keys.ring().people().iter();
+        let others: Vec<_> = people.filter(|person| Some(&person.key) != me).collect();
+        if others.is_empty() {
+            return;
+        }
+        ui.horizontal_wrapped(|ui| {
+            row::quiet_word(ui, "To");
+            let shown = self.addressee.as_ref().map_or("nobody in particular", |(name, _)| name.as_str());
+            let combo = ComboBox::from_id_salt("addressee").selected_text(shown.to_owned());
+            let combo = combo.show_ui(ui, |ui| {
+                ui.selectable_value(&mut self.addressee, None, "nobody in particular");
+                for person in others {
+                    let to = Some((person.name.clone(), person.key.clone()));
+                    ui.selectable_value(&mut self.addressee, to, &person.name);
+                }
+            });
+            combo.response.accessible_name("Addressee");
         });
     }
 
@@ -324,7 +477,9 @@ impl People {
                     ui.push_id(entry.digest(), |ui| {
                         ui.horizontal_wrapped(|ui| {
                             ui.label(words);
-                            self.ask(ui, &about, "Withdraw…", &entry.by);
+                            if self.is_own(entry) {
+                                self.ask(ui, &about, "Withdraw…", &entry.by);
+                            }
                         });
                         self.answer(ui, &about, commands);
                     });
@@ -342,7 +497,10 @@ impl People {
                 .desired_width(f32::INFINITY);
             ui.add(words).accessible_name("Comments for the approval");
             let person = self.person();
-            let refused = standing.may_approve(&person.name, &person.role);
+            let refused = match &self.me {
+                Some((_, key)) => standing.may_approve(key, &person.role),
+                None => Err("create a key at the top to approve".to_owned()),
+            };
             let label = if self.approval.trim().is_empty() { "Approve" } else { "Approve with comments" };
             ui.horizontal_wrapped(|ui| {
                 let button = ui.add_enabled(refused.is_ok(), Button::new(label));
@@ -352,9 +510,6 @@ impl People {
                 }
                 match &refused {
                     Err(_) if !standing.blockers().is_empty() => {}
-                    Err(_) if !self.has_name() => {
-                        row::quiet_word(ui, "Enter your name at the top to approve.");
-                    }
                     Err(reason) => row::quiet_word(ui, &super::capital::sentence(&format!("{reason}."))),
                     Ok(()) => {}
                 }
@@ -365,9 +520,9 @@ impl People {
 
 /// How a comment that is not open came to be so.
 fn resolution(context: &Context<'_>, comment: &Entry) -> String {
-    let entries = context.state.review.record().entries();
-    let resolved = entries
-        .iter()
+    let record = context.state.review.record();
+    let resolved = record
+        .counted()
         .rev()
         .find(|entry| matches!(&entry.act, Act::Resolve { of, .. } if of == comment.digest()));
     match resolved.map(|entry| (who(entry), entry.act.text())) {

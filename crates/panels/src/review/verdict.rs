@@ -86,7 +86,7 @@ pub(super) fn show(
         if let Some(standing) = standing {
             board(ui, context, standing);
         }
-        people.identity(ui, context);
+        people.identity(ui, context, commands);
         ui.add_space(space::S);
         buttons(ui, context, shown, commands);
         if let Some((review, false)) = shown {

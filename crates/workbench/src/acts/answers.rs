@@ -2,6 +2,7 @@
 
 use interchange::is_network_file;
 use link::Response;
+use review::keys::KeyRing;
 use review::rules::RULES_FORMAT;
 use text_editing::TextCommand;
 
@@ -11,6 +12,7 @@ use crate::host::{FileKind, HostEvent};
 use crate::library::Mission;
 use crate::limits::too_large;
 use crate::state::AppState;
+use crate::state::keys::KeyChange;
 
 impl AppState {
     /// Takes in something that happened outside, and computes what depends on it.
@@ -137,7 +139,9 @@ impl AppState {
                 Ok(text) if kind == FileKind::Json => self.open_json(name, text),
                 Ok(text) => {
                     let seed = self.settings.plan.seed;
-                    self.compare.open_file(name, &text, seed, &mut self.window);
+                    let now = report::calendar::utc_text(self.frame.unix_millis);
+                    let by = (&self.keys.ring().trust(), now.as_str());
+                    self.compare.open_file(name, &text, seed, by, &mut self.window);
                 }
                 Err(_) => self.window.failed(format!("{name} is not a text file")),
             },
@@ -150,6 +154,11 @@ impl AppState {
             self.open_whole(mission);
         } else if is_network_file(&text) {
             self.open_mission_file(name, text.into_bytes());
+        } else if document["format"].as_str().is_some_and(|format| format.starts_with("enroute-keys/")) {
+            match KeyRing::from_json(&text) {
+                Ok(ring) => self.window.ask(Effect::ChangeKeys(KeyChange::Add(ring.people().to_vec()))),
+                Err(error) => self.window.failed(format!("{name}: {error}")),
+            }
         } else if document["format"] == RULES_FORMAT {
             self.reviewing().import_rules(name, &text);
         } else if document["type"] == "FeatureCollection" {

@@ -36,6 +36,7 @@ impl AppState {
         let mission_key = self.mission_key();
         Reviewing {
             review: &mut self.review,
+            keys: &self.keys,
             chance: &mut self.chance,
             settings: &mut self.settings,
             window: &mut self.window,

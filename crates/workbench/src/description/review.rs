@@ -1,7 +1,9 @@
 //! The review of the mission.
 
 use review::record::{Act, Entry, LineKey};
-use review::{FlightRules, Line, PlanStatus, Present, Record, Section, Status};
+use review::{
+    Check, FlightRules, Line, PlanStatus, Present, Record, Section, Signature, Status, WaiverState,
+};
 use serde::Serialize;
 #[cfg(test)]
 use ts_rs::TS;
@@ -57,6 +59,37 @@ pub struct Review {
     pub aside: Option<String>,
     /// Why the history is not kept beyond this visit, if it is not.
     pub unkept: Option<String>,
+    /// The waivers that count, oldest first.
+    pub waivers: Vec<ReviewWaiver>,
+    /// The people whose signatures count here.
+    pub people: Vec<ReviewPerson>,
+}
+
+/// An item that may be as it is until some day.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ReviewWaiver {
+    /// The entry of the history.
+    pub id: String,
+    /// What the item says.
+    pub item: String,
+    pub reason: String,
+    pub by: String,
+    /// The day on which it lapses: `2026-01-31`.
+    pub until: String,
+    #[cfg_attr(test, ts(type = "\"in-force\" | \"about-to-lapse\" | \"lapsed\""))]
+    pub state: WaiverState,
+}
+
+/// Somebody whose signatures count here.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ReviewPerson {
+    pub name: String,
+    /// The public key, in 64 hexadecimal digits.
+    pub key: String,
+    /// Whether that person can sign here.
+    pub own: bool,
 }
 
 /// How many lines of a review stand how.
@@ -148,6 +181,14 @@ pub struct HistoryEntry {
     pub plan_hash: String,
     /// Whether somebody took it back.
     pub withdrawn: bool,
+    /// The public key that it names, in 64 hexadecimal digits; `null` in histories of earlier versions.
+    pub key: Option<String>,
+    #[cfg_attr(test, ts(type = "\"valid\" | \"unknown\" | \"broken\" | \"unsigned\""))]
+    pub signature: Signature,
+    /// Why it does not count in spite of its signature, or what else is odd about it.
+    pub problem: Option<String>,
+    /// Whether it counts.
+    pub counts: bool,
 }
 
 /// Somebody has approved a plan.
@@ -187,6 +228,8 @@ pub(super) fn review(state: &AppState) -> Review {
         signed: signed(state),
         comments: comments(record),
         history: history(record),
+        waivers: waivers(record),
+        people: people(state),
         heads: record.heads().map(str::to_owned).collect(),
         aside: state.review.aside().map(|aside| aside.reason.clone()),
         unkept: state.review.unkept().map(ToString::to_string),
@@ -214,14 +257,35 @@ fn signed(state: &AppState) -> Option<SignOff> {
         time: entry.time.clone(),
         role: entry.role.clone(),
         hash: entry.content_hash.clone(),
-        stale: present.difference(entry, subject).is_some(),
+        stale: present.difference(record, entry, subject).is_some(),
     })
+}
+
+fn waivers(record: &Record) -> Vec<ReviewWaiver> {
+    let waiver = |waiver: review::Waiver<'_>| ReviewWaiver {
+        id: waiver.entry.digest().to_owned(),
+        item: waiver.line.text.clone(),
+        reason: waiver.entry.act.text().to_owned(),
+        by: waiver.entry.by.clone(),
+        until: waiver.until.to_owned(),
+        state: waiver.state,
+    };
+    record.waivers().into_iter().map(waiver).collect()
+}
+
+fn people(state: &AppState) -> Vec<ReviewPerson> {
+    let person = |person: &review::keys::Person| ReviewPerson {
+        name: person.name.clone(),
+        key: person.key.as_str().to_owned(),
+        own: person.secret.is_some(),
+    };
+    state.keys.ring().people().iter().map(person).collect()
 }
 
 fn comments(record: &Record) -> Vec<ReviewComment> {
     let open = review::board::open_comments(record);
     let comment = |entry: &Entry| {
-        let Act::Comment { about, text } = &entry.act else { return None };
+        let Act::Comment { about, text, .. } = &entry.act else { return None };
         Some(ReviewComment {
             id: entry.digest().to_owned(),
             author: entry.by.clone(),
@@ -238,7 +302,7 @@ fn comments(record: &Record) -> Vec<ReviewComment> {
 
 fn history(record: &Record) -> Vec<HistoryEntry> {
     let withdrawn = record.withdrawn();
-    let entry = |entry: &Entry| HistoryEntry {
+    let entry = |(entry, check): (&Entry, &Check)| HistoryEntry {
         id: entry.digest().to_owned(),
         by: entry.by.clone(),
         role: entry.role.clone(),
@@ -249,12 +313,16 @@ fn history(record: &Record) -> Vec<HistoryEntry> {
         hash: entry.content_hash.clone(),
         plan_hash: entry.plan_hash.clone(),
         withdrawn: withdrawn.contains_key(entry.digest()),
+        key: entry.key.as_ref().map(|key| key.as_str().to_owned()),
+        signature: check.signature,
+        problem: check.problem.clone(),
+        counts: check.counts(),
     };
-    record.entries().iter().map(entry).collect()
+    record.checked().map(entry).collect()
 }
 
 fn items(review: &review::Review, record: &Record) -> Vec<ReviewItem> {
-    let acknowledged = record.acknowledgements();
+    let acknowledged = record.acknowledgments();
     let by = |section: Section, line: &Line| {
         let entry = (line.status == Status::Attention)
             .then(|| acknowledged.get(&LineKey::new(section, line)))

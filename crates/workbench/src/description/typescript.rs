@@ -220,6 +220,8 @@ fn interface() -> String {
     declare::<review::BoardSeat>(&mut out);
     declare::<review::ReviewComment>(&mut out);
     declare::<review::HistoryEntry>(&mut out);
+    declare::<review::ReviewWaiver>(&mut out);
+    declare::<review::ReviewPerson>(&mut out);
     declare::<review::SignOff>(&mut out);
     declare::<program::ProgramRun>(&mut out);
     declare::<program::Fired>(&mut out);

@@ -9,6 +9,8 @@
 
 mod tabs;
 
+pub(super) use tabs::{tell_keys, tell_review};
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use smol_str::SmolStr;

@@ -6,11 +6,13 @@ mod keeper;
 mod remote;
 
 use review::Record;
+use review::keys::KeyRing;
 use review::record::RecordError;
 
 use crate::effect::Aside;
 use crate::host::Host;
 use crate::state::AppState;
+use crate::state::keys::{KeyChange, KeysState};
 use crate::state::review::ReviewState;
 use crate::state::settings::Settings;
 
@@ -41,7 +43,71 @@ pub fn keep_review(host: &mut dyn Host, state: &mut AppState, joins: bool) {
             host.store(&key, &state.review.record().to_json()).map_err(|reason| reason.to_string())
         }
     });
+    if outcome.is_ok() {
+        keeper::tell_review(host, &state.mission_key());
+    }
     state.review.kept(outcome);
+}
+
+/// Adds what another tab has kept of the open mission's review.
+pub fn hear_review(host: &dyn Host, state: &mut AppState) {
+    let kept = host.stored(&ReviewState::key(&state.mission_key()));
+    if let Some(Ok(record)) = kept.map(|text| Record::from_json(&text)) {
+        state.review.join(record);
+        state.reviewing().judge();
+    }
+}
+
+/// Where the keys are kept, beside the settings. Each change reads them first: another tab may have changed them.
+const KEYS_KEY: &str = "enroute/keys-1";
+
+/// The keys that are kept. Those that could not be kept here stay as they are.
+pub fn recall_keys(host: &dyn Host, state: &mut AppState) {
+    if state.keys.unkept().is_some() {
+        return;
+    }
+    match kept_keys(host) {
+        Some(Ok(ring)) => state.take_keys(ring, None),
+        Some(Err(reason)) => state.window.failed(format!("The kept keys cannot be used: {reason}")),
+        None => {}
+    }
+}
+
+fn kept_keys(host: &dyn Host) -> Option<Result<KeyRing, String>> {
+    Some(KeyRing::from_json(&host.stored(KEYS_KEY)?).map_err(|error| error.to_string()))
+}
+
+/// Changes the keys, and keeps them. Keys that cannot be read are never written over.
+pub fn change_keys(host: &mut dyn Host, state: &mut AppState, change: KeyChange) {
+    let kept = kept_keys(host).filter(|_| state.keys.unkept().is_none());
+    let kept = kept.unwrap_or_else(|| Ok(state.keys.ring.clone()));
+    let name = match &change {
+        KeyChange::Create(name) => Some(name.trim().to_owned()),
+        KeyChange::Add(people) => {
+            people.iter().find(|person| person.secret.is_some()).map(|person| person.name.clone())
+        }
+        KeyChange::Remove(_) => None,
+    };
+    let bytes = host.secret_bytes();
+    let (ring, words) = match kept.and_then(|ring| KeysState::changed(&ring, change, bytes)) {
+        Ok(changed) => changed,
+        Err(reason) => {
+            state.window.failed(reason);
+            return;
+        }
+    };
+    let unkept = host.store(KEYS_KEY, &ring.to_json(true)).err().map(|reason| reason.to_string());
+    keeper::tell_keys(host);
+    match &unkept {
+        None => state.window.done(words),
+        Some(reason) => {
+            state.window.failed(format!("{words}, but not kept: {reason}. Save your key to a file"));
+        }
+    }
+    if let Some(name) = name {
+        state.settings.reviewer = name;
+    }
+    state.take_keys(ring, unkept);
 }
 
 /// Joins what is kept, or sees that writing over it loses nothing.

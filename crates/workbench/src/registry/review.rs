@@ -1,5 +1,6 @@
 //! Judging and comparing plans, and documents about them.
 
+use review::keys::PublicKey;
 use review::record::{Act, LineKey};
 use review::{FlightRules, Section};
 use serde_json::Value;
@@ -17,6 +18,7 @@ use crate::state::AppState;
 use crate::state::compare::CompareCommand;
 use crate::state::contradict::ContradictCommand;
 use crate::state::documents::ScheduleForm;
+use crate::state::keys::KeyChange;
 use crate::state::pins::PinCommand;
 use crate::state::pins::event_by_name;
 use crate::state::review::{Person, ReviewCommand};
@@ -119,12 +121,45 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     called("review.approve", "Approve plan", Group::Review, |state, arguments| {
         let by = state.review.seated(&person(arguments, "name")?);
         let standing = state.review.standing().ok_or("wait until planning ends")?;
-        standing.may_approve(&by.name, &by.role)?;
+        standing.may_approve(&state.keys.secret(&by.name)?.0, &by.role)?;
         Ok(Command::Review(ReviewCommand::Approve { by, text: words(arguments) }))
     }),
     called("review.acknowledge", "Acknowledge item", Group::Review, |state, arguments| {
         let line = item(state, arguments)?;
         said(state, arguments, Act::Acknowledge { line, text: words(arguments) })
+    }),
+    called("review.waive", "Waive item", Group::Review, |state, arguments| {
+        let line = item(state, arguments)?;
+        let until = text_argument(arguments, "until")?.trim().to_owned();
+        said(state, arguments, Act::Waive { line, text: words(arguments), until })
+    }),
+    called("review.createKey", "Create key", Group::Review, |state, arguments| {
+        let name = text_argument(arguments, "name")?.trim().to_owned();
+        if let Some(problem) = review::names::problem(&name) {
+            return Err(problem);
+        }
+        if let Some(known) = state.keys.ring().trust().alike(&name) {
+            return Err(format!("“{name}” can be taken for “{known}”, whose key is trusted"));
+        }
+        Ok(Command::Review(ReviewCommand::ChangeKeys(KeyChange::Create(name))))
+    }),
+    called("review.saveKey", "Save key to file", Group::Review, |state, arguments| {
+        let name = text_argument(arguments, "name")?.to_owned();
+        state.keys.secret(&name)?;
+        Ok(Command::Review(ReviewCommand::SaveOwnKey(name)))
+    }),
+    called("review.trust", "Trust key", Group::Review, |state, arguments| {
+        let name = text_argument(arguments, "name")?.trim().to_owned();
+        let key = key(arguments)?;
+        let person = review::keys::Person { name, key, secret: None };
+        state.keys.ring().clone().add(person.clone()).map_err(|error| error.to_string())?;
+        Ok(Command::Review(ReviewCommand::ChangeKeys(KeyChange::Add(vec![person]))))
+    }),
+    called("review.removeKey", "Remove key", Group::Review, |_, arguments| {
+        Ok(Command::Review(ReviewCommand::ChangeKeys(KeyChange::Remove(key(arguments)?))))
+    }),
+    plain("review.saveKeys", "Save trusted keys", Group::Review, &[], Scope::Everywhere, |_| {
+        Command::Review(ReviewCommand::SaveKeys)
     }),
     called("review.resolve", "Resolve comment", Group::Review, |state, arguments| {
         said(state, arguments, Act::Resolve { of: entry(arguments)?, text: words(arguments) })
@@ -144,6 +179,8 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }
         let rules: FlightRules = serde_json::from_value(rules).map_err(|it| it.to_string())?;
         rules.problem().map_or(Ok(()), |problem| Err(problem.to_owned()))?;
+        let name = &state.settings.reviewer;
+        state.keys.secret(name)?;
         Ok(Command::Review(ReviewCommand::SetRules(Box::new(rules))))
     }),
     plain("review.saveRules", "Save flight rules", Group::Review, &[], Scope::Everywhere, |_| {
@@ -152,8 +189,15 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     called("review.comment", "Add comment", Group::Review, |state, arguments| {
         let about = arguments.get("about").and_then(Value::as_str).map(str::to_owned);
         let by = person(arguments, "author")?;
-        let act = Act::Comment { about, text: text_argument(arguments, "text")?.trim().to_owned() };
-        state.review.may_say(&by, &act)?;
+        let to = arguments.get("to").and_then(Value::as_str);
+        let to = to.map(|name| {
+            let mut people = state.keys.ring().people().iter();
+            let person = people.find(|person| person.name == name);
+            person.map(|person| person.key.clone()).ok_or_else(|| format!("no key of “{name}” is trusted"))
+        });
+        let text = text_argument(arguments, "text")?.trim().to_owned();
+        let act = Act::Comment { about, to: to.transpose()?, text };
+        state.review.may_say(&state.keys.secret(&by.name)?.0, &act)?;
         Ok(Command::Review(ReviewCommand::Say { by, act }))
     }),
     called("export.schedule", "Export schedule", Group::Review, |_, arguments| {
@@ -200,6 +244,12 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
 ];
 
+/// The public key that is meant.
+fn key(arguments: &Value) -> Result<PublicKey, String> {
+    let text = text_argument(arguments, "key")?;
+    PublicKey::read(text).ok_or_else(|| format!("“{text}” is no public key"))
+}
+
 /// Who does it: the argument `name`, or what it is called, and `role`.
 fn person(arguments: &Value, name: &str) -> Result<Person, String> {
     let role = arguments.get("role").and_then(Value::as_str).unwrap_or_default();
@@ -230,7 +280,7 @@ fn entry(arguments: &Value) -> Result<String, String> {
 
 fn said(state: &AppState, arguments: &Value, act: Act) -> Result<Command, String> {
     let by = person(arguments, "name")?;
-    state.review.may_say(&by, &act)?;
+    state.review.may_say(&state.keys.secret(&by.name)?.0, &act)?;
     Ok(Command::Review(ReviewCommand::Say { by, act }))
 }
 

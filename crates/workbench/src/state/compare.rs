@@ -95,7 +95,16 @@ impl CompareState {
     }
 
     /// Compares with a file that the user chose.
-    pub(crate) fn open_file(&mut self, name: &str, text: &str, seed: u64, window: &mut Window) {
+    ///
+    /// What was approved in a review is so by the keys in `trust`, at the time `now`.
+    pub(crate) fn open_file(
+        &mut self,
+        name: &str,
+        text: &str,
+        seed: u64,
+        (trust, now): (&Trust, &str),
+        window: &mut Window,
+    ) {
         let is_json = name.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("json"));
         if !is_json {
             self.evaluate(name.to_owned(), text, Goal::Default, seed, window);
@@ -107,13 +116,15 @@ impl CompareState {
             Err(reason) => return window.failed(failed(reason.to_string())),
         };
         if is_record(&document) {
-            let approved = Record::from_json(text)
-                .map(|record| record.last_approval().map(|(_, approved)| approved.clone()));
+            let approved = Record::from_json(text).map(|mut record| {
+                record.judge(trust, now);
+                record.last_approval().map(|(_, approved)| approved.clone())
+            });
             match approved {
                 Ok(Some(Subject { source, goal, seed, .. })) => {
                     self.evaluate(name.to_owned(), &source, goal, seed, window);
                 }
-                Ok(None) => window.failed(failed("it has no approval".to_owned())),
+                Ok(None) => window.failed(failed("no trusted key has approved it".to_owned())),
                 Err(reason) => window.failed(failed(reason.to_string())),
             }
             return;

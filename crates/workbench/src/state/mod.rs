@@ -16,6 +16,7 @@ pub mod files;
 pub mod folding;
 pub mod growth;
 pub(crate) mod imports;
+pub mod keys;
 pub mod language;
 pub mod lesson;
 pub mod manual;
@@ -94,6 +95,8 @@ pub struct AppState {
     pub manual: manual::ManualState,
     /// The review of the mission, with what was said and signed.
     pub review: Part<review::ReviewState>,
+    /// The keys of those who sign, and of those whose signatures count.
+    pub keys: Part<keys::KeysState>,
     /// What the mission is compared with.
     pub compare: compare::CompareState,
     /// The tool in hand on the terrain, and what it has.
@@ -189,6 +192,7 @@ impl AppState {
             lesson: Part::default(),
             manual: manual::ManualState::default(),
             review: Part::default(),
+            keys: Part::default(),
             compare: compare::CompareState::default(),
             terrain: Part::default(),
             execution: Part::default(),

@@ -12,6 +12,7 @@ use kirk::Search as SearchKind;
 use layout::timeline::before::Before;
 use layout::timeline::rule::RuleTrack;
 use link::Request;
+use review::keys::KeyRing;
 use review::record::Act;
 use review::{FlightRules, Record, Review, content_hash, plan_hash};
 use smol_str::SmolStr;
@@ -20,7 +21,9 @@ use text_editing::Document;
 
 use crate::effect::{Aside, Effect};
 use crate::host::FileKind;
+use crate::state::AppState;
 use crate::state::chance::ChanceState;
+use crate::state::keys::{KeyChange, KeysState};
 use crate::state::part::Part;
 use crate::state::settings::{PlanSettings, Settings};
 use crate::state::snapshots::Snapshots;
@@ -49,6 +52,14 @@ pub enum ReviewCommand {
     OpenRecord,
     /// Lets the user save what was kept and cannot be used.
     SaveAside,
+    /// Changes whose signatures count, or who signs here.
+    ChangeKeys(KeyChange),
+    /// Signs as the owner of another key of one's own from now on.
+    SignAs(String),
+    /// Lets the user save one's own key, with its secret, as a file.
+    SaveOwnKey(String),
+    /// Lets the user save the keys that are trusted, without secrets, as a file.
+    SaveKeys,
 }
 
 /// Somebody of the board.
@@ -82,6 +93,8 @@ pub struct ReviewState {
     current: Option<Current>,
     /// The hash of the plan that is drawn, with the answer that it is of; only while somebody has to know it.
     plan: Option<(Arc<Snapshot>, String)>,
+    /// The minute since 1970 at which the history was last checked.
+    judged_minute: i64,
     /// Whether the report is to be written as soon as there is a review for it.
     pub(crate) wants_report: bool,
 }
@@ -103,6 +116,8 @@ struct Current {
     settings: PlanSettings,
     hash: String,
 }
+
+const MILLIS_PER_MINUTE: i64 = 60_000;
 
 /// Reviews that are kept, so that undoing finds them again.
 const MAX_DONE: usize = 6;
@@ -229,6 +244,7 @@ impl ReviewState {
 /// The review with what it is about: what its commands read and change of other parts.
 pub(crate) struct Reviewing<'a> {
     pub(crate) review: &'a mut Part<ReviewState>,
+    pub(crate) keys: &'a KeysState,
     pub(crate) chance: &'a mut Part<ChanceState>,
     pub(crate) settings: &'a mut Part<Settings>,
     pub(crate) window: &'a mut Window,
@@ -250,6 +266,16 @@ impl Reviewing<'_> {
             ReviewCommand::SetRules(rules) => self.set_rules(*rules),
             ReviewCommand::SaveRules => self.save_as("rules", self.review.record.rules().to_json()),
             ReviewCommand::SaveRecord => self.save_as("review", self.review.record.to_json()),
+            ReviewCommand::ChangeKeys(change) => self.window.ask(Effect::ChangeKeys(change)),
+            ReviewCommand::SignAs(name) => self.settings.reviewer = name,
+            ReviewCommand::SaveOwnKey(name) => match self.keys.ring().own_to_json(&name) {
+                Some(text) => self.window.save_file(format!("{name}.key.json"), text.into_bytes()),
+                None => self.window.failed(format!("There is no key of “{name}” here")),
+            },
+            ReviewCommand::SaveKeys => {
+                let text = self.keys.ring().to_json(false);
+                self.window.save_file("board.keys.json".to_owned(), text.into_bytes());
+            }
             ReviewCommand::OpenRecord => self.window.ask(Effect::OpenFile(FileKind::Json)),
             ReviewCommand::SaveAside => {
                 if let Some(aside) = &self.review.aside {
@@ -312,17 +338,19 @@ impl Reviewing<'_> {
             return;
         }
         let by = Person { name: self.settings.reviewer.clone(), role: self.settings.reviewer_role.clone() };
-        let who = self.who(by);
-        self.review.record.add(who, Act::Rules { rules });
-        self.keep();
-        self.judge();
+        if self.sign(by, Act::Rules { rules }) {
+            self.judge();
+        }
     }
 
     /// Takes flight rules from a file.
     pub(crate) fn import_rules(&mut self, name: &str, text: &str) {
         match FlightRules::from_json(text) {
             Ok(rules) => {
-                self.set_rules(rules);
+                self.set_rules(rules.clone());
+                if *self.review.record.rules() != rules {
+                    return;
+                }
                 self.window.done(format!("Applied the flight rules of {name}"));
             }
             Err(reason) => self.window.failed(format!("{name}: {reason}")),
@@ -342,9 +370,18 @@ impl Reviewing<'_> {
             }
             Ok(record) => {
                 let count = self.review.record.merge(record);
+                self.judge_record();
                 self.learn_runs();
                 let entries = if count == 1 { "entry" } else { "entries" };
-                self.window.done(format!("Added {count} new {entries} from {name}"));
+                match self.review.record.checked().filter(|(_, check)| !check.counts()).count() {
+                    0 => self.window.done(format!("Added {count} new {entries} from {name}")),
+                    doubtful => {
+                        let words = format!(
+                            "Added {count} new {entries} from {name}. {doubtful} of all entries do not count: see History."
+                        );
+                        self.window.failed(words);
+                    }
+                }
                 self.keep();
             }
             Err(reason) => {
@@ -390,6 +427,7 @@ impl Reviewing<'_> {
         };
         self.review.record = record;
         self.review.record.mission = self.mission.to_string();
+        self.judge_record();
         if let Some(set_aside) = set_aside {
             self.review.record.merge(set_aside);
             self.window.ask(Effect::KeepReview { joins: true });
@@ -408,6 +446,7 @@ impl Reviewing<'_> {
     /// Adds what came with a mission.
     pub(crate) fn join(&mut self, record: Record) {
         self.review.record.merge(record);
+        self.judge_record();
         self.learn_runs();
         self.keep();
     }
@@ -470,8 +509,36 @@ impl Reviewing<'_> {
         }
     }
 
+    /// Checks the history by the keys that are trusted, as of now.
+    pub(crate) fn judge_record(&mut self) {
+        let (trust, now) = (self.keys.ring().trust(), self.utc_now());
+        self.review.judged_minute = self.unix_millis / MILLIS_PER_MINUTE;
+        self.review.record.judge(&trust, &now);
+    }
+
     /// Now, as an ISO 8601 time in UTC.
     fn utc_now(&self) -> String {
         report::calendar::utc_text(self.unix_millis)
+    }
+}
+
+impl AppState {
+    /// Takes the keys that are kept now: other signatures may count.
+    pub(crate) fn take_keys(&mut self, ring: KeyRing, unkept: Option<String>) {
+        *self.keys = KeysState { ring, unkept };
+        let mut reviewing = self.reviewing();
+        reviewing.judge_record();
+        reviewing.judge();
+        self.derive();
+    }
+
+    /// Checks the history again every minute: waivers lapse.
+    pub(crate) fn judge_by_the_clock(&mut self) {
+        let minute = self.frame.unix_millis / MILLIS_PER_MINUTE;
+        if self.review.record.is_empty() || self.review.judged_minute == minute {
+            return;
+        }
+        self.reviewing().judge_record();
+        self.derive();
     }
 }

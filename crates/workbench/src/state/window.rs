@@ -95,7 +95,7 @@ impl Default for Window {
             dialog: None,
             toasts: Toasts::default(),
             panel_effects: PanelEffects::default(),
-            effects: vec![Effect::RecallReview],
+            effects: vec![Effect::RecallKeys, Effect::RecallReview],
         }
     }
 }

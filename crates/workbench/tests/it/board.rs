@@ -14,6 +14,9 @@ use workbench::state::review::ReviewCommand;
 fn before_the_board() -> App {
     let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
+    for name in ["Ada", "Grace", "Chair"] {
+        app.sign_as(name);
+    }
     let board = json!([{ "role": "Science", "approvals": 1 }, { "role": "Mobility", "approvals": 1 }]);
     app.dispatch("review.rules", &json!({ "board": board }));
     app
@@ -95,8 +98,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     let mut app = before_the_board();
     assert_eq!(status(&app), "draft");
     // A comment is open, and stands in the way.
-    let asked =
-        json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": "Why so long?" });
+    let asked = json!({ "author": "Ada", "role": "Science", "to": "Grace", "about": "Group-Wait#1", "text": "Why so long?" });
     app.dispatch("review.comment", &asked);
     assert_eq!(status(&app), "in-review");
     let ada = json!({ "name": "Ada", "role": "Science" });
@@ -233,15 +235,17 @@ fn the_manual_shows_a_board_s_history_from_draft_to_approval_over_one_edit() {
     let mut told = Told { app, known: 0, rows: Vec::new() };
     let by = |name: &str, role: &str| json!({ "name": name, "role": role });
     let (ada, grace) = (by("Ada", "Science"), by("Grace", "Mobility"));
+    for name in ["Ada", "Grace", "Chris"] {
+        told.app.sign_as(name);
+    }
     told.then(|app| {
-        app.session.state_mut().settings.reviewer = "Chris".to_owned();
         app.session.state_mut().settings.reviewer_role = "Chair".to_owned();
         let board = json!([{ "role": "Science", "approvals": 1 }, { "role": "Mobility", "approvals": 1 }]);
         app.dispatch("review.rules", &json!({ "board": board }));
     });
     told.then(|app| {
         let words = "Why so long?";
-        let about = json!({ "author": "Ada", "role": "Science", "about": "Group-Wait#1", "text": words });
+        let about = json!({ "author": "Ada", "role": "Science", "to": "Grace", "about": "Group-Wait#1", "text": words });
         app.dispatch("review.comment", &about);
     });
     told.then(|app| {
@@ -317,7 +321,13 @@ fn a_history_that_was_altered_is_refused_and_nothing_of_it_is_added() {
     let said = last_toast(&app);
     assert!(said.contains("altered") && said.contains("entry 2 (Ada"), "{said}");
     open_json(&mut app, &author.session.state().review.record().to_json());
+    share_keys(&author, &mut app);
     assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
+}
+
+/// Trusts whom `author` trusts, by a file of public keys.
+fn share_keys(author: &App, app: &mut App) {
+    open_json(app, &author.session.state().keys.ring().to_json(false));
 }
 
 #[test]
@@ -339,6 +349,7 @@ fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
     let mut renamed: Value = serde_json::from_str(&theirs).expect("JSON");
     renamed["mission"] = json!("Drive to the target");
     let mut app = test_support::start();
+    share_keys(&author, &mut app);
     open_json(&mut app, &renamed.to_string());
     assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
 }
@@ -372,10 +383,11 @@ fn what_is_kept_and_cannot_be_used_is_kept_aside_and_never_lost() {
 #[test]
 fn a_review_of_a_later_version_is_never_written_over() {
     let world = Rc::<test_support::World>::default();
-    let newer = json!({ "format": "enroute-review/3", "votes": [1, 2] }).to_string();
+    let newer = json!({ "format": "enroute-review/4", "votes": [1, 2] }).to_string();
     world.storage.borrow_mut().insert(KEY.into(), newer.clone());
     let mut app = test_support::start_in(Rc::clone(&world));
     app.settle();
+    app.sign_as("Ada");
     app.dispatch("review.comment", &json!({ "author": "Ada", "text": "Here?" }));
     assert_eq!(world.storage.borrow().get(KEY), Some(&newer));
     let why = app.json()["review"]["unkept"].clone();
@@ -427,7 +439,8 @@ fn schedules_say_how_the_plan_stands_and_what_is_pinned() {
     app.dispatch("plan.pin", &json!({ "event": "Group-Wait#1.end", "time": 450 }));
     app.dispatch("export.schedule", &json!({ "as": "json", "epoch": "2004-01-25T05:05:00Z" }));
     let schedule: Value = serde_json::from_str(&app.world.saved_text()).expect("JSON");
-    assert_eq!(schedule["plan_status"], "approved");
+    assert_eq!(schedule["plan_status"], "pinned", "nobody has approved these times");
+    assert_eq!(schedule["plan_status_without_pins"], "approved");
     assert_eq!(schedule["content_hash"], app.json()["review"]["hash"]);
     assert_eq!(schedule["pinned"][0]["time"], 450);
     let rows = schedule["activities"].as_array().expect("a list");
@@ -464,4 +477,161 @@ fn rules_of_the_mission_are_evaluated_as_soon_as_they_are_set() {
     let source = app.session.source();
     app.run(Command::SetSource(source.replace("[450,450]", "[440,440]")));
     assert!(app.session.state().review.rule_tracks().is_empty());
+}
+
+/// What the history says of the last entry: its signature, whether it counts, and why not.
+fn last_entry(app: &App) -> (Value, Value, String) {
+    let history = app.json()["review"]["history"].clone();
+    let last = history.as_array().and_then(|all| all.last().cloned()).expect("an entry");
+    let problem = last["problem"].as_str().unwrap_or_default().to_owned();
+    (last["signature"].clone(), last["counts"].clone(), problem)
+}
+
+#[test]
+fn names_that_look_alike_get_no_keys_and_nobody_signs_without_one() {
+    let mut app = test_support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    let ada = json!({ "author": "Ada", "text": "Why so long?" });
+    assert!(refused(&mut app, "review.comment", &ada).contains("no key of “Ada”"));
+    assert!(refused(&mut app, "review.rules", &json!({ "slope_deg": 2.5 })).contains("key"));
+    app.dispatch("review.createKey", &json!({ "name": "Ada" }));
+    for name in ["Àda", "\u{410}da", "ada", " "] {
+        let why = refused(&mut app, "review.createKey", &json!({ "name": name }));
+        assert!(
+            why.contains("taken for “Ada”") || why.contains("scripts") || why.contains("needs a name"),
+            "{why}"
+        );
+    }
+    app.dispatch("review.comment", &ada);
+    let people = app.json()["review"]["people"].clone();
+    assert_eq!((people.as_array().map(Vec::len), &people[0]["own"]), (Some(1), &json!(true)));
+    assert!(!app.json().to_string().contains("secret"), "host pages never see a secret key");
+    // Another run signs with the same key.
+    let mut again = test_support::start_in(Rc::clone(&app.world));
+    again.settle();
+    assert_eq!(again.json()["review"]["people"], people);
+    // A key goes elsewhere in a file of its own.
+    again.dispatch("review.saveKey", &json!({ "name": "Ada" }));
+    let file = again.world.saved_text();
+    let mut elsewhere = test_support::start();
+    open_json(&mut elsewhere, &file);
+    assert_eq!(elsewhere.json()["review"]["people"], people);
+    let key = people[0]["key"].clone();
+    elsewhere.dispatch("review.removeKey", &json!({ "key": key }));
+    assert_eq!(elsewhere.json()["review"]["people"], json!([]));
+    elsewhere.dispatch("review.trust", &json!({ "name": "Ada", "key": key }));
+    assert_eq!(elsewhere.json()["review"]["people"][0]["own"], false);
+    let other = refused(&mut elsewhere, "review.trust", &json!({ "name": "Grace", "key": key }));
+    assert!(other.contains("already"), "{other}");
+}
+
+#[test]
+fn nobody_takes_back_or_resolves_what_is_another_s() {
+    let mut app = before_the_board();
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    let history = app.json()["review"]["history"].clone();
+    let given = history.as_array().and_then(|all| all.last()).expect("an entry")["id"].clone();
+    let back = json!({ "name": "Grace", "id": given, "text": "Not read." });
+    assert!(refused(&mut app, "review.withdraw", &back).contains("Only the person who signed"));
+    // A key counts once, in whatever role.
+    let twice = json!({ "name": "Ada", "role": "Mobility" });
+    assert!(refused(&mut app, "review.approve", &twice).contains("Ada has approved as Science already"));
+    app.dispatch("review.comment", &json!({ "author": "Ada", "text": "Why so long?" }));
+    let id = app.json()["review"]["comments"][0]["id"].clone();
+    let resolve = |name: &str, text: &str| json!({ "name": name, "id": id, "text": text });
+    assert!(refused(&mut app, "review.resolve", &resolve("Grace", "Fine.")).contains("Only the author"));
+    assert!(refused(&mut app, "review.resolve", &resolve("Ada", " ")).contains("reason"));
+    app.dispatch("review.resolve", &resolve("Ada", "It waits for light."));
+    assert_eq!(app.json()["review"]["comments"][0]["open"], false);
+}
+
+#[test]
+fn signatures_of_an_imported_history_are_shown_and_nothing_counts_until_it_is_valid() {
+    let mut author = before_the_board();
+    author.acknowledge_all("Ada");
+    author.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    author.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    assert_eq!(status(&author), "approved");
+    let text = author.session.state().review.record().to_json();
+    let mut app = test_support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    open_json(&mut app, &text);
+    assert!(last_toast(&app).contains("do not count"), "{}", last_toast(&app));
+    assert_eq!(last_entry(&app), (json!("unknown"), json!(false), String::new()));
+    assert_eq!(
+        (status(&app), &app.json()["review"]["rules"]["board"][0]["role"]),
+        (json!("draft"), &json!("Reviewer"))
+    );
+    share_keys(&author, &mut app);
+    assert_eq!(last_entry(&app), (json!("valid"), json!(true), String::new()));
+    assert_eq!(status(&app), "approved");
+    // With one signature altered the entry is broken, and the board has not approved.
+    let mut document: Value = serde_json::from_str(&text).expect("JSON");
+    let last = document["entries"].as_array_mut().and_then(|all| all.last_mut()).expect("an entry");
+    last["signature"] = json!("0".repeat(128));
+    let mut app = test_support::start();
+    app.run(Command::Review(ReviewCommand::Run));
+    share_keys(&author, &mut app);
+    open_json(&mut app, &document.to_string());
+    assert_eq!((last_entry(&app).0, status(&app)), (json!("broken"), json!("in-review")));
+    // Somebody who is not trusted any more has approved nothing.
+    let key = author.json()["review"]["people"][1]["key"].clone();
+    author.dispatch("review.removeKey", &json!({ "key": key }));
+    assert_eq!(status(&author), "in-review");
+}
+
+#[test]
+fn two_tabs_see_each_other_s_keys_and_approvals_at_once() {
+    let mut one = before_the_board();
+    one.acknowledge_all("Ada");
+    let mut other = test_support::start_in(Rc::clone(&one.world));
+    other.settle();
+    other.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(other.json()["review"]["history"], one.json()["review"]["history"]);
+    one.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    other.settle();
+    assert_eq!(other.json()["review"]["board"][0]["given"], json!(["Ada"]));
+    other.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    one.settle();
+    assert_eq!((status(&one), status(&other)), (json!("approved"), json!("approved")));
+    other.dispatch("review.createKey", &json!({ "name": "Katherine" }));
+    one.settle();
+    let known = one.json()["review"]["people"].as_array().map(Vec::len);
+    assert_eq!(known, Some(4), "no tab writes over the keys of another");
+    one.dispatch("review.createKey", &json!({ "name": "Dorothy" }));
+    other.settle();
+    assert_eq!(other.json()["review"]["people"].as_array().map(Vec::len), Some(5));
+}
+
+#[test]
+fn a_waiver_stands_for_an_acknowledgment_until_its_day() {
+    let mut app = before_the_board();
+    let items = app.json()["review"]["items"].as_array().expect("a list").clone();
+    let index = items.iter().position(|item| item["status"] == "attention").expect("an item");
+    let waive =
+        |text: &str, until: &str| json!({ "name": "Chair", "item": index, "text": text, "until": until });
+    assert!(refused(&mut app, "review.waive", &waive(" ", "2026-01-20")).contains("reason"));
+    assert!(refused(&mut app, "review.waive", &waive("Known.", "soon")).contains("day"));
+    app.dispatch("review.waive", &waive("Known, mended in the next version.", "2026-01-20"));
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    let state = |app: &App| app.json()["review"]["waivers"][0]["state"].clone();
+    assert_eq!((status(&app), state(&app)), (json!("approved"), json!("in-force")));
+    app.run(Command::WriteReport);
+    assert!(app.world.saved_text().contains("<h2>Waivers</h2>"));
+    // Days go by while the page is open.
+    let go_on = |app: &mut App, days: f64| {
+        app.world.now_secs.set(app.world.now_secs.get() + days * 86_400.0);
+        app.settle();
+    };
+    go_on(&mut app, 12.0);
+    assert_eq!((status(&app), state(&app)), (json!("approved"), json!("about-to-lapse")));
+    go_on(&mut app, 8.0);
+    assert_eq!((status(&app), state(&app)), (json!("in-review"), json!("lapsed")));
+    let blockers = app.json()["review"]["blockers"].to_string();
+    assert!(blockers.contains("not acknowledged"), "{blockers}");
+    app.run(Command::WriteReport);
+    assert!(app.world.saved_text().contains("lapsed</span>"));
 }

@@ -9,6 +9,7 @@ mod opened;
 mod accessibility;
 mod api;
 mod attack;
+mod board;
 mod disk;
 mod drawing;
 mod editing;

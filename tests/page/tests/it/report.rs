@@ -67,6 +67,7 @@ fn count(tab: &Tab, selector: &str) -> Result<u64> {
 fn the_report_is_a_page_that_stands_alone_and_prints_on_both_papers() -> Result<()> {
     let page = Opened::planned()?;
     watch_saving(&page)?;
+    page.tab.evaluate("enroute.dispatch('review.createKey', { name: 'Grace' })")?;
     page.tab.evaluate("enroute.dispatch('review.comment', { author: 'Grace', text: 'Fine.' })")?;
     page.tab.evaluate("enroute.dispatch('file.report')")?;
     let text = saved_text(&page)?;
@@ -173,6 +174,7 @@ fn a_signed_review_is_still_there_after_the_page_was_closed() -> Result<()> {
     let page = Opened::planned()?;
     page.tab.evaluate("enroute.dispatch('view.workspace', { name: 'review' })")?;
     page.wait_for("state.review.hash !== null && !state.review.stale")?;
+    page.tab.evaluate("enroute.dispatch('review.createKey', { name: 'Ada' })")?;
     page.tab.evaluate(
         "enroute.state().review.items.forEach((it, item) => it.status === 'attention'
             && enroute.dispatch('review.acknowledge', { name: 'Ada', item, text: 'As meant.' }))",

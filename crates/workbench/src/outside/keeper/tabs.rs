@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::effect::Effect;
 use crate::host::Host;
 use crate::library::{Mission, MissionId, Version, print};
 use crate::outside::keeper::Keeper;
@@ -21,6 +22,10 @@ enum Message {
     },
     /// A mission is new, or something else of it was changed.
     Mission { json: String },
+    /// Something was done for the review of a mission: it is kept.
+    Review { mission: String },
+    /// The keys of people were changed: they are kept.
+    Keys,
 }
 
 /// What a tab calls the version of another one that it could not agree with.
@@ -49,6 +54,11 @@ impl Keeper {
         // Another version of the program may say what is not known here.
         let Ok(message) = serde_json::from_str(message) else { return };
         match message {
+            Message::Review { mission } if state.mission_key() == mission => {
+                state.window.ask(Effect::HearReview);
+            }
+            Message::Review { .. } => {}
+            Message::Keys => state.window.ask(Effect::RecallKeys),
             Message::Text { id, base, text, changed_millis } => {
                 self.hear_text(state, &id, base, &text, changed_millis);
             }
@@ -107,6 +117,16 @@ pub(super) fn tell_mission(state: &AppState, host: &mut dyn Host, id: &MissionId
     if let Some(mission) = state.library.mission(id) {
         tell(host, &Message::Mission { json: mission.without_maps().to_json() });
     }
+}
+
+/// Tells that the review of a mission has been kept.
+pub fn tell_review(host: &mut dyn Host, mission: &str) {
+    tell(host, &Message::Review { mission: mission.to_owned() });
+}
+
+/// Tells that the keys of people have been kept.
+pub fn tell_keys(host: &mut dyn Host) {
+    tell(host, &Message::Keys);
 }
 
 fn tell(host: &mut dyn Host, message: &Message) {

@@ -1,7 +1,10 @@
 //! What people of the board do: comment, acknowledge, resolve, approve and take back. Each is an entry of the history.
 
 use review::board::open_comments;
-use review::record::{Act, Runs, Subject, Who};
+use review::check::is_concerned;
+use review::keys::{PublicKey, SecretKey};
+use review::record::{Act, Entry, Record, Runs, Subject, Who};
+use review::waivers::is_day;
 use review::{Present, Standing, standing};
 use serde_json::Value;
 use tpn::plan_json::plan_to_json;
@@ -31,9 +34,10 @@ impl ReviewState {
         Person { name: by.name.trim().to_owned(), role }
     }
 
-    /// Whether somebody may do something; `Err` says why not.
-    pub fn may_say(&self, by: &Person, act: &Act) -> Result<(), String> {
+    /// Whether somebody whose key is `key` may do something; `Err` says why not.
+    pub fn may_say(&self, key: &PublicKey, act: &Act) -> Result<(), String> {
         let record = &self.record;
+        let is_own = |of: &Entry| of.key.as_ref() == Some(key);
         let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("Unknown entry {of}")));
         let of = of.transpose()?;
         let is_open = |of: &str| {
@@ -43,9 +47,13 @@ impl ReviewState {
         let is_empty = act.text().trim().is_empty();
         match act {
             _ if self.hash().is_none() => Err("Wait until planning ends, then try again".to_owned()),
-            _ if by.name.trim().is_empty() => Err("Enter your name to review".to_owned()),
             Act::Comment { .. } if is_empty => Err("Comment is empty".to_owned()),
             Act::Acknowledge { .. } if is_empty => Err("Enter a reason to acknowledge this item".to_owned()),
+            Act::Waive { .. } if is_empty => Err("Enter a reason to waive this item".to_owned()),
+            Act::Waive { until, .. } if !is_day(until) => {
+                Err("Enter the date on which the waiver lapses, such as 2026-01-31".to_owned())
+            }
+            Act::Resolve { .. } if is_empty => Err("Enter how the comment was resolved".to_owned()),
             Act::Resolve { of, .. } if !is_open(of) => Err("This comment is already resolved".to_owned()),
             Act::Reopen { of, .. } if is_open(of) => Err("This comment is already open".to_owned()),
             Act::Resolve { .. } | Act::Reopen { .. }
@@ -58,12 +66,25 @@ impl ReviewState {
             {
                 Err("This entry was already withdrawn".to_owned())
             }
+            Act::Resolve { .. } | Act::Reopen { .. } if !of.is_some_and(|of| is_concerned(key, of)) => {
+                let who = "Only the author of a comment or its addressee";
+                Err(format!("{who} can resolve or reopen it"))
+            }
+            Act::Withdraw { .. } if !of.is_some_and(is_own) => {
+                Err("Only the person who signed an entry can withdraw it".to_owned())
+            }
             Act::Withdraw { .. }
                 if !of.is_some_and(|of| {
-                    matches!(of.act, Act::Comment { .. } | Act::Acknowledge { .. } | Act::Approve { .. })
+                    matches!(
+                        of.act,
+                        Act::Comment { .. }
+                            | Act::Acknowledge { .. }
+                            | Act::Waive { .. }
+                            | Act::Approve { .. }
+                    )
                 }) =>
             {
-                Err("Only comments, acknowledgements and approvals can be withdrawn".to_owned())
+                Err("Only comments, acknowledgments, waivers and approvals can be withdrawn".to_owned())
             }
             Act::Approve { .. } | Act::Rules { .. } => Err("This entry can't be withdrawn".to_owned()),
             _ => Ok(()),
@@ -88,9 +109,11 @@ impl Reviewing<'_> {
 
     pub(super) fn approve(&mut self, by: &Person, text: &str) {
         let by = self.review.seated(by);
-        let refused = match self.review.standing() {
-            Some(standing) => standing.may_approve(&by.name, &by.role).err(),
-            None => Some("wait until planning ends".to_owned()),
+        let key = self.keys.secret(&by.name);
+        let refused = match (&key, self.review.standing()) {
+            (Err(reason), _) => Some(reason.clone()),
+            (Ok((key, _)), Some(standing)) => standing.may_approve(key, &by.role).err(),
+            (_, None) => Some("wait until planning ends".to_owned()),
         };
         if let Some(reason) = refused {
             self.window.failed(format!("Not approved: {reason}"));
@@ -103,22 +126,52 @@ impl Reviewing<'_> {
         let PlanSettings { goal, seed, .. } = self.settings.plan.clone();
         let found = self.review.hash().and_then(|hash| self.chance.of_content(hash)).cloned();
         let subject = Subject::new(&review, self.document.text(), goal, seed, plan, found.as_deref());
-        self.window.done(format!("Approved by {} ({})", by.name, by.role));
-        let who = self.who(by);
-        self.review.record.approve(who, subject, text.to_owned());
-        self.keep();
+        let relied_on = self.review.standing().map(|standing| standing.relied_on).unwrap_or_default();
+        let words = format!("Approved by {} ({})", by.name, by.role);
+        let approve = |record: &mut Record, who: Who, secret: &SecretKey| {
+            record.approve(who, subject, text.to_owned(), relied_on, secret);
+        };
+        if self.sign_with(by, approve) {
+            self.window.done(words);
+        }
     }
 
     pub(super) fn say(&mut self, by: &Person, act: Act) {
-        let refused = self.review.may_say(by, &act).err();
-        if let Some(reason) = refused {
+        let key = self.keys.secret(&by.name);
+        if let Err(reason) = key.and_then(|(key, _)| self.review.may_say(&key, &act)) {
             self.window.failed(reason);
             return;
         }
         let by = self.review.seated(by);
+        self.sign(by, act);
+    }
+
+    /// Adds an entry, signed. Returns whether it counts; what would not is not added.
+    pub(super) fn sign(&mut self, by: Person, act: Act) -> bool {
+        self.sign_with(by, |record, who, secret| record.add(who, act, secret))
+    }
+
+    fn sign_with(&mut self, by: Person, add: impl FnOnce(&mut Record, Who, &SecretKey)) -> bool {
+        let (_, secret) = match self.keys.secret(&by.name) {
+            Ok(secret) => secret,
+            Err(reason) => {
+                self.window.failed(reason);
+                return false;
+            }
+        };
         let who = self.who(by);
-        self.review.record.add(who, act);
+        self.judge_record();
+        let mut record = self.review.record.clone();
+        add(&mut record, who, &secret);
+        let last = record.checked().next_back().map(|(_, check)| check);
+        if let Some(check) = last.filter(|check| !check.counts()) {
+            let problem = check.problem.as_deref().unwrap_or(check.signature.name());
+            self.window.failed(format!("Not signed: {problem}"));
+            return false;
+        }
+        self.review.record = record;
         self.keep();
+        true
     }
 
     /// Keeps what the runs of the present content came to, with the mission.

@@ -1,0 +1,511 @@
+//! Each way to cheat a board, tried: what is forged, moved, dropped, replayed or said by somebody else counts for nothing.
+
+use serde_json::{Value, json};
+use snapshot::Goal;
+
+use super::board::{PlanStatus, Present, standing};
+use super::check::Signature;
+use super::keys::{KeyError, KeyRing, Person, PublicKey, SecretKey};
+use super::record::{Act, Entry, LineKey, Record, RecordError, Said, Subject, Who};
+use super::record_tests::{NOW, judged, key, trust};
+use super::seat::Seat;
+use super::tests::{LASTING, SCENARIO, reviewed};
+use super::{FlightRules, Review, Section, Status, WaiverState};
+
+const PEOPLE: [&str; 3] = ["Chair", "Ada", "Grace"];
+
+/// A board of two people in one role, before a mission of which nothing needs attention.
+struct Board {
+    review: Review,
+    source: String,
+    record: Record,
+    minute: u32,
+}
+
+impl Board {
+    fn new(source: &str) -> Self {
+        let seat = Seat { role: "Reviewer".to_owned(), approvals: 2 };
+        let rules = FlightRules { board: vec![seat], ..FlightRules::default() };
+        let mut review = reviewed(source);
+        review.judge(&rules, None);
+        let record = judged(Record::new("enroute"));
+        let mut board = Self { review, source: source.to_owned(), record, minute: 0 };
+        board.say("Chair", Act::Rules { rules });
+        board
+    }
+
+    fn who(&mut self, by: &str) -> Who {
+        self.minute += 1;
+        Who {
+            by: by.to_owned(),
+            role: "Reviewer".to_owned(),
+            time: format!("2026-01-01T00:{:02}:00Z", self.minute),
+            content_hash: self.review.content_hash.clone(),
+            plan_hash: self.review.plan_hash.clone(),
+        }
+    }
+
+    /// Somebody says something, signed by a key. Returns the entry's digest.
+    fn say_with(&mut self, by: &str, act: Act, secret: &SecretKey) -> String {
+        let who = self.who(by);
+        self.record.add(who, act, secret);
+        self.last()
+    }
+
+    fn say(&mut self, by: &str, act: Act) -> String {
+        self.say_with(by, act, &key(by))
+    }
+
+    fn approve_with(&mut self, by: &str, secret: &SecretKey) -> String {
+        let plan = Value::Null;
+        let subject = Subject::new(&self.review, &self.source, Goal::Default, 0, plan, None);
+        let relied_on = standing(&self.record, &Present::of_review(&self.review)).relied_on;
+        let who = self.who(by);
+        self.record.approve(who, subject, String::new(), relied_on, secret);
+        self.last()
+    }
+
+    fn approve(&mut self, by: &str) -> String {
+        self.approve_with(by, &key(by))
+    }
+
+    fn last(&self) -> String {
+        self.record.entries().last().expect("an entry").digest().to_owned()
+    }
+
+    fn status(&self) -> PlanStatus {
+        self.status_of(&self.record)
+    }
+
+    fn status_of(&self, record: &Record) -> PlanStatus {
+        let mut review = self.review.clone();
+        review.judge(record.rules(), None);
+        standing(record, &Present::of_review(&review)).status
+    }
+
+    fn seats(&self) -> String {
+        standing(&self.record, &Present::of_review(&self.review)).seats_in_words()
+    }
+
+    /// The history as somebody reads it who was handed the document with something done to it.
+    fn read(&self, change: impl FnOnce(&mut Value)) -> Result<Record, RecordError> {
+        let mut document: Value = serde_json::from_str(&self.record.to_json()).expect("JSON");
+        change(&mut document);
+        Record::from_json(&document.to_string()).map(judged)
+    }
+}
+
+/// What was found of the last entry.
+fn last_check(record: &Record) -> (Signature, String) {
+    let (_, check) = record.checked().next_back().expect("an entry");
+    (check.signature, check.problem.clone().unwrap_or_default())
+}
+
+/// Approved by Ada and Grace.
+fn approved() -> Board {
+    let mut board = Board::new(LASTING);
+    board.approve("Ada");
+    assert_eq!(board.status(), PlanStatus::InReview);
+    board.approve("Grace");
+    assert_eq!(board.status(), PlanStatus::Approved);
+    board
+}
+
+#[test]
+fn one_person_with_three_spellings_is_one_person() {
+    let mut ring = KeyRing::default();
+    ring.add(Person::new("Ada", key("Ada"))).expect("a first name");
+    for (spelled, secret) in
+        [("Àda", key("b")), ("\u{410}da", key("c")), ("ada", key("d")), ("A d a", key("e"))]
+    {
+        let refused = ring.add(Person::new(spelled, secret)).expect_err("it looks like Ada");
+        assert!(matches!(refused, KeyError::Alike { .. } | KeyError::Name(_)), "{spelled}: {refused}");
+    }
+    // By one key, all spellings are one person, and only under the name of the key.
+    let mut board = Board::new(LASTING);
+    board.approve("Ada");
+    for spelled in ["Àda", "\u{410}da", "Grace"] {
+        board.approve_with(spelled, &key("Ada"));
+        let (signature, problem) = last_check(&board.record);
+        assert_eq!(signature, Signature::Valid);
+        assert!(problem.contains("the key is that of “Ada”"), "{problem}");
+    }
+    board.approve("Ada");
+    assert_eq!((board.seats(), board.status()), ("Reviewer 1 of 2".to_owned(), PlanStatus::InReview));
+    // With keys that nobody trusts, none of them is anybody.
+    for (spelled, secret) in [("Àda", key("b")), ("\u{410}da", key("c")), ("Grace", key("d"))] {
+        board.approve_with(spelled, &secret);
+        let (signature, problem) = last_check(&board.record);
+        assert_eq!(signature, Signature::Unknown);
+        assert!(problem.contains("whose key is another one"), "{problem}");
+    }
+    assert_eq!(board.seats(), "Reviewer 1 of 2");
+}
+
+#[test]
+fn a_key_has_one_name_and_its_two_halves_belong_together() {
+    let mut ring = KeyRing::default();
+    ring.add(Person::new("Ada", key("Ada"))).expect("a first name");
+    let again = ring.add(Person::new("Grace", key("Ada"))).expect_err("it is Ada's");
+    assert!(matches!(again, KeyError::Known { .. }), "{again}");
+    assert_eq!(KeyRing::from_json(&ring.to_json(true)), Ok(ring.clone()));
+    let shared = KeyRing::from_json(&ring.to_json(false)).expect("keys to trust");
+    assert_eq!((shared.own().count(), shared.trust()), (0, ring.trust()));
+    assert!(!ring.to_json(false).contains("secret"));
+    let foreign = ring.to_json(true).replace(key("Ada").public().as_str(), key("Grace").public().as_str());
+    assert!(matches!(KeyRing::from_json(&foreign), Err(KeyError::Damaged(_))));
+    for (format, wrong) in [("enroute-keys/2", "later version"), ("enroute-rules/1", "no keys")] {
+        let refused = KeyRing::from_json(&json!({ "format": format, "keys": [] }).to_string());
+        assert!(refused.expect_err("another format").to_string().contains(wrong), "{format}");
+    }
+    for wrong in ["", "ab", &"0".repeat(63), &"g".repeat(64)] {
+        assert_eq!(PublicKey::read(wrong), None, "{wrong}");
+    }
+}
+
+#[test]
+fn rules_that_change_lapse_approvals_and_rules_of_nobody_are_none() {
+    let mut board = approved();
+    let rules = board.record.rules().clone();
+    let one =
+        FlightRules { board: vec![Seat { role: "Reviewer".to_owned(), approvals: 1 }], ..rules.clone() };
+    let flat = FlightRules { slope_deg: Some(1.0), ..rules.clone() };
+    // An outsider asks for less: nobody heeds it.
+    board.say_with("Eve", Act::Rules { rules: one.clone() }, &key("Eve"));
+    assert_eq!((board.record.rules(), board.status()), (&rules, PlanStatus::Approved));
+    for changed in [one, flat] {
+        board.say("Chair", Act::Rules { rules: changed.clone() });
+        assert_eq!(board.record.rules(), &changed);
+        assert_eq!(board.status_of(&board.record), PlanStatus::Lapsed);
+    }
+    // What an approval signs and what it approves are held against each other.
+    let mut board = Board::new(LASTING);
+    let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, None);
+    let said = Said {
+        rules: FlightRules::default().digest(),
+        former: board.record.heads().map(str::to_owned).collect(),
+        act: Act::Approve { subject: board.record.keep_subject(subject), text: String::new() },
+        ..said(board.who("Ada"))
+    };
+    let forged = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
+    assert!(last_check(&forged).1.contains("other flight rules"), "{:?}", last_check(&forged));
+}
+
+/// What somebody says, without an act of its own.
+fn said(who: Who) -> Said {
+    let Who { by, role, time, content_hash, plan_hash } = who;
+    let act = Act::Comment { about: None, to: None, text: "Fine.".to_owned() };
+    let (rules, acknowledged, former) = (String::new(), Vec::new(), Vec::new());
+    Said { by, key: None, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
+}
+
+/// A record to which somebody has written an entry by other means than this program.
+fn with_entry(record: &Record, entry: &Entry) -> Record {
+    let mut document: Value = serde_json::from_str(&record.to_json()).expect("JSON");
+    let written = json!({ "digest": entry.digest(), "said": entry.raw(), "signature": entry.signature() });
+    document["entries"].as_array_mut().expect("a list").push(written);
+    document["heads"] = json!([entry.digest()]);
+    judged(Record::from_json(&document.to_string()).expect("it is whole"))
+}
+
+#[test]
+fn only_the_signer_takes_a_signature_back() {
+    let mut board = Board::new(LASTING);
+    board.approve("Grace");
+    let of = board.approve("Ada");
+    let take_back = |of: &str| Act::Withdraw { of: of.to_owned(), text: "Not read.".to_owned() };
+    for (by, secret) in [("Grace", key("Grace")), ("Eve", key("Eve")), ("Ada", key("Eve"))] {
+        board.say_with(by, take_back(&of), &secret);
+        assert!(last_check(&board.record).1.contains("only the person who signed") || by == "Ada");
+        assert!(!board.record.checked().next_back().is_some_and(|(_, check)| check.counts()), "{by}");
+        assert_eq!(board.status(), PlanStatus::Approved, "{by}");
+    }
+    board.say("Ada", take_back(&of));
+    assert_eq!(board.status(), PlanStatus::InReview);
+}
+
+#[test]
+fn only_who_is_concerned_resolves_a_comment_and_says_why() {
+    let mut board = approved();
+    let to = Some(key("Grace").public());
+    let of = board.say("Ada", Act::Comment { about: None, to, text: "Why so late?".to_owned() });
+    assert_eq!(board.status(), PlanStatus::InReview);
+    let resolve = |text: &str| Act::Resolve { of: of.clone(), text: text.to_owned() };
+    for (by, text) in [("Chair", "It is fine."), ("Grace", " "), ("Eve", "It is fine.")] {
+        board.say(by, resolve(text));
+        assert_eq!(board.status(), PlanStatus::InReview, "{by}");
+    }
+    board.say("Grace", resolve("It waits for light."));
+    assert_eq!(board.status(), PlanStatus::Approved);
+    let other = board.say("Chair", Act::Reopen { of: of.clone(), text: "No.".to_owned() });
+    assert_eq!(board.status(), PlanStatus::Approved, "it is not the Chair's to reopen: {other}");
+    board.say("Ada", Act::Reopen { of: of.clone(), text: "Not at noon.".to_owned() });
+    assert_eq!(board.status(), PlanStatus::InReview);
+    board.say("Ada", resolve("It is night."));
+    assert_eq!(board.status(), PlanStatus::Approved);
+}
+
+/// Writes the whole history again with something altered, as a forger does: digests that fit, and signatures that are left.
+fn forge(board: &Board, change: impl Fn(usize, &mut Value)) -> Record {
+    board
+        .read(|document| {
+            let mut renamed: Vec<(String, String)> = Vec::new();
+            let entries = document["entries"].as_array_mut().expect("a list");
+            for (index, entry) in entries.iter_mut().enumerate() {
+                let mut text = entry["said"].to_string();
+                for (from, to) in &renamed {
+                    text = text.replace(from, to);
+                }
+                let mut said: Value = serde_json::from_str(&text).expect("JSON");
+                change(index, &mut said);
+                let sealed = super::sealed::Sealed::<Said>::read(said.clone()).expect("an entry");
+                let former = entry["digest"].as_str().expect("a digest").to_owned();
+                renamed.push((former, sealed.digest().to_owned()));
+                entry["said"] = said;
+                entry["digest"] = json!(sealed.digest());
+            }
+            let last = entries.last().expect("an entry")["digest"].clone();
+            document["heads"] = json!([last]);
+        })
+        .expect("it is whole")
+}
+
+#[test]
+fn a_forged_history_counts_for_nothing_from_the_forged_entry_on() {
+    let board = approved();
+    assert_eq!(board.status_of(&forge(&board, |_, _| {})), PlanStatus::Approved, "nothing was altered");
+    // Words, names, contents, times, keys: whatever is altered breaks its signature and all that follow.
+    let elsewhere = key("Eve").public();
+    let changes: [(&str, Value); 7] = [
+        ("by", json!("Eve")),
+        ("role", json!("Press")),
+        ("time", json!("2026-01-01T00:00:30Z")),
+        ("content_hash", json!("c2")),
+        ("plan_hash", json!("p2")),
+        ("acknowledged", json!(["0"])),
+        ("key", json!(elsewhere)),
+    ];
+    for (member, value) in changes {
+        let forged = forge(&board, |index, said| {
+            if index == 1 {
+                said[member] = value.clone();
+            }
+        });
+        let signatures: Vec<Signature> = forged.checked().map(|(_, check)| check.signature).collect();
+        assert_eq!(signatures, [Signature::Valid, Signature::Broken, Signature::Broken], "{member}");
+        assert!(!board.status_of(&forged).is_approved());
+        assert_eq!(forged.counted().count(), 1, "{member}");
+    }
+    // A forger with a key of his own signs, and nobody knows the key.
+    let mut forger = Board::new(LASTING);
+    forger.approve_with("Ada", &key("Eve"));
+    forger.approve_with("Grace", &key("Mallory"));
+    let signatures: Vec<Signature> = forger.record.checked().map(|(_, check)| check.signature).collect();
+    assert_eq!(signatures, [Signature::Valid, Signature::Unknown, Signature::Unknown]);
+    assert_eq!(forger.status(), PlanStatus::Draft);
+}
+
+#[test]
+fn entries_that_are_dropped_put_elsewhere_or_there_twice_are_noticed() {
+    let board = approved();
+    let says = |found: Result<Record, RecordError>, words: &str| match found {
+        Err(RecordError::Broken(why)) => assert!(why.contains(words), "{why}"),
+        other => panic!("{words}: {other:?}"),
+    };
+    let entries = |it: &mut Value| it["entries"].as_array_mut().expect("a list").clone();
+    for index in 0..2 {
+        let dropped = board.read(|it| {
+            it["entries"].as_array_mut().expect("a list").remove(index);
+        });
+        says(dropped, "follows one that is not there");
+    }
+    says(board.read(|it| it["entries"].as_array_mut().expect("a list").swap(1, 2)), "not there");
+    says(
+        board.read(|it| {
+            let again = entries(it)[2].clone();
+            it["entries"].as_array_mut().expect("a list").push(again);
+        }),
+        "twice",
+    );
+    // The last entries can be left out with the heads, and whoever has seen them still has them.
+    let mut shorter = board
+        .read(|it| {
+            let all = entries(it);
+            it["entries"].as_array_mut().expect("a list").pop();
+            it["heads"] = json!([all[1]["digest"]]);
+        })
+        .expect("it is whole");
+    assert_eq!(board.status_of(&shorter), PlanStatus::InReview);
+    shorter.merge(board.record.clone());
+    assert_eq!(board.status_of(&shorter), PlanStatus::Approved);
+}
+
+#[test]
+fn an_approval_is_not_replayed_for_another_content_or_another_history() {
+    let board = approved();
+    let mut other = Board::new(SCENARIO);
+    let approvals: Vec<Entry> = board.record.entries()[1..].to_vec();
+    for approval in &approvals {
+        let mut document: Value = serde_json::from_str(&other.record.to_json()).expect("JSON");
+        document["entries"].as_array_mut().expect("a list").push(
+            json!({ "digest": approval.digest(), "said": approval.raw(), "signature": approval.signature() }),
+        );
+        let read = Record::from_json(&document.to_string());
+        assert!(matches!(read, Err(RecordError::Broken(_))), "{read:?}");
+    }
+    // The signature of one entry below the words of another.
+    let moved = board.read(|it| it["entries"][1]["signature"] = it["entries"][2]["signature"].clone());
+    let moved = moved.expect("it is whole");
+    assert_eq!(moved.checked().nth(1).map(|(_, check)| check.signature), Some(Signature::Broken));
+    assert_eq!(board.status_of(&moved), PlanStatus::InReview);
+    // Joined histories of two missions: an approval is of its content.
+    other.record.merge(board.record.clone());
+    assert!(!other.status().is_approved());
+    // A broken copy does not displace what is valid, and gives way to it.
+    let mut mine = board.record.clone();
+    mine.merge(moved.clone());
+    assert_eq!(board.status_of(&mine), PlanStatus::Approved);
+    let mut theirs = moved;
+    theirs.merge(board.record.clone());
+    assert_eq!(board.status_of(&theirs), PlanStatus::Approved);
+}
+
+#[test]
+fn impossible_dates_and_missing_signatures_are_marked() {
+    for (time, words) in [
+        ("2026-03-01T00:00:00Z", "in the future"),
+        ("2025-12-31T00:00:00Z", "before an entry that it follows"),
+        ("yesterday", "malformed"),
+        ("2026-01-01", "malformed"),
+        ("2026-13-01T00:00:00Z", "malformed"),
+        ("2026-01-01T00:00:00+01:00", "malformed"),
+    ] {
+        let mut board = Board::new(LASTING);
+        let said = Said {
+            time: time.to_owned(),
+            former: board.record.heads().map(str::to_owned).collect(),
+            ..said(board.who("Ada"))
+        };
+        let read = with_entry(&board.record, &Entry::signed(said, &key("Ada")));
+        let (signature, problem) = last_check(&read);
+        assert_eq!(signature, Signature::Valid);
+        assert!(problem.contains(words), "{time}: {problem}");
+        assert_eq!(read.counted().count(), 1);
+    }
+    // Clocks may differ by minutes.
+    let mut late = approved().record;
+    late.judge(&trust(&PEOPLE), "2025-12-31T23:55:00Z");
+    assert_eq!(late.counted().count(), 3);
+    late.judge(&trust(&PEOPLE), "2025-12-31T23:45:00Z");
+    assert_eq!(late.counted().count(), 0);
+    // What earlier versions wrote has no signatures.
+    let board = approved();
+    let bare = board.read(|it| {
+        it["format"] = json!("enroute-review/2");
+        for entry in it["entries"].as_array_mut().expect("a list") {
+            entry.as_object_mut().expect("members").remove("signature");
+        }
+    });
+    let bare = bare.expect("it is whole");
+    assert!(bare.checked().all(|(_, check)| check.signature == Signature::Unsigned));
+    assert_eq!((bare.counted().count(), board.status_of(&bare)), (0, PlanStatus::Draft));
+}
+
+#[test]
+fn nothing_counts_before_it_is_known_whose_keys_are_trusted() {
+    let board = approved();
+    let mut read = Record::from_json(&board.record.to_json()).expect("it is whole");
+    assert_eq!((read.counted().count(), read.rules()), (0, &FlightRules::default()));
+    read.judge(&trust(&["Chair", "Ada"]), NOW);
+    assert_eq!(board.status_of(&read), PlanStatus::InReview, "nobody knows Grace");
+    read.judge(&trust(&PEOPLE), NOW);
+    assert_eq!(board.status_of(&read), PlanStatus::Approved);
+}
+
+/// A mission in which the world waits for a while, before this or that.
+fn with_delay(world: &str) -> String {
+    format!(
+        "var GO : {{OK, NO}}; var STORM : {{ON, OFF}}; primitive Dig()[4,4];
+        scenario Day[0,90] = {{ {{ delay; do {{ Dig() }} maintaining GO=OK }}, {{ {world} }} }}"
+    )
+}
+
+#[test]
+fn an_acknowledgment_is_of_a_place_and_not_only_of_words() {
+    let here = with_delay("delay[5,20]; GO=OK [10,10]; STORM=ON [5,5]");
+    let mut board = Board::new(&here);
+    let assumed = |review: &Review| {
+        let lines = review.plan.iter().filter(|line| line.text.starts_with("assumes that the world acts"));
+        let lines: Vec<LineKey> = lines.map(|line| LineKey::new(Section::Plan, line)).collect();
+        let [line] = lines.as_slice() else { panic!("one line: {lines:?}") };
+        line.clone()
+    };
+    let line = assumed(&board.review);
+    assert_eq!(line.place, "in scenario#1, after the start, before Tell(GO=OK)#1");
+    let lines: Vec<LineKey> = standing(&board.record, &Present::of_review(&board.review))
+        .unacknowledged
+        .iter()
+        .map(|(section, line)| LineKey::new(*section, line))
+        .collect();
+    for line in lines {
+        board.say("Ada", Act::Acknowledge { line, text: "As meant.".to_owned() });
+    }
+    board.approve("Ada");
+    board.approve("Grace");
+    assert_eq!(board.status(), PlanStatus::Approved);
+    // The same words at another place are another line.
+    for moved in ["GO=OK [10,10]; delay[5,20]; STORM=ON [5,5]", "STORM=ON [5,5]; delay[5,20]; GO=OK [10,10]"]
+    {
+        let mut there = reviewed(&with_delay(moved));
+        there.judge(board.record.rules(), None);
+        let moved_line = assumed(&there);
+        assert_eq!((&moved_line.text, &moved_line.criterion), (&line.text, &line.criterion));
+        assert_ne!(moved_line.place, line.place);
+        let standing = standing(&board.record, &Present::of_review(&there));
+        let open = standing.unacknowledged.iter().map(|(section, line)| LineKey::new(*section, line));
+        assert!(open.collect::<Vec<_>>().contains(&moved_line), "{moved}");
+    }
+    // What comes next in the text is another one, and all else as it was.
+    let other_next = reviewed(&with_delay("delay[5,20]; STORM=ON [5,5]; GO=OK [10,10]"));
+    assert_ne!(assumed(&other_next).place, line.place);
+    // An edit elsewhere leaves the place as it is.
+    let longer = reviewed(&here.replace("Dig()[4,4]", "Dig()[4,5]"));
+    assert_eq!(assumed(&longer), line);
+}
+
+#[test]
+fn a_waiver_lapses_on_its_date() {
+    let mut board = Board::new(SCENARIO);
+    let lines: Vec<LineKey> = standing(&board.record, &Present::of_review(&board.review))
+        .unacknowledged
+        .iter()
+        .map(|(section, line)| LineKey::new(*section, line))
+        .collect();
+    assert_eq!(lines.len(), board.review.count(Status::Attention));
+    for line in lines {
+        let (text, until) = ("Until the software is mended.".to_owned(), "2026-02-05".to_owned());
+        board.say("Chair", Act::Waive { line, text, until });
+    }
+    board.approve("Ada");
+    board.approve("Grace");
+    let at = |board: &Board, now: &str| {
+        let mut record = board.record.clone();
+        record.judge(&trust(&PEOPLE), now);
+        (board.status_of(&record), record.waivers()[0].state)
+    };
+    assert_eq!(at(&board, "2026-01-28T23:59:59Z"), (PlanStatus::Approved, WaiverState::InForce));
+    assert_eq!(at(&board, "2026-01-29T00:00:00Z"), (PlanStatus::Approved, WaiverState::AboutToLapse));
+    assert_eq!(at(&board, "2026-02-04T23:59:59Z"), (PlanStatus::Approved, WaiverState::AboutToLapse));
+    assert_eq!(at(&board, "2026-02-05T00:00:00Z"), (PlanStatus::InReview, WaiverState::Lapsed));
+    // Without a reason or a date there is no waiver.
+    let line = board.record.waivers()[0].line.clone();
+    for (text, until) in [(" ", "2026-02-05"), ("Fine.", "soon"), ("Fine.", "")] {
+        let waive = Act::Waive { line: line.clone(), text: text.to_owned(), until: until.to_owned() };
+        board.say("Chair", waive);
+        assert!(last_check(&board.record).1.starts_with("a waiver needs"), "{:?}", last_check(&board.record));
+    }
+    // Taken back by its signer, it is none.
+    let of = board.record.waivers()[0].entry.digest().to_owned();
+    board.say("Chair", Act::Withdraw { of, text: "Mended.".to_owned() });
+    assert_eq!(board.status(), PlanStatus::InReview);
+}

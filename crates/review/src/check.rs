@@ -1,0 +1,147 @@
+//! Checks the entries of a history: whose signature each has, and whether it was that person's to make (SPEC 16.3).
+//!
+//! What an entry says of its signer is in its signature; what counts is decided here, for whoever trusts some keys, at
+//! some time. An entry that does not count stays in the history, and is shown with the reason.
+
+use jiff::{SignedDuration, Timestamp, civil};
+use serde::Serialize;
+
+use super::keys::{PublicKey, Trust};
+use super::record::{Act, Entry, Record};
+
+/// What the signature of an entry is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Signature {
+    /// Of a trusted key.
+    Valid,
+    /// Of a key that is not trusted here.
+    Unknown,
+    /// Not of the key that the entry names: the entry was forged.
+    Broken,
+    /// There is none, as in histories of earlier versions.
+    Unsigned,
+}
+
+impl Signature {
+    /// The word for it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Valid => "valid",
+            Self::Unknown => "unknown key",
+            Self::Broken => "broken",
+            Self::Unsigned => "unsigned",
+        }
+    }
+}
+
+/// What was found of an entry.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Check {
+    pub signature: Signature,
+    /// Why it does not count in spite of its signature, or what else is odd about it.
+    pub problem: Option<String>,
+}
+
+impl Check {
+    /// Whether the entry counts.
+    pub fn counts(&self) -> bool {
+        self.signature == Signature::Valid && self.problem.is_none()
+    }
+
+    /// The signature, and what is wrong: `valid`, `unknown key: …`.
+    pub fn words(&self) -> String {
+        match &self.problem {
+            None => self.signature.name().to_owned(),
+            Some(problem) => format!("{}: {problem}", self.signature.name()),
+        }
+    }
+}
+
+/// How far clocks may be apart.
+const CLOCK_TOLERANCE: SignedDuration = SignedDuration::from_mins(10);
+
+/// Checks an entry that follows what `record` has. Without `now` every time is in the future.
+pub(super) fn check(record: &Record, entry: &Entry, trust: &Trust, now: Option<Timestamp>) -> Check {
+    let known = entry.key.as_ref().and_then(|key| trust.name_of(key));
+    let signature = match known {
+        _ if entry.key.is_none() || entry.signature().is_empty() => Signature::Unsigned,
+        _ if !entry.is_signed() => Signature::Broken,
+        Some(_) => Signature::Valid,
+        None => Signature::Unknown,
+    };
+    let problem = problem_of_name(entry, known, trust)
+        .or_else(|| problem_of_time(record, entry, now))
+        .or_else(|| problem_of_act(record, entry));
+    Check { signature, problem }
+}
+
+fn problem_of_name(entry: &Entry, known: Option<&str>, trust: &Trust) -> Option<String> {
+    let name = entry.by.as_str();
+    match known {
+        Some(known) if known != name => {
+            Some(format!("the key is that of “{known}”, and the entry names “{name}”"))
+        }
+        Some(_) => None,
+        None => trust.alike(name).map(|known| format!("“{name}” is not “{known}”, whose key is another one")),
+    }
+}
+
+fn problem_of_time(record: &Record, entry: &Entry, now: Option<Timestamp>) -> Option<String> {
+    let Some(time) = moment(&entry.time) else { return Some("its date is malformed".to_owned()) };
+    let mut former = entry.former.iter().filter_map(|former| moment(&record.entry(former)?.time));
+    if former.any(|former| time.duration_until(former) > CLOCK_TOLERANCE) {
+        return Some("it is dated before an entry that it follows".to_owned());
+    }
+    let is_future = now.is_none_or(|now| now.duration_until(time) > CLOCK_TOLERANCE);
+    is_future.then(|| "it is dated in the future".to_owned())
+}
+
+fn problem_of_act(record: &Record, entry: &Entry) -> Option<String> {
+    let of = entry.act.of().and_then(|of| record.entry(of));
+    let is_signers = |of: &Entry| of.key.is_some() && of.key == entry.key;
+    let is_silent = entry.act.text().trim().is_empty();
+    let problem = match &entry.act {
+        Act::Withdraw { .. } if !of.is_some_and(is_signers) => {
+            "only the person who signed an entry takes it back".to_owned()
+        }
+        Act::Resolve { .. } | Act::Reopen { .. }
+            if !of.zip(entry.key.as_ref()).is_some_and(|(of, key)| is_concerned(key, of)) =>
+        {
+            "only the author of a comment, or the person to whom it is addressed, resolves or reopens it"
+                .to_owned()
+        }
+        Act::Resolve { .. } if is_silent => "a resolution needs a reason".to_owned(),
+        Act::Acknowledge { .. } if is_silent => "an acknowledgment needs a reason".to_owned(),
+        Act::Waive { .. } if is_silent => "a waiver needs a reason".to_owned(),
+        Act::Waive { until, .. } if day(until).is_none() => "a waiver needs a date".to_owned(),
+        Act::Approve { .. }
+            if record.subject(entry).is_none_or(|subject| subject.rules.digest() != entry.rules) =>
+        {
+            "it signs other flight rules than those that it approves".to_owned()
+        }
+        Act::Rules { rules } => rules.problem()?.to_owned(),
+        _ => return None,
+    };
+    Some(problem)
+}
+
+/// Whether the owner of a key wrote the comment `of`, or is the person to whom it is addressed.
+pub fn is_concerned(key: &PublicKey, of: &Entry) -> bool {
+    match &of.act {
+        Act::Comment { to, .. } => of.key.as_ref() == Some(key) || to.as_ref() == Some(key),
+        _ => false,
+    }
+}
+
+/// Reads a time in UTC such as `2026-01-02T03:04:05Z`, and nothing else: times of one shape are in order when their texts
+/// are.
+pub(super) fn moment(text: &str) -> Option<Timestamp> {
+    let time: Timestamp = text.parse().ok()?;
+    (time.strftime("%Y-%m-%dT%H:%M:%SZ").to_string() == text).then_some(time)
+}
+
+/// Reads a day such as `2026-01-02`.
+pub(super) fn day(text: &str) -> Option<civil::Date> {
+    text.parse().ok()
+}
