@@ -1,7 +1,7 @@
 //! The page in Firefox and in WebKit, where they are: it starts, plans, draws, is edited, loaded again, and opens without a
 //! network; in Firefox also with what its users block.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use anyhow::{Result, ensure};
 use serde_json::Value;
@@ -129,7 +129,7 @@ fn use_page(browser: &mut dyn Driven, name: &str) -> Result<()> {
     outcome
 }
 
-fn use_published(browser: &mut dyn Driven, published: &PathBuf) -> Result<()> {
+fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
     let server = SiteServer::start(published, 0, false)?;
     let url = server.url().to_owned();
     if let Some(reason) = browser.open_page(&url)? {
