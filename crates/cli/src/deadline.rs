@@ -3,14 +3,20 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::output::{LIMIT, print_error};
+use crate::output::{E_TIME, Format, LIMIT, print_failure};
 
 /// The option.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct TimeLimit {
-    /// Stops after so many seconds, with exit status 3.
-    #[arg(long = "time-limit", value_name = "SECONDS")]
+    /// Stop after SECONDS (exit status 3).
+    #[arg(long = "time-limit", value_name = "SECONDS", value_parser = parse_seconds)]
     seconds: Option<f64>,
+}
+
+/// The value of an option that counts seconds.
+pub fn parse_seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|&seconds: &f64| seconds > 0.0);
+    seconds.ok_or_else(|| "expected a number of seconds above 0, as in 30 or 0.5".to_owned())
 }
 
 /// How long the best plan so far may take to be finished.
@@ -32,7 +38,7 @@ impl Enforced {
 
 /// There was no answer in time.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
-#[error("the time limit was reached before {}", .0.in_words())]
+#[error("time limit reached: {}", .0.in_words())]
 pub struct TimeIsUp(pub Undecided);
 
 /// What was not done when the time was up.
@@ -49,23 +55,27 @@ pub enum Undecided {
 }
 
 impl Undecided {
-    /// That it was done, as the end of a sentence.
+    /// What it means, as the end of a sentence.
     pub fn in_words(self) -> &'static str {
         match self {
-            Self::Plan => "it was decided whether there is a plan",
-            Self::Execution => "the execution had ended",
-            Self::Robustness => "all executions had ended",
-            Self::Review => "the plan had been reviewed",
+            Self::Plan => "undecided whether there is a plan",
+            Self::Execution => "the execution did not end",
+            Self::Robustness => "not all runs ended",
+            Self::Review => "the plan was not reviewed",
         }
     }
 }
 
 impl TimeLimit {
+    /// How long it is; `None` without a limit, or if the limit is longer than a duration can be.
+    pub fn duration(self) -> Option<Duration> {
+        self.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+    }
+
     /// The limit, from now on.
     pub fn start(self) -> Deadline {
         // A limit too long to add to the present moment is none.
-        let limit = self.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds.max(0.0)).ok());
-        Deadline(limit.and_then(|limit| Instant::now().checked_add(limit)))
+        Deadline(self.duration().and_then(|limit| Instant::now().checked_add(limit)))
     }
 }
 
@@ -86,7 +96,7 @@ impl Deadline {
     }
 
     /// From now on the process ends when the time is up, whatever it does, until what is undecided is answered.
-    pub fn enforce(self, undecided: Undecided) -> Enforced {
+    pub fn enforce(self, undecided: Undecided, answer: (&'static str, Format)) -> Enforced {
         let enforced = Enforced(Arc::new(Mutex::new(false)));
         if let Some(moment) = self.0 {
             let is_answered = Arc::clone(&enforced.0);
@@ -95,7 +105,7 @@ impl Deadline {
                 // Who answers does not let go before the answer is there.
                 let is_answered = is_answered.lock().unwrap_or_else(PoisonError::into_inner);
                 if !*is_answered {
-                    print_error(&format!("error: {}", TimeIsUp(undecided)));
+                    print_failure(answer, E_TIME, &TimeIsUp(undecided).to_string());
                     std::process::exit(i32::from(LIMIT));
                 }
             });

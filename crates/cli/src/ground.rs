@@ -41,8 +41,10 @@ pub fn with_label(folder: &Path, map: &Path, bytes: Vec<u8>) -> anyhow::Result<V
 
 fn with_image(folder: &Path, description: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
     let Some(name) = image_of_label(&bytes) else { return Ok(bytes) };
-    let beside = folder_of(description).join(&name);
-    let image = beside.to_str().and_then(|path| inside(folder, path)).filter(|file| file.is_file());
+    // The image lies where the description is, and `inside` takes what is relative from the mission's folder on.
+    let beside = folder_of(description).canonicalize().map(|folder| folder.join(&name)).ok();
+    let beside = beside.as_deref().and_then(Path::to_str).and_then(|path| inside(folder, path));
+    let image = beside.filter(|file| file.is_file());
     let image = image.with_context(|| format!("its image {name} is not in the folder"))?;
     Ok(attach_label(&bytes, &read_bytes(&image, LARGEST_MAP_BYTES)?)?)
 }

@@ -1,9 +1,29 @@
 //! Reading the files that commands are given; `-` is standard input.
 
+use std::collections::BTreeSet;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use anyhow::Context as _;
+use same_file::Handle;
+
+/// The files that were read, so that none of them is written over.
+static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Whether a file was read, by this name or another one: links lead to the same file.
+pub fn was_read(path: &Path) -> bool {
+    // Whoever opens a pipe waits for its other end, so only plain files are opened.
+    let handle = |path: &Path| if path.is_file() { Handle::from_path(path).ok() } else { None };
+    let Some(file) = handle(path) else { return false };
+    let read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut read = read.iter().map(|read| if is_stdin(read) { Handle::stdin().ok() } else { handle(read) });
+    read.any(|read| read.as_ref() == Some(&file))
+}
+
+fn is_stdin(path: &Path) -> bool {
+    path == Path::new("-")
+}
 
 /// No program text is this long; a larger file is a mistake, and is refused before it is read.
 const LONGEST_TEXT_BYTES: u64 = 64 << 20;
@@ -30,14 +50,44 @@ pub fn mission_of(path: &Path, text: &str) -> anyhow::Result<String> {
     };
     let folder = folder_of(path);
     let mut problem = None;
-    let joined = rmpl::files::join(name, text, |file| match read_text(&inside(folder, file)?) {
+    let joined = rmpl::files::join(name, text, |file| match read_import(&inside(folder, file)?) {
         Ok(text) => Some(text),
         Err(error) => {
             problem.get_or_insert(error);
             None
         }
     });
+    if rmpl::files::Files::of(&joined).all().len() > MAX_IMPORTS {
+        let imports = rmpl::parse(&joined).program().imports;
+        let names: BTreeSet<&str> = imports.iter().map(|import| import.file.as_str()).collect();
+        anyhow::ensure!(
+            names.len() <= MAX_IMPORTS,
+            "{} imports {} files; a mission has at most {MAX_IMPORTS}",
+            path.display(),
+            names.len()
+        );
+    }
     problem.map_or(Ok(joined), Err)
+}
+
+/// As many imported files are joined to a mission; the front end would call the next ones missing.
+const MAX_IMPORTS: usize = 1_000;
+
+fn read_import(path: &Path) -> anyhow::Result<String> {
+    // A pipe may have nothing to say for ever.
+    anyhow::ensure!(path.is_file(), "cannot import {}: it is not a regular file", path.display());
+    read_text(path)
+}
+
+/// The text of a control program or a plant model in `path`; `instead` says what a mission is for.
+pub fn read_control(path: &Path, instead: &str) -> anyhow::Result<String> {
+    let text = read_text(path)?;
+    if !rmpl::control::is_control_text(&text) {
+        let program = rmpl::parse(&text).program();
+        let is_mission = !(program.scenarios.is_empty() && program.activities.is_empty());
+        anyhow::ensure!(!is_mission, "{} is a mission; {instead}", path.display());
+    }
+    Ok(text)
 }
 
 /// The folder of a mission's first file.
@@ -55,7 +105,8 @@ pub fn inside(folder: &Path, file: &str) -> Option<PathBuf> {
 /// The bytes of `path`, refused when there are more than `most`.
 pub fn read_bytes(path: &Path, most: u64) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    if path == Path::new("-") {
+    READ.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
+    if is_stdin(path) {
         std::io::stdin().take(most + 1).read_to_end(&mut bytes).context("cannot read standard input")?;
     } else {
         std::fs::File::open(path)
@@ -69,6 +120,5 @@ pub fn read_bytes(path: &Path, most: u64) -> anyhow::Result<Vec<u8>> {
 /// A JSON document read from `path`.
 pub fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> anyhow::Result<T> {
     let text = read_text(path)?;
-    serde_json::from_str(&text)
-        .with_context(|| format!("{} is not the JSON that was expected", path.display()))
+    serde_json::from_str(&text).with_context(|| format!("{}: invalid JSON", path.display()))
 }

@@ -7,21 +7,24 @@ mod ground;
 mod input;
 mod opened;
 mod output;
+mod save;
 mod target;
 mod trust;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
+use crate::output::{E_CALL, E_INPUT, E_TIME, Format, LIMIT, WRONG, YES};
 use commands::{
     check, compare, contradict, estimate, execute, explain, export, fmt, hca, import, path, plan,
-    reconfigure, report, review, robustness, run, simulate, step, stn, tpn, verify,
+    reconfigure, report, review, robustness, run, schema, simulate, step, stn, tpn, verify,
 };
 
-/// Plans, checks and explains missions written in RMPL.
+/// Plan, check and explain missions written in RMPL.
 #[derive(Parser)]
-#[command(name = "enroute", version, about, arg_required_else_help = true)]
+#[command(name = "enroute", version, about, arg_required_else_help = true, max_term_width = 80)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -51,10 +54,60 @@ enum Command {
     Export(export::Args),
     Compare(compare::Args),
     Contradict(contradict::Args),
+    Schema(schema::Args),
 }
 
 fn main() -> ExitCode {
-    let result = match &Cli::parse().command {
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let matches = Cli::command().try_get_matches_from(&arguments);
+    match matches.and_then(|matches| Ok((answer_to(&matches), Cli::from_arg_matches(&matches)?))) {
+        Ok(((kind, format), call)) => run(&call, (&kind, format)),
+        Err(error) => refuse(&error, &arguments),
+    }
+}
+
+/// The kind of document and the format that answer a call.
+fn answer_to(matches: &ArgMatches) -> (String, Format) {
+    let Some((name, arguments)) = matches.subcommand() else { return (UNKNOWN.to_owned(), Format::Text) };
+    let format = arguments.try_get_one("format").ok().flatten().copied().unwrap_or_default();
+    (kind_of(name), format)
+}
+
+/// The kind of the documents of a command that does not exist.
+const UNKNOWN: &str = "call";
+
+/// The kind of a command's documents.
+fn kind_of(command: &str) -> String {
+    let kind = match command {
+        "review" => "review-check",
+        "import" => "tpn",
+        _ if Cli::command().find_subcommand(command).is_some() => command,
+        _ => UNKNOWN,
+    };
+    kind.to_owned()
+}
+
+/// Answers a call that is wrong, or that asks for help.
+fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
+    let mut words = arguments.iter().map(|word| word.to_string_lossy());
+    let is_json = words.any(|word| word == "--format=json")
+        || arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
+    if !error.use_stderr() || !is_json {
+        // Where nobody reads any more, there is nobody to tell.
+        let _ = error.print();
+        return output::exit(if error.use_stderr() { WRONG } else { YES });
+    }
+    let command = arguments.iter().skip(1).find(|word| !word.to_string_lossy().starts_with('-'));
+    let kind = kind_of(&command.map(|command| command.to_string_lossy()).unwrap_or_default());
+    let message = error.to_string();
+    let message = message.trim_start_matches("error: ").trim_end();
+    output::print_failure((&kind, Format::Json), E_CALL, message);
+    output::exit(WRONG)
+}
+
+/// Runs a command; what keeps it from its answer is an answer, too.
+fn run(call: &Cli, answer: (&str, Format)) -> ExitCode {
+    let result = match &call.command {
         Command::Check(args) => check::run(args),
         Command::Fmt(args) => fmt::run(args),
         Command::Explain(args) => explain::run(args),
@@ -77,10 +130,12 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Contradict(args) => contradict::run(args),
+        Command::Schema(args) => schema::run(args),
     };
     result.unwrap_or_else(|error| {
-        output::print_error(&format!("error: {error:#}"));
         let is_late = error.is::<deadline::TimeIsUp>();
-        output::exit(if is_late { output::LIMIT } else { output::WRONG })
+        let (code, status) = if is_late { (E_TIME, LIMIT) } else { (E_INPUT, WRONG) };
+        output::print_failure(answer, code, &format!("{error:#}"));
+        output::exit(status)
     })
 }

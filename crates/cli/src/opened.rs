@@ -66,6 +66,7 @@ impl Opened {
     pub fn compile(&mut self) -> anyhow::Result<Compiled> {
         let compiled = self.core.compile(&self.update, &self.host);
         self.readable(Some(&compiled))?;
+        self.is_mission(compiled.network().is_some())?;
         Ok(compiled)
     }
 
@@ -80,6 +81,16 @@ impl Opened {
         if self.must_be_network && compiled.is_none_or(|compiled| compiled.network().is_none()) {
             Source::read(&self.source).with_context(|| format!("cannot read {}", self.name))?;
         }
+        Ok(())
+    }
+
+    /// Fails if there is no network because the text is a control program.
+    fn is_mission(&self, has_network: bool) -> anyhow::Result<()> {
+        anyhow::ensure!(
+            has_network || !rmpl::control::is_control_text(&self.source),
+            "{} is a control program; use `enroute run`",
+            self.name
+        );
         Ok(())
     }
 

@@ -4,8 +4,9 @@ use std::borrow::Cow;
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 
+use anyhow::Context as _;
 use clap::ValueEnum;
-use rmpl::Severity;
+use rmpl::{Severity, Span};
 use serde_json::{Map, Value, json};
 use snapshot::Problem;
 
@@ -18,13 +19,13 @@ pub const WRONG: u8 = 2;
 /// A limit was reached.
 pub const LIMIT: u8 = 3;
 
-/// For whom the answer is.
+/// Output format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// For people.
+    /// Human-readable text.
     #[default]
     Text,
-    /// For programs.
+    /// JSON.
     Json,
 }
 
@@ -148,15 +149,49 @@ pub fn print_verbatim(text: &str) -> anyhow::Result<()> {
     // A file gets every byte; a terminal would do what some of them say.
     let shown =
         if out.is_terminal() { harmless(&text.replace("\r\n", "\n")).into() } else { Cow::Borrowed(text) };
-    match out.write_all(shown.as_bytes()) {
+    // What is left in the buffer at the end of the process would be lost without a word.
+    match out.write_all(shown.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        result => Ok(result?),
+        result => result.context("cannot write to standard output"),
     }
 }
 
 /// Prints a line on standard error; where that is closed, there is nobody to tell.
 pub fn print_error(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{}", legible(line));
+}
+
+/// The code of a call that is wrong.
+pub const E_CALL: &str = "E-CALL";
+/// The code of an input that cannot be used.
+pub const E_INPUT: &str = "E-INPUT";
+/// The code of a time limit that was reached.
+pub const E_TIME: &str = "E-TIME";
+
+/// Answers a call that has no other answer: on standard error, or for programs as the diagnostic of a document of this kind.
+pub fn print_failure((kind, format): (&str, Format), code: &str, message: &str) {
+    if format == Format::Text {
+        return print_error(&format!("error: {message}"));
+    }
+    if let Err(error) = print_json(&document(kind, &[failure(code, message)], json!({}))) {
+        print_error(&format!("error: {message} ({error:#})"));
+    }
+}
+
+fn failure(code: &str, message: &str) -> Problem {
+    Problem {
+        code: code.into(),
+        severity: Severity::Error,
+        message: message.into(),
+        span: Span::default(),
+        line: 1,
+        column: 1,
+        file: None,
+        file_start: 0,
+        hint: None,
+        fixes: Vec::new(),
+        more: 0,
+    }
 }
 
 /// Whether any of `problems` is an error.

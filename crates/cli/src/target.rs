@@ -12,7 +12,7 @@ use crate::output::Format;
 /// How commands plan and answer that need a plan with its paths.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct PlanOptions {
-    /// Seeds path planning.
+    /// Seed for path planning.
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
     #[command(flatten)]
@@ -25,15 +25,16 @@ pub struct PlanOptions {
 /// What is to be compiled or planned.
 #[derive(clap::Args, Debug)]
 pub struct Target {
-    /// A mission text, or a network in JSON or EDN (`.tpn.json`, `.tpn.edn`), a pTPN (`.tpn`, `.ptpn`, `.xml`), or a plan of `PlanDev` (`.json`); `-` is standard input.
+    /// Mission (.rmpl), network (.tpn.json, .tpn.edn, .tpn, .ptpn, .xml), or
+    /// PlanDev plan (.json); - reads standard input.
     pub file: PathBuf,
-    /// The scenario; the first of the file by default.
+    /// Scenario to plan [default: first in file].
     #[arg(long, conflicts_with = "activity")]
     pub scenario: Option<String>,
-    /// An activity instead of a scenario.
+    /// Plan this activity instead of a scenario.
     #[arg(long)]
     pub activity: Option<String>,
-    /// The bounds of the activity's invocation, such as 450,540 or 0,inf.
+    /// Minimum and maximum duration of the activity, as in 450,540 or 0,inf.
     #[arg(long, requires = "activity", value_name = "L,U")]
     pub bounds: Option<String>,
 }
@@ -60,20 +61,20 @@ pub fn is_network(name: &str, source: &str) -> bool {
 }
 
 fn parse_bounds(text: &str) -> anyhow::Result<(Time, Bound)> {
-    let explain = || format!("--bounds wants two times such as 450,540 or 0,inf, not `{text}`");
+    let explain = || format!("--bounds expects two times, as in 450,540 or 0,inf, not `{text}`");
     let (lower, upper) = text.split_once(',').with_context(explain)?;
     let lower: Time = lower.parse().with_context(explain)?;
     let upper: Bound = upper.parse().with_context(explain)?;
     anyhow::ensure!(
         !lower.is_negative() && Bound::Finite(lower) <= upper,
-        "--bounds wants 0 ≤ L ≤ U, not `{text}`"
+        "--bounds expects 0 ≤ L ≤ U, not `{text}`"
     );
     Ok((lower, upper))
 }
 
 /// The value of `--threat-gap`.
 pub fn parse_threat_gap(text: &str) -> anyhow::Result<Time> {
-    let gap: Time = text.parse().with_context(|| format!("--threat-gap wants a time, not `{text}`"))?;
+    let gap: Time = text.parse().with_context(|| format!("--threat-gap expects a time, not `{text}`"))?;
     anyhow::ensure!(!gap.is_negative(), "--threat-gap must not be negative");
     Ok(gap)
 }

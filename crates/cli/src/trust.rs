@@ -12,7 +12,7 @@ use crate::input::read_text;
 /// Whose signatures count.
 #[derive(clap::Args)]
 pub struct Trusted {
-    /// Keys whose signatures count, as the page saves them; without any, nothing is approved.
+    /// Trusted keys, as the page saves them; without keys, nothing is approved.
     #[arg(long = "trust", value_name = "KEYS.json")]
     files: Vec<PathBuf>,
 }

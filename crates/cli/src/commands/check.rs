@@ -3,26 +3,25 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use mission::{Manner, Scenarios};
-use serde_json::json;
+use serde_json::{Value, json};
 use snapshot::Problem;
 
 use crate::deadline::{Deadline, TimeLimit};
-use crate::diagnostics::print_problems;
+use crate::diagnostics::{path_of_file, print_problems};
 use crate::opened::Opened;
 use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
 use crate::target::Target;
 
-/// Reports mistakes in mission and program files.
+/// Check mission and program files for errors.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The files; `-` is standard input.
+    /// Files to check; - reads standard input.
     #[arg(required = true)]
     files: Vec<PathBuf>,
     #[command(flatten)]
     time_limit: TimeLimit,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -31,7 +30,7 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut wrong = false;
     let deadline = args.time_limit.start();
-    let mut documents = Vec::new();
+    let mut checked = Vec::new();
     for file in &args.files {
         let target = Target { file: file.clone(), scenario: None, activity: None, bounds: None };
         let mut mission = target.open()?;
@@ -40,17 +39,40 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         wrong |= any_error(&problems);
         match args.format {
             Format::Text => print_problems(name, &mission.source, &problems)?,
-            Format::Json => documents.push(document("check", &problems, json!({ "file": name }))),
+            Format::Json => checked.push((name.clone(), problems)),
         }
     }
     match args.format {
         Format::Text if !wrong => print_text("no errors\n")?,
         Format::Text => {}
-        // One file gives one document, as every other command does; several give a list of them.
-        Format::Json if documents.len() == 1 => print_json(&documents.pop().context("one document")?)?,
-        Format::Json => print_json(&json!(documents))?,
+        Format::Json => print_json(&answer(checked))?,
     }
     Ok(exit(if wrong { WRONG } else { YES }))
+}
+
+/// The document: of several files, each with its own diagnostics, and all diagnostics with the names of their files.
+fn answer(checked: Vec<(String, Vec<Problem>)>) -> Value {
+    if let [(name, problems)] = &*checked {
+        return document("check", problems, json!({ "file": name }));
+    }
+    let files: Vec<Value> = checked
+        .iter()
+        .map(|(name, problems)| {
+            let mut file = document("check", problems, json!({ "file": name }));
+            if let Some(members) = file.as_object_mut() {
+                members.remove("format");
+            }
+            file
+        })
+        .collect();
+    let of_file = |(name, problems): (String, Vec<Problem>)| {
+        problems.into_iter().map(move |problem| {
+            let file = problem.file.as_ref().map_or_else(|| name.clone(), |file| path_of_file(&name, file));
+            Problem { span: problem.span_in_file(), file: Some(file.into()), file_start: 0, ..problem }
+        })
+    };
+    let problems: Vec<Problem> = checked.into_iter().flat_map(of_file).collect();
+    document("check", &problems, json!({ "files": files }))
 }
 
 /// All that the front end, the compilers and planning have to say about a text, in either notation: what the report says.

@@ -18,16 +18,16 @@ use crate::output::{Format, NO, WRONG, YES, any_error, document, exit, print_jso
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
 
-/// Compares two plans: what was added, removed, moved, re-chosen or done otherwise.
+/// Compare two plans.
 ///
-/// The exit status is 0 when nothing differs, and 1 when something does.
+/// If the plans differ, the exit status is 1.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The plan before: a mission text, a plan or an approved review in JSON; `-` is standard input.
+    /// Old plan: a mission, a plan in JSON, or an approved review in JSON; - reads standard input.
     before: PathBuf,
-    /// The plan after, likewise.
+    /// New plan, in any of the same forms.
     after: PathBuf,
-    /// The scenario of mission texts; the first of the file by default.
+    /// Scenario to plan, where a mission is given [default: first in file].
     #[arg(long)]
     scenario: Option<String>,
     #[command(flatten)]
@@ -85,13 +85,13 @@ impl Args {
             };
             return self.evaluated(path, &mission_of(path, &text)?, target.goal()?, self.options.seed);
         }
-        let value: Value = serde_json::from_str(&text).with_context(|| format!("{name} is not JSON"))?;
+        let value: Value = serde_json::from_str(&text).with_context(|| format!("{name}: invalid JSON"))?;
         if is_record(&value) {
             let mut record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
             self.trusted.judge(&mut record)?;
             let approved = record.last_approval();
             let (_, approved) = approved
-                .with_context(|| format!("nobody whose key is trusted has approved in the review {name}"))?;
+                .with_context(|| format!("the review {name} has no approval by a trusted key, so it names no plan"))?;
             return self.evaluated(path, &approved.source, approved.goal.clone(), approved.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;

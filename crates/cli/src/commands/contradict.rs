@@ -17,34 +17,34 @@ use tpn::plan_json::plan_from_json;
 
 use crate::commands::report::read_rules;
 use crate::commands::verify::without_path_vertices;
-use crate::deadline::Undecided;
+use crate::deadline::{Undecided, parse_seconds};
 use crate::input::read_json;
 use crate::output::{Format, NO, YES, column, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target};
 
-/// Looks for counterexamples of what has passed in a mission's review: in schedules of its plan, and in undisturbed runs.
+/// Search for counterexamples of the items that passed in a mission's review.
 ///
-/// The exit status is 1 when a passed line is contradicted.
+/// The search tries schedules of the plan and undisturbed runs. If it contradicts an item, the exit status is 1.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// The plan to review instead of the mission's own, as enroute plan prints it.
+    /// Review this plan instead of the mission's own; a document of enroute plan.
     #[arg(long, value_name = "PLAN.json")]
     plan: Option<PathBuf>,
-    /// Flight rules to hold the plan against; otherwise the usual ones.
+    /// Check the plan against these flight rules instead of the default ones.
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
-    /// Seconds to try at most; planning and review come before.
-    #[arg(long, value_name = "S", default_value_t = 60.0)]
+    /// Stop searching after SECONDS; planning and review come first.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = parse_seconds)]
     budget: f64,
-    /// Maximum number of schedules: the earliest, the latest, and random ones.
+    /// Maximum number of schedules to try: the earliest, the latest, and random ones.
     #[arg(long, value_name = "N", default_value_t = Effort::default().schedules)]
     schedules: u64,
-    /// Maximum number of undisturbed runs; vehicles drive in them.
+    /// Maximum number of undisturbed runs to try; vehicles drive in them.
     #[arg(long, value_name = "N", default_value_t = Effort::default().runs)]
     runs: u64,
-    /// Seeds the schedules and runs.
+    /// Seed for random schedules and runs.
     #[arg(long, default_value_t = 0)]
     run_seed: u64,
     #[command(flatten)]
@@ -73,7 +73,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let taken = mission.core.take_plan(&mut evaluated, &read);
         taken.map_err(anyhow::Error::msg).with_context(|| format!("cannot use {}", path.display()))?;
     }
-    let limit = deadline.enforce(Undecided::Review);
+    let limit = deadline.enforce(Undecided::Review, ("contradict", format));
     let snapshot = evaluated.snapshot();
     let mut reviewed = review(&snapshot, &args.target.goal()?, seed, &mut || false);
     let rules = match &args.rules {
@@ -85,14 +85,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let effort = Effort { schedules: args.schedules, runs: args.runs, seed: args.run_seed };
     let Some(mut trial) = Trial::new(&snapshot, &reviewed, None, effort) else {
         match format {
-            Format::Text => print_text("the mission has no plan, so no line of its review has passed\n")?,
+            Format::Text => print_text("the mission has no plan, so no item of its review has passed\n")?,
             Format::Json => print_json(&document("contradict", &snapshot.problems, json!({ "items": [] })))?,
         }
         return Ok(exit(NO));
     };
     let begun = Instant::now();
     // A budget that is too long for a duration limits nothing.
-    let budget = Duration::try_from_secs_f64(args.budget.max(0.0)).unwrap_or(Duration::MAX);
+    let budget = Duration::try_from_secs_f64(args.budget).unwrap_or(Duration::MAX);
     while begun.elapsed() < budget && mission.core.try_next(&evaluated, &mut trial)? {}
     let tried: Vec<&Tried> = trial.tried().collect();
     let is_contradicted = tried.iter().any(|it| it.verdict() == Verdict::Contradicted);
@@ -109,8 +109,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 /// The first plan of a document.
 fn only_plan(mut stated: Value) -> anyhow::Result<Value> {
     match stated.get_mut("plans").map(Value::take) {
-        Some(Value::Array(plans)) => plans.into_iter().next().context("the document lists no plan"),
-        Some(_) => anyhow::bail!("`plans` is not a list"),
+        Some(Value::Array(plans)) => {
+            plans.into_iter().next().context("the document lists no plan; it needs at least one")
+        }
+        Some(_) => anyhow::bail!("`plans` must be a list"),
         None => Ok(stated),
     }
 }
@@ -134,9 +136,9 @@ fn table(tried: &[&Tried]) -> String {
             text.push_str(&format!("    run: {found}\n"));
             let as_drawn = script.nature.is_empty();
             let how = match (script.run_seed, script.adversary, as_drawn) {
-                (_, true, _) => "nature chooses against the plan".to_owned(),
+                (_, true, _) => "worst-case contingent durations".to_owned(),
                 (Some(seed), false, true) => format!("seed {seed}"),
-                _ => "nature chooses:".to_owned(),
+                _ => "contingent durations:".to_owned(),
             };
             text.push_str(&format!("      {how}\n"));
             text.push_str(&times(&script.nature));
@@ -147,7 +149,7 @@ fn table(tried: &[&Tried]) -> String {
     }
     let count = |wanted: Verdict| tried.iter().filter(|it| it.verdict() == wanted).count();
     text.push_str(&format!(
-        "{} of {} lines survived, {} contradicted, {} not tried\n",
+        "{} of {} items survived, {} contradicted, {} not tried\n",
         count(Verdict::Survived),
         tried.len(),
         count(Verdict::Contradicted),

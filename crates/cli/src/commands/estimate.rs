@@ -13,30 +13,30 @@ use snapshot::Problem;
 
 use super::run::probability_json;
 use crate::diagnostics::print_problems;
-use crate::input::{read_json, read_text};
+use crate::input::{read_control, read_json};
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
 /// The search for likely states gives up after this many nodes.
 const MAX_NODES: u32 = 1_000_000;
 
-/// Updates a belief about a plant by commands and observations.
+/// Update the belief about a plant after commands and observations.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The plant's model; `-` is standard input.
+    /// Plant model; - reads standard input.
     model: PathBuf,
-    /// The belief before: `[{"state":{component:mode…},"probability":"p/q"}…]`; without it, what the model's INIT says.
+    /// Belief before: [{"state":{component:mode…}, "probability":"p/q"}…] [default: INIT of the model].
     #[arg(long, value_name = "P.json")]
     prior: Option<PathBuf>,
-    /// The commands: `{component:command}`; a component left out gets its idle command.
+    /// Commands: {component:command}; an absent component gets its idle command.
     #[arg(long, value_name = "C.json")]
     commands: PathBuf,
-    /// The observations: `{"EngineA.thrust":"full"}`.
+    /// Observations: {"EngineA.thrust":"full"}.
     #[arg(long, value_name = "O.json")]
     observations: PathBuf,
-    /// Finds only the K most likely states, best first; without it, all of them.
-    #[arg(long, value_name = "K")]
-    k: Option<usize>,
-    /// For whom the answer is.
+    /// Find only the K most likely states [default: all].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    k: Option<u32>,
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -59,7 +59,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let prior = match &args.prior {
         Some(path) => prior(&model, &read_json::<Vec<Believed>>(path)?)
-            .with_context(|| format!("{} is no belief about this plant", path.display()))?,
+            .with_context(|| format!("{} is not a belief about this plant", path.display()))?,
         None => Belief::initial(&model, MAX_STATES).filter(Belief::is_exact).with_context(|| {
             format!("the plant may start in more than {MAX_STATES} states: name the likely ones with --prior")
         })?,
@@ -70,14 +70,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let observation = model.observation_from_names(names(&given)).map_err(|error| anyhow!(error))?;
     let result = match args.k {
         None => update_exact(&model, &prior, &commands, &observation).map(|belief| (belief, false)),
-        Some(most) => update_best(&model, &prior, &commands, &observation, most.max(1), MAX_NODES)
+        Some(most) => update_best(&model, &prior, &commands, &observation, most as usize, MAX_NODES)
             .map(|(belief, statistics)| (belief, statistics.limit_reached)),
     };
     let (posterior, limit_reached) = match result {
         Ok((belief, limit_reached)) => (Some(belief), limit_reached),
         Err(EstimateError::Unexplained) => (None, false),
         Err(error @ EstimateError::TooMany(_)) => {
-            return Err(anyhow!(error).context("--k 100 finds the hundred most likely states"));
+            return Err(anyhow!(error).context("to find only the 100 most likely states, add --k 100"));
         }
         Err(error) => return Err(error.into()),
     };
@@ -106,7 +106,7 @@ pub fn load_model(
     format: Format,
     kind: &str,
 ) -> anyhow::Result<Option<(Model, Vec<Problem>)>> {
-    let source = read_text(path)?;
+    let source = read_control(path, "this command expects a plant model")?;
     let parsed = rmpl::control::parse(&source);
     let (model, found) = if parsed.has_errors() { (None, Vec::new()) } else { plant::compile(&parsed.file) };
     let mut diagnostics = parsed.diagnostics;
@@ -116,7 +116,7 @@ pub fn load_model(
             rmpl::Diagnostic::error(
                 rmpl::Code("E-UNDEF"),
                 rmpl::Span::default(),
-                "the file declares no component",
+                "the model declares no component",
             )
             .with_hint("declare components by DEFCLASS and DEFINSTANCE"),
         );
@@ -140,11 +140,12 @@ fn prior(model: &Model, given: &[Believed]) -> anyhow::Result<Belief> {
             other => other.to_string(),
         };
         let probability = plant::probability::parse_exact(&text).ok_or_else(|| {
-            anyhow!("`{text}` is no probability: write a decimal or a fraction such as \"396/397\"")
+            anyhow!("`{text}` is not a probability; write a decimal or a fraction, as in \"396/397\"")
         })?;
         states.push((state, probability));
     }
-    Belief::from_probabilities(states).context("no state has a probability above zero")
+    Belief::from_probabilities(states)
+        .context("every state has probability 0; at least one needs a probability above 0")
 }
 
 fn belief_json(model: &Model, belief: &Belief) -> Value {
@@ -157,7 +158,7 @@ fn belief_json(model: &Model, belief: &Belief) -> Value {
 fn belief_text(model: &Model, belief: Option<&Belief>, why: &[String]) -> String {
     let mut out = String::new();
     match belief {
-        None => out.push_str("No state that was believed possible explains the observations.\n"),
+        None => out.push_str("No state of the prior belief explains the observations.\n"),
         Some(belief) => {
             for (state, probability) in belief.states() {
                 out.push_str(&format!("{probability}  {}\n", model.describe(state)));

@@ -17,20 +17,20 @@ use crate::input::read_json;
 use crate::output::{Format, NO, YES, column, document, exit, print_json, print_text};
 use crate::target::Target;
 
-/// Says what remains possible of a plan once some of its events have happened.
+/// Show the remaining windows of a plan after some events have happened.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// A plan to execute instead of the mission's first one.
+    /// Execute this plan instead of the mission's own; a document of enroute plan.
     #[arg(long, value_name = "PLAN.json")]
     plan: Option<PathBuf>,
-    /// What has happened: {"executed": {event: time…}, "now": t}.
+    /// Events so far: {"executed": {event: time…}, "now": t}.
     #[arg(long, value_name = "OBS.json")]
     observe: PathBuf,
     #[command(flatten)]
     time_limit: TimeLimit,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -48,7 +48,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan = if let Some(file) = &args.plan {
         let document: Value = read_json(file)?;
         let plans = tpn::plan_json::plans_from_json(network, &document)?;
-        plans.into_iter().next().with_context(|| format!("{} holds no plan", file.display()))?
+        plans
+            .into_iter()
+            .next()
+            .with_context(|| format!("{} lists no plan; it needs at least one", file.display()))?
     } else {
         let manner = Manner { without_paths: true, ..Manner::unexplained() };
         let planned = mission.plan(compiled, None, manner, args.time_limit.start())?.planned;
@@ -75,7 +78,7 @@ fn observations(network: &Network, document: &Value) -> anyhow::Result<Observati
         .collect();
     let latest = executed.iter().map(|&(_, time)| time).max().unwrap_or_default();
     let now = match document.get("now") {
-        Some(now) => Time::deserialize(now).context("`now` is no time")?,
+        Some(now) => Time::deserialize(now).context("`now` is not a time")?,
         None => latest,
     };
     Ok(Observations { executed, now })

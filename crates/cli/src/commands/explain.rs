@@ -2,30 +2,52 @@
 
 use std::process::ExitCode;
 
-use crate::output::{WRONG, YES, exit, print_error, print_text};
+use anyhow::Context as _;
+use rmpl::diagnostics::EXPLANATIONS;
+use serde_json::{Value, json};
 
-/// Explains a diagnostic code such as E-BOUNDS; without one, lists all codes.
+use crate::output::{Format, YES, document, exit, print_json, print_text};
+
+/// Explain a diagnostic code such as E-BOUNDS, or list all codes.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The code.
+    /// Code to explain.
     code: Option<String>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let Some(code) = &args.code else {
-        let mut listing = String::new();
-        for explanation in rmpl::diagnostics::EXPLANATIONS {
-            listing.push_str(&format!("{:<16} {}\n", explanation.code.0, explanation.title));
+        match args.format {
+            Format::Text => {
+                let lines = EXPLANATIONS.iter().map(|it| format!("{:<16} {}\n", it.code.0, it.title));
+                print_text(&lines.collect::<String>())?;
+            }
+            Format::Json => {
+                let codes: Vec<Value> =
+                    EXPLANATIONS.iter().map(|it| json!({ "code": it.code.0, "title": it.title })).collect();
+                print_json(&document("explain", &[], json!({ "codes": codes })))?;
+            }
         }
-        print_text(&listing)?;
         return Ok(exit(YES));
     };
     let code = code.to_uppercase();
-    if let Some(explanation) = rmpl::explain(&code) {
-        print_text(&explanation.markdown())?;
-        return Ok(exit(YES));
+    let explanation = rmpl::explain(&code);
+    let explanation =
+        explanation.with_context(|| format!("unknown code {code}. Run `enroute explain` for a list."))?;
+    match args.format {
+        Format::Text => print_text(&explanation.markdown())?,
+        Format::Json => {
+            let body = json!({ "codes": [{
+                "code": explanation.code.0,
+                "title": explanation.title,
+                "markdown": explanation.markdown(),
+            }] });
+            print_json(&document("explain", &[], body))?;
+        }
     }
-    print_error(&format!("there is no diagnostic called {code}; `enroute explain` lists all of them"));
-    Ok(exit(WRONG))
+    Ok(exit(YES))
 }

@@ -1,6 +1,5 @@
 //! `enroute export`: a plan's schedule in the formats of other tools.
 
-use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -16,20 +15,21 @@ use snapshot::Snapshot;
 
 use crate::commands::import::{parse_degrees, parse_radius};
 use crate::diagnostics::print_problems;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_verbatim};
+use crate::output::{Format, NO, WRONG, YES, document, exit, print_error, print_json, print_verbatim};
+use crate::save::{refuse_input, save};
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
 
-/// Writes a plan's schedule for other tools.
+/// Export a schedule (CSV, JSON, Open MCT, iCalendar, PlanDev, GeoJSON).
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// The format.
+    /// File format.
     #[arg(long = "as", value_enum, value_name = "FORMAT")]
     form: Form,
-    /// When the mission starts, as 2004-01-25 or 2004-01-25T05:05:00Z, for dates beside times; needed where all times are
-    /// dates.
+    /// Start of the mission, as in 2004-01-25 or 2004-01-25T05:05:00Z; adds dates. Open MCT, iCalendar and
+    /// PlanDev need it.
     #[arg(
         long,
         value_name = "ISO-DATE",
@@ -38,7 +38,7 @@ pub struct Args {
         required_if_eq("form", "plandev")
     )]
     epoch: Option<String>,
-    /// The longitude and latitude in degrees that are at (0, 0) of the mission, for `GeoJSON`.
+    /// Longitude and latitude of the mission origin in degrees (GeoJSON).
     #[arg(
         long,
         value_name = "LON,LAT",
@@ -47,15 +47,15 @@ pub struct Args {
         required_if_eq("form", "geojson")
     )]
     origin: Option<[f64; 2]>,
-    /// The radius of the body in metres, for `GeoJSON`; otherwise the Earth's, 6371008.8.
-    #[arg(long, value_name = "METRES", value_parser = parse_radius)]
+    /// Radius of the body in meters (GeoJSON) [default: 6371008.8, Earth].
+    #[arg(long, value_name = "METERS", value_parser = parse_radius)]
     radius: Option<f64>,
-    /// The history of the review, as the page saves it: how the plan stands with its board is written.
+    /// Review history; adds the approval status to the export.
     #[arg(long, value_name = "REVIEW.json")]
     review: Option<PathBuf>,
     #[command(flatten)]
     trusted: Trusted,
-    /// Writes to a file instead of standard output.
+    /// Write to FILE instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -67,16 +67,16 @@ pub struct Args {
 enum Form {
     /// Comma-separated values with windows and slack.
     Csv,
-    /// A JSON document with all that is known of the schedule.
+    /// JSON with everything that is known of the schedule.
     Json,
-    /// A plan for Open MCT.
+    /// Plan for Open MCT.
     OpenMct,
-    /// A calendar.
+    /// iCalendar file.
     Icalendar,
-    /// A plan for `PlanDev` (Aerie).
+    /// Plan for PlanDev (Aerie).
     #[value(name = "plandev")]
     PlanDev,
-    /// Places, obstacles and paths in `GeoJSON`.
+    /// Places, obstacles and paths in GeoJSON.
     #[value(name = "geojson")]
     GeoJson,
 }
@@ -84,6 +84,7 @@ enum Form {
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mission = args.target.open()?;
+    args.output.as_deref().map_or(Ok(()), refuse_input)?;
     let name = mission.short_name();
     let (snapshot, _) = mission.evaluate(args.options.seed, args.options.time_limit.start())?;
     let is_planned = snapshot.plan().is_some();
@@ -95,14 +96,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             Format::Json => {
                 print_json(&document("export", &snapshot.problems, json!({ "status": "no-plan" })))?;
             }
-            Format::Text => writeln!(std::io::stderr(), "no plan, so there is no schedule")?,
+            Format::Text => print_error("the mission has no plan, so there is no schedule to export"),
         }
         return Ok(exit(if snapshot.network.is_some() { NO } else { WRONG }));
     }
     let text = args.text(&snapshot)?;
     match &args.output {
         Some(path) => {
-            std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))?;
+            save(path, &text)?;
+            if args.options.format == Format::Json {
+                let body = json!({ "status": "written", "file": path.display().to_string() });
+                print_json(&document("export", &snapshot.problems, body))?;
+            }
         }
         None => print_verbatim(&text)?,
     }
@@ -123,7 +128,7 @@ impl Args {
         let calendar = self.epoch.as_deref().map(|epoch| calendar(epoch, snapshot)).transpose()?;
         let calendar = calendar.as_ref();
         let about = export::About { content_hash: &hash, status, calendar, pins: &[], plan: None };
-        let beyond = "the schedule does not fit into the calendar";
+        let beyond = "the schedule does not fit into the calendar of years 1 to 9999";
         let written = |document: Value| Ok(format!("{}\n", serde_json::to_string_pretty(&document)?));
         match self.form {
             Form::Csv => export::csv(snapshot, &about).context(beyond),
@@ -142,6 +147,6 @@ impl Args {
 
 fn calendar(epoch: &str, snapshot: &Snapshot) -> anyhow::Result<Calendar> {
     Calendar::new(epoch, snapshot.program.options.time_unit).with_context(|| {
-        format!("--epoch wants a date such as 2004-01-25 or 2004-01-25T05:05:00Z, not `{epoch}`")
+        format!("--epoch expects a date, as in 2004-01-25 or 2004-01-25T05:05:00Z, not `{epoch}`")
     })
 }

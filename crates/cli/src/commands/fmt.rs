@@ -1,40 +1,56 @@
-//! `enroute fmt`: formats mission files in place, or says which ones are not formatted.
+//! `enroute fmt`: formats mission files in place, or names those that are not formatted.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Context as _;
+use serde_json::json;
 
 use crate::input::read_text;
-use crate::output::{NO, YES, exit, print_text, print_verbatim};
+use crate::output::{Format, NO, YES, document, exit, print_json, print_text, print_verbatim};
+use crate::save::replace;
 
-/// Formats mission files in place; standard input is formatted to standard output.
+/// Format mission files in place.
+///
+/// Standard input (-) is formatted to standard output.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The files; `-` is standard input.
+    /// Files to format; - reads standard input.
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// Changes nothing, and exits with 1 if a file is not formatted.
+    /// Change nothing; if a file is not formatted, exit with status 1.
     #[arg(long)]
     check: bool,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let mut unformatted = false;
+    let mut files = Vec::new();
     for file in &args.files {
         let source = read_text(file)?;
         let formatted = format(&source);
+        let is_formatted = formatted == source;
+        let mut answer = json!({ "file": file.display().to_string(), "formatted": is_formatted });
         if args.check {
-            if formatted != source {
-                unformatted = true;
+            unformatted |= !is_formatted;
+            if !is_formatted && args.format == Format::Text {
                 print_text(&format!("{} is not formatted\n", file.display()))?;
             }
         } else if file == Path::new("-") {
-            print_verbatim(&formatted)?;
-        } else if formatted != source {
-            std::fs::write(file, formatted).with_context(|| format!("cannot write {}", file.display()))?;
+            match args.format {
+                Format::Text => print_verbatim(&formatted)?,
+                Format::Json => answer["text"] = json!(formatted),
+            }
+        } else if !is_formatted {
+            replace(file, &formatted)?;
         }
+        files.push(answer);
+    }
+    if args.format == Format::Json {
+        print_json(&document("fmt", &[], json!({ "files": files })))?;
     }
     Ok(exit(if unformatted { NO } else { YES }))
 }

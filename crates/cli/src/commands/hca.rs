@@ -9,18 +9,18 @@ use serde_json::{Value, json};
 use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
-use crate::input::read_text;
+use crate::input::read_control;
 use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text, print_verbatim};
 
-/// Compiles a control program to a hierarchical constraint automaton.
+/// Compile a control program to a hierarchical constraint automaton (HCA).
 #[derive(clap::Args)]
 pub struct Args {
-    /// The control program; `-` is standard input.
+    /// Control program; - reads standard input.
     file: PathBuf,
-    /// In which form.
-    #[arg(long = "as", value_enum)]
+    /// Notation [default: text, or json with --format json].
+    #[arg(long = "as", value_enum, value_name = "NOTATION")]
     form: Option<Form>,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -30,17 +30,17 @@ pub struct Args {
 enum Form {
     /// Locations, transitions and composites.
     Json,
-    /// The same for people.
+    /// Human-readable listing.
     Text,
-    /// For Graphviz.
+    /// Graphviz.
     Dot,
-    /// A drawing.
+    /// SVG drawing.
     Svg,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let source = read_text(&args.file)?;
+    let source = read_control(&args.file, "use `enroute tpn`")?;
     let compilation = hca::compile_text(&source, &Vocabulary::default());
     let problems = Problem::all(&compilation.diagnostics, &source);
     let form = args.form.unwrap_or(if args.format == Format::Json { Form::Json } else { Form::Text });

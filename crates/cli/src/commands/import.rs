@@ -11,24 +11,23 @@ use serde_json::{Value, json};
 use crate::input::read_text;
 use crate::output::{Format, YES, document, exit, print_json, print_text, print_verbatim};
 
-/// Reads a network that another tool wrote, and prints it as `enroute tpn` would; or places and obstacles in `GeoJSON`, and
-/// prints their declarations, for a file that a mission imports.
+/// Convert a file of another tool.
+///
+/// A network is printed as enroute tpn prints it. Places and obstacles in GeoJSON are printed as declarations, for a file that a mission imports.
 #[derive(clap::Args)]
 pub struct Args {
-    /// A plan-schema file in JSON or EDN, an enroute-tpn document, a pTPN, a plan of `PlanDev` (Aerie), or `GeoJSON`; `-` is standard
-    /// input.
+    /// plan-schema (JSON or EDN), enroute-tpn document, pTPN, PlanDev (Aerie) plan, or GeoJSON; - reads standard input.
     file: PathBuf,
-    /// The longitude and latitude in degrees that are at (0, 0) of the mission; of `GeoJSON`, whose south-west corner it is
-    /// otherwise.
+    /// Longitude and latitude of the mission origin in degrees (GeoJSON) [default: south-west corner].
     #[arg(long, value_name = "LON,LAT", value_parser = parse_degrees, allow_hyphen_values = true)]
     origin: Option<[f64; 2]>,
-    /// The radius of the body in metres on which `GeoJSON` has its degrees; otherwise the Earth's, 6371008.8.
-    #[arg(long, value_name = "METRES", value_parser = parse_radius)]
+    /// Radius of the body in meters (GeoJSON) [default: 6371008.8, Earth].
+    #[arg(long, value_name = "METERS", value_parser = parse_radius)]
     radius: Option<f64>,
-    /// The coordinates of `GeoJSON` are metres already.
-    #[arg(long, conflicts_with_all = ["origin", "radius"])]
-    metres: bool,
-    /// For whom the answer is.
+    /// Read the coordinates as meters (GeoJSON).
+    #[arg(long = "meters", alias = "metres", conflicts_with_all = ["origin", "radius"])]
+    meters: bool,
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -38,7 +37,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let text = read_text(&args.file)?;
     let name = args.file.display().to_string();
     if is_places(&name, &text) {
-        let frame = Frame { is_metres: args.metres, origin_deg: args.origin, radius_m: args.radius };
+        let frame = Frame { is_metres: args.meters, origin_deg: args.origin, radius_m: args.radius };
         let lines =
             geojson::declarations(&name, &text, &frame).with_context(|| format!("cannot read {name}"))?;
         match args.format {
@@ -48,8 +47,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(exit(YES));
     }
     anyhow::ensure!(
-        !args.metres && args.origin.is_none() && args.radius.is_none(),
-        "{name} is no GeoJSON, which --origin, --radius and --metres are for"
+        !args.meters && args.origin.is_none() && args.radius.is_none(),
+        "{name} is not GeoJSON; remove --origin, --radius and --meters, which only GeoJSON needs"
     );
     let source = Source::read(&text).with_context(|| format!("cannot read {}", args.file.display()))?;
     let not_planned = match &source {
@@ -66,7 +65,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Format::Text => {
             print_text(&tpn::text::to_text(&network))?;
             if !not_planned.is_empty() {
-                print_text(&format!("without meaning for planning: {}\n", not_planned.join(", ")))?;
+                print_text(&format!("ignored (no effect on planning): {}\n", not_planned.join(", ")))?;
             }
         }
     }
@@ -83,7 +82,7 @@ pub fn parse_degrees(text: &str) -> Result<[f64; 2], String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[lon, lat]) if lon.abs() <= 360.0 && lat.abs() <= 90.0 => Ok([lon, lat]),
-        _ => Err("a longitude and a latitude in degrees, such as 77.45,18.44".to_owned()),
+        _ => Err("expected a longitude and a latitude in degrees, as in 77.45,18.44".to_owned()),
     }
 }
 
@@ -91,5 +90,5 @@ pub fn parse_radius(text: &str) -> Result<f64, String> {
     let radius: Option<f64> = text.parse().ok();
     radius
         .filter(|it| geojson::BODY_RADII_M.contains(it))
-        .ok_or_else(|| "a number of metres, from 1 to 1,000,000,000".to_owned())
+        .ok_or_else(|| "expected a number of meters from 1 to 1,000,000,000".to_owned())
 }

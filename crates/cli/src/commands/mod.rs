@@ -18,6 +18,7 @@ pub mod report;
 pub mod review;
 pub mod robustness;
 pub mod run;
+pub mod schema;
 pub mod simulate;
 pub mod step;
 pub mod stn;

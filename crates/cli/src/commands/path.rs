@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::Context as _;
 use clap::ValueEnum;
@@ -16,55 +16,55 @@ use serde_json::{Value, json};
 use terrain::format::{FileFormat, ImportOptions, read_raster};
 use terrain::{ConfigurationSpace, GridFrame, Occupancy};
 
+use crate::deadline::TimeLimit;
 use crate::ground::{LARGEST_MAP_BYTES, with_label};
 use crate::input::{folder_of, read_bytes};
 use crate::output::{Format, LIMIT, NO, YES, document, exit, print_json, print_text, without_timings};
 
-/// Finds a path on a map of obstacles.
+/// Find a path on a map of obstacles.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The map: PGM, PNG, TIFF, ESRI ASCII grid, `MovingAI` `.map` or ROS `.yaml`; `-` is standard input. Dark is obstacle.
+    /// Map: PGM, PNG, TIFF, ESRI ASCII grid, MovingAI (.map) or ROS (.yaml), where dark cells are obstacles; - reads standard input.
     map: PathBuf,
-    /// Where it starts: x to the right and y down from the top left corner.
+    /// Start: x to the right and y down from the top left corner.
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
     from: Point2<f64>,
-    /// Where it ends.
+    /// Goal.
     #[arg(long, value_name = "X,Y", value_parser = parse_point, allow_hyphen_values = true)]
     to: Point2<f64>,
-    /// Which planner.
+    /// Path planner.
     #[arg(long, value_enum, default_value_t = Planner::RrtConnect)]
     planner: Planner,
-    /// Radius of the vehicle, in the units of the coordinates.
+    /// Radius of the vehicle, in units of the coordinates.
     #[arg(long, default_value_t = 0.0, value_parser = parse_length)]
     radius: f64,
-    /// Side of a cell, in the units of the coordinates.
+    /// Side of a cell, in units of the coordinates.
     #[arg(long, default_value_t = 1.0, value_parser = parse_positive)]
     cell: f64,
-    /// Longest edge of the tree; a twenty-fifth of the longer side of the map by default.
+    /// Longest edge of the tree [default: 1/25 of the map's longer side].
     #[arg(long, value_parser = parse_positive)]
     step: Option<f64>,
-    /// Where random choices come from.
+    /// Seed for path planning.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Probability with which the goal is the sample.
+    /// Probability of sampling the goal.
     #[arg(long, default_value_t = 0.05, value_parser = parse_share)]
     goal_bias: f64,
-    /// Most samples.
-    #[arg(long, default_value_t = 200_000)]
+    /// Maximum number of samples.
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u32).range(1..))]
     samples: u32,
-    /// Give up, or with rrt-star stop improving, after this many milliseconds.
-    #[arg(long, value_name = "MS")]
-    time_limit: Option<u64>,
-    /// Search this many times, each with the next seed, and list all runs.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[command(flatten)]
+    time_limit: TimeLimit,
+    /// Search N times, each with the next seed, and list all runs.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     repeat: u32,
-    /// Leave the path as the planner found it.
+    /// Don't shorten the path.
     #[arg(long)]
     raw: bool,
-    /// Leaves out how long it took, so that the same call gives the same document.
+    /// Omit timings, for reproducible output.
     #[arg(long)]
     no_timings: bool,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -75,13 +75,13 @@ const MIN_STEP_CELLS: f64 = 0.01;
 /// The planners by their names on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Planner {
-    /// One tree from the start.
+    /// Grows one tree from the start.
     Rrt,
-    /// A tree from each end.
+    /// Grows a tree from each end.
     RrtConnect,
-    /// Goes on to shorten its path.
+    /// Keeps improving the path after the first one (RRT*).
     RrtStar,
-    /// Within the speeds and accelerations of an ATRV.
+    /// Keeps to the speeds and accelerations of an ATRV rover.
     Kinodynamic,
 }
 
@@ -109,11 +109,11 @@ struct Run {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let space = load(args)?;
-    let runs: Vec<Run> = (0..args.repeat).map(|run| search(args, &space, u64::from(run))).collect();
+    let map = load(args)?;
+    let runs: Vec<Run> = (0..args.repeat).map(|run| search(args, &map, u64::from(run))).collect();
     let first = runs.first().context("at least one run")?;
     match args.format {
-        Format::Text => print_text(&describe(&runs))?,
+        Format::Text => print_text(&describe(&runs, !args.no_timings))?,
         Format::Json => {
             let mut body = to_json(&runs);
             if args.no_timings {
@@ -131,7 +131,32 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }))
 }
 
-fn load(args: &Args) -> anyhow::Result<ConfigurationSpace> {
+/// A map as vehicles see it.
+struct Map {
+    space: ConfigurationSpace,
+    /// Values row by row from the top; NaN where the file has none.
+    samples: Vec<f32>,
+}
+
+impl Map {
+    /// Whether the file has no value for the cell of a point in the map.
+    fn is_unknown(&self, point: Point2<f64>) -> bool {
+        let frame = self.space.frame();
+        let index =
+            frame.cell_at(point).map(|cell| cell.row as usize * frame.width as usize + cell.column as usize);
+        index.and_then(|index| self.samples.get(index)).is_some_and(|sample| sample.is_nan())
+    }
+
+    /// The path of a vehicle that stays where it is: it needs to know nothing of the ground, but cannot stand in an obstacle.
+    fn standing(&self, point: Point2<f64>) -> Result<motion::Path, Failure> {
+        match self.space.collision_at(point) {
+            Some(collision) if !self.is_unknown(point) => Err(Failure::StartInCollision(collision)),
+            _ => Ok(motion::Path::new(vec![point])),
+        }
+    }
+}
+
+fn load(args: &Args) -> anyhow::Result<Map> {
     let bytes = read_bytes(&args.map, LARGEST_MAP_BYTES)?;
     let name = args.map.display();
     let bytes = if FileFormat::detect(&bytes) == Some(FileFormat::RosMap) {
@@ -141,7 +166,7 @@ fn load(args: &Args) -> anyhow::Result<ConfigurationSpace> {
     };
     anyhow::ensure!(
         FileFormat::detect(&bytes).is_some(),
-        "{name} is no map: it begins like no PGM, PNG, TIFF, ESRI ASCII grid, MovingAI map or ROS map"
+        "{name}: unrecognized map format (expected PGM, PNG, TIFF, ESRI ASCII grid, MovingAI or ROS)"
     );
     let raster =
         read_raster(&bytes, &ImportOptions::default()).with_context(|| format!("cannot read {name}"))?;
@@ -150,10 +175,12 @@ fn load(args: &Args) -> anyhow::Result<ConfigurationSpace> {
         let least = args.cell * MIN_STEP_CELLS;
         anyhow::ensure!(step >= least, "--step must be at least {least}, a hundredth of a cell");
     }
-    Ok(ConfigurationSpace::new(Occupancy::from_obstacles(frame, &raster.obstacles()), args.radius))
+    let space = ConfigurationSpace::new(Occupancy::from_obstacles(frame, &raster.obstacles()), args.radius);
+    Ok(Map { space, samples: raster.samples })
 }
 
-fn search(args: &Args, space: &ConfigurationSpace, run: u64) -> Run {
+fn search(args: &Args, map: &Map, run: u64) -> Run {
+    let space = &map.space;
     let seed = args.seed.wrapping_add(run);
     let frame = space.frame();
     let longer_side = f64::from(frame.width.max(frame.height)) * frame.cell_size_m;
@@ -166,7 +193,11 @@ fn search(args: &Args, space: &ConfigurationSpace, run: u64) -> Run {
     };
     let query = Query { start_m: args.from, goal_m: args.to };
     let started = Instant::now();
-    let limit = args.time_limit.map(Duration::from_millis);
+    if args.from == args.to {
+        let (path, millis) = (map.standing(args.from), [millis_since(started); 3]);
+        return Run { seed, path, raw_length: 0.0, statistics: Statistics::default(), millis };
+    }
+    let limit = args.time_limit.duration();
     let mut first_millis = None;
     let mut stop = |statistics: &Statistics| {
         if first_millis.is_none() && statistics.samples_to_first_path.is_some() {
@@ -237,37 +268,38 @@ fn run_json(run: &Run) -> Value {
     })
 }
 
-fn describe(runs: &[Run]) -> String {
+fn describe(runs: &[Run], has_timings: bool) -> String {
     let mut text = String::new();
+    let took = |run: &Run| if has_timings { format!(", {:.3} ms", run.millis[2]) } else { String::new() };
     for run in runs {
         let prefix = if runs.len() > 1 { format!("seed {}: ", run.seed) } else { String::new() };
         match &run.path {
             Ok(path) => {
                 text += &format!(
-                    "{prefix}{:.3} long ({:.3} as found), {} points, {} samples, {:.3} ms\n",
+                    "{prefix}length {:.3} ({:.3} before shortening), {} points, {} samples{}\n",
                     path.length_m(),
                     run.raw_length,
                     path.points_m.len(),
                     run.statistics.samples,
-                    run.millis[2]
+                    took(run)
                 );
                 if runs.len() == 1 {
                     text.extend(path.points_m.iter().map(|point| format!("{} {}\n", point.x, point.y)));
                 }
             }
-            Err(failure) => text += &format!("{prefix}{failure} ({:.3} ms)\n", run.millis[2]),
+            Err(failure) => text += &format!("{prefix}{failure}{}\n", took(run)),
         }
     }
     text
 }
 
 fn parse_point(text: &str) -> Result<Point2<f64>, String> {
-    let (x, y) = text.split_once(',').ok_or("two numbers with a comma between them are needed, as in 8,8")?;
+    let (x, y) = text.split_once(',').ok_or("expected two numbers with a comma between them, as in 8,8")?;
     Ok(Point2::new(parse_number(x)?, parse_number(y)?))
 }
 
 fn parse_number(text: &str) -> Result<f64, String> {
-    let number: f64 = text.trim().parse().map_err(|_| format!("`{text}` is no number"))?;
+    let number: f64 = text.trim().parse().map_err(|_| format!("`{text}` is not a number"))?;
     if number.is_finite() { Ok(number) } else { Err(format!("`{text}` is not finite")) }
 }
 

@@ -26,46 +26,47 @@ use crate::opened::Opened;
 use crate::output::{
     Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text, without_timings,
 };
+use crate::save::{refuse_input, save};
 use crate::target::{Target, parse_threat_gap};
 
-/// Plans a mission: which alternatives, which causal links, which orderings, and the window of every event.
+/// Plan a mission: choices, causal links, orderings and event windows.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// How to search.
+    /// Search method.
     #[arg(long, value_enum, default_value_t)]
     search: SearchName,
-    /// Lists every distinct plan.
+    /// List every distinct plan.
     #[arg(long)]
     all: bool,
-    /// Lists so many plans that differ in their choices, the best first.
+    /// List the K best plans.
     #[arg(long, value_name = "K", conflicts_with = "all", value_parser = clap::value_parser!(u32).range(1..))]
     best: Option<u32>,
-    /// Stops after so many plans (with --all).
-    #[arg(long, value_name = "N")]
-    limit: Option<usize>,
+    /// Stop after N plans (with --all).
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    limit: Option<u32>,
     #[command(flatten)]
     time_limit: TimeLimit,
-    /// The least gap between ordered intervals; the file's own by default.
+    /// Minimum gap between ordered intervals [default: the mission's].
     #[arg(long, value_name = "G")]
     threat_gap: Option<String>,
-    /// Writes the search as JSON lines.
+    /// Write the search to FILE as JSON lines.
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
-    /// Seeds path planning.
+    /// Seed for path planning.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Plans without looking for paths of traverses.
+    /// Don't plan paths for traverses.
     #[arg(long)]
     no_paths: bool,
-    /// Flight rules: hold every plan against those that are in the mission's own language.
+    /// Check every plan against these flight rules.
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
-    /// Leaves out how long it took, so that the same call gives the same document.
+    /// Omit timings, for reproducible output.
     #[arg(long)]
     no_timings: bool,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -73,12 +74,12 @@ pub struct Args {
 /// The searches by name.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 enum SearchName {
-    /// The paper's: on failure undo the last choice.
+    /// After a failure, undoes the last choice.
     Chronological,
-    /// Learns from each failure and jumps back; finds a valid plan, not always the first one in the text's order.
+    /// Learns from each failure and jumps back. Finds a valid plan, not always the first in textual order.
     #[default]
     ConflictDirected,
-    /// Goes on with what may still become best (A*): the first plan is an optimal one. Keeps everything that is open.
+    /// Best-first (A*): the first plan found is optimal. Uses more memory.
     BestFirst,
 }
 
@@ -100,6 +101,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         let body = json!({ "status": "error", "plans": [], "failure": null, "stats": {} });
         return mission.refuse(&problems, args.format, ("plan", body));
     }
+    args.trace.as_deref().map_or(Ok(()), refuse_input)?;
     let begun = Instant::now();
     let deadline = args.time_limit.start();
     let without_paths = args.no_paths || compiled.is_network;
@@ -110,10 +112,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let plan_millis = millis_since(begun);
     if let Some(file) = &args.trace {
         let trace = planned.planning.outcome.trace.as_ref();
-        let trace =
-            trace.context("there is no trace: the times of the mission are too large to be planned")?;
-        std::fs::write(file, kirk::trace_json_lines(&planned.network, trace))
-            .with_context(|| format!("cannot write {}", file.display()))?;
+        let trace = trace
+            .context("the search has no trace, because the times of the mission are too large to plan")?;
+        save(file, &kirk::trace_json_lines(&planned.network, trace))?;
     }
     let outcome = &planned.planning.outcome;
     let rules = match &args.rules {
@@ -163,7 +164,7 @@ impl Args {
             },
             threat_gap,
             all: self.all,
-            max_plans: self.limit.unwrap_or(Options::default().max_plans),
+            max_plans: self.limit.map_or(Options::default().max_plans, |count| count as usize),
             best: self.best.map_or(1, |count| count as usize),
             trace_events: self.trace.is_some().then_some(TRACE_EVENTS),
             ..Options::default()
@@ -301,10 +302,8 @@ fn outcome_text(planned: &Planned, mission: &Opened) -> String {
     let mut text = match outcome.status {
         Status::Plan => String::new(),
         Status::NoPlan => "no plan\n".to_owned(),
-        Status::Limit if outcome.plans.is_empty() => {
-            "no answer within the limit: whether there is a plan is not decided\n".to_owned()
-        }
-        Status::Limit => "the limit was reached: whether there are more plans is not decided\n".to_owned(),
+        Status::Limit if outcome.plans.is_empty() => "time limit reached: undecided\n".to_owned(),
+        Status::Limit => "limit reached: there may be more plans\n".to_owned(),
         Status::Error => {
             let message = outcome.unplannable_message(&planned.network);
             message.map(|message| format!("{message}\n")).unwrap_or_default()
@@ -328,7 +327,7 @@ fn outcome_text(planned: &Planned, mission: &Opened) -> String {
     if let Some(failure) = &outcome.failure {
         text.push_str(&failure_text(failure, mission, &planned.network));
         for label in planned.planning.ways_out() {
-            text.push_str(&format!("it would have a plan: {label}\n"));
+            text.push_str(&format!("fix: {label}\n"));
         }
     }
     for undrivable in &planned.planning.undrivable {
@@ -361,7 +360,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     }
     for link in &plan.causal_links {
         text.push_str(&format!(
-            "link      {} carries {}\n",
+            "link      {} supports {}\n",
             network.label_name(link.tell),
             network.label_name(link.ask)
         ));
@@ -375,7 +374,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
     }
     let more = orders.len().saturating_sub(MAX_ORDERS_TOLD);
     if more > 0 {
-        text.push_str(&format!("order     and {more} more, all in `--json`\n"));
+        text.push_str(&format!("order     and {more} more; `--format json` lists all\n"));
     }
     for order in &plan.uses_ordered {
         let (first, then) = (network.use_name(order.first), network.use_name(order.then));
@@ -385,10 +384,10 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
         let name = &resource.name;
         text.push_str(&match (resource.supply, *levels) {
             (Supply::Reservoir { least, greatest, .. }, Levels::Range { low, high }) => {
-                format!("resource  {name}: between {low} and {high}, within {least} and {greatest}\n")
+                format!("resource  {name}: {low}–{high} (allowed {least}–{greatest})\n")
             }
             (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
-                format!("resource  {name}: at most {peak} of {capacity} at a time\n")
+                format!("resource  {name}: peak {peak} of {capacity}\n")
             }
             _ => String::new(),
         });
@@ -443,15 +442,21 @@ fn failure_text(failure: &Failure, mission: &Opened, network: &Network) -> Strin
         }
     }
     if !failure.is_complete {
-        text.push_str("there are more reasons than are listed\n");
+        text.push_str("more reasons exist than are listed\n");
     }
     text
 }
 
 fn stats_text(outcome: &Outcome) -> String {
     let stats = &outcome.stats;
+    let counted = |count: u64, one: &str| format!("{count} {one}{}", if count == 1 { "" } else { "s" });
     format!(
-        "{} nodes, {} arcs, {} decisions; {} expanded, {} backtracks, {} conflicts\n",
-        stats.nodes, stats.arcs, stats.decisions, stats.expanded, stats.backtracks, stats.conflicts
+        "{}, {}, {}; {} expanded, {}, {}\n",
+        counted(stats.nodes, "node"),
+        counted(stats.arcs, "arc"),
+        counted(stats.decisions, "decision"),
+        stats.expanded,
+        counted(stats.backtracks, "backtrack"),
+        counted(stats.conflicts, "conflict")
     )
 }

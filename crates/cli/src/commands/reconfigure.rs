@@ -13,18 +13,18 @@ use super::estimate::load_model;
 use crate::input::read_json;
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
-/// Finds the command sequence from a state of a plant to a goal.
+/// Find commands that take a plant from a state to a goal.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The plant's model; `-` is standard input.
+    /// Plant model; - reads standard input.
     model: PathBuf,
-    /// The state: `{component:mode}`; a component left out is in its initial mode.
+    /// State: {component:mode}; an absent component is in its initial mode.
     #[arg(long, value_name = "S.json")]
     state: PathBuf,
-    /// The goal: `{component:mode}`.
+    /// Goal: {component:mode}.
     #[arg(long, value_name = "G.json")]
     goal: PathBuf,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -51,8 +51,11 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
                 .map(|command| json!({ "component": command.component, "command": command.command }))
                 .collect();
             let lines = commands.iter().map(|command| format!("{} {}\n", command.component, command.command));
-            let text =
-                if commands.is_empty() { "Nothing needs to be commanded.\n".into() } else { lines.collect() };
+            let text = if commands.is_empty() {
+                "Already in the goal state; no commands needed.\n".into()
+            } else {
+                lines.collect()
+            };
             (json!({ "status": "done", "commands": listed }), text, YES)
         }
         Err(unreachable) => failure(&model, &unreachable),

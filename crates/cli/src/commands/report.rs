@@ -13,26 +13,27 @@ use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
 use crate::input::read_text;
 use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::save::{refuse_input, save};
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
 
-/// Reviews a mission: a checklist of its plan, and a report that prints and needs no network.
+/// Review a mission: print a checklist and write a self-contained HTML report.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// Writes the report as one HTML file.
+    /// HTML file to write; optional with --format json.
     #[arg(short, long, value_name = "OUT.html", required_if_eq("format", "text"))]
     output: Option<PathBuf>,
-    /// The history of the review, as the page saves it, to stand in the report.
+    /// Review history to include in the report.
     #[arg(long, alias = "record", value_name = "REVIEW.json")]
     review: Option<PathBuf>,
     #[command(flatten)]
     trusted: Trusted,
-    /// Flight rules to hold the plan against; otherwise those of the review, otherwise the usual ones.
+    /// Check the plan against these flight rules [default: those of the review, otherwise the default ones].
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
-    /// What runs with chance came to, as `enroute robustness --format json` prints it.
+    /// Monte Carlo result to include; a document of enroute robustness.
     #[arg(long, value_name = "ROBUSTNESS.json")]
     robustness: Option<PathBuf>,
     #[command(flatten)]
@@ -43,9 +44,10 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let deadline = args.options.time_limit.start();
     let mission = args.target.open()?;
+    args.output.as_deref().map_or(Ok(()), refuse_input)?;
     let name = &mission.short_name();
     let (snapshot, ground) = &mission.evaluate(args.options.seed, deadline)?;
-    let limit = deadline.enforce(Undecided::Review);
+    let limit = deadline.enforce(Undecided::Review, ("report", args.options.format));
     let mut review = review(snapshot, &args.target.goal()?, args.options.seed, &mut || false);
     let record = args.review.as_deref().map(|path| args.trusted.read(path)).transpose()?.unwrap_or_default();
     let rules = match &args.rules {
@@ -71,7 +73,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     });
     limit.answered();
     if let Some((path, page)) = page {
-        std::fs::write(path, page).with_context(|| format!("cannot write {}", path.display()))?;
+        save(path, &page)?;
     }
     match args.options.format {
         Format::Json => {
@@ -106,7 +108,7 @@ fn read_robustness(path: &Path, content_hash: &str) -> anyhow::Result<Robustness
         serde_json::from_str(&read_text(path)?).with_context(|| format!("cannot read {}", path.display()))?;
     anyhow::ensure!(
         document["mission"] == content_hash,
-        "{} is about another mission, map, goal or path seed",
+        "{} belongs to another mission, map, goal or path seed; run enroute robustness again",
         path.display()
     );
     let read = || -> Option<Robustness> {
@@ -118,14 +120,16 @@ fn read_robustness(path: &Path, content_hash: &str) -> anyhow::Result<Robustness
         };
         Some(Robustness { settings, tally: serde_json::from_value(document["tally"].clone()).ok()? })
     };
-    read().with_context(|| format!("cannot read {}: it holds no runs", path.display()))
+    read()
+        .with_context(|| format!("cannot read {}: expected a document of enroute robustness", path.display()))
 }
 
 fn summary(review: &Review) -> String {
     let [passed, attention, failed] = review.counts();
     let information = review.count(Status::Information);
+    let need = if attention == 1 { "needs" } else { "need" };
     let mut text = format!(
-        "{passed} passed, {attention} for attention, {failed} failed; {information} for information\n"
+        "{passed} passed, {attention} {need} attention, {failed} failed; {information} for information\n"
     );
     for section in Section::ALL {
         let lines = review.lines(section).into_iter().filter(|line| line.status > Status::Passed);

@@ -16,7 +16,7 @@ use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
 
-/// Checks reviews without the page.
+/// Verify the history of a review.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(subcommand)]
@@ -28,23 +28,22 @@ enum Command {
     Verify(Box<Verify>),
 }
 
-/// Checks a history: each signature, each date, and whether the board approved the content.
+/// Verify signatures and dates, and whether the board approved the content.
 ///
-/// The exit status is 0 only if the history is whole and the board has approved the content with valid signatures of
-/// trusted keys; otherwise it is 1.
+/// If the history was altered, or trusted keys have not approved the content, the exit status is 1.
 #[derive(clap::Args)]
 struct Verify {
-    /// The history, as the page saves it; `-` is standard input.
+    /// Review history, as the page saves it; - reads standard input.
     file: PathBuf,
-    /// The mission that is to be approved; otherwise the text of the last approval.
+    /// Mission to look for in the history [default: text of the last approval].
     #[arg(long, value_name = "FILE")]
     mission: Option<PathBuf>,
-    /// The scenario of the mission; the first one by default.
+    /// Scenario of the mission [default: first in file].
     #[arg(long, requires = "mission")]
     scenario: Option<String>,
     #[command(flatten)]
     trusted: Trusted,
-    /// An entry that the history must have, by its digest: later entries cannot be left out unnoticed.
+    /// Digest of an entry that the history must contain.
     #[arg(long, value_name = "DIGEST")]
     has: Option<String>,
     #[command(flatten)]
@@ -80,7 +79,7 @@ impl Verify {
         };
         self.trusted.judge(&mut record)?;
         if let Some(missing) = self.has.as_deref().filter(|digest| record.entry(digest).is_none()) {
-            return self.refuse(&format!("the entry {missing} is not there"));
+            return self.refuse(&format!("the entry {missing} is missing"));
         }
         let review = self.review(&record)?;
         let (present, content_hash) = match &review {
@@ -96,9 +95,9 @@ impl Verify {
         let mut blockers = standing.blockers();
         if record.last_approval().is_none() {
             let none = if self.trusted.is_empty() {
-                "no keys are trusted: name them with --trust"
+                "no keys are trusted; name them with --trust"
             } else {
-                "nobody whose key is trusted has approved"
+                "no trusted key has approved the content"
             };
             blockers.push(none.to_owned());
         }
@@ -117,7 +116,7 @@ impl Verify {
                 let body = json!({ "intact": false, "approved": false, "reason": why });
                 print_json(&document("review-check", &[], body))?;
             }
-            Format::Text => print_text(&format!("the history has been altered: {why}\n"))?,
+            Format::Text => print_text(&format!("the history was altered: {why}\n"))?,
         }
         Ok(exit(NO))
     }
@@ -138,7 +137,7 @@ impl Verify {
         };
         let deadline = self.options.time_limit.start();
         let (snapshot, _) = mission.evaluate(seed, deadline)?;
-        let limit = deadline.enforce(Undecided::Review);
+        let limit = deadline.enforce(Undecided::Review, ("review-check", self.options.format));
         let mut review = review(&snapshot, &goal, seed, &mut || false);
         let found = record.runs_of(&review.content_hash).map(Runs::robustness);
         review.hold_against(&snapshot, record.rules(), found.as_ref(), &mut || false);
@@ -151,7 +150,7 @@ fn words(found: &Found<'_>) -> String {
     let Found { record, standing, content_hash, blockers } = found;
     let count = record.entries().len();
     let entries = if count == 1 { "entry" } else { "entries" };
-    let mut out = format!("the history is as it was written: {count} {entries}\n");
+    let mut out = format!("history intact: {count} {entries}\n");
     for (index, (entry, check)) in record.checked().enumerate() {
         out.push_str(&format!("{:>4}  {}\n", index + 1, told(record, entry, check)));
     }
@@ -170,7 +169,7 @@ fn words(found: &Found<'_>) -> String {
         out.push_str(&format!("waiver {}, {lapses} {until}, by {}: {text}\n", state.name(), entry.by));
     }
     for blocker in blockers {
-        out.push_str(&format!("in the way: {blocker}\n"));
+        out.push_str(&format!("blocked: {blocker}\n"));
     }
     for head in record.heads() {
         out.push_str(&format!("last entry {head}\n"));
@@ -186,7 +185,7 @@ fn told(record: &Record, entry: &Entry, check: &Check) -> String {
         text if text.is_empty() => text,
         text => format!(": {text}"),
     };
-    let taken_back = record.withdrawn().get(entry.digest()).map(|by| format!(" [taken back by {}]", by.by));
+    let taken_back = record.withdrawn().get(entry.digest()).map(|by| format!(" [withdrawn by {}]", by.by));
     let taken_back = taken_back.unwrap_or_default();
     let check = check.words();
     format!("{}  {}{role} {}{of}{text}{taken_back} [{check}]", entry.time, entry.by, entry.act.name())

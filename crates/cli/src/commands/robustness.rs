@@ -7,50 +7,51 @@ use std::str::FromStr;
 use anyhow::{Context as _, bail, ensure};
 use mission::Manner;
 use serde::{Deserialize, Serialize};
+use serde_json::json;
+use snapshot::Problem;
 use snapshot::robustness::Traverses;
 use snapshot::{RobustnessSettings, Tally, Uncertainty};
 
 use crate::deadline::{TimeIsUp, TimeLimit, Undecided};
 use crate::diagnostics::print_problems;
 use crate::input::{read_json, read_text};
-use crate::output::{Format, NO, WRONG, YES, escaped, exit, print_text, print_verbatim};
+use crate::output::{Format, NO, YES, document, escaped, exit, print_json, print_text, print_verbatim};
 use crate::target::Target;
 
-/// Executes a mission's plan many times with chance: how often it reaches its end, and what breaks it.
+/// Estimate a plan's success rate by Monte Carlo simulation.
 ///
-/// With --shard i/n it makes only every n-th run; the lines of all shards, given to --merge, add up to exactly what one
-/// call without --shard gives.
+/// With --shard i/n, only every n-th run is made. Merging the results of all shards with --merge gives exactly the result of one call without --shard.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Option<Target>,
-    /// Adds up the JSON lines in these files (`-` is standard input) instead of making runs.
+    /// Merge the results in these files (- reads standard input) instead of making runs.
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "file")]
     merge: Vec<PathBuf>,
-    /// How many runs, over all shards.
-    #[arg(long, default_value_t = 1000)]
+    /// Number of runs, over all shards.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     runs: u64,
-    /// Seeds chance; run number i of a seed is the same run in every shard.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
-    /// Seeds path planning.
+    /// Seed for runs. Run i is identical in every shard.
+    #[arg(long, alias = "seed", value_name = "SEED", default_value_t = 0)]
+    run_seed: u64,
+    /// Seed for path planning.
     #[arg(long, default_value_t = 0)]
     path_seed: u64,
-    /// Makes only the runs of part i of n, from 1.
+    /// Make only the runs of shard i of n, counted from 1.
     #[arg(long, value_name = "i/n", default_value = "1/1")]
     shard: Shard,
-    /// What is left to chance; docs/robustness.md describes it.
+    /// Distributions to sample; docs/robustness.md describes the file.
     #[arg(long, value_name = "U.json")]
     uncertainty: Option<PathBuf>,
-    /// Lets vehicles drive their traverses in simulation instead of drawing how long they take: far slower.
+    /// Simulate each traverse instead of sampling its duration (much slower).
     #[arg(long)]
     drive: bool,
-    /// Lets nature choose its durations so as to break the plan: ends of ranges, where nothing breaks it.
+    /// Use worst-case contingent durations.
     #[arg(long)]
     adversary: bool,
     #[command(flatten)]
     time_limit: TimeLimit,
-    /// For whom the answer is; json is one line.
+    /// Output format; json is one line.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -66,7 +67,7 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("\"{text}\" is no part such as 2/8");
+        let wrong = || format!("\"{text}\" is not a valid shard; expected i/n with 1 ≤ i ≤ n, as in 2/8");
         let (part, of) = text.split_once('/').ok_or_else(wrong)?;
         let (part, of) = (part.parse().map_err(|_| wrong())?, of.parse().map_err(|_| wrong())?);
         if (1..=of).contains(&part) { Ok(Self { part, of }) } else { Err(wrong()) }
@@ -117,30 +118,33 @@ impl Line {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let line = if args.merge.is_empty() {
-        let target =
-            args.target.as_ref().context("it takes a mission, or --merge and the files to add up")?;
+    let (line, problems) = if args.merge.is_empty() {
+        let target = args.target.as_ref().context("expected a mission file, or --merge with result files")?;
         match sample(args, target)? {
-            Ok(line) => line,
+            Ok(sampled) => sampled,
             Err(exit) => return Ok(exit),
         }
     } else {
-        merge(&args.merge)?
+        (merge(&args.merge)?, Vec::new())
     };
     match args.format {
-        Format::Json => print_verbatim(&format!("{}\n", escaped(&serde_json::to_string(&line)?)))?,
+        Format::Json => {
+            let answer = document("robustness", &problems, serde_json::to_value(&line)?);
+            print_verbatim(&format!("{}\n", escaped(&serde_json::to_string(&answer)?)))?;
+        }
         Format::Text => print_text(&describe(&line))?,
     }
     Ok(exit(YES))
 }
 
-fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>> {
+type Sampled = (Line, Vec<Problem>);
+
+fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Sampled, ExitCode>> {
     let mut mission = target.open()?;
     let compiled = mission.compile()?;
     let problems = compiled.problems();
     let Some(network) = compiled.network() else {
-        print_problems(&mission.name, &mission.source, &problems)?;
-        return Ok(Err(exit(WRONG)));
+        return Ok(Err(mission.refuse(&problems, args.format, ("robustness", json!({})))?));
     };
     let mut uncertainty = match &args.uncertainty {
         Some(file) => read_json::<Uncertainty>(file)?,
@@ -161,12 +165,18 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
         print_problems(&mission.name, &mission.source, &problems)?;
     }
     let Some(sampler) = evaluated.sampler(&uncertainty) else {
-        print_text("the mission has no plan to execute; `enroute plan` says why\n")?;
+        match args.format {
+            Format::Text => {
+                print_text("the mission has no plan to execute; run `enroute plan` for the reason\n")?
+            }
+            Format::Json => print_json(&document("robustness", &problems, json!({ "status": "no-plan" })))?,
+        }
         return Ok(Err(exit(NO)));
     };
     let sampler = sampler?;
-    let limit = deadline.enforce(Undecided::Robustness);
-    let settings = RobustnessSettings { runs: args.runs, seed: args.seed, uncertainty: uncertainty.clone() };
+    let limit = deadline.enforce(Undecided::Robustness, ("robustness", args.format));
+    let settings =
+        RobustnessSettings { runs: args.runs, seed: args.run_seed, uncertainty: uncertainty.clone() };
     let mut tally = Tally::default();
     let mut number = args.shard.part - 1;
     while number < args.runs {
@@ -178,8 +188,8 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Line, ExitCode>
     let map = evaluated.ground.as_ref().map(|(key, _)| key);
     let mission = review::content_hash(&mission.source, map, &target.goal()?, args.path_seed);
     let shards = vec![format!("{}/{}", args.shard.part, args.shard.of)];
-    let settings = Settings { runs: args.runs, seed: args.seed, uncertainty };
-    Ok(Ok(Line::new(mission, settings, shards, tally)))
+    let settings = Settings { runs: args.runs, seed: args.run_seed, uncertainty };
+    Ok(Ok((Line::new(mission, settings, shards, tally), problems)))
 }
 
 /// Adds up lines that belong together.
@@ -196,21 +206,21 @@ fn merge(files: &[PathBuf]) -> anyhow::Result<Line> {
             });
         }
     }
-    sum.context("the files hold no lines to add up")
+    sum.context("the files contain no results to merge")
 }
 
 fn added(sum: Line, line: &Line, file: &Path) -> anyhow::Result<Line> {
     let file = file.display();
-    ensure!(line.format == FORMAT, "{file}: this is no {FORMAT}");
-    ensure!(line.mission == sum.mission, "{file}: these runs are of another mission");
-    ensure!(line.settings == sum.settings, "{file}: these runs were made with other settings");
+    ensure!(line.format == FORMAT, "{file}: expected results in the format {FORMAT}");
+    ensure!(line.mission == sum.mission, "{file}: the results belong to another mission");
+    ensure!(line.settings == sum.settings, "{file}: the results were made with other settings");
     if let Some(shard) = line.shards.iter().find(|shard| sum.shards.contains(shard)) {
-        bail!("{file}: part {shard} is there twice");
+        bail!("{file}: shard {shard} appears twice");
     }
     let same_cut = |shard: &String| shard.split_once('/').map(|(_, of)| of.to_owned());
     ensure!(
         line.shards.first().and_then(same_cut) == sum.shards.first().and_then(same_cut),
-        "{file}: the runs were cut into another number of parts"
+        "{file}: the number of shards differs from that of the other files"
     );
     let mut tally = sum.tally;
     tally.merge(&line.tally);
@@ -222,9 +232,9 @@ fn added(sum: Line, line: &Line, file: &Path) -> anyhow::Result<Line> {
 fn describe(line: &Line) -> String {
     use std::fmt::Write as _;
     let tally = &line.tally;
-    let percent = |share: f64| format!("{:.2} %", share * 100.0);
+    let percent = |share: f64| format!("{:.2}%", share * 100.0);
     let mut text = format!(
-        "{} of {} runs reach the end: {} (95 % confidence: {} to {})\n",
+        "{} of {} runs reach the end: {} (95% confidence: {} to {})\n",
         tally.succeeded,
         tally.runs,
         percent(line.probability),
@@ -232,13 +242,13 @@ fn describe(line: &Line) -> String {
         percent(line.interval[1])
     );
     if tally.succeeded_by_replanning > 0 {
-        let _ = writeln!(text, "{} of them only by planning again", tally.succeeded_by_replanning);
+        let _ = writeln!(text, "{} of them only by replanning", tally.succeeded_by_replanning);
     }
     if !line.is_complete {
-        let _ = writeln!(text, "parts {} only", line.shards.join(", "));
+        let _ = writeln!(text, "only shards {}", line.shards.join(", "));
     }
     if !tally.breaks.is_empty() {
-        text.push_str("\nwhat breaks the plan           broken  stopped  example\n");
+        text.push_str("\ncause                          broken  stopped  example\n");
         for (name, breaks) in tally.worst_events() {
             let _ = writeln!(
                 text,
@@ -247,9 +257,9 @@ fn describe(line: &Line) -> String {
             );
         }
     }
-    text.push_str("\nslack used                       mean     most\n");
+    text.push_str("\nslack used                       mean  maximum\n");
     for (name, mean, most) in tally.tightest_events() {
-        let _ = writeln!(text, "{name:30} {:>6.1} % {:>6.1} %", mean * 100.0, most * 100.0);
+        let _ = writeln!(text, "{name:30} {:>6.1}%  {:>6.1}%", mean * 100.0, most * 100.0);
     }
     text
 }

@@ -15,41 +15,42 @@ use serde_json::{Map, Value, json};
 use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
-use crate::input::read_text;
+use crate::input::read_control;
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
 
-/// Runs a control program against a plant model: commands, estimates and what happens.
+/// Run a control program in a closed loop with a simulated plant.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The control program; `-` is standard input.
+    /// Control program; - reads standard input.
     file: PathBuf,
-    /// The plant; without it, the program's own file must declare one.
+    /// Plant model [default: the one that the program file declares].
     #[arg(long, value_name = "M.rmpl")]
     model: Option<PathBuf>,
-    /// Stops after so many steps, with exit status 3.
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    /// Stop after N steps (exit status 3).
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     steps: u32,
-    /// Puts a component into a mode in a step, as in `3:EngineA=Failed`; may be given often.
+    /// Put a component into a mode at a step, as in 3:EngineA=Failed. Repeatable.
     #[arg(long, value_name = "STEP:COMPONENT=MODE")]
     inject: Vec<String>,
-    /// Lets components fail by chance with their probabilities.
-    #[arg(long, value_name = "SEED")]
-    seed: Option<u64>,
-    /// Keeps at most K states of each group of components.
-    #[arg(long, value_name = "K")]
-    k: Option<usize>,
-    /// Runs so many times by chance instead, and says how often the program reaches its end.
-    #[arg(long, value_name = "RUNS")]
+    /// Inject random faults, using this seed.
+    #[arg(long, alias = "seed", value_name = "SEED")]
+    fault_seed: Option<u64>,
+    /// Track only the K most likely states of each group of components.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    k: Option<u32>,
+    /// Run N times with random faults and report the success rate.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     monte_carlo: Option<u64>,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let source = read_text(&args.file)?;
-    let model = args.model.as_deref().map(read_text).transpose()?;
+    let source = read_control(&args.file, "use `enroute simulate`")?;
+    let read_model = |path| read_control(path, "--model expects a plant model");
+    let model = args.model.as_deref().map(read_model).transpose()?;
     let compilation = System::compile(&source, model.as_deref());
     let mut problems = Problem::all(&compilation.program_diagnostics, &source);
     let model_problems = Problem::all(&compilation.model_diagnostics, model.as_deref().unwrap_or(""));
@@ -66,10 +67,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(WRONG));
     };
-    let options = Options { most_states: args.k, seed: args.seed };
+    let options = Options { most_states: args.k.map(|count| count as usize), seed: args.fault_seed };
     let inputs = injections(system, &args.inject)?;
     if let Some(runs) = args.monte_carlo {
-        let seed = args.seed.unwrap_or(0);
+        let seed = args.fault_seed.unwrap_or(0);
         let trials = Trials { options, seed, most_steps: args.steps, inputs: &inputs };
         return chance(args, system, &trials, runs, &problems);
     }
@@ -96,10 +97,10 @@ fn injections(system: &System, given: &[String]) -> anyhow::Result<BTreeMap<u32,
             .split_once(':')
             .and_then(|(step, rest)| Some((step.trim().parse().ok()?, rest.split_once('=')?)));
         let Some((step, (component, mode))) = parts else {
-            bail!("`{text}` is not of the form STEP:COMPONENT=MODE, as in 3:EngineA=Failed");
+            bail!("--inject expects STEP:COMPONENT=MODE, as in 3:EngineA=Failed, not `{text}`");
         };
         if step == 0 {
-            bail!("steps are counted from 1");
+            bail!("--inject counts steps from 1, so step 0 does not exist");
         }
         let (component, mode) =
             system.model.component_mode(component.trim(), mode.trim()).map_err(|error| anyhow!(error))?;
@@ -145,7 +146,7 @@ fn chance(
 fn tally_text(tally: &ProgramTally, seed: u64) -> String {
     let (low, high) = tally.interval();
     let mut out = format!(
-        "{} of {} runs reached the program's end: {:.4} (95 % between {low:.4} and {high:.4}), after {:.1} steps on average\n",
+        "{} of {} runs reached the program's end: {:.4} (95% confidence: {low:.4} to {high:.4}), after {:.1} steps on average\n",
         tally.reached,
         tally.runs,
         tally.probability(),
@@ -158,14 +159,14 @@ fn tally_text(tally: &ProgramTally, seed: u64) -> String {
         ));
     }
     for (label, runs) in &tally.stuck {
-        out.push_str(&format!("  still marked in {runs} runs: {label}\n"));
+        out.push_str(&format!("  still active in {runs} runs: {label}\n"));
     }
     if tally.refuted > 0 {
-        out.push_str(&format!("  nothing explains what was observed in {} runs\n", tally.refuted));
+        out.push_str(&format!("  observations refuted the belief in {} runs\n", tally.refuted));
     }
     if let Some(number) = tally.first_stuck {
         let seed = run_seed(seed, number);
-        out.push_str(&format!("The first run that did not end is that of --seed {seed}.\n"));
+        out.push_str(&format!("To repeat the first run that did not end, add --fault-seed {seed}.\n"));
     }
     out
 }
@@ -279,7 +280,7 @@ fn run_text(system: &System, run: &Run) -> String {
             out.push_str(&format!("  planned   from {}\n", listed(model.state_names(state), "=")));
         }
         for &(id, mode) in &record.failed {
-            out.push_str(&format!("  by chance {}\n", failed_text(system, id, mode)));
+            out.push_str(&format!("  fault     {}\n", failed_text(system, id, mode)));
         }
         for (goal, reason) in &record.unachievable {
             out.push_str(&format!("  lost      {goal}: {reason}\n"));
@@ -296,7 +297,7 @@ fn run_text(system: &System, run: &Run) -> String {
                 out.push_str(&format!("  refuted   no state of the plant explains {conflict}\n"));
             }
             StepOutcome::LimitReached => {
-                out.push_str("  limit     no state that was kept explains what is observed\n");
+                out.push_str("  limit     no state that the estimator kept explains the observations\n");
             }
         }
         for asked in &record.asked {
@@ -315,9 +316,9 @@ fn run_text(system: &System, run: &Run) -> String {
         out.push_str(&format!("The program ended after {} steps.\n", run.records().len()));
     } else {
         out.push_str(match run.status() {
-            RunStatus::Refuted => "The belief is refuted: the run ends here; still marked:\n",
-            RunStatus::LimitReached => "The limit of states ends the run here; still marked:\n",
-            RunStatus::Running | RunStatus::Ended => "The program goes on; still marked:\n",
+            RunStatus::Refuted => "The belief is refuted, so the run ends. Still active:\n",
+            RunStatus::LimitReached => "State limit reached. Still active:\n",
+            RunStatus::Running | RunStatus::Ended => "Step limit reached. Still active:\n",
         });
         run.upcoming().labels.iter().for_each(|label| out.push_str(&format!("  {label}\n")));
     }

@@ -14,20 +14,20 @@ use tpn::Network;
 use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
 use crate::input::read_json;
-use crate::output::{Format, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target};
 
-/// Executes a mission's plan in the simulated world, planning again when the plan cannot be kept.
+/// Simulate a plan, replanning when it fails.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// What goes otherwise than planned: {"disturbances": [{"kind": "duration" | "slow" | "withdrawn" | "late" | "state" |
-    /// "level" | "fault" | "obstacle" | "vehicle-slow", …}…]}, or a counterexample of `enroute contradict`; `docs/simulation.md`
-    /// lists all members.
+    /// Disturbances to inject: {"disturbances": [{"kind": …}…]}, or a counterexample of enroute contradict.
+    ///
+    /// The kinds are duration, slow, withdrawn, late, state, level, fault, obstacle and vehicle-slow; docs/simulation.md describes their members.
     #[arg(long, value_name = "D.json")]
     disturb: Option<PathBuf>,
-    /// Lets nature choose its durations so as to break the plan: ends of ranges, where nothing breaks it.
+    /// Use worst-case contingent durations.
     #[arg(long)]
     adversary: bool,
     #[command(flatten)]
@@ -45,8 +45,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     script.adversary |= args.adversary;
     let mut problems = compiled.problems();
     if compiled.network().is_none() {
-        print_problems(&mission.name, &mission.source, &problems)?;
-        return Ok(exit(WRONG));
+        let body = json!({ "status": "error", "log": [] });
+        return mission.refuse(&problems, args.options.format, ("simulate", body));
     }
     compiled.check_script(&script).map_err(anyhow::Error::msg)?;
     let ground = mission.ground(&compiled)?;
@@ -57,12 +57,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if matches!(args.options.format, Format::Text) {
         print_problems(&mission.name, &mission.source, &problems)?;
     }
-    let limit = deadline.enforce(Undecided::Execution);
+    let limit = deadline.enforce(Undecided::Execution, ("simulate", args.options.format));
     let executed = mission.core.run(&evaluated, &script);
     limit.answered();
     let Some(outcome) = executed else {
         match args.options.format {
-            Format::Text => print_text("the mission has no plan to execute; `enroute plan` says why\n")?,
+            Format::Text => {
+                print_text("the mission has no plan to execute; run `enroute plan` for the reason\n")?
+            }
             Format::Json => {
                 let body = json!({ "status": "no-plan", "log": [] });
                 print_json(&document("simulate", &problems, body))?;
@@ -121,9 +123,9 @@ fn line(entry: &Entry) -> String {
         }
         Happening::Violation { reason, .. } => format!("VIOLATION  {reason}"),
         Happening::Replanned { changes } if changes.is_empty() => {
-            "planned again, with the same choices".to_owned()
+            "replanned, with the same choices".to_owned()
         }
-        Happening::Replanned { changes } => format!("planned again: {}", changes.join(", ")),
+        Happening::Replanned { changes } => format!("replanned: {}", changes.join(", ")),
         Happening::Stopped { reason } => format!("STOPPED  {reason}"),
         Happening::Finished => "finished".to_owned(),
     };

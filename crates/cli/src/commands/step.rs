@@ -11,18 +11,18 @@ use smol_str::SmolStr;
 use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
-use crate::input::{read_json, read_text};
+use crate::input::{read_control, read_json};
 use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text};
 
-/// Runs a control program on given state estimates, step by step.
+/// Run a control program on given state estimates, step by step.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The control program; `-` is standard input.
+    /// Control program; - reads standard input.
     file: PathBuf,
-    /// The estimates: `{"initial":{…},"domains":{…},"program_vars":[…],"estimates":[{var:value}…]}`.
+    /// Estimates: {"initial":{…}, "domains":{…}, "program_vars":[…], "estimates":[{var:value}…]}.
     #[arg(long, value_name = "E.json")]
     estimates: PathBuf,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -40,7 +40,7 @@ struct Estimates {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let source = read_text(&args.file)?;
+    let source = read_control(&args.file, "use `enroute simulate`")?;
     let given: Estimates = read_json(&args.estimates)?;
     let vocabulary = Vocabulary { domains: given.domains, program_variables: given.program_vars };
     let compilation = hca::compile_text(&source, &vocabulary);
@@ -84,6 +84,6 @@ fn trace_text(trace: &Trace) -> String {
         out.push_str(&format!("step {}: {} marked\n", step.step, step.marked.len()));
         step.labels.iter().for_each(|label| out.push_str(&format!("  {label}\n")));
     }
-    out.push_str(if trace.terminated { "The program has ended.\n" } else { "The program goes on.\n" });
+    out.push_str(if trace.terminated { "The program has ended.\n" } else { "The program has not ended.\n" });
     out
 }

@@ -23,13 +23,14 @@ const W_ROUNDED: Code = Code("W-ROUNDED");
 /// The file is not a network in the format.
 const E_STN: Code = Code("E-STN");
 
-/// Checks an STN file: windows relative to its first time point, or a negative cycle. With contingent links
-/// (`.plainStnu`, or `GraphML` of the CSTNU Tool) also whether it is dynamically controllable.
+/// Check a simple temporal network (STN): windows, or a negative cycle.
+///
+/// Windows are relative to the first time point. A file with contingent links (.plainStnu, or GraphML of the CSTNU Tool) is also checked for dynamic controllability.
 #[derive(clap::Args)]
 pub struct Args {
-    /// The file; `-` is standard input.
+    /// STN or STNU file; - reads standard input.
     file: PathBuf,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -114,7 +115,7 @@ fn rounding(network: &Document, source: &str) -> Vec<Problem> {
 }
 
 fn too_large(network: &Document, Overflow { point }: Overflow) -> anyhow::Error {
-    anyhow!("a time does not fit into 64 bits: that of {}", network.names[point.index()])
+    anyhow!("the time of {} does not fit into 64 bits", network.names[point.index()])
 }
 
 /// Says what is wrong with a file.
@@ -152,7 +153,7 @@ fn cycle_text(network: &Document, stn: &Stn) -> String {
     let total: i128 = stn.cycle().iter().map(|edge| i128::from(edge.weight)).sum();
     // A sum over a whole cycle may leave 64 bits; then it is told in ticks.
     let total = i64::try_from(total).map_or(total.to_string(), |total| network.time(total).to_string());
-    let mut text = format!("not consistent: a cycle of weight {total}\n");
+    let mut text = format!("inconsistent: negative cycle of weight {total}\n");
     for edge in stn.cycle() {
         let (from, to) = (&network.names[edge.from.index()], &network.names[edge.to.index()]);
         text.push_str(&format!("{from} {} {to}\n", network.time(edge.weight)));

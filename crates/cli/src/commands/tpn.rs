@@ -15,15 +15,15 @@ use crate::diagnostics::print_problems;
 use crate::output::{Format, NO, YES, document, exit, print_error, print_json, print_text, print_verbatim};
 use crate::target::Target;
 
-/// Compiles a mission to its temporal plan network.
+/// Compile a mission to its temporal plan network (TPN).
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// The notation; by default text for people and JSON for programs, as `--format` says.
+    /// Notation [default: text, or json with --format json].
     #[arg(long = "as", value_enum, value_name = "NOTATION")]
     notation: Option<Notation>,
-    /// For whom the answer is.
+    /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -31,20 +31,20 @@ pub struct Args {
 /// What a network can be written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Notation {
-    /// An `enroute-tpn/1` document.
+    /// Document enroute-tpn/1.
     Json,
-    /// A listing for people.
+    /// Human-readable listing.
     Text,
-    /// A Graphviz drawing.
+    /// Graphviz.
     Dot,
-    /// The drawing of the page.
+    /// SVG drawing, as in the page.
     Svg,
-    /// The interchange format of other planners' tools.
+    /// Interchange format plan-schema of other planners.
     PlanSchema,
-    /// The XML of MIT's MERS group, as `RMPyL` writes it.
+    /// XML of MIT's MERS group, as RMPyL writes it.
     #[value(name = "ptpn")]
     Ptpn,
-    /// A mission in RMPL, where the network's structure allows: what is in the way is said otherwise.
+    /// RMPL mission, if the network's structure allows one.
     Rmpl,
 }
 
@@ -72,7 +72,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Notation::Dot => print_verbatim(&tpn::text::to_dot(network))?,
         Notation::Svg => print_verbatim(&drawing(network))?,
         Notation::Ptpn => {
-            print_verbatim(&interchange::ptpn::write(network).context("this network cannot be a pTPN")?)?;
+            print_verbatim(
+                &interchange::ptpn::write(network).context("the network cannot be written as a pTPN")?,
+            )?;
         }
         Notation::Rmpl => return print_rmpl(&compiled, network, &problems, args.format),
         // A file that was plan-schema is written as it was read, with what is not understood; anything else is translated.
@@ -110,7 +112,7 @@ fn print_rmpl(
         (Err(obstacle), format) => {
             let told = obstacle.told(network, &nodes, &arcs);
             match format {
-                Format::Text => print_error(&format!("this network cannot be written in RMPL: {told}")),
+                Format::Text => print_error(&format!("the network cannot be written in RMPL: {told}")),
                 Format::Json => {
                     print_json(&document("rmpl", problems, json!({ "rmpl": null, "obstacle": told })))?;
                 }

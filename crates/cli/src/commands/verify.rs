@@ -15,14 +15,14 @@ use crate::opened::Opened;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
 use crate::target::{PlanOptions, Target, parse_threat_gap};
 
-/// Checks a plan against a mission or a network, from the definitions.
+/// Verify a plan independently of the planner.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     target: Target,
-    /// The plan: an enroute-plan document, of which every plan is checked, or a single plan.
+    /// Plan: a document of enroute plan, with every plan in it, or a single plan.
     plan: PathBuf,
-    /// The least gap between ordered intervals that the plan was made with; the file's own by default.
+    /// Minimum gap between ordered intervals [default: the mission's].
     #[arg(long, value_name = "G")]
     threat_gap: Option<String>,
     #[command(flatten)]

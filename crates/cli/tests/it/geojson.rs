@@ -85,6 +85,6 @@ fn an_origin_is_asked_for_and_only_of_geojson() {
     assert!(String::from_utf8_lossy(&refused.stderr).contains("--origin"), "{refused:?}");
     let network = enroute(&["tpn", mission, "--format", "json"]);
     let network = written("flat.tpn.json", &text(&network));
-    let wrong = enroute(&["import", network.to_str().expect("a path"), "--metres"]);
+    let wrong = enroute(&["import", network.to_str().expect("a path"), "--meters"]);
     assert!(String::from_utf8_lossy(&wrong.stderr).contains("is not GeoJSON"), "{wrong:?}");
 }

@@ -1,5 +1,6 @@
 //! The integration tests of `cli`, in one program: each module is about one thing.
 
+mod arguments;
 mod attacks;
 mod claims;
 mod command;
@@ -8,9 +9,12 @@ mod documents;
 mod driving;
 mod files;
 mod geojson;
+mod help;
 mod networks;
 mod plandev;
 mod ptpn;
 mod running;
+mod schema;
 mod time_limit;
 mod uncertain_networks;
+mod written_files;

@@ -88,8 +88,7 @@ fn what_is_too_hard_for_the_time_limit_is_said_to_be_undecided() {
     ] {
         let (status, printed) = limited(arguments);
         assert_eq!(status.code(), Some(LIMIT), "{arguments:?}: {printed}");
-        let told = ["decided whether there is a plan", "whether there is a plan is not decided"];
-        assert!(told.iter().any(|told| printed.contains(told)), "{arguments:?}: {printed}");
+        assert!(printed.contains("time limit reached: undecided"), "{arguments:?}: {printed}");
     }
     assert_eq!(std::fs::read_to_string(page).expect("the page"), "as it was");
 }

@@ -65,15 +65,15 @@ pub fn text(document: &Document, answer: &Controllability) -> String {
     for step in conflict.cycle.iter().flatten() {
         let case = match step.part {
             Part::Edge(_) => "",
-            Part::Lower(_) => "  (as short as nature likes)",
-            Part::Upper(_) => "  (as long as nature likes)",
+            Part::Lower(_) => "  (shortest contingent duration)",
+            Part::Upper(_) => "  (longest contingent duration)",
         };
         let (from, to) = (document.name(step.from), document.name(step.to));
         let _ = writeln!(text, "{from} {} {to}{case}", document.time(step.weight));
     }
     for relaxation in relaxations.iter().flatten() {
         if let Some(value) = relaxation.sufficient {
-            let _ = writeln!(text, "it would be controllable with {}", mend(document, relaxation, value));
+            let _ = writeln!(text, "fix: {}", mend(document, relaxation, value));
         }
     }
     text
