@@ -187,8 +187,9 @@ fn firefox_that_blocks_cookies_and_site_data_starts_and_says_what_is_not_kept() 
         not_tried(&reason);
         return Ok(());
     }
-    Driven::wait_until(&mut firefox, "enroute.state().library.keeping === 'nothing'")?;
-    Driven::wait_until(&mut firefox, "enroute.widgets('button', 'Not kept').length > 0")
+    let says = "['nothing', 'latest-only'].includes(enroute.state().library.keeping)";
+    Driven::wait_until(&mut firefox, says)?;
+    Driven::wait_until(&mut firefox, "enroute.widgets('button', 'kept').length > 0")
 }
 
 #[test]
