@@ -244,7 +244,7 @@ fn the_palette_turns_the_network_of_another_tool_into_rmpl() {
     app.settle();
     app.harness.key_press(Key::F1);
     app.settle();
-    app.harness.get_by_role_and_label(egui::Role::TextInput, "Command palette").type_text("into rmpl");
+    app.harness.get_by_role_and_label(egui::Role::TextInput, "Command palette").type_text("to rmpl");
     app.settle();
     app.harness.key_press(Key::Enter);
     app.settle();
