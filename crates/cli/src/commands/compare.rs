@@ -90,8 +90,9 @@ impl Args {
             let mut record = Record::from_json(&text).with_context(|| format!("cannot read {name}"))?;
             self.trusted.judge(&mut record)?;
             let approved = record.last_approval();
-            let (_, approved) = approved
-                .with_context(|| format!("the review {name} has no approval by a trusted key, so it names no plan"))?;
+            let (_, approved) = approved.with_context(|| {
+                format!("the review {name} has no approval by a trusted key, so it names no plan")
+            })?;
             return self.evaluated(path, &approved.source, approved.goal.clone(), approved.seed);
         }
         let side = Side::of_json(&name, &value).with_context(|| format!("cannot read {name}"))?;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use link::{Request, Update};
 use review::Record;
 use review::compare::Side;
+use review::keys::Trust;
 use review::record::{Subject, is_record};
 use serde_json::Value;
 use snapshot::{Goal, Snapshot};
