@@ -407,7 +407,7 @@ impl People {
                     self.is_about_mission = !is_about;
                 }
             }
-            self.to_whom(ui, context);
+            self.addressee(ui, context);
             let has_words = !self.comment.trim().is_empty();
             let button = ui.add_enabled(has_words && self.has_key(), Button::new("Add comment"));
             if button.clicked() {
@@ -424,7 +424,7 @@ impl People {
     }
 
     /// Who is to answer the comment that is being written.
-    fn to_whom(&mut self, ui: &mut Ui, context: &Context<'_>) {
+    fn addressee(&mut self, ui: &mut Ui, context: &Context<'_>) {
         let me = self.me.as_ref().map(|(_, key)| key);
         let people = context.state.keys.ring().people().iter();
         let others: Vec<_> = people.filter(|person| Some(&person.key) != me).collect();
