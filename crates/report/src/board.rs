@@ -133,8 +133,8 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
     }
     out.push_str(&plan(&since));
     if since.plan.as_ref().is_some_and(|plan| !plan.is_same()) {
-        out.push_str(&figure::drawings(&figure::timeline_since(document.snapshot, approved)));
-        out.push_str(&figure::drawings(&figure::network_since(document.snapshot, approved)));
+        out.push_str(&figure::html(&figure::timeline_since(document.snapshot, approved)));
+        out.push_str(&figure::html(&figure::network_since(document.snapshot, approved)));
     }
     if !since.lines.is_empty() {
         let rows = since.lines.iter().map(line);

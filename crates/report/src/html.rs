@@ -156,5 +156,5 @@ fn figures(document: &Document<'_>) -> String {
         ("Map", figure::map(snapshot, document.ground).into_iter().collect()),
     ];
     let drawn = figures.iter().filter(|(_, figures)| !figures.is_empty());
-    drawn.map(|(heading, figures)| figure::html(heading, figures)).collect()
+    drawn.map(|(heading, figures)| figure::under_heading(heading, figures)).collect()
 }

@@ -7,6 +7,6 @@ mod timeline;
 
 pub(crate) use map::map;
 pub(crate) use network::{network, network_since};
-pub(crate) use sheet::{drawings, html};
+pub(crate) use sheet::{html, under_heading};
 pub use timeline::{rule_tracks, windows_before};
 pub(crate) use timeline::{timeline, timeline_since};

@@ -44,14 +44,14 @@ impl Figure {
     }
 }
 
-/// Drawings one after the other under a heading, as HTML. On paper the heading stays with the first of them.
-pub(crate) fn html(heading: &str, figures: &[Figure]) -> String {
-    let on_paper = figures.iter().position(|figure| !matches!(figure.medium, Medium::Screen));
-    let (first, rest) = figures.split_at(on_paper.map_or(0, |first| first + 1));
-    format!("<div class=\"together\">\n<h2>{heading}</h2>\n{}</div>\n{}", drawings(first), drawings(rest))
+/// Drawings one after the other, as HTML.
+pub(crate) fn html(figures: &[Figure]) -> String {
+    figures.iter().map(Figure::html).collect()
 }
 
-/// Drawings one after the other, as HTML.
-pub(crate) fn drawings(figures: &[Figure]) -> String {
-    figures.iter().map(Figure::html).collect()
+/// The same under a heading, which stays with the first of them on paper.
+pub(crate) fn under_heading(heading: &str, figures: &[Figure]) -> String {
+    let on_paper = figures.iter().position(|figure| !matches!(figure.medium, Medium::Screen));
+    let (first, rest) = figures.split_at(on_paper.map_or(0, |first| first + 1));
+    format!("<div class=\"together\">\n<h2>{heading}</h2>\n{}</div>\n{}", html(first), html(rest))
 }

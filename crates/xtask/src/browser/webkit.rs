@@ -1,4 +1,4 @@
-//! A WebKit with one page, driven by `WebDriver`: `WebKitGTK`'s small browser, in a display in memory.
+//! A `WebKit` with one page, driven by `WebDriver`: the small browser of `WebKitGTK`, in a display in memory.
 //!
 //! The protocol is described at <https://www.w3.org/TR/webdriver2/>. Each command is one request over a connection of its own.
 
@@ -30,7 +30,7 @@ const START_LIMIT: Duration = Duration::from_mins(1);
 /// How long a script or a page may take, in milliseconds.
 const LIMIT_MILLIS: u32 = 120_000;
 
-/// A running WebKit; ends when it is dropped.
+/// A running browser; ends when it is dropped.
 pub struct WebKit {
     driver: Child,
     display: Option<Child>,
