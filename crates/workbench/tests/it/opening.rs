@@ -273,7 +273,7 @@ fn a_label_and_its_image_are_one_map_whichever_comes_first() {
     // Without its image it waits, and another image is not its own.
     let mut app = started();
     open(&mut app, "hill.lbl", &label());
-    assert!(app.json()["toasts"].to_string().contains("hill.lbl describes HILL.IMG"));
+    assert!(app.json()["toasts"].to_string().contains("hill.lbl is a label of HILL.IMG"));
     open(&mut app, "dale.img", &image);
     assert_eq!(app.json()["library"]["missions"], json!([]));
 }
