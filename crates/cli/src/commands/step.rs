@@ -19,7 +19,7 @@ use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text};
 pub struct Args {
     /// Control program; - reads standard input.
     file: PathBuf,
-    /// Estimates: {"initial":{…}, "domains":{…}, "program_vars":[…], "estimates":[{var:value}…]}.
+    /// Estimates: {"estimates":[{var:value}…], …}; docs/contracts.md lists all members.
     #[arg(long, value_name = "E.json")]
     estimates: PathBuf,
     /// Output format.
