@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use review::record::Runs;
-use review::{FlightRules, Line, Present, Record, Review, Section, Status, TimeRange, review, standing};
+use review::{FlightRules, Line, Present, Review, Section, Status, TimeRange, review, standing};
 use serde_json::{Value, json};
 use snapshot::{Robustness, RobustnessSettings};
 

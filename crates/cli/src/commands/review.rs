@@ -82,14 +82,13 @@ impl Verify {
             return self.refuse(&format!("the entry {missing} is missing"));
         }
         let review = self.review(&record)?;
-        let (present, content_hash) = match &review {
-            Some(review) => (Present::of_review(review), review.content_hash.as_str()),
-            None => {
-                let last = record.entries().iter().rev().find(|entry| !entry.content_hash.is_empty());
-                let content_hash = last.map_or("", |entry| entry.content_hash.as_str());
-                let rules = record.rules();
-                (Present { content_hash, plan_hash: None, rules, review: None }, content_hash)
-            }
+        let (present, content_hash) = if let Some(review) = &review {
+            (Present::of_review(review), review.content_hash.as_str())
+        } else {
+            let last = record.entries().iter().rev().find(|entry| !entry.content_hash.is_empty());
+            let content_hash = last.map_or("", |entry| entry.content_hash.as_str());
+            let rules = record.rules();
+            (Present { content_hash, plan_hash: None, rules, review: None }, content_hash)
         };
         let standing = standing(&record, &present);
         let mut blockers = standing.blockers();

@@ -167,7 +167,7 @@ fn sample(args: &Args, target: &Target) -> anyhow::Result<Result<Sampled, ExitCo
     let Some(sampler) = evaluated.sampler(&uncertainty) else {
         match args.format {
             Format::Text => {
-                print_text("the mission has no plan to execute; run `enroute plan` for the reason\n")?
+                print_text("the mission has no plan to execute; run `enroute plan` for the reason\n")?;
             }
             Format::Json => print_json(&document("robustness", &problems, json!({ "status": "no-plan" })))?,
         }

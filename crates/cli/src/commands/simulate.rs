@@ -63,7 +63,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let Some(outcome) = executed else {
         match args.options.format {
             Format::Text => {
-                print_text("the mission has no plan to execute; run `enroute plan` for the reason\n")?
+                print_text("the mission has no plan to execute; run `enroute plan` for the reason\n")?;
             }
             Format::Json => {
                 let body = json!({ "status": "no-plan", "log": [] });

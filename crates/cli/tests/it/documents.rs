@@ -202,6 +202,7 @@ fn a_history_is_checked_and_says_how_the_plan_stands() {
     let (path, text, keys) = approved_history("approved.review.json");
     let alone = enroute(&["review", "verify", &path, "--trust", &keys]);
     assert_eq!(alone.status.code(), Some(0), "{alone:?}");
+    let said = written(&alone);
     assert!(said.contains("history intact") && said.contains("[valid]"), "{said}");
     let (status, answer) = verified(&[&path, "--trust", &keys, "--mission", SMALL]);
     assert_eq!((status, &answer["plan_status"]), (Some(0), &json!("approved")), "{answer}");

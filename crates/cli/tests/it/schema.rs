@@ -102,11 +102,7 @@ impl Schema {
         let output = enroute(&[arguments, &["--format", "json"]].concat());
         assert_eq!(output.status.code(), Some(status), "{arguments:?}: {output:?}");
         let document = only_document(&output, arguments);
-        let errors: Vec<String> = self
-            .validator
-            .iter_errors(&document)
-            .map(|error| format!("{}: {error}", error.instance_path()))
-            .collect();
+        let errors = self.errors(&self.root, &document, "");
         assert!(errors.is_empty(), "{arguments:?}: {errors:#?}\n{document}");
         self.seen.insert(document["format"].as_str().expect("a format").to_owned());
         document

@@ -356,7 +356,11 @@ fn a_full_storage_is_told() {
     app.settle();
     let state = app.json();
     let toasts = state["toasts"].as_array().cloned().unwrap_or_default();
-    assert_eq!(toasts.iter().filter(|it| it.to_string().contains("mission to a file")).count(), 1, "{toasts:?}");
+    assert_eq!(
+        toasts.iter().filter(|it| it.to_string().contains("mission to a file")).count(),
+        1,
+        "{toasts:?}"
+    );
 }
 
 #[test]
