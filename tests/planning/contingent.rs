@@ -281,7 +281,11 @@ fn a_branch_that_chooses_what_the_world_does_is_the_worlds() {
     assert_eq!(places, ["[1,2]", "choose"]);
     assert_eq!(after, world("choose { delay contingent [1,2], L=A [4,4] }"));
     let (_, diagnostics) = compile(&text, &Top::Scenario(None));
-    assert!(diagnostics.iter().any(|it| it.message.ends_with("what: one of the 2 alternatives of `choose`")));
+    assert!(
+        diagnostics
+            .iter()
+            .any(|it| it.message.ends_with("event happens: one of the 2 alternatives of `choose`"))
+    );
 }
 
 #[test]

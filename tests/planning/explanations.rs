@@ -29,9 +29,9 @@ const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learne
     their them then there these they time times to together too try up wait was what whatever which with would";
 
 /// More such words, of the messages about steps of a search.
-const OF_SEARCH: &str = "Backjump Backtrack Closed Continue Either Expand Find For Found No Open Order Restart Ruled Start Threat \
+const OF_SEARCH: &str = "Backjump Backtrack Closed Continue Either Initial Plan Expand Find For Found No Open Order Restart Ruled Start Threat \
     adjacent alternatives cause change changes complete conflicts consistent constraints decide departure depends destination \
-    early every found imply implies incompatible inconsistent initial learning many maximum minimum necessary open or ordered \
+    are bounds early every fails follow found imply implies incompatible inconsistent initial learning longer many maximum minimum necessary open or ordered \
     orderings outgoing overused place possible prevent resource simultaneous state states succeed t these travel users window \
     windows";
 
@@ -44,7 +44,7 @@ const TELLING: [(&str, Has); 10] = [
         it.labels.iter().any(|it| it.mode == LabelMode::Ask)
     }),
     ("Set Tell hold holds set", |it| !it.labels.is_empty()),
-    ("apart drive overlap separate separating way", |it| has_conflict(it, |_| true)),
+    ("apart drive overlap separate separating way", |it| has_conflict(it, |_| true) || !it.sights.is_empty()),
     ("between conflicting gap gaps intervals touch", |it| has_conflict(it, |label| !it.is_lasting(label))),
     ("above below capacity consumed drawn enough filled fits give helps level produced share use", |it| {
         !it.uses.is_empty()

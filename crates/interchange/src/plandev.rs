@@ -98,6 +98,15 @@ pub fn read(file: &Value) -> Result<Document, PlanDevError> {
     Ok(Document::of_objects(objects.0)?)
 }
 
+/// What names the type of a directive that has a name of its own, among its arguments.
+pub const DIRECTIVE_TYPE: &str = "directive_type";
+
+/// Whether a directive is named after its type, as plans that are written for `PlanDev` do: `Drive`, or `Drive#2`.
+fn is_numbered(name: &str, kind: &str) -> bool {
+    let number = name.strip_prefix(kind).map(|rest| rest.strip_prefix('#').unwrap_or(rest));
+    number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
 const BEGIN: &str = "start of the plan";
 const END: &str = "end of the plan";
 
@@ -147,11 +156,13 @@ impl Objects {
         let [wait, start, end] = ["wait for", "start of", "end of"].map(|what| format!("{what} {place}"));
         let kind = activity.get("type").and_then(Value::as_str).filter(|kind| !kind.is_empty());
         let kind = kind.ok_or_else(|| missing(&place, "`type`"))?;
-        // Aerie names a directive after its type until somebody gives it a name.
         let name = activity.get("name").and_then(Value::as_str).map(str::trim);
-        let name = name.filter(|name| !name.is_empty()).unwrap_or(kind);
+        let name = name.filter(|name| !name.is_empty() && !is_numbered(name, kind)).unwrap_or(kind);
         let arguments = activity.get("arguments").and_then(Value::as_object).into_iter().flatten();
-        let arguments: Vec<String> = arguments.map(|(name, value)| format!("{name}={value}")).collect();
+        let mut arguments: Vec<String> = arguments.map(|(name, value)| format!("{name}={value}")).collect();
+        if name != kind {
+            arguments.push(format!("{DIRECTIVE_TYPE}={kind}"));
+        }
         let taken = activity.get("metadata").and_then(|metadata| metadata.get(DURATION));
         self.leave(BEGIN, &wait, json!({ "tpn-type": "delay-activity", "end-node": start }));
         self.node(&start);

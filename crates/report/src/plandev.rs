@@ -2,7 +2,7 @@
 //! start of the plan.
 
 use exact::Time;
-use interchange::plandev::DURATION;
+use interchange::plandev::{DIRECTIVE_TYPE, DURATION};
 use jiff::Timestamp;
 use review::schedule::scheduled;
 use rmpl::program::{Program, TimeUnit};
@@ -44,7 +44,7 @@ pub fn plandev(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
             "name": occurrence.name,
             "start_offset": interval(row.start.earliest, unit)?,
             "tags": [],
-            "type": occurrence.activity,
+            "type": directive_type(occurrence),
         }));
     }
     let end = plan.windows.get(network.end.index())?.as_ref()?.earliest;
@@ -62,6 +62,12 @@ pub fn plandev(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
     }))
 }
 
+/// The type that a plan of `PlanDev` said before, or what the activity is called.
+fn directive_type(occurrence: &Occurrence) -> &str {
+    let mut said = occurrence.arguments.iter().filter_map(|argument| argument.split_once('='));
+    said.find(|(name, _)| *name == DIRECTIVE_TYPE).map_or(occurrence.activity.as_str(), |(_, kind)| kind)
+}
+
 /// By name: what a plan of `PlanDev` said before, `name=value`, or what the mission calls it.
 fn arguments(occurrence: &Occurrence, program: &Program) -> Map<String, Value> {
     let declared = program.primitives.iter().find(|primitive| primitive.name.text == occurrence.activity);
@@ -75,7 +81,11 @@ fn arguments(occurrence: &Occurrence, program: &Program) -> Map<String, Value> {
         let name = formal.map_or_else(|| format!("argument{}", index + 1), |formal| formal.text.to_string());
         (name, Value::String(argument.to_string()))
     };
-    occurrence.arguments.iter().enumerate().map(named).collect()
+    let is_type = |argument: &smol_str::SmolStr| {
+        argument.split_once('=').is_some_and(|(name, _)| name == DIRECTIVE_TYPE)
+    };
+    let arguments = occurrence.arguments.iter().enumerate().filter(|(_, argument)| !is_type(argument));
+    arguments.map(named).collect()
 }
 
 /// As `PostgreSQL` writes intervals, to the microsecond before.

@@ -431,7 +431,7 @@ mod tests {
         assert_eq!(printed.iter().filter(|row| row.contains("status failed")).count(), 80);
         assert!(printed.len() <= 3 + PRINTED_HEIGHT / 18, "{}", printed.len());
         let on_screen = html.matches("class=\"on-screen\"").count();
-        assert!(html.contains(&format!("and {on_screen} more that are not printed")));
+        assert!(html.contains(&format!("and {on_screen} more, not printed")));
         assert!(html.contains("and 79000 more, not listed"));
         assert!(!table(&["", "What"], (0..MAX_ROWS).map(row)).contains("not listed"));
     }

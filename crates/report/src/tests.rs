@@ -299,7 +299,7 @@ fn the_calendar_has_an_event_for_each_activity() {
     identifiers.sort();
     identifiers.dedup();
     assert_eq!(identifiers.len(), events.len());
-    assert!(value(drive, "DESCRIPTION").is_some_and(|text| text.contains("10 to 55, ends from 415 to 460")));
+    assert!(value(drive, "DESCRIPTION").is_some_and(|text| text.contains("10 to 55, ends 415 to 460")));
 }
 
 #[test]
@@ -437,7 +437,7 @@ fn a_report_draws_the_network_over_the_approved_one() {
     let page = page_with(&after, &record);
     let drawing = page.split("Network of the plan over the approved one").nth(1).expect("the drawing");
     let drawing = drawing.split("</svg>").next().unwrap_or_default();
-    for words in [">new<", ">end was 1–2<", "No longer in the plan", ">B#1<", "stroke-dasharray"] {
+    for words in [">new<", ">end was 1–2<", "Removed from the plan", ">B#1<", "stroke-dasharray"] {
         assert!(drawing.contains(words), "no {words} in {drawing}");
     }
 }

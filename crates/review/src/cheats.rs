@@ -435,7 +435,10 @@ fn an_acknowledgment_is_of_a_place_and_not_only_of_words() {
     let here = with_delay("delay[5,20]; GO=OK [10,10]; STORM=ON [5,5]");
     let mut board = Board::new(&here);
     let assumed = |review: &Review| {
-        let lines = review.plan.iter().filter(|line| line.text.starts_with("assumes that the world acts"));
+        let lines = review
+            .plan
+            .iter()
+            .filter(|line| line.text.starts_with("assumes favorable timing of external events"));
         let lines: Vec<LineKey> = lines.map(|line| LineKey::new(Section::Plan, line)).collect();
         let [line] = lines.as_slice() else { panic!("one line: {lines:?}") };
         line.clone()

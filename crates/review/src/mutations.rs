@@ -387,8 +387,8 @@ fn what_the_mission_does_not_keep_apart() {
     assert_eq!(
         texts(&open, Section::Overlaps),
         [
-            "Drill and Brush may overlap on Rover: in some schedule of the plan Drill#1 and Brush#1 are both under way, at a \
-          time from 0 to 60"
+            "Drill and Brush may overlap on Rover: in some schedule of the plan, Drill#1 and Brush#1 are in progress at the same \
+             time from 0 to 60"
         ]
     );
     assert_eq!(worst(&open, Section::Overlaps), Status::Attention);

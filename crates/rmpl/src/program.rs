@@ -746,6 +746,9 @@ pub enum ObstacleShape {
     },
 }
 
+/// The vehicle models of SPEC 1.8.
+pub(crate) const VEHICLE_MODELS: [&str; 3] = ["ATRV", "ATRV-Jr", "Blimp"];
+
 /// `vehicle NAME : MODEL at LOCATION;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleDecl {

@@ -104,7 +104,7 @@ fn pressing_a_mode_of_a_component_injects_it_and_pressing_it_again_takes_that_ba
     app.harness.get_by_label_contains("EngineA: Failed").click();
     app.settle();
     assert_eq!(app.json()["hca"]["step"], 0, "nothing has happened yet");
-    app.harness.get_by_label("EngineA: Failed, 0 %, injected in this step").click();
+    app.harness.get_by_label("EngineA: Failed, 0%, injected in this step").click();
     app.settle();
     press(&mut app, "Step");
     assert_eq!(app.json()["hca"]["plant"]["trueState"]["EngineA"], "Off", "it was taken back");
@@ -119,9 +119,9 @@ fn pressing_a_mode_of_a_component_injects_it_and_pressing_it_again_takes_that_ba
 fn the_modes_of_a_component_tell_how_likely_they_are() {
     let mut app = orbit_insertion();
     (0..3).for_each(|_| press(&mut app, "Step"));
-    app.harness.get_by_label("EngineA: Standby, 99.75 %, most likely, true");
+    app.harness.get_by_label("EngineA: Standby, 99.75%, most likely, true mode");
     app.harness.get_by_label("EngineA: Failed, 0.25%");
-    app.harness.get_by_label("Camera: Off, 100 %, most likely, true");
+    app.harness.get_by_label("Camera: Off, 100%, most likely, true mode");
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn another_observation_changes_the_diagnosis_and_the_plants_own_brings_it_back()
     press(&mut app, "zero");
     assert!(conflicts(&app).to_string().contains("EngineA=Firing contradicts"), "{}", conflicts(&app));
     assert_eq!(believed(&app), "Failed");
-    press(&mut app, "Reset");
+    press(&mut app, "Reset EngineA.thrust");
     assert_eq!(conflicts(&app), json!([]));
     assert_eq!(believed(&app), "Firing");
 }
@@ -147,7 +147,7 @@ fn another_observation_changes_the_diagnosis_and_the_plants_own_brings_it_back()
 #[test]
 fn a_composite_selects_its_text() {
     let mut app = orbit_insertion();
-    press(&mut app, "a1: assert EngineA=Standby, marked");
+    press(&mut app, "a1: assert EngineA=Standby, active");
     let state = app.json();
     let at = |end: &str| state["caret"][end].as_u64().expect("a place in the text") as usize;
     let (from, to) = (at("anchor").min(at("head")), at("anchor").max(at("head")));

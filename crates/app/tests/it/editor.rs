@@ -381,7 +381,7 @@ fn a_right_click_opens_a_menu_about_what_is_under_the_pointer() {
     let mut app = editing("$0primitive Survey()[1,2];\nscenario S[0,9] = { Survey() }\n");
     let at = place_of(&app, "primitive Survey") + egui::vec2(40.0, 0.0);
     click_with(&mut app, egui::PointerButton::Secondary, at);
-    for entry in ["Cut", "Copy", "Paste", "Go to definition", "Rename", "Quick fix"] {
+    for entry in ["Cut", "Copy", "Paste", "Go to definition", "Rename", "Show quick fixes"] {
         assert!(app.harness.query_all_by_label_contains(entry).next().is_some(), "{entry}");
     }
     app.harness.get_by_label_contains("Rename").click();

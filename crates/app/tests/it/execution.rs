@@ -232,7 +232,7 @@ fn a_component_fails_while_its_activity_runs_its_program() {
     assert_eq!(app.json()["execution"]["disturbances"], json!([fault]));
     let seen = end(&mut app);
     let log = app.json()["execution"]["log"].to_string();
-    assert!(log.contains("EngineA enters Failed"), "{log}");
+    assert!(log.contains("EngineA goes to Failed"), "{log}");
     assert!(seen >= nominal, "{seen} after {nominal}");
 }
 

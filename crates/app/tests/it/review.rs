@@ -105,7 +105,7 @@ fn the_checklist_is_computed_when_the_reviewer_comes() {
         &app,
         "needs attention: Tell(PATH1=OK)#1 supports PATH1=OK during Group-Traverse-Path#1 and outlasts it by 0 to 45 min"
     ));
-    assert!(has(&app, "Causal links, attention, 1 attention"));
+    assert!(has(&app, "Causal links, needs attention, 1 attention"));
     assert!(has(&app, "Robustness, not run yet"));
     assert!(has(&app, "Conflicts between vehicles"));
 }
@@ -302,14 +302,14 @@ fn a_mission_without_a_plan_cannot_be_approved() {
 #[test]
 fn a_line_leads_to_its_place_in_every_panel() {
     let mut app = reviewing();
-    click(&mut app, "needs attention: Tell(PATH1=OK)#1 provides");
+    click(&mut app, "needs attention: Tell(PATH1=OK)#1 supports");
     let state = app.json();
     assert_eq!(state["selection"]["kind"], "link");
     let source = app.harness.state().source();
     let range = state["caret"]["anchor"].as_u64().zip(state["caret"]["head"].as_u64());
     let (from, to) = range.expect("a caret");
     assert!(source[from as usize..to as usize].contains("PATH1"), "the caret is at the requirement");
-    click(&mut app, "passed: not(PROCEED=OK) during Group-Wait#1 is over");
+    click(&mut app, "passed: not(PROCEED=OK) during Group-Wait#1 ends");
     assert_eq!(app.json()["selection"]["kind"], "ordering");
     click(&mut app, "Group-Wait#1.end [415, 514], slack 99");
     assert_eq!(app.json()["selection"]["name"], "Group-Wait#1.end");

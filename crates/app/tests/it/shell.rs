@@ -52,7 +52,8 @@ fn no_text_of_the_bars_lies_over_another_in_a_narrow_window() {
             egui::Rect::from_x_y_ranges(0.0..=2_000.0, 0.0..=40.0),
             egui::Rect::from_x_y_ranges(0.0..=2_000.0, 374.0..=402.0),
         ] {
-            let texts = app.texts(bar);
+            let texts: Vec<_> =
+                app.texts(bar).into_iter().filter(|(text, _)| !text.trim().is_empty()).collect();
             assert!(!texts.is_empty(), "{width} points: nothing is in the bar");
             for (at, (text, rect)) in texts.iter().enumerate() {
                 assert!(rect.right() <= width, "{width} points: {text} is cut off: {rect:?}");

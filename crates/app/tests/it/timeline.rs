@@ -173,16 +173,16 @@ fn bars_are_grouped_by_thread_or_by_vehicle_and_groups_close() {
     group(&mut app, Grouping::Thread);
     // Two threads in the scenario, two more at the end of the activity.
     assert_eq!(
-        labels(&app, "Close Thread"),
+        labels(&app, "Collapse Thread"),
         [
-            "Close Thread 1 · Group-Enroute on the timeline",
-            "Close Thread 1.1 · Group-Transmit on the timeline",
-            "Close Thread 1.2 · Group-Wait on the timeline",
+            "Collapse Thread 1 · Group-Enroute on the timeline",
+            "Collapse Thread 1.1 · Group-Transmit on the timeline",
+            "Collapse Thread 1.2 · Group-Wait on the timeline",
         ]
     );
     group(&mut app, Grouping::Vehicle);
     for heading in ["Rover1", "Rover2", "No vehicle", "Conditions"] {
-        app.harness.get_by_label(&format!("Close {heading} on the timeline"));
+        app.harness.get_by_label(&format!("Collapse {heading} on the timeline"));
     }
     let drives = |app: &support::App| {
         let is_drive = |it: &egui_kittest::Node<'_>| {
@@ -191,9 +191,9 @@ fn bars_are_grouped_by_thread_or_by_vehicle_and_groups_close() {
         app.harness.query_all_by_role(Role::Button).filter(is_drive).count()
     };
     assert_eq!(drives(&app), 2, "both rovers drive");
-    app.harness.get_by_label("Close Rover1 on the timeline").click();
+    app.harness.get_by_label("Collapse Rover1 on the timeline").click();
     app.settle();
-    app.harness.get_by_label("Open Rover1 on the timeline");
+    app.harness.get_by_label("Expand Rover1 on the timeline");
     assert_eq!(drives(&app), 2, "a closed group shows its bars in its own row");
 }
 
@@ -236,7 +236,7 @@ fn generated(nodes: usize) -> support::App {
 
 /// Where the timeline ends in the workspace for reviews: the network is below it.
 fn bottom(app: &support::App) -> f32 {
-    app.harness.get_by_label("Close Network").rect().top()
+    app.harness.get_by_label("Collapse Network").rect().top()
 }
 
 /// The names of activities that are painted to the left of the time axis.

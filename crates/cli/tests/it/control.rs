@@ -616,7 +616,7 @@ fn check_warns_of_orbit_insertion_without_an_engine_left() {
         list(&document["diagnostics"]).iter().map(|found| text(&found["message"])).collect();
     assert_eq!(found.len(), 1, "{document}");
     assert!(
-        found[0].starts_with("with EngineA=Failed and EngineB=Failed the program waits forever"),
+        found[0].starts_with("after EngineA=Failed and EngineB=Failed the program waits forever"),
         "{found:?}"
     );
 }

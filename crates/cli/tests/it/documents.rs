@@ -119,7 +119,7 @@ fn every_command_that_plans_stops_at_its_time_limit() {
         &["export", MISSION, "--as", "csv"],
         &["compare", MISSION, MISSION],
     ] {
-        let late = enroute(&[arguments, &["--time-limit", "0"]].concat());
+        let late = enroute(&[arguments, &["--time-limit", "1e-9"]].concat());
         assert_eq!(late.status.code(), Some(3), "{arguments:?}: {late:?}");
         let in_time = enroute(&[arguments, &["--time-limit", "1e300"]].concat());
         assert_eq!(in_time.status.code(), Some(0), "{arguments:?}: {in_time:?}");
@@ -381,7 +381,7 @@ fn lines_that_have_passed_are_listed_with_how_they_were_tried() {
         assert_eq!(item["status"], if is_tried { "survived" } else { "not-tried" }, "{item}");
         assert_eq!(item.get("counterexample"), None, "{item}");
     }
-    let none = enroute(&["contradict", MISSION, "--budget", "0", "--format", "json"]);
+    let none = enroute(&["contradict", MISSION, "--budget", "1e-9", "--format", "json"]);
     let document: Value = serde_json::from_str(&written(&none)).expect("JSON");
     let is_untried = |item: &Value| item["status"] == "not-tried";
     assert!(document["items"].as_array().is_some_and(|items| items.iter().all(is_untried)), "{document}");

@@ -56,8 +56,8 @@ fn directives_begin_at_their_offsets_and_after_their_anchors() {
         directive(10, "Peel", "0:00:00", Some(8), true),
     ];
     let file = written("anchors.json", &plan(&activities).to_string());
-    let expected = json!({ "Bake": [120, 120], "Eat": [175.5, 175.5], "Heat": [100, 100], "Clean": [1380, 1380],
-        "Peel": [100, 100] });
+    let expected = json!({ "Bake 7": [120, 120], "Eat 3": [175.5, 175.5], "Heat 8": [100, 100],
+        "Clean 9": [1380, 1380], "Peel 10": [100, 100] });
     assert_eq!(starts(&file), expected);
     let path = file.to_str().expect("a path");
     let check = enroute(&["check", path]);

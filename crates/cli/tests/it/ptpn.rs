@@ -114,7 +114,7 @@ fn what_branches_do_not_say_is_refused_by_name() {
         refusal(&text.replacen("<value>valley</value>", "<value>lake</value>", 1))
             .contains("has no value `lake`")
     );
-    assert!(refusal(&text.replacen("bounded-duration>", "loose-duration>", 1)).contains("no XML"));
+    assert!(refusal(&text.replacen("bounded-duration>", "loose-duration>", 1)).contains("not XML"));
     assert!(refusal("<tpns><tpn/><tpn/></tpns>").contains("2 networks"));
     assert!(refusal("<tpns><tpn><start-event>a</start-event></tpn></tpns>").contains("refers to `a`"));
 }

@@ -109,7 +109,7 @@ fn what_relied_on_a_value_that_is_gone_is_replaced() {
     let source = arm("Deploy(); delay[10,50]; choose { Dig(), { Deploy(); Dig() } }");
     let outcome = execute(&source, &[becomes("ARM", "IN", 7)]);
     assert_eq!(outcome.ending, Ending::Finished);
-    assert_eq!(violations(&outcome), ["Dig#1 needs ARM=OUT at 15, and ARM became IN at 7"]);
+    assert_eq!(violations(&outcome), ["Dig#1 needs ARM=OUT at 15, but ARM became IN at 7"]);
     assert_eq!(changes(&outcome).len(), 1);
     assert_eq!(
         record(&outcome),
@@ -127,7 +127,7 @@ fn what_relied_on_a_value_that_is_gone_is_replaced() {
 fn without_another_way_the_run_stops_before_the_activity_starts() {
     let outcome = execute(&arm("Deploy(); delay[10,50]; Dig()"), &[becomes("ARM", "IN", 7)]);
     assert_eq!(outcome.ending, Ending::Stopped);
-    assert_eq!(violations(&outcome), ["Dig#1 needs ARM=OUT at 15, and ARM became IN at 7"]);
+    assert_eq!(violations(&outcome), ["Dig#1 needs ARM=OUT at 15, but ARM became IN at 7"]);
     let stop = outcome.log.last().expect("it stopped");
     assert_eq!(stop.time, Time::from(7));
     let Happening::Stopped { reason } = &stop.happening else { panic!("{stop:?}") };
@@ -138,7 +138,7 @@ fn without_another_way_the_run_stops_before_the_activity_starts() {
 fn a_running_activity_that_loses_its_condition_stops_the_run() {
     let outcome = execute(&arm("Deploy(); Dig()"), &[becomes("ARM", "IN", 8)]);
     assert_eq!(outcome.ending, Ending::Stopped);
-    assert_eq!(violations(&outcome), ["Dig#1 needs ARM=OUT until 15, and ARM became IN at 8"]);
+    assert_eq!(violations(&outcome), ["Dig#1 needs ARM=OUT until 15, but ARM became IN at 8"]);
 }
 
 #[test]

@@ -281,7 +281,7 @@ mod tests {
         assert_eq!(levels(&profile), [(0.0, 2), (3.0, 3), (5.0, 3), (7.0, 2), (9.0, 0)]);
         let names: Vec<&str> = profile.takers_at(5.0).map(|taker| taker.name.as_str()).collect();
         assert_eq!(names, ["B", "C"]);
-        assert_eq!(profile.summary(), ["at most 3 of 3", "none to spare"]);
+        assert_eq!(profile.summary(), ["peak 3 of 3", "none to spare"]);
         assert_eq!(profile.words(6.0), ["3 of 3 used", "B uses 2", "C uses 1"]);
         assert_eq!(profile.range(), [0.into(), 3.into()]);
     }
@@ -299,6 +299,6 @@ mod tests {
         assert_eq!(levels(&profile), [(2.0, 10), (20.0, 30)], "at one instant both happen");
         assert_eq!(profile.level_at(1.0), 60.into());
         assert_eq!(profile.words(10.0), ["level 10", "Charge#1 produces 70 at end"]);
-        assert_eq!(profile.summary(), ["from 10 to 80", "within 0 and 100"]);
+        assert_eq!(profile.summary(), ["from 10 to 80", "allowed 0 to 100"]);
     }
 }

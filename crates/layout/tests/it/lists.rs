@@ -309,12 +309,12 @@ fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
     let written: Vec<&str> = list.texts().iter().map(|text| text.text.as_str()).collect();
     for words in [
         "from 10 to 50",
-        "within 0 and 100",
+        "allowed 0 to 100",
         "low 10",
         "high 50",
-        "least 0",
+        "minimum 0",
         "maximum 100",
-        "at most 2 of 3",
+        "peak 2 of 3",
         "1 to spare",
         "peak 2",
         "capacity 3",
@@ -322,7 +322,7 @@ fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
         assert!(written.contains(&words), "{words} is missing in {written:?}");
     }
     let is_number = |text: &&display::Text| {
-        let words = ["low ", "high ", "least ", "maximum ", "peak ", "capacity "];
+        let words = ["low ", "high ", "minimum ", "maximum ", "peak ", "capacity "];
         words.iter().any(|word| text.text.starts_with(word))
     };
     let numbers: Vec<_> = list.texts().iter().filter(is_number).collect();

@@ -47,8 +47,8 @@ fn two_drives_of_one_rover_wait_for_each_other() {
     assert_eq!(
         labels(&fixes),
         [
-            "let Drive(TAI) wait for Drive(NORTH): free Drive(TAI)",
-            "let Drive(NORTH) wait for Drive(TAI): free Drive(NORTH)"
+            "let Drive(TAI) start after Drive(NORTH): free Drive(TAI)",
+            "let Drive(NORTH) start after Drive(TAI): free Drive(NORTH)"
         ]
     );
     assert!(applied(source, &fixes[0]).contains("{ Drive(NORTH), free Drive(TAI) }"));
@@ -69,7 +69,7 @@ fn what_meets_a_condition_is_done_first_or_waited_for() {
     );
     let source = format!("{ARM} scenario X[0,100] = {{ Dig()[20,25], {{ Look(); Deploy() }} }}");
     let fixes = offered(&source);
-    assert_eq!(labels(&fixes)[0], "let Dig()[20,25] wait for { Look(); Deploy() }: free Dig()[20,25]");
+    assert_eq!(labels(&fixes)[0], "let Dig()[20,25] start after { Look(); Deploy() }: free Dig()[20,25]");
     let source = format!("{ARM} scenario X[0,100] = {{ Dig()[20,25], Look() }}");
     let wrapped = applied(&source, &offered(&source)[0]);
     assert!(wrapped.contains("{ { Deploy(); Dig()[20,25] }, Look() }"), "{wrapped}");
@@ -112,8 +112,8 @@ fn of_a_resource_one_waits_or_there_is_more() {
     assert_eq!(
         labels(&fixes),
         [
-            "let Track() wait for Send(): free Track()",
-            "let Send() wait for Track(): free Send()",
+            "let Track() start after Send(): free Track()",
+            "let Send() start after Track(): free Send()",
             "have 2 of Antenna at a time: resource Antenna capacity 2;"
         ]
     );

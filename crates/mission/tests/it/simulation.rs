@@ -141,7 +141,7 @@ fn a_rock_that_appears_on_the_path_is_seen_and_passed() {
 fn a_closed_gap_is_reported_and_another_way_taken_which_takes_longer() {
     let execution = run(DETOUR, &[obstacle(3, Point2::new(200.0, 68.0), 5.5)]);
     assert_eq!(execution.ending, Ending::Stopped, "GAP itself is covered: {:?}", execution.log.last());
-    assert!(violations(&execution)[0].contains("Scout finds no way on"), "{:?}", violations(&execution));
+    assert!(violations(&execution)[0].contains("Scout finds no path"), "{:?}", violations(&execution));
     // Beside the waypoint the same rock leaves it reachable, but only from one side.
     let behind = run(DETOUR, &[obstacle(3, Point2::new(214.0, 68.0), 6.0)]);
     assert_eq!(behind.ending, Ending::Finished, "{:?}", behind.log.last());

@@ -187,9 +187,11 @@ fn observations(
             let color = if is_changed { context.tokens.warning } else { context.tokens.text };
             ui.label(RichText::new(variable.name.as_str()).color(color));
             observation(ui, id, &variable.name, &variable.values, value, commands);
-            if is_changed
-                && ui.button("Reset").on_hover_text("Restore the value that the plant produced").clicked()
-            {
+            let reset = is_changed.then(|| {
+                let reset = ui.button("Reset").on_hover_text("Restore the value that the plant produced");
+                reset.accessible_name(format!("Reset {}", variable.name))
+            });
+            if reset.is_some_and(|reset| reset.clicked()) {
                 commands.send(Command::Automaton(AutomatonCommand::Observe(id, None)));
             }
             ui.end_row();

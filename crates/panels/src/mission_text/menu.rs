@@ -22,16 +22,11 @@ pub(super) const CLIPBOARD: usize = 3;
 pub(super) fn entries(state: &AppState) -> Vec<MenuEntry<'static>> {
     let known = ENTRIES.iter().filter_map(|&(id, keys)| Some((registry::by_id(id)?, keys)));
     let entry = known.map(|(spec, keys)| MenuEntry {
-        label: title(spec.id, spec.title),
+        label: spec.title,
         keys,
         unavailable: (spec.available)(state).err(),
     });
     entry.collect()
-}
-
-/// In a menu of its own, a command says what it does there.
-fn title(id: &str, title: &'static str) -> &'static str {
-    if id == "go.definition" { "Go to definition" } else { title }
 }
 
 /// What an entry does.

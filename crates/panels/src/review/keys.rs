@@ -45,7 +45,7 @@ impl Keys {
                 "Signatures of these people count. Compare fingerprints before you trust a key.",
             );
             if let Some(reason) = context.state.keys.unkept() {
-                let text = format!("The keys are not kept: {reason}. Save your key to a file.");
+                let text = format!("Keys not saved: {reason}. Save your key to a file.");
                 ui.label(RichText::new(text).color(context.tokens.error));
             }
         });
@@ -63,7 +63,7 @@ impl Keys {
                 if ui.button("Save trusted keys…").clicked() {
                     commands.send(Command::Review(ReviewCommand::SaveKeys));
                 }
-                if ui.button("Add keys from a file…").clicked() {
+                if ui.button("Add keys from file…").clicked() {
                     commands.send(Command::Review(ReviewCommand::OpenRecord));
                 }
             });
@@ -90,7 +90,7 @@ impl Keys {
                     return;
                 }
                 let warning = if is_own {
-                    "Without a saved file, nobody can sign with this key again."
+                    "If you have no saved file, this key can never sign again."
                 } else {
                     "Signatures of this key no longer count."
                 };

@@ -433,10 +433,10 @@ impl People {
         }
         ui.horizontal_wrapped(|ui| {
             row::quiet_word(ui, "To");
-            let shown = self.addressee.as_ref().map_or("nobody in particular", |(name, _)| name.as_str());
+            let shown = self.addressee.as_ref().map_or("everyone", |(name, _)| name.as_str());
             let combo = ComboBox::from_id_salt("addressee").selected_text(shown.to_owned());
             let combo = combo.show_ui(ui, |ui| {
-                ui.selectable_value(&mut self.addressee, None, "nobody in particular");
+                ui.selectable_value(&mut self.addressee, None, "everyone");
                 for person in others {
                     let to = Some((person.name.clone(), person.key.clone()));
                     ui.selectable_value(&mut self.addressee, to, &person.name);

@@ -6,7 +6,6 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use super::index::{DeclarationKey, Facts, Index, Namespace};
-use super::local::VEHICLE_MODELS;
 use super::names::{Names, Symbol};
 use super::structure;
 use super::summary::{Call, Definition, Summary, Use, UseKind};
@@ -16,7 +15,7 @@ use crate::diagnostics::{
     unused, value,
 };
 use crate::lower::{Item, OptionDecl, OptionValue};
-use crate::program::Change;
+use crate::program::{Change, VEHICLE_MODELS};
 
 /// The outcome of checking one declaration.
 #[derive(Clone, Debug, Default)]

@@ -12,13 +12,10 @@ use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
     Bounds, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape,
-    PrimitiveDecl, Statement, StatementKind, VariableDecl,
+    PrimitiveDecl, Statement, StatementKind, VEHICLE_MODELS, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
-
-/// The vehicle models of SPEC 1.8.
-pub(crate) const VEHICLE_MODELS: [&str; 3] = ["ATRV", "ATRV-Jr", "Blimp"];
 
 /// All of it, in no particular order.
 pub(crate) fn local_diagnostics(item: &Item, root: SyntaxNode<'_>) -> Vec<Diagnostic> {

@@ -6,14 +6,13 @@ use smol_str::SmolStr;
 use super::bounds::{bounds_in, expression, header_bounds_in};
 use super::statement::signed;
 use super::{Lowering, OptionDecl, OptionValue, name_of, names};
-use crate::parser::KEEPOUT;
 use crate::program::{
     ActivityDecl, Bounds, ConstantDecl, ConstrainDecl, ControlDecl, EventName, ImportDecl, LocationDecl,
     Moves, Name, ObstacleDecl, ObstacleKind, ObstacleShape, ScenarioDecl, TerrainDecl, VariableDecl,
     VehicleDecl,
 };
 use crate::span::Span;
-use crate::syntax::{SyntaxKind, SyntaxNode};
+use crate::syntax::{KEEPOUT, SyntaxKind, SyntaxNode};
 
 impl Lowering<'_> {
     pub(super) fn activity(&mut self, node: SyntaxNode<'_>) -> Option<ActivityDecl> {

@@ -18,7 +18,6 @@ mod world;
 
 pub(crate) use bounds::CONTINGENT;
 pub(crate) use clause::CLAUSE_WORDS;
-pub(crate) use world::KEEPOUT;
 
 use crate::diagnostic::{Diagnostic, Fix};
 use crate::diagnostics::{lex, syntax};

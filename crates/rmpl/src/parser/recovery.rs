@@ -1,7 +1,7 @@
 //! Where the parser goes on after a mistake.
 
-use super::{CONTINGENT, KEEPOUT, Parser};
-use crate::syntax::SyntaxKind;
+use super::{CONTINGENT, Parser};
+use crate::syntax::{KEEPOUT, SyntaxKind};
 
 /// How far a header is looked along, so that text without any sense is still read in linear time.
 const LONGEST_HEADER_TOKENS: u32 = 256;

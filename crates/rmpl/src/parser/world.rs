@@ -3,10 +3,8 @@
 use super::Parser;
 use crate::diagnostics::syntax;
 use crate::span::Span;
-use crate::syntax::SyntaxKind;
+use crate::syntax::{KEEPOUT, SyntaxKind};
 
-/// The word that begins the declaration of an area which vehicles may not enter.
-pub(crate) const KEEPOUT: &str = "keepout";
 /// What a keep-out area may be closed to.
 const CLOSED_TO: &str = "a vehicle, a vehicle model, or an activity that moves vehicles";
 

@@ -1,5 +1,8 @@
 //! The kinds of token and of node that a mission text is made of.
 
+/// The word that begins the declaration of an area which vehicles may not enter.
+pub(crate) const KEEPOUT: &str = "keepout";
+
 /// The kind of a token or of a node of the syntax tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]

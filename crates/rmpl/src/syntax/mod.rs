@@ -6,6 +6,7 @@ mod kind;
 mod lexer;
 mod tree;
 
+pub(crate) use kind::KEEPOUT;
 pub use kind::SyntaxKind;
 pub(crate) use lexer::{LexProblem, LexProblemKind, Lexer, is_dash};
 pub(crate) use tree::RawNode;

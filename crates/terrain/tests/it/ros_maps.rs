@@ -50,7 +50,8 @@ fn a_level_at_a_threshold_is_beyond_it() {
     // White is 0 occupied, and black 1.
     for mode in ["trinary", "scale"] {
         let yaml = format!("{YAML}mode: {mode}\n").replace("0.196", "0.0").replace("0.65", "1.0");
-        assert_eq!(first_row(&yaml, IMAGE), if mode == "scale" { "###." } else { "#??." }, "{mode}");
+        let image = b"P5 4 1 255\n\x00\x40\xfe\xff";
+        assert_eq!(first_row(&yaml, image), if mode == "scale" { "###." } else { "#??." }, "{mode}");
     }
 }
 
@@ -116,7 +117,7 @@ fn a_description_names_its_image() {
 #[test]
 fn what_is_not_read_is_refused_with_its_reason() {
     let refusals = [
-        (YAML.replace("0.000000]", "1.5708]"), "turned by 1.5708 rad"),
+        (YAML.replace("0.000000]", "1.5708]"), "rotated by 1.5708 rad"),
         (YAML.replace("0.050000", "-1"), "`resolution` must be a number of meters greater than 0"),
         (YAML.replace("0.65", "0.1"), "`free_thresh` 0.196 is above `occupied_thresh` 0.1"),
         (YAML.replace("0.65", "65"), "not within 0 to 1"),

@@ -200,7 +200,7 @@ fn producers_are_ready_in_time() {
     let sketch = Sketch { links: &[(DIG, DEPLOY)], states: &[&[FIRST, DEPLOY]], ..Sketch::default() };
     let found = said_of(text, sketch);
     assert!(matches!(found.as_slice(), [it] if it.rule == Rule::Temporal), "{found:#?}");
-    assert!(found[0].message.contains("begins when Set(ARM=OUT)@Deploy#1 is ready"), "{found:#?}");
+    assert!(found[0].message.contains("must start when Set(ARM=OUT)@Deploy#1 is ready"), "{found:#?}");
 }
 
 /// Not even where it has no length.
@@ -315,7 +315,7 @@ fn activities_without_length_do_not_support_each_other() {
     for name in ["A#1.start", "A#1.end", "B#1.start", "B#1.end"] {
         assert!(found[0].events.iter().any(|event| event == name), "{found:#?}");
     }
-    assert!(found[0].message.contains("begins when Set(X=T)@B#1 is ready"), "{found:#?}");
+    assert!(found[0].message.contains("must start when Set(X=T)@B#1 is ready"), "{found:#?}");
 }
 
 /// The text has Look before Open, though both come at one time.

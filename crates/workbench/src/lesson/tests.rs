@@ -110,7 +110,7 @@ fn a_whole_lesson_is_read() {
 fn a_mistake_is_told_with_its_line_and_what_would_be_right() {
     check("{{nonsense}}", 7, "unknown name `nonsense`");
     check("{{earliest}}", 7, "`earliest(Drive#1.start)`");
-    check("{{steps + }}", 7, "missing");
+    check("{{steps + }}", 7, "unexpected end");
     check("[a](language.md#nowhere)", 7, "the manual has no page or section");
     check("```show\nstop: 3\n```", 8, "unknown key `stop` in `show`");
     check("```show\npanels: nowhere\n```", 8, "unknown panel `nowhere`");

@@ -68,7 +68,7 @@ pub fn recall_keys(host: &dyn Host, state: &mut AppState) {
     }
     match kept_keys(host) {
         Some(Ok(ring)) => state.take_keys(ring, None),
-        Some(Err(reason)) => state.window.failed(format!("The kept keys cannot be used: {reason}")),
+        Some(Err(reason)) => state.window.failed(format!("Couldn't read the saved keys: {reason}")),
         None => {}
     }
 }
@@ -101,7 +101,7 @@ pub fn change_keys(host: &mut dyn Host, state: &mut AppState, change: KeyChange)
     match &unkept {
         None => state.window.done(words),
         Some(reason) => {
-            state.window.failed(format!("{words}, but not kept: {reason}. Save your key to a file"));
+            state.window.failed(format!("{words}, but saving failed: {reason}. Save your key to a file"));
         }
     }
     if let Some(name) = name {

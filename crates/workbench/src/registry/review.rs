@@ -247,7 +247,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
 /// The public key that is meant.
 fn key(arguments: &Value) -> Result<PublicKey, String> {
     let text = text_argument(arguments, "key")?;
-    PublicKey::read(text).ok_or_else(|| format!("“{text}” is no public key"))
+    PublicKey::read(text).ok_or_else(|| format!("“{text}” is not a public key"))
 }
 
 /// Who does it: the argument `name`, or what it is called, and `role`.

@@ -22,7 +22,7 @@ pub struct KeysState {
 }
 
 impl KeysState {
-    /// The keys.
+    /// The keys of this browser, and those that it trusts.
     pub fn ring(&self) -> &KeyRing {
         &self.ring
     }
@@ -37,10 +37,8 @@ impl KeysState {
         let own = self.ring.own_named(name).and_then(|person| Some((person, person.secret.clone()?)));
         match own {
             Some((person, secret)) => Ok((person.key.clone(), secret)),
-            None if name.trim().is_empty() => {
-                Err("Create a key first: whatever is done is signed".to_owned())
-            }
-            None => Err(format!("There is no key of “{}” here: create it first", name.trim())),
+            None if name.trim().is_empty() => Err("Create a key first: reviews are signed".to_owned()),
+            None => Err(format!("Unknown key “{}”: create it first", name.trim())),
         }
     }
 
@@ -53,7 +51,7 @@ impl KeysState {
         let mut ring = ring.clone();
         let words = match change {
             KeyChange::Create(name) => {
-                let bytes = bytes.ok_or("There is no source of secret random numbers here")?;
+                let bytes = bytes.ok_or("This browser offers no secret random numbers")?;
                 let person = Person::new(&name, SecretKey::from_bytes(bytes));
                 let fingerprint = person.key.fingerprint();
                 ring.add(person).map_err(|error| format!("No key created: {error}"))?;

@@ -270,7 +270,7 @@ impl Reviewing<'_> {
             ReviewCommand::SignAs(name) => self.settings.reviewer = name,
             ReviewCommand::SaveOwnKey(name) => match self.keys.ring().own_to_json(&name) {
                 Some(text) => self.window.save_file(format!("{name}.key.json"), text.into_bytes()),
-                None => self.window.failed(format!("There is no key of “{name}” here")),
+                None => self.window.failed(format!("Unknown key “{name}”")),
             },
             ReviewCommand::SaveKeys => {
                 let text = self.keys.ring().to_json(false);

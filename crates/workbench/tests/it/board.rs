@@ -108,7 +108,7 @@ fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     let id = app.json()["review"]["comments"][0]["id"].clone();
     let resolve = json!({ "name": "Grace", "role": "Mobility", "id": id, "text": "It waits for light." });
     app.dispatch("review.resolve", &resolve);
-    assert!(refused(&mut app, "review.resolve", &resolve).contains("not open"));
+    assert!(refused(&mut app, "review.resolve", &resolve).contains("already resolved"));
     assert_eq!(app.json()["review"]["comments"][0]["open"], false);
     // Lines for attention are acknowledged with a reason, each.
     let items = app.json()["review"]["items"].as_array().expect("a list").clone();
@@ -341,7 +341,7 @@ fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
     let rules = app.session.state().review.record().rules().clone();
     open_json(&mut app, &theirs);
     let said = last_toast(&app);
-    assert!(said.contains("the review of “enroute”") && said.contains("No entries added"), "{said}");
+    assert!(said.contains("is a review of “enroute”") && said.contains("No entries added"), "{said}");
     assert_eq!(app.json()["review"]["history"], json!([]));
     assert_eq!(*app.session.state().review.record().rules(), rules, "its flight rules, neither");
     assert_eq!(status(&app), "draft");
@@ -541,7 +541,7 @@ fn nobody_takes_back_or_resolves_what_is_another_s() {
     let id = app.json()["review"]["comments"][0]["id"].clone();
     let resolve = |name: &str, text: &str| json!({ "name": name, "id": id, "text": text });
     assert!(refused(&mut app, "review.resolve", &resolve("Grace", "Fine.")).contains("Only the author"));
-    assert!(refused(&mut app, "review.resolve", &resolve("Ada", " ")).contains("reason"));
+    assert!(refused(&mut app, "review.resolve", &resolve("Ada", " ")).contains("Enter how"));
     app.dispatch("review.resolve", &resolve("Ada", "It waits for light."));
     assert_eq!(app.json()["review"]["comments"][0]["open"], false);
 }
@@ -612,7 +612,7 @@ fn a_waiver_stands_for_an_acknowledgment_until_its_day() {
     let waive =
         |text: &str, until: &str| json!({ "name": "Chair", "item": index, "text": text, "until": until });
     assert!(refused(&mut app, "review.waive", &waive(" ", "2026-01-20")).contains("reason"));
-    assert!(refused(&mut app, "review.waive", &waive("Known.", "soon")).contains("day"));
+    assert!(refused(&mut app, "review.waive", &waive("Known.", "soon")).contains("Enter the date"));
     app.dispatch("review.waive", &waive("Known, mended in the next version.", "2026-01-20"));
     app.acknowledge_all("Ada");
     app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));

@@ -102,7 +102,7 @@ impl Told<'_> {
                     let numbers = words.iter().filter_map(|word| word.parse::<exact::Time>().ok());
                     // Before these may stand the gap that is kept.
                     let needed = match numbers.collect::<Vec<_>>()[..] {
-                        [.., needed, allowed, told] if sentence.contains("too much") => {
+                        [.., needed, allowed, told] if sentence.contains("too long") => {
                             holds(told == excess, "it is not so much too much")?;
                             holds(needed.checked_sub(allowed) == Some(excess), "its numbers do not add up")?;
                             needed

@@ -138,7 +138,7 @@ fn without_the_small_place_the_shelf_keeps_what_is_typed() {
     let app = start_in(Rc::clone(&world));
     assert_eq!(names(&app), ["Enroute (copy)"]);
     assert_eq!(text_of(&app), EDITED);
-    assert!(toasts(&app).contains("“Enroute (copy)” is open again"), "{}", toasts(&app));
+    assert!(toasts(&app).contains("Restored “Enroute (copy)”"), "{}", toasts(&app));
 }
 
 /// A browser writes the small place to its disk seconds later, and a kill takes what it has not written.
@@ -229,7 +229,7 @@ fn a_private_window_says_that_missions_are_not_kept() {
     world.news.borrow_mut().push_back(HostEvent::PrivateWindow);
     app.step();
     assert_eq!(app.json()["library"]["keeping"], "until-closed");
-    assert!(toasts(&app).contains("private window"), "{}", toasts(&app));
+    assert!(toasts(&app).contains("Private window"), "{}", toasts(&app));
 }
 
 #[test]
@@ -580,6 +580,7 @@ fn one_file_holds_a_whole_mission_with_its_map_its_versions_and_its_review() {
     edit(&mut app, "terrain \"yard.pgm\" cell 1;\nprimitive A()[1,2];\nscenario S[0,9] = { A() }\n");
     app.settle();
     app.dispatch("file.keepVersionAs", &json!({ "name": "first" }));
+    app.dispatch("review.createKey", &json!({ "name": "Ada" }));
     app.dispatch("review.comment", &json!({ "author": "Ada", "text": "Why so late?" }));
     app.dispatch("file.renameTo", &json!({ "name": "Yard" }));
     app.dispatch("file.saveAs", &Value::Null);

@@ -67,7 +67,7 @@ fn a_network_is_turned_into_a_mission_in_rmpl_and_nothing_is_lost() {
     open(&mut app, "day.tpn.edn", NETWORK.as_bytes());
     app.dispatch("file.toRmpl", &json!(null));
     let text = text_of(&app);
-    assert!(text.starts_with("// planning does not honour what this file says"), "{text}");
+    assert!(text.starts_with("// ignored when planning"), "{text}");
     assert!(text.contains("Drive()[1,inf]"), "{text}");
     let state = app.json();
     assert_eq!((&state["status"], &state["diagnostics"]), (&json!("plan"), &json!([])), "{state}");
@@ -211,7 +211,7 @@ fn files_of_other_formats_are_refused_by_their_name_and_maps_are_known_by_what_t
         ),
         ("dem.cub", b"Object = IsisCube\n  Object = Core\n", "ISIS cube"),
         ("dem.nc", b"CDF\x01\xff\xfe\x00", "NetCDF file"),
-        ("noise.bin", b"\xff\xfe\x80\x81", "ESRI ASCII grid, MovingAI, ROS"),
+        ("noise.bin", b"\x80\x81\xff\xfe", "ESRI ASCII grid, MovingAI, ROS"),
         ("notes.doc", b"Dear all, [", "unrecognized format"),
     ] {
         open(&mut app, name, bytes);
@@ -297,7 +297,7 @@ fn a_map_of_ros_and_its_image_are_one_map_whichever_comes_first() {
     let mut app = started();
     open(&mut app, "site.yaml", b"image: site.pgm\nresolution: 0.1\norigin: [0, 0, 0.5]\n");
     open(&mut app, "site.pgm", &files[1].1);
-    assert!(app.json()["toasts"].to_string().contains("turned by 0.5 rad"));
+    assert!(app.json()["toasts"].to_string().contains("rotated by 0.5 rad"));
 }
 
 #[test]

@@ -209,7 +209,8 @@ fn passed_lines_are_contradicted_a_few_tries_at_a_time_and_what_is_found_replays
     let items = found["items"].as_array().expect("a list").clone();
     let passed = app.json()["review"]["items"].as_array().expect("a list").clone();
     let passed = passed.iter().filter(|it| it["status"] == "passed").count();
-    assert_eq!(items.len(), passed, "{found}");
+    // Sections that have passed without lines are tried, too.
+    assert!(items.len() > passed, "{found}");
     let survived = items.iter().find(|it| it["status"] == "survived").expect("a line that schedules try");
     assert!(survived["outcome"].as_str().is_some_and(|it| it.starts_with("survived ")), "{survived}");
     // Of another text nothing is known, and undoing finds it again.

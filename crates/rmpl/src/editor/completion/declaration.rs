@@ -1,9 +1,9 @@
 //! Places in the declarations that have no body, and in the clauses of primitives.
 
 use super::place::{Place, in_set, innermost, is_sight, value_of};
-use crate::parser::{CLAUSE_WORDS, CONTINGENT, KEEPOUT};
+use crate::parser::{CLAUSE_WORDS, CONTINGENT};
 use crate::program::{Measure, Per};
-use crate::syntax::{SyntaxKind, SyntaxToken};
+use crate::syntax::{KEEPOUT, SyntaxKind, SyntaxToken};
 
 /// Places in the declarations that have no body.
 pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {

@@ -5,13 +5,14 @@ use smol_str::SmolStr;
 
 use super::place::Place;
 use super::{CompletionItem, CompletionKind};
-use crate::analysis::local::VEHICLE_MODELS;
 use crate::analysis::{Namespace, Symbol};
 use crate::editor::cursor::declaration_at_cursor;
 use crate::editor::name::{NameKind, names_in};
 use crate::editor::outline::{OutlineItem, OutlineKind, outline};
 use crate::parse::Parse;
-use crate::parser::{CONTINGENT, KEEPOUT};
+use crate::parser::CONTINGENT;
+use crate::program::VEHICLE_MODELS;
+use crate::syntax::KEEPOUT;
 
 pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<CompletionItem> {
     let mut items = Vec::new();
