@@ -26,7 +26,7 @@ const PLAIN: &str = "Add Back Before Decide Each Failure Follow From Jump Learne
     here if impossible in inf instead is it its keeping keeps kept last lasts learned least leave leaves left let long lower maximum minimum mission more most \
     move moves much must need needs neither never no node none not nothing of on once one ones only order ordering other \
     others out plan planner program put raise remaining rest rests room rule ruled rules running s search so some start take takes teaches text than that the \
-    their them then there these they time times to together too try up wait was what whatever which with would";
+    their them then there these they this time times to together too try up wait was what whatever which with would";
 
 /// More such words, of the messages about steps of a search.
 const OF_SEARCH: &str = "Backjump Backtrack Closed Continue Either Initial Plan Expand Find For Found No Open Order Restart Ruled Start Threat \
@@ -55,7 +55,7 @@ const TELLING: [(&str, Has); 10] = [
     }),
     ("Best best better far improve less optimal", |it| !it.objective.is_empty()),
     ("alternative", |it| !it.decisions.is_empty()),
-    ("because ground line near", |it| !it.sights.is_empty()),
+    ("because ground line near sight", |it| !it.sights.is_empty()),
 ];
 
 /// Whether two conditions, of those that count, exclude each other.

@@ -68,7 +68,10 @@ fn main() -> ExitCode {
 
 /// The kind of document and the format that answer a call.
 fn answer_to(matches: &ArgMatches) -> (String, Format) {
-    let Some((name, arguments)) = matches.subcommand() else { return (UNKNOWN.to_owned(), Format::Text) };
+    let Some((name, mut arguments)) = matches.subcommand() else { return (UNKNOWN.to_owned(), Format::Text) };
+    while let Some((_, inner)) = arguments.subcommand() {
+        arguments = inner;
+    }
     let format = arguments.try_get_one("format").ok().flatten().copied().unwrap_or_default();
     (kind_of(name), format)
 }

@@ -407,7 +407,7 @@ fn what_the_mission_does_not_keep_apart() {
     let declared = reviewed(&mission(["uses Arm", "uses Mast"], both));
     assert_eq!(
         texts(&declared, Section::Overlaps),
-        [format!("{apart}, but for those that each take a resource of their own")]
+        [format!("{apart}, except those that each use a resource entirely")]
     );
     // Activities of different vehicles do not count, and a single activity overlaps nothing.
     let other = reviewed(&mission(["", ""], "{ { delay; Drill() }, { delay; Brush(Other) } }"));

@@ -236,7 +236,7 @@ fn generated(nodes: usize) -> support::App {
 
 /// Where the timeline ends in the workspace for reviews: the network is below it.
 fn bottom(app: &support::App) -> f32 {
-    app.harness.get_by_label("Collapse Network").rect().top()
+    app.harness.get_by_label("Close Network").rect().top()
 }
 
 /// The names of activities that are painted to the left of the time axis.

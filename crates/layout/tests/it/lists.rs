@@ -326,7 +326,7 @@ fn a_resource_has_its_profile_with_its_limits_and_the_plan_s_extremes() {
         words.iter().any(|word| text.text.starts_with(word))
     };
     let numbers: Vec<_> = list.texts().iter().filter(is_number).collect();
-    assert_eq!(numbers.len(), 6, "what is possible and what is reached, of both");
+    assert_eq!(numbers.len(), 7, "what is possible and what is reached, of both");
     let words_of = |text: &display::Text| {
         let width = display::text_width_at(&text.text, text.size, &approximate_text_width);
         Rect::new(text.rect.max.x - width, text.rect.min.y, text.rect.max.x, text.rect.max.y)

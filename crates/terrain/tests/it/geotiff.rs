@@ -170,7 +170,7 @@ fn scale_and_offset_of_gdal_make_heights_of_stored_values() {
         let text = format!("<Item role=\"scale\">{wrong}</Item>");
         let image = Image::plain().with(METADATA, Value::Text(text.leak()));
         let error = read_all(vec![image]).unwrap_err().to_string();
-        assert!(error.contains("its scale must be"), "{error}");
+        assert!(error.contains("its scale"), "{error}");
     }
 }
 

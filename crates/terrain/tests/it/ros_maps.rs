@@ -131,7 +131,7 @@ fn what_is_not_read_is_refused_with_its_reason() {
         assert!(error.contains("ROS map") && error.contains(reason), "{error}");
     }
     let alone = read_raster(YAML.as_bytes(), &ImportOptions::default()).expect_err("no image").to_string();
-    assert!(alone.contains("its image site.pgm is a file of its own"), "{alone}");
+    assert!(alone.contains("its image site.pgm is also needed"), "{alone}");
     let heights = raster(YAML, b"ncols 1\nnrows 1\ncellsize 1\n5\n").expect_err("no grey levels").to_string();
     assert!(heights.contains("needs gray levels"), "{heights}");
 }

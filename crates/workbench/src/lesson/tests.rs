@@ -119,7 +119,7 @@ fn a_mistake_is_told_with_its_line_and_what_would_be_right() {
     check("```show\nstep: any failure\n```", 8, "last");
     check("```show\nnear: plan\n```", 8, "cannot be zoomed");
     check("```show\nwords\n```", 8, "key: value");
-    check("```show\ndo: no.command\n```", 8, "there is no command");
+    check("```show\ndo: no.command\n```", 8, "unknown command");
     check("```show\nmission: nowhere\n```", 8, "unknown example");
     check("```ask\nWhat?\n```", 7, "the answer is missing");
     check("```ask\nnumber: 3\n```", 7, "the question is missing");

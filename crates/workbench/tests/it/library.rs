@@ -135,6 +135,7 @@ fn without_the_small_place_the_shelf_keeps_what_is_typed() {
     wait(&mut app);
     world.storage.borrow_mut().clear();
     drop(app);
+    world.fragment.borrow_mut().clear();
     let app = start_in(Rc::clone(&world));
     assert_eq!(names(&app), ["Enroute (copy)"]);
     assert_eq!(text_of(&app), EDITED);

@@ -55,7 +55,7 @@ fn a_board_is_not_cheated_in_the_page() -> Result<()> {
         assert!(why.contains("taken for “Ada”") || why.contains("scripts"), "{why}");
     }
     assert!(refused(&page, "review.approve", &json!({ "name": "Ada" }))?.contains("already"));
-    assert!(refused(&page, "review.approve", &json!({ "name": "Eve" }))?.contains("no key of “Eve”"));
+    assert!(refused(&page, "review.approve", &json!({ "name": "Eve" }))?.contains("Unknown key “Eve”"));
     // Nobody takes back the signature of somebody else.
     let given = page.state()?["review"]["history"].as_array().and_then(|all| all.last().cloned());
     let id = given.context("an entry")?["id"].clone();
