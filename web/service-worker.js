@@ -6,7 +6,7 @@ const VERSION = "development";
 const CACHE = `enroute-${VERSION}`;
 
 // A version is kept whole or not at all. It takes over when no tab shows an earlier one any more, so that the parts
-// of a running page always fit each other: when the last tab is closed, or the only one is loaded again.
+// of a running page always fit each other.
 self.addEventListener("install", (event) => {
   event.waitUntil(
     caches.open(CACHE).then((cache) => cache.addAll(FILES.map((file) => new Request(file, { cache: "reload" })))),
@@ -29,25 +29,7 @@ self.addEventListener("fetch", (event) => {
   event.respondWith(answer(request));
 });
 
-// What the version before asks of the next one.
-self.addEventListener("message", ({ data }) => {
-  if (data === "take over") self.skipWaiting();
-});
-
-/** Lets a newer version take over, if it waits and the tab that is loaded again is the only one that shows this one. */
-async function giveWay({ cache }) {
-  const { waiting } = self.registration;
-  // Browsers look for a page that is loaded again past their cache; another tab with the page is opened from it.
-  if (!waiting || cache === "default") return false;
-  const tabs = await self.clients.matchAll({ type: "window", includeUncontrolled: true });
-  if (tabs.length > 1) return false;
-  waiting.postMessage("take over");
-  return true;
-}
-
 async function answer(request) {
-  // The tab asks again at once, and the newer version answers.
-  if (isOfPage(request) && (await giveWay(request))) return new Response("", { headers: { Refresh: "0" } });
   const cache = await caches.open(CACHE);
   const kept = await cache.match(isOfPage(request) ? "index.html" : request, { ignoreSearch: true });
   return isolated(kept ?? (await fetch(request)));

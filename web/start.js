@@ -155,7 +155,7 @@ async function keepCopy() {
   if (registration) announceNewVersion(registration);
 }
 
-/** Says once that a newer version is kept. It takes over when this page is loaded again and no other tab shows it. */
+/** Says once that a newer version is kept. It takes over when no tab shows this one any more. */
 function announceNewVersion(registration) {
   const say = () => loaded.then(() => api.enroute.dispatch("help.newVersion", null)).catch(() => {});
   if (registration.waiting) say();

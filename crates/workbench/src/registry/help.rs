@@ -22,7 +22,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Command::Window(WindowCommand::ShowDialog(Dialog::About))
     }),
     called("help.newVersion", "Announce new version", Group::Help, |_, _| {
-        let text = "A new version is available. Reload the page to update. Close other Enroute tabs first.";
+        let text = "A new version is available. Close all Enroute tabs to update.";
         Ok(Command::Window(WindowCommand::Notify(ToastKind::Info, text.to_owned())))
     }),
 ];

@@ -258,7 +258,7 @@ fn what_throws_in_a_callback_while_the_page_starts_is_told_with_the_text_of_the_
     )?;
     page.tab.evaluate("URL.createObjectURL = (blob) => { window.saved = blob; return 'blob:none'; }")?;
     page.tab.evaluate(
-        "[...document.querySelectorAll('#loading button')].find((it) => it.innerText === 'Save the text').click()",
+        "[...document.querySelectorAll('#loading button')].find((it) => it.innerText === 'Save text').click()",
     )?;
     assert_eq!(page.tab.evaluate("window.saved.text()")?, "// kept");
     Ok(())
@@ -281,7 +281,7 @@ fn whatever_the_browser_refuses_the_page_starts_plans_and_says_what_is_not_kept(
     page.tab.wait_until_ready()?;
     page.wait_for("state.status === 'plan'")?;
     page.wait_for("state.library.keeping === 'nothing'")?;
-    page.tab.wait_until("enroute.widgets('button', 'Not kept').length > 0")?;
+    page.tab.wait_until("enroute.widgets('button', 'Not saved').length > 0")?;
     // Copying and pasting fail in words.
     page.tab.evaluate("enroute.dispatch('edit.copy')")?;
     page.tab.evaluate("enroute.dispatch('edit.paste')")?;

@@ -189,7 +189,7 @@ fn firefox_that_blocks_cookies_and_site_data_starts_and_says_what_is_not_kept() 
     }
     let says = "['nothing', 'latest-only'].includes(enroute.state().library.keeping)";
     Driven::wait_until(&mut firefox, says)?;
-    Driven::wait_until(&mut firefox, "enroute.widgets('button', 'kept').length > 0")
+    Driven::wait_until(&mut firefox, "enroute.widgets('button', 'saved').length > 0")
 }
 
 #[test]
