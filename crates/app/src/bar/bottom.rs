@@ -25,15 +25,10 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             keeping(ui, context, commands);
             caret(ui, context);
             selection(ui, context);
-            if ui.available_width() >= FIGURES_WIDTH {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| figures(ui, context));
-            }
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| figures(ui, context));
         });
     });
 }
-
-/// The figures have this much room, in points, or are left out.
-const FIGURES_WIDTH: f32 = 420.0;
 
 fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;

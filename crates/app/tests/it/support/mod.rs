@@ -66,7 +66,7 @@ impl App {
     pub fn texts(&self, place: Rect) -> Vec<(String, Rect)> {
         let mut found = Vec::new();
         self.each_text(&mut |text, clip| {
-            let rect = Rect::from_min_size(text.pos, text.galley.size());
+            let rect = text.galley.rect.translate(text.pos.to_vec2());
             if place.contains_rect(rect) && clip.intersects(rect) {
                 found.push((text.galley.text().to_owned(), rect));
             }
