@@ -280,6 +280,9 @@ fn whatever_the_browser_refuses_the_page_starts_plans_and_says_what_is_not_kept(
     let page = Opened::after(REFUSED, Graphics::WebGl2)?;
     page.tab.wait_until_ready()?;
     page.wait_for("state.status === 'plan'")?;
+    // That nothing is saved shows with the first edit.
+    page.wait_for("['nothing', 'latest-only'].includes(state.library.keeping)")?;
+    page.tab.evaluate("enroute.setSource('// edited')")?;
     page.wait_for("state.library.keeping === 'nothing'")?;
     page.tab.wait_until("enroute.widgets('button', 'Not saved').length > 0")?;
     // Copying and pasting fail in words.
