@@ -69,7 +69,7 @@ impl<'a> Present<'a> {
 
     /// What is another than in `approval` of `record`, which approved `subject`; nothing if it counts.
     pub fn difference(&self, record: &Record, approval: &Entry, subject: &Subject) -> Option<&'static str> {
-        self.difference_by(&Accepted::new(record), approval, subject)
+        self.difference_by(&Accepted::new(record, &record.waivers()), approval, subject)
     }
 
     fn difference_by(
@@ -95,17 +95,15 @@ impl<'a> Present<'a> {
 struct Accepted<'a>(BTreeMap<&'a LineKey, Vec<&'a Entry>>);
 
 impl<'a> Accepted<'a> {
-    fn new(record: &'a Record) -> Self {
+    fn new(record: &'a Record, waivers: &[Waiver<'a>]) -> Self {
         let mut accepted: BTreeMap<&LineKey, Vec<&Entry>> = BTreeMap::new();
         for entry in record.standing_entries() {
             if let Act::Acknowledge { line, .. } = &entry.act {
                 accepted.entry(line).or_default().push(entry);
             }
         }
-        for Waiver { entry, line, state, .. } in record.waivers() {
-            if state.is_in_force() {
-                accepted.entry(line).or_default().push(entry);
-            }
+        for Waiver { entry, line, .. } in waivers.iter().filter(|waiver| waiver.state.is_in_force()) {
+            accepted.entry(line).or_default().push(entry);
         }
         Self(accepted)
     }
@@ -169,7 +167,8 @@ pub struct Approvals<'a> {
 pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
     let approvals: Vec<(&Entry, &Subject)> =
         record.standing_entries().filter_map(|entry| Some((entry, record.subject(entry)?))).collect();
-    let accepted = Accepted::new(record);
+    let waivers = record.waivers();
+    let accepted = Accepted::new(record, &waivers);
     let current = approvals
         .iter()
         .filter(|(entry, subject)| present.difference_by(&accepted, entry, subject).is_none());
@@ -211,7 +210,7 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
         open_comments,
         unacknowledged,
         relied_on: relied_on.into_iter().collect(),
-        waivers: record.waivers(),
+        waivers,
         failed,
         missing,
     }
@@ -275,7 +274,7 @@ impl Record {
     /// place.
     pub fn acknowledgments(&self) -> BTreeMap<&LineKey, &Entry> {
         let mut last = BTreeMap::new();
-        for (line, entries) in Accepted::new(self).0 {
+        for (line, entries) in Accepted::new(self, &self.waivers()).0 {
             last.extend(entries.last().map(|entry| (line, *entry)));
         }
         last

@@ -98,32 +98,64 @@ fn problem_of_time(record: &Record, entry: &Entry, now: Option<Timestamp>) -> Op
 }
 
 fn problem_of_act(record: &Record, entry: &Entry) -> Option<String> {
-    let of = entry.act.of().and_then(|of| record.entry(of));
-    let is_signers = |of: &Entry| of.key.is_some() && of.key == entry.key;
-    let is_silent = entry.act.text().trim().is_empty();
-    let problem = match &entry.act {
-        Act::Withdraw { .. } if !of.is_some_and(is_signers) => {
-            "only the person who signed an entry takes it back".to_owned()
-        }
-        Act::Resolve { .. } | Act::Reopen { .. }
-            if !of.zip(entry.key.as_ref()).is_some_and(|(of, key)| is_concerned(key, of)) =>
-        {
-            "only the author of a comment, or the person to whom it is addressed, resolves or reopens it"
-                .to_owned()
-        }
-        Act::Resolve { .. } if is_silent => "a resolution needs a reason".to_owned(),
-        Act::Acknowledge { .. } if is_silent => "an acknowledgment needs a reason".to_owned(),
-        Act::Waive { .. } if is_silent => "a waiver needs a reason".to_owned(),
-        Act::Waive { until, .. } if day(until).is_none() => "a waiver needs a date".to_owned(),
+    if let Some(objection) = objection(record, entry.key.as_ref(), &entry.act) {
+        return Some(objection.words(&entry.act).to_owned());
+    }
+    match &entry.act {
         Act::Approve { .. }
             if record.subject(entry).is_none_or(|subject| subject.rules.digest() != entry.rules) =>
         {
-            "it signs other flight rules than those that it approves".to_owned()
+            Some("it signs other flight rules than those that it approves".to_owned())
         }
-        Act::Rules { rules } => rules.problem()?.to_owned(),
-        _ => return None,
-    };
-    Some(problem)
+        Act::Rules { rules } => rules.problem().map(str::to_owned),
+        _ => None,
+    }
+}
+
+/// Why nobody, or not the owner of a key, may do something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Objection {
+    /// It takes a reason.
+    NoReason,
+    /// It takes a date.
+    NoDate,
+    /// Only the person who signed an entry withdraws it.
+    NotSigner,
+    /// Only the author of a comment, or the person to whom it is addressed, resolves or reopens it.
+    NotConcerned,
+}
+
+impl Objection {
+    /// What is said of an entry that does `act` all the same.
+    const fn words(self, act: &Act) -> &'static str {
+        match (self, act) {
+            (Self::NoReason, Act::Resolve { .. }) => "a resolution needs a reason",
+            (Self::NoReason, Act::Waive { .. }) => "a waiver needs a reason",
+            (Self::NoReason, _) => "an acknowledgment needs a reason",
+            (Self::NoDate, _) => "a waiver needs a date",
+            (Self::NotSigner, _) => "only the person who signed an entry takes it back",
+            (Self::NotConcerned, _) => {
+                "only the author of a comment, or the person to whom it is addressed, resolves or reopens it"
+            }
+        }
+    }
+}
+
+/// What there is to say against `act` of the owner of a key, after what `record` has.
+pub fn objection(record: &Record, key: Option<&PublicKey>, act: &Act) -> Option<Objection> {
+    let of = || act.of().and_then(|of| record.entry(of));
+    let is_signer = || key.is_some() && of().is_some_and(|of| of.key.as_ref() == key);
+    let is_concerned = || key.zip(of()).is_some_and(|(key, of)| is_concerned(key, of));
+    let is_silent = || act.text().trim().is_empty();
+    match act {
+        Act::Resolve { .. } | Act::Acknowledge { .. } | Act::Waive { .. } if is_silent() => {
+            Some(Objection::NoReason)
+        }
+        Act::Waive { until, .. } if day(until).is_none() => Some(Objection::NoDate),
+        Act::Withdraw { .. } if !is_signer() => Some(Objection::NotSigner),
+        Act::Resolve { .. } | Act::Reopen { .. } if !is_concerned() => Some(Objection::NotConcerned),
+        _ => None,
+    }
 }
 
 /// Whether the owner of a key wrote the comment `of`, or is the person to whom it is addressed.

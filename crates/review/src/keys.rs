@@ -139,7 +139,7 @@ const FORMATS: &str = "enroute-keys/";
 /// Why a key is not taken.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum KeyError {
-    /// Nobody should have this name.
+    /// The name misleads, or is empty.
     #[error("{0}")]
     Name(String),
     /// Somebody else has a name that looks like this one.
@@ -150,7 +150,7 @@ pub enum KeyError {
     /// The key belongs to somebody.
     #[error("the key {fingerprint} is trusted already, as that of “{known}”")]
     Known { fingerprint: String, known: String },
-    /// It is no document of keys, or a key in it is none.
+    /// The text is not a document of keys, or a key in it is invalid.
     #[error("these are no keys: {0}")]
     Damaged(String),
     #[error("these keys are of a later version of this program: {0}")]
@@ -188,14 +188,20 @@ impl KeyRing {
             known.secret = known.secret.take().or(person.secret);
             return Ok(());
         }
-        if let Some(problem) = names::problem(&person.name) {
-            return Err(KeyError::Name(problem));
-        }
-        if let Some(known) = self.people.iter().find(|known| names::are_alike(&known.name, &person.name)) {
-            return Err(KeyError::Alike { name: person.name, known: known.name.clone() });
-        }
+        self.may_be_called(&person.name)?;
         self.people.push(person);
         Ok(())
+    }
+
+    /// Whether a new person may have this name.
+    pub fn may_be_called(&self, name: &str) -> Result<(), KeyError> {
+        if let Some(problem) = names::problem(name) {
+            return Err(KeyError::Name(problem));
+        }
+        match self.people.iter().find(|known| names::are_alike(&known.name, name)) {
+            Some(known) => Err(KeyError::Alike { name: name.to_owned(), known: known.name.clone() }),
+            None => Ok(()),
+        }
     }
 
     /// Forgets a key, its secret as well.

@@ -135,12 +135,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     }),
     called("review.createKey", "Create key", Group::Review, |state, arguments| {
         let name = text_argument(arguments, "name")?.trim().to_owned();
-        if let Some(problem) = review::names::problem(&name) {
-            return Err(problem);
-        }
-        if let Some(known) = state.keys.ring().trust().alike(&name) {
-            return Err(format!("“{name}” can be taken for “{known}”, whose key is trusted"));
-        }
+        state.keys.ring().may_be_called(&name).map_err(|error| error.to_string())?;
         Ok(Command::Review(ReviewCommand::ChangeKeys(KeyChange::Create(name))))
     }),
     called("review.saveKey", "Save key to file", Group::Review, |state, arguments| {

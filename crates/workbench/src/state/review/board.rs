@@ -1,10 +1,9 @@
 //! What people of the board do: comment, acknowledge, resolve, approve and take back. Each is an entry of the history.
 
 use review::board::open_comments;
-use review::check::is_concerned;
+use review::check::{Objection, objection};
 use review::keys::{PublicKey, SecretKey};
-use review::record::{Act, Entry, Record, Runs, Subject, Who};
-use review::waivers::is_day;
+use review::record::{Act, Record, Runs, Subject, Who};
 use review::{Present, Standing, standing};
 use serde_json::Value;
 use tpn::plan_json::plan_to_json;
@@ -37,23 +36,24 @@ impl ReviewState {
     /// Whether somebody whose key is `key` may do something; `Err` says why not.
     pub fn may_say(&self, key: &PublicKey, act: &Act) -> Result<(), String> {
         let record = &self.record;
-        let is_own = |of: &Entry| of.key.as_ref() == Some(key);
         let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("Unknown entry {of}")));
         let of = of.transpose()?;
         let is_open = |of: &str| {
             let open = open_comments(record);
             open.iter().any(|comment| comment.digest() == of)
         };
-        let is_empty = act.text().trim().is_empty();
+        let objection = objection(record, Some(key), act);
         match act {
             _ if self.hash().is_none() => Err("Wait until planning ends, then try again".to_owned()),
-            Act::Comment { .. } if is_empty => Err("Comment is empty".to_owned()),
-            Act::Acknowledge { .. } if is_empty => Err("Enter a reason to acknowledge this item".to_owned()),
-            Act::Waive { .. } if is_empty => Err("Enter a reason to waive this item".to_owned()),
-            Act::Waive { until, .. } if !is_day(until) => {
+            Act::Comment { .. } if act.text().trim().is_empty() => Err("Comment is empty".to_owned()),
+            _ if objection == Some(Objection::NoReason) => Err(match act {
+                Act::Resolve { .. } => "Enter how the comment was resolved".to_owned(),
+                Act::Waive { .. } => "Enter a reason to waive this item".to_owned(),
+                _ => "Enter a reason to acknowledge this item".to_owned(),
+            }),
+            _ if objection == Some(Objection::NoDate) => {
                 Err("Enter the date on which the waiver lapses, such as 2026-01-31".to_owned())
             }
-            Act::Resolve { .. } if is_empty => Err("Enter how the comment was resolved".to_owned()),
             Act::Resolve { of, .. } if !is_open(of) => Err("This comment is already resolved".to_owned()),
             Act::Reopen { of, .. } if is_open(of) => Err("This comment is already open".to_owned()),
             Act::Resolve { .. } | Act::Reopen { .. }
@@ -66,11 +66,11 @@ impl ReviewState {
             {
                 Err("This entry was already withdrawn".to_owned())
             }
-            Act::Resolve { .. } | Act::Reopen { .. } if !of.is_some_and(|of| is_concerned(key, of)) => {
+            _ if objection == Some(Objection::NotConcerned) => {
                 let who = "Only the author of a comment or its addressee";
                 Err(format!("{who} can resolve or reopen it"))
             }
-            Act::Withdraw { .. } if !of.is_some_and(is_own) => {
+            _ if objection == Some(Objection::NotSigner) => {
                 Err("Only the person who signed an entry can withdraw it".to_owned())
             }
             Act::Withdraw { .. }
