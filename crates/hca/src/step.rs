@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::automaton::{
-    Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind, TestId,
-    TransitionId,
+    Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind, Test,
+    TestId, TransitionId,
 };
 use crate::knowledge::Estimate;
 use crate::marking::{Marking, bits};
@@ -28,13 +28,24 @@ pub struct Unobserved;
 
 impl StepObserver for Unobserved {}
 
-/// How a step finds out whether conditions are entailed.
-#[derive(Clone, Copy)]
-enum Source<'known> {
-    /// They are if they are true in all of these states.
-    States(&'known [Estimate]),
-    /// The caller says so.
-    Told(&'known dyn Fn(TestId) -> bool),
+/// How a step finds out whether the condition of a test is entailed.
+trait Knowledge: Copy {
+    fn entails(self, automaton: &Automaton, id: TestId, test: &Test) -> bool;
+}
+
+/// A condition is entailed if it is true in all of these states.
+impl Knowledge for &[Estimate] {
+    #[inline]
+    fn entails(self, automaton: &Automaton, _id: TestId, test: &Test) -> bool {
+        self.iter().all(|state| test.condition.is_entailed(state.values(), &automaton.variables))
+    }
+}
+
+/// The caller knows which conditions are entailed.
+impl Knowledge for &dyn Fn(TestId) -> bool {
+    fn entails(self, _automaton: &Automaton, id: TestId, _test: &Test) -> bool {
+        self(id)
+    }
 }
 
 /// A composite whose maintenance is checked.
@@ -88,9 +99,9 @@ impl Stepper {
                 Some(Watch { composite, test: data.maintenance?, range: data.locations.clone() })
             })
             .collect();
-        let is_asked = asked_for(&automaton.composites, &automaton.locations);
+        let matters = matters_to_others(&automaton.composites, &automaton.locations);
         let mut stages: Vec<Stage> = numbered()
-            .filter(|(id, data)| data.kind == CompositeKind::Sequence || is_asked[id.0 as usize])
+            .filter(|(id, data)| data.kind == CompositeKind::Sequence || matters[id.0 as usize])
             .map(|(composite, data)| Stage { composite, kind: data.kind, range: data.locations.clone() })
             .collect();
         stages.reverse();
@@ -166,7 +177,7 @@ impl Stepper {
     /// Takes one step where the caller says which of the [asked](Self::asked) conditions are entailed, whatever bar is over
     /// them.
     pub fn step_told(&mut self, is_entailed: &dyn Fn(TestId) -> bool, observer: &mut impl StepObserver) {
-        self.advance(Source::Told(is_entailed), observer);
+        self.advance(is_entailed, observer);
     }
 
     /// Takes one step when the plant is known to be in one of several states: what is true in all of them is known.
@@ -178,10 +189,10 @@ impl Stepper {
                 let mut overlay = std::mem::replace(&mut self.overlay, Estimate::unknown(0));
                 overlay.copy_from(only);
                 self.apply_program_settings(&mut overlay);
-                self.advance(Source::States(std::slice::from_ref(&overlay)), observer);
+                self.advance(std::slice::from_ref(&overlay), observer);
                 self.overlay = overlay;
             } else {
-                self.advance(Source::States(states), observer);
+                self.advance(states, observer);
             }
         } else {
             let mut states = states.to_vec();
@@ -191,7 +202,7 @@ impl Stepper {
             for state in &mut states {
                 self.apply_program_settings(state);
             }
-            self.advance(Source::States(&states), observer);
+            self.advance(states.as_slice(), observer);
         }
     }
 
@@ -202,27 +213,32 @@ impl Stepper {
         }
     }
 
-    fn advance(&mut self, source: Source<'_>, observer: &mut impl StepObserver) {
-        self.preempt(source, observer);
+    fn advance(&mut self, known: impl Knowledge, observer: &mut impl StepObserver) {
+        self.preempt(known, observer);
         self.next.clear();
-        self.completed.clear();
+        let has_stages = !self.stages.is_empty();
+        if has_stages {
+            self.completed.clear();
+        }
         for at in 0..self.alive.words().len() {
             let word = self.alive.words().get(at).copied().unwrap_or(0);
             for bit in bits(word) {
-                self.leave_or_stay(LocationId(at as u32 * 64 + bit), source, observer);
+                self.leave_or_stay(LocationId(at as u32 * 64 + bit), known, observer);
             }
         }
-        for at in 0..self.stages.len() {
-            self.complete(at, observer);
+        if has_stages {
+            for at in 0..self.stages.len() {
+                self.complete(at, observer);
+            }
+            self.start_fired_down_to(Automaton::ROOT);
         }
-        self.start_fired_down_to(Automaton::ROOT);
         std::mem::swap(&mut self.marking, &mut self.next);
     }
 
-    fn preempt(&mut self, source: Source<'_>, observer: &mut impl StepObserver) {
+    fn preempt(&mut self, known: impl Knowledge, observer: &mut impl StepObserver) {
         self.alive.copy_from(&self.marking);
         for watch in &self.watches {
-            let fails = self.marking.intersects(&watch.range) && !holds(&self.automaton, watch.test, source);
+            let fails = self.marking.intersects(&watch.range) && !holds(&self.automaton, watch.test, known);
             if let Some(dropped) = self.dropped.get_mut(watch.composite.0 as usize) {
                 *dropped = fails;
             }
@@ -233,11 +249,11 @@ impl Stepper {
         }
     }
 
-    fn leave_or_stay(&mut self, id: LocationId, source: Source<'_>, observer: &mut impl StepObserver) {
+    fn leave_or_stay(&mut self, id: LocationId, known: impl Knowledge, observer: &mut impl StepObserver) {
         let automaton = &*self.automaton;
         let Some(location) = automaton.location(id) else { return };
         if let Some(assertion) = &location.assertion
-            && !holds(automaton, assertion.test, source)
+            && !holds(automaton, assertion.test, known)
         {
             self.next.insert(id);
             return;
@@ -245,7 +261,7 @@ impl Stepper {
         let (mut stays, mut completes) = (false, true);
         for at in location.transitions.clone() {
             let Some(transition) = automaton.transitions.get(at as usize) else { continue };
-            if transition.guard.is_none_or(|guard| holds(automaton, guard, source)) {
+            if transition.guard.is_none_or(|guard| holds(automaton, guard, known)) {
                 completes = false;
                 stays |= transition.target == Element::Location(id);
                 if self.has_joins {
@@ -256,7 +272,7 @@ impl Stepper {
                 observer.fired(TransitionId(at));
             }
         }
-        if completes {
+        if completes && !self.stages.is_empty() {
             self.completed.insert(id);
         }
         if !stays {
@@ -342,25 +358,25 @@ fn start(automaton: &Automaton, element: Element, next: &mut Marking) {
 }
 
 /// Of each composite, whether something around it depends on its completion: the parts of a sequence but for the last,
-/// and what completes with something that is asked for. ALWAYS, WHENEVER, and the whole program never complete, and a join
+/// and what completes with something that matters. ALWAYS, WHENEVER, and the whole program never complete, and a join
 /// looks at the marks inside it.
-fn asked_for(composites: &[Composite], locations: &[Location]) -> Vec<bool> {
-    let mut is_asked = vec![false; composites.len()];
+fn matters_to_others(composites: &[Composite], locations: &[Location]) -> Vec<bool> {
+    let mut matters = vec![false; composites.len()];
     for (at, composite) in composites.iter().enumerate() {
-        let is_own_asked = is_asked[at];
+        let own_matters = matters[at];
         let of_children = |place: usize| match composite.kind {
-            CompositeKind::Sequence => is_own_asked || place + 1 < composite.children.len(),
-            CompositeKind::DoWatching | CompositeKind::Guarded => is_own_asked,
+            CompositeKind::Sequence => own_matters || place + 1 < composite.children.len(),
+            CompositeKind::DoWatching | CompositeKind::Guarded => own_matters,
             CompositeKind::Parallel | CompositeKind::Program => false,
         };
         for (place, child) in composite.children.iter().enumerate() {
             if let Element::Composite(child) = child {
                 let repeats = composites.get(child.0 as usize).is_some_and(|it| repeats(it, locations));
-                is_asked[child.0 as usize] = of_children(place) && !repeats;
+                matters[child.0 as usize] = of_children(place) && !repeats;
             }
         }
     }
-    is_asked
+    matters
 }
 
 /// Whether a composite starts its body again and again.
@@ -372,13 +388,7 @@ fn repeats(composite: &Composite, locations: &[Location]) -> bool {
 
 /// Whether a guard holds: its constraint is entailed, or for a barred guard it is not.
 #[inline]
-fn holds(automaton: &Automaton, id: TestId, source: Source<'_>) -> bool {
+fn holds(automaton: &Automaton, id: TestId, known: impl Knowledge) -> bool {
     let Some(test) = automaton.tests.get(id.0 as usize) else { return true };
-    let entailed = match source {
-        Source::States(states) => {
-            states.iter().all(|state| test.condition.is_entailed(state.values(), &automaton.variables))
-        }
-        Source::Told(is_entailed) => is_entailed(id),
-    };
-    entailed != test.guard.non_entailed
+    known.entails(automaton, id, test) != test.guard.non_entailed
 }
