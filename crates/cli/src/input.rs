@@ -13,7 +13,7 @@ static READ: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Whether a file was read, by this name or another one: links lead to the same file.
 pub fn was_read(path: &Path) -> bool {
-    // Whoever opens a pipe waits for its other end, so only plain files are opened.
+    // Opening a pipe waits for its other end, so only plain files are opened.
     let handle = |path: &Path| if path.is_file() { Handle::from_path(path).ok() } else { None };
     let Some(file) = handle(path) else { return false };
     let read = READ.lock().unwrap_or_else(PoisonError::into_inner);

@@ -171,6 +171,13 @@ struct Violation {
     is_contact: bool,
 }
 
+impl Violation {
+    /// One that another plan may mend.
+    const fn new(name: SmolStr, reason: String, news: News) -> Self {
+        Self { name, reason, news, is_final: false, is_contact: false }
+    }
+}
+
 #[derive(Clone, Copy)]
 enum News {
     None,
@@ -253,8 +260,8 @@ impl Run<'_> {
         if next.is_some_and(|next| next.time < time) {
             return None;
         }
-        let (name, reason, news) = (contact.name, contact.reason, News::None);
-        let violation = Some(Violation { name, reason, news, is_final: true, is_contact: true });
+        let violation = Violation::new(contact.name, contact.reason, News::None);
+        let violation = Some(Violation { is_final: true, is_contact: true, ..violation });
         Some(Next { point: self.stage.made.origin(), time, violation })
     }
 
@@ -447,11 +454,7 @@ impl Run<'_> {
         let mut known = News::None;
         let violation = |time: Time, reason: String, news: News| {
             let name = self.stage.name(node).into();
-            Next {
-                point,
-                time,
-                violation: Some(Violation { name, reason, news, is_final: false, is_contact: false }),
-            }
+            Next { point, time, violation: Some(Violation::new(name, reason, news)) }
         };
         for decider in self.deciders(node) {
             let decided = self.decision(&decider, time).map_err(|_| self.too_large(node))?;
@@ -515,11 +518,7 @@ impl Run<'_> {
             _ => return Next { point, time, violation: None },
         };
         let name = self.stage.name(node).into();
-        Next {
-            point,
-            time,
-            violation: Some(Violation { name, reason, news, is_final: false, is_contact: false }),
-        }
+        Next { point, time, violation: Some(Violation::new(name, reason, news)) }
     }
 
     /// What nature does against the executive, given what that would do next.
@@ -640,8 +639,7 @@ impl Run<'_> {
                 let (name, other) = (self.stage.name(node), self.stage.name(self.stage.made.node(other)));
                 let reason =
                     format!("{name} happened at {}, but {other} had to happen first", shown(self.now));
-                let (name, news, is_final) = (name.into(), News::None, false);
-                return Ok(Some(Violation { name, reason, news, is_final, is_contact: false }));
+                return Ok(Some(Violation::new(name.into(), reason, News::None)));
             }
             Err(SettleError::NotYet(other)) => {
                 self.wait_for(point, other);
@@ -651,8 +649,7 @@ impl Run<'_> {
             Err(SettleError::OutOfWindow) => {
                 let name = self.stage.name(node);
                 let reason = format!("{name} could not happen at {}", shown(self.now));
-                let (name, news) = (name.into(), News::None);
-                return Ok(Some(Violation { name, reason, news, is_final: false, is_contact: false }));
+                return Ok(Some(Violation::new(name.into(), reason, News::None)));
             }
         }
         self.stage.times[node.index()] = Some(self.now);

@@ -13,7 +13,7 @@ use snapshot::MapKey;
 use terrain::format::ImportOptions;
 use terrain::{ConfigurationSpace, GridFrame, Obstacle, Terrain};
 
-/// How many free spaces are kept: one for each vehicle model of the present text and of the previous text.
+/// How many free spaces are kept. Vehicle models have one each, and one more for each set of areas that are closed to them.
 const MAX_SPACES: usize = 8;
 /// Cells along the side of the flat ground of a mission that names no terrain.
 const FLAT_CELLS: u32 = 256;

@@ -248,7 +248,7 @@ impl Known<'_> {
     }
 }
 
-/// A state without some property is looked for among so many of the most likely ones.
+/// A state in which a condition does not hold is searched among at most so many of the most likely ones.
 const MAX_SEARCHED: usize = 100_000;
 
 /// What is left of a condition that has to hold with each of some combinations of values.

@@ -1,30 +1,13 @@
 //! Arguments and inputs that make no sense, or that once did harm: each is refused with its reason, or answered.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use serde_json::Value;
 
-use crate::command::{answer, enroute, file};
+use crate::command::{answer, enroute, enroute_in, file, folder, said};
 
 const MISSION: &str = "assets/missions/enroute.rmpl";
 const PROGRAM: &str = "assets/programs/orbit-insertion.rmpl";
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("arguments").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("a folder");
-    folder
-}
-
-fn in_folder(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_enroute"));
-    command.current_dir(folder).args(arguments).output().expect("the command runs")
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 #[test]
 fn values_without_a_meaning_are_refused() {
@@ -94,17 +77,17 @@ fn what_stays_where_it_is_has_a_path_of_length_0() {
 
 #[test]
 fn the_image_of_a_ros_map_is_found_from_any_folder() {
-    let folder = folder("ros");
+    let folder = folder("arguments-ros");
     std::fs::create_dir_all(folder.join("maps")).expect("a folder");
     std::fs::write(folder.join("maps/yard.pgm"), "P2\n4 1\n255\n255 255 255 255\n").expect("written");
     let yaml = "image: yard.pgm\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.0\n";
     std::fs::write(folder.join("maps/yard.yaml"), yaml).expect("written");
     let ends = ["--from", "0.5,0.5", "--to", "3.5,0.5", "--no-timings"];
     for (place, map) in [(&*folder, "maps/yard.yaml"), (&folder.join("maps"), "yard.yaml")] {
-        let output = in_folder(place, &[&["path", map], &ends[..]].concat());
+        let output = enroute_in(place, &[&["path", map], &ends[..]].concat());
         assert_eq!(output.status.code(), Some(0), "{map}: {output:?}");
         // Two calls print the same.
-        assert_eq!(output.stdout, in_folder(place, &[&["path", map], &ends[..]].concat()).stdout);
+        assert_eq!(output.stdout, enroute_in(place, &[&["path", map], &ends[..]].concat()).stdout);
     }
 }
 
@@ -118,7 +101,7 @@ fn a_thousand_files_are_imported_and_no_more() {
         }
         std::fs::write(folder.join("day.rmpl"), imports + "scenario Day[0,9] = { delay }\n")
             .expect("written");
-        in_folder(&folder, &["check", "day.rmpl"])
+        enroute_in(&folder, &["check", "day.rmpl"])
     };
     let all = mission(1_000);
     assert_eq!(all.status.code(), Some(0), "{all:?}");
@@ -135,7 +118,7 @@ fn a_pipe_is_not_imported() {
     assert!(made.success());
     let text = "import \"pipe.rmpl\";\nscenario Day[0,9] = { delay }\n";
     std::fs::write(folder.join("day.rmpl"), text).expect("written");
-    let output = in_folder(&folder, &["check", "day.rmpl"]);
+    let output = enroute_in(&folder, &["check", "day.rmpl"]);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(said(&output).contains("is not a regular file"), "{output:?}");
 }

@@ -1,25 +1,10 @@
 //! Files that commands write: whole or not at all, with their permissions, and never in place of an input.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
+
+use crate::command::{enroute_in, folder, said};
 
 const MISSION: &str = "primitive Drive()[20,30];\nscenario Day[0,60] = { Drive() }\n";
-
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("written").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).expect("a folder");
-    folder
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_enroute"));
-    command.current_dir(folder).args(arguments).output().expect("the command runs")
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 #[test]
 fn an_input_is_not_written_over_by_whatever_name() {
@@ -40,7 +25,7 @@ fn an_input_is_not_written_over_by_whatever_name() {
             &["export", "day.rmpl", "--as", "csv", "-o", name],
             &["plan", "day.rmpl", "--trace", name],
         ] {
-            let output = run(&folder, arguments);
+            let output = enroute_in(&folder, arguments);
             assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");
             assert!(said(&output).contains("is an input of this call"), "{arguments:?}: {output:?}");
         }
@@ -97,7 +82,7 @@ fn without_room_on_the_disk_the_old_files_stay() {
     for name in names {
         assert_eq!(std::fs::read_to_string(folder.join(&name)).expect("the file"), mission, "{name}");
     }
-    let output = run(&folder, &["report", "day.rmpl", "-o", "/dev/full"]);
+    let output = enroute_in(&folder, &["report", "day.rmpl", "-o", "/dev/full"]);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     assert!(said(&output).contains("cannot write /dev/full"), "{output:?}");
     let full = std::fs::File::options().write(true).open("/dev/full").expect("the device");
@@ -116,15 +101,15 @@ fn permissions_and_links_stay() {
     std::fs::write(&file, MISSION.replace("scenario", "   scenario")).expect("written");
     std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o640)).expect("set");
     std::os::unix::fs::symlink("day.rmpl", folder.join("link.rmpl")).expect("a link");
-    let output = run(&folder, &["fmt", "link.rmpl"]);
+    let output = enroute_in(&folder, &["fmt", "link.rmpl"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    assert_eq!(run(&folder, &["fmt", "--check", "day.rmpl"]).status.code(), Some(0));
+    assert_eq!(enroute_in(&folder, &["fmt", "--check", "day.rmpl"]).status.code(), Some(0));
     assert_eq!(file.metadata().expect("it is there").permissions().mode() & 0o777, 0o640);
     assert!(folder.join("link.rmpl").symlink_metadata().expect("it is there").is_symlink());
     // A new file is as any other new file.
     std::fs::write(folder.join("plain"), "").expect("written");
     assert_eq!(
-        run(&folder, &["export", "day.rmpl", "--as", "csv", "-o", "table.csv"]).status.code(),
+        enroute_in(&folder, &["export", "day.rmpl", "--as", "csv", "-o", "table.csv"]).status.code(),
         Some(0)
     );
     let mode = |name: &str| folder.join(name).metadata().expect("it is there").permissions().mode();

@@ -186,7 +186,7 @@ impl Run<'_> {
             }
         };
         let name = self.stage.name(node).into();
-        Some(Violation { name, reason, news: News::None, is_final: false, is_contact: false })
+        Some(Violation::new(name, reason, News::None))
     }
 
     /// Who a requirement belongs to.
@@ -316,13 +316,7 @@ impl Run<'_> {
             of.values.get(value.index()).map_or("", |value| value.as_str()),
             shown(self.now)
         );
-        Some(Violation {
-            name: self.stage.name(start).into(),
-            reason,
-            news: News::None,
-            is_final: false,
-            is_contact: false,
-        })
+        Some(Violation::new(self.stage.name(start).into(), reason, News::None))
     }
 
     /// A reservoir's level changes otherwise than planned: the plan is broken if it does not keep the level in its range any
@@ -398,13 +392,7 @@ impl Run<'_> {
                 let text = format!("{stands}: the plan no longer keeps its level {range} in every schedule");
                 (network.start, text)
             };
-        Violation {
-            name: self.stage.name(node).into(),
-            reason,
-            news: News::None,
-            is_final: false,
-            is_contact: false,
-        }
+        Violation::new(self.stage.name(node).into(), reason, News::None)
     }
 
     /// Whether what is to come keeps a level in its range in every schedule (SPEC 11), from where it is now.
