@@ -10,8 +10,8 @@ use std::sync::Arc;
 use exact::{Bound, Rational, Time};
 use executive::world::{abort_name, natures_ranges};
 use executive::{
-    ActivityExecutor, AsPlanned, Disturbance, Facts, PlanError, Replanner, RunOutcome, Script, Stage, World,
-    run_stage,
+    ActivityExecutor, AsPlanned, Disturbance, ExecutedPlan, Facts, PlanError, Replanner, RunOutcome, Script,
+    Stage, World, run_stage,
 };
 use rmpl::program::{Controllability, Program};
 use smol_str::SmolStr;
@@ -229,34 +229,10 @@ fn check_level(network: &Network, resource: &SmolStr, level: Rational) -> Result
 
 /// What a run of `planned` under `script` comes to.
 pub fn executed(revision: u64, script: Script, program: &Program, planned: &Planned, ran: Ran) -> Execution {
-    let last_times = ran.outcome.last().times.clone();
-    let none = Facts::default();
-    let replanned = ran.replanned.iter().map(|(facts, planned)| (facts, planned));
-    let all_planned = std::iter::once((&none, planned)).chain(replanned);
-    let last_facts = ran.replanned.last().map_or(0, |(facts, _)| facts.num_world_events());
-    let last_times = &last_times[..last_times.len() - last_facts];
-    let plans = ran
-        .outcome
-        .plans
-        .into_iter()
-        .zip(all_planned)
-        .map(|(executed, (facts, planned))| {
-            let (network, plan) = without_facts(facts, &executed.network, executed.plan);
-            let shared = network.nodes.len().min(last_times.len());
-            let times: Vec<Option<Time>> = executed
-                .times
-                .iter()
-                .take(network.nodes.len())
-                .enumerate()
-                .map(|(index, &time)| time.or_else(|| last_times[..shared].get(index).copied().flatten()))
-                .collect();
-            let as_run = with_times(&plan, &times);
-            let traverses = planned.traverses.clone();
-            let mut motions = planning::motions_of(program, &network, &as_run, planned);
-            simulation::put_into(&mut motions, &ran.drives);
-            Executed { from: executed.from, network, plan, times, traverses, motions }
-        })
-        .collect();
+    let mut plans = as_run(program, planned, &ran.outcome.plans, &ran.replanned);
+    for executed in &mut plans {
+        simulation::put_into(&mut executed.motions, &ran.drives);
+    }
     Execution {
         revision,
         script,
@@ -266,6 +242,35 @@ pub fn executed(revision: u64, script: Script, program: &Program, planned: &Plan
         drives: ran.drives,
         commanded: ran.commanded,
     }
+}
+
+/// The plans of a run, with the times at which events happened, and vehicles that keep an even pace along their paths.
+pub(crate) fn as_run(
+    program: &Program,
+    planned: &Planned,
+    executed: &[ExecutedPlan],
+    replanned: &[(Facts, Planned)],
+) -> Vec<Executed> {
+    let all_times = executed.last().map_or(&[][..], |last| &last.times);
+    let last_facts = replanned.last().map_or(0, |(facts, _)| facts.num_world_events());
+    let last_times = &all_times[..all_times.len() - last_facts];
+    let none = Facts::default();
+    let replanned = replanned.iter().map(|(facts, planned)| (facts, planned));
+    let all_planned = std::iter::once((&none, planned)).chain(replanned);
+    let as_run = |(executed, (facts, planned)): (&ExecutedPlan, (&Facts, &Planned))| {
+        let (network, plan) = without_facts(facts, &executed.network, executed.plan.clone());
+        let shared = network.nodes.len().min(last_times.len());
+        let times: Vec<Option<Time>> = executed
+            .times
+            .iter()
+            .take(network.nodes.len())
+            .enumerate()
+            .map(|(index, &time)| time.or_else(|| last_times[..shared].get(index).copied().flatten()))
+            .collect();
+        let motions = planning::motions_of(program, &network, &with_times(&plan, &times), planned);
+        Executed { from: executed.from, network, plan, times, traverses: planned.traverses.clone(), motions }
+    };
+    executed.iter().zip(all_planned).map(as_run).collect()
 }
 
 /// A network without what holds it to facts: arcs that lead back to the start, and the world's own events.

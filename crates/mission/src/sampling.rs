@@ -7,7 +7,7 @@ use std::sync::Arc;
 use exact::{Bound, Time};
 use executive::world::natures_ranges;
 use executive::{
-    ActivityExecutor, AsPlanned, Disturbance, Ending, Entry, Happening, PlanError, RunOutcome, Stage, World,
+    ActivityExecutor, AsPlanned, Contact, Disturbance, Ending, Entry, Happening, PlanError, Stage, World,
 };
 use plant::Random;
 use rmpl::program::{Controllability, LabelMode, Program};
@@ -39,6 +39,8 @@ pub struct Sampler {
     faults: Faults,
     /// The traverses that are driven; none if their durations are drawn.
     courses: Option<Courses>,
+    /// The plan with its paths.
+    planned: Planned,
     rocks: Rocks,
     nature: Nature,
     /// What is said of the durations that nature chooses.
@@ -84,6 +86,7 @@ impl Sampler {
             programs,
             faults: uncertainty.faults,
             courses,
+            planned: planned.clone(),
             rocks: uncertainty.rocks,
             nature: if uncertainty.adversary { Nature::Adversary } else { Nature::Chance },
             natures,
@@ -130,7 +133,20 @@ impl Sampler {
             (grounds, paths),
             courses.as_ref(),
         )?;
-        self.count(&ran, number, tally)
+        let contact = courses.is_none().then(|| self.contact(problem.program, &ran)).flatten();
+        self.count(&ran, contact, number, tally)
+    }
+
+    /// The first contact of vehicles in a run without driving, if some schedule of a plan brings them too close. The run is
+    /// over then: the executive cannot see it coming.
+    fn contact(&self, program: &Program, ran: &Ran) -> Option<Contact> {
+        let replanned = ran.replanned.iter().map(|(_, planned)| planned);
+        if std::iter::once(&self.planned).chain(replanned).all(|planned| planned.meetings.is_empty()) {
+            return None;
+        }
+        let plans = execution::as_run(program, &self.planned, &ran.outcome.plans, &ran.replanned);
+        let end = ran.outcome.log.last().map_or(Time::ZERO, |entry| entry.time);
+        simulation::first_on_paths(program, &plans).filter(|contact| contact.at <= end)
     }
 
     /// What nature chooses in the run of a seed.
@@ -169,9 +185,21 @@ impl Sampler {
         Ok(drawn)
     }
 
-    fn count(&self, ran: &Ran, number: u64, tally: &mut Tally) -> Result<(), PlanError> {
+    fn count(
+        &self,
+        ran: &Ran,
+        contact: Option<Contact>,
+        number: u64,
+        tally: &mut Tally,
+    ) -> Result<(), PlanError> {
         let outcome = &ran.outcome;
         tally.runs += 1;
+        if let Some(Contact { at, name, reason }) = contact {
+            let before = outcome.log.iter().take_while(|entry| entry.time <= at);
+            count_breaks(before, number, tally);
+            count_break((&name, &reason), true, number, tally);
+            return Ok(());
+        }
         if outcome.ending == Ending::Finished {
             tally.succeeded += 1;
             tally.succeeded_by_replanning += u64::from(outcome.plans.len() > 1);
@@ -181,7 +209,7 @@ impl Sampler {
             tally.end_least = tally.end_least.into_iter().chain([end]).min();
             tally.end_most = tally.end_most.into_iter().chain([end]).max();
         }
-        count_breaks(outcome, number, tally);
+        count_breaks(outcome.log.iter(), number, tally);
         let Some(first) = outcome.plans.first() else { return Ok(()) };
         for (event, node, earliest, latest) in &self.windows {
             let Some(time) = first.times[node.index()] else { continue };
@@ -205,22 +233,27 @@ const fn run_seed(seed: u64, number: u64) -> u64 {
     Random::new(seed).next_bits() ^ Random::new(number).next_bits()
 }
 
-fn count_breaks(outcome: &RunOutcome, number: u64, tally: &mut Tally) {
-    for (index, entry) in outcome.log.iter().enumerate() {
+/// Counts the violations in (the beginning of) the log of a run.
+fn count_breaks<'a>(log: impl Iterator<Item = &'a Entry>, number: u64, tally: &mut Tally) {
+    let mut log = log.peekable();
+    while let Some(entry) = log.next() {
         let Happening::Violation { name, reason, .. } = &entry.happening else { continue };
-        let next = outcome.log.get(index + 1);
-        let is_stop = matches!(next, Some(Entry { happening: Happening::Stopped { .. }, .. }));
-        let breaks = tally.breaks.entry(name.clone()).or_insert_with(|| Breaks {
-            example: reason.clone(),
-            example_run: number,
-            ..Breaks::default()
-        });
-        if number < breaks.example_run {
-            (breaks.example, breaks.example_run) = (reason.clone(), number);
-        }
-        breaks.violations += 1;
-        breaks.stops += u64::from(is_stop);
+        let is_stop = matches!(log.peek(), Some(Entry { happening: Happening::Stopped { .. }, .. }));
+        count_break((name, reason), is_stop, number, tally);
     }
+}
+
+fn count_break((name, reason): (&SmolStr, &String), is_stop: bool, number: u64, tally: &mut Tally) {
+    let breaks = tally.breaks.entry(name.clone()).or_insert_with(|| Breaks {
+        example: reason.clone(),
+        example_run: number,
+        ..Breaks::default()
+    });
+    if number < breaks.example_run {
+        (breaks.example, breaks.example_run) = (reason.clone(), number);
+    }
+    breaks.violations += 1;
+    breaks.stops += u64::from(is_stop);
 }
 
 /// The starts and ends of activities and conditions whose windows are neither a moment nor without an end.

@@ -31,6 +31,7 @@ use crate::driving::{self, Drive};
 use crate::planning::{self, Planned, Problem};
 use crate::traverse::{self, Route};
 
+pub(crate) use self::contact::first_on_paths;
 pub(crate) use self::way::nearest_free;
 
 /// A traverse with all that driving it takes.

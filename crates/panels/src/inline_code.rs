@@ -6,14 +6,19 @@ use egui::{Color32, FontId, TextFormat};
 
 /// The message in one color, with its code in the monospaced font.
 pub(crate) fn job(message: &str, font: &FontId, color: Color32, width: f32) -> LayoutJob {
-    let code = FontId::monospace(font.size);
     let mut job = LayoutJob::default();
+    append(&mut job, message, font, color);
+    job.wrap.max_width = width;
+    job
+}
+
+/// Appends a message to others.
+pub(crate) fn append(job: &mut LayoutJob, message: &str, font: &FontId, color: Color32) {
+    let code = FontId::monospace(font.size);
     for (index, part) in message.split('`').enumerate() {
         let font = if index % 2 == 0 { font } else { &code };
         job.append(part, 0.0, TextFormat::simple(font.clone(), color));
     }
-    job.wrap.max_width = width;
-    job
 }
 
 /// The message without backticks, for names of widgets and for buttons.

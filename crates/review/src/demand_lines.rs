@@ -175,7 +175,10 @@ impl DemandLines<'_> {
             [first, rest @ ..] => format!("{name} is {first}, then {}", rest.join(", then ")),
         };
         let text = if is_from_plant { format!("{text}, as long as no component fails") } else { text };
-        Some(self.line_of(text, changes, Vec::new()))
+        // What nobody changes is about the variable.
+        let is_changed = changes.iter().any(|&label| self.owner(label).is_some());
+        let names = if is_changed { Vec::new() } else { vec![name.to_owned()] };
+        Some(self.line_of(text, changes, names))
     }
 
     fn movements(&self, vehicle: &str, changes: &[LabelId]) -> Option<Line> {

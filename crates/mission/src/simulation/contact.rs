@@ -7,10 +7,11 @@ use motion::TimedPoint;
 use nalgebra::Point2;
 use rmpl::program::Program;
 use snapshot::vehicle::{flies, radius_m};
-use snapshot::{SimulatedDrive, standing};
-use tpn::Network;
+use snapshot::{Executed, SimulatedDrive, standing};
+use tpn::{Network, OccurrenceId};
 
 use super::ticks_per_unit;
+use crate::traverse;
 
 /// The first contact of any two vehicles in what was driven. A vehicle that does not drive stands where it is.
 pub(super) fn first_contact(
@@ -18,8 +19,50 @@ pub(super) fn first_contact(
     network: &Network,
     drives: &[SimulatedDrive],
 ) -> Option<Contact> {
+    let (touch, pair) = first_touch(program, &tracks(program, drives))?;
+    let under_way = drives.iter().rev().find(|drive| {
+        let is_in_it = drive.vehicles.iter().any(|it| pair.contains(&it.vehicle));
+        is_in_it && drive.start.to_f64() <= touch.time_s
+    })?;
+    contact(program, network, under_way.occurrence, (touch, pair))
+}
+
+/// The first contact of any two vehicles in a run whose traverses are not driven: vehicles keep an even pace along the
+/// paths of the plan that is executed at the time.
+pub(crate) fn first_on_paths(program: &Program, plans: &[Executed]) -> Option<Contact> {
+    let start = |place: Option<Point2<f64>>| place.map(|position_m| TimedPoint { time_s: 0.0, position_m });
+    let starts = standing::own_starts_m(program).into_iter().map(start);
+    let mut tracks: Vec<Vec<TimedPoint>> = starts.map(|start| start.into_iter().collect()).collect();
+    for (index, executed) in plans.iter().enumerate() {
+        let from = executed.from.to_f64();
+        let until = plans.get(index + 1).map_or(f64::INFINITY, |next| next.from.to_f64());
+        for motion in &executed.motions {
+            let Some(track) = tracks.get_mut(motion.vehicle as usize) else { continue };
+            let at = |time_s: f64| motion.at(time_s).map(|(position_m, _)| TimedPoint { time_s, position_m });
+            track.extend(at(from));
+            let between =
+                motion.keyframes.iter().filter(|frame| (from..until).contains(&frame.time.to_f64()));
+            track
+                .extend(between.map(|it| TimedPoint { time_s: it.time.to_f64(), position_m: it.position_m }));
+            track.extend(at(until).filter(|_| until.is_finite()));
+        }
+    }
+    let (touch, pair) = first_touch(program, &until_the_last(tracks))?;
+    let executed = plans.iter().rev().find(|executed| executed.from.to_f64() <= touch.time_s)?;
+    let routes = traverse::routes(&executed.network, program, &executed.plan, &[]).into_iter();
+    let starts = routes.filter_map(|route| {
+        let is_in_it = route.vehicles.iter().any(|&vehicle| pair.contains(&(vehicle as u32)));
+        let occurrence = executed.network.occurrences.get(route.occurrence.index())?;
+        let start = executed.times.get(occurrence.start.index()).copied().flatten()?.to_f64();
+        (is_in_it && start <= touch.time_s).then_some((start, route.occurrence))
+    });
+    let (_, under_way) = starts.max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+    contact(program, &executed.network, under_way, (touch, pair))
+}
+
+/// When the first two vehicles touch.
+fn first_touch(program: &Program, tracks: &[Vec<TimedPoint>]) -> Option<(motion::Separation, [u32; 2])> {
     let world = &program.world;
-    let tracks = tracks(program, drives);
     let mut first: Option<(motion::Separation, [u32; 2])> = None;
     for (index, one) in tracks.iter().enumerate() {
         for (other_index, other) in tracks.iter().enumerate().skip(index + 1) {
@@ -35,12 +78,17 @@ pub(super) fn first_contact(
             }
         }
     }
-    let (touch, pair) = first?;
-    let name = |vehicle: u32| world.vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
-    let under_way = drives.iter().rev().find(|drive| {
-        let is_in_it = drive.vehicles.iter().any(|it| pair.contains(&it.vehicle));
-        is_in_it && drive.start.to_f64() <= touch.time_s
-    })?;
+    first
+}
+
+fn contact(
+    program: &Program,
+    network: &Network,
+    under_way: OccurrenceId,
+    (touch, pair): (motion::Separation, [u32; 2]),
+) -> Option<Contact> {
+    let vehicles = &program.world.vehicles;
+    let name = |vehicle: u32| vehicles.get(vehicle as usize).map_or("?", |it| it.name.text.as_str());
     let place = nalgebra::center(&touch.positions_m[0], &touch.positions_m[1]);
     let at = Time::from_f64_nearest(touch.time_s, ticks_per_unit(program))?;
     let reason = format!(
@@ -52,7 +100,7 @@ pub(super) fn first_contact(
         touch.time_s,
         touch.distance_m
     );
-    Some(Contact { at, name: network.occurrences.get(under_way.occurrence.index())?.name.clone(), reason })
+    Some(Contact { at, name: network.occurrences.get(under_way.index())?.name.clone(), reason })
 }
 
 /// Where each vehicle is over time, in mission units.
@@ -69,6 +117,11 @@ fn tracks(program: &Program, drives: &[SimulatedDrive]) -> Vec<Vec<TimedPoint>> 
             track.extend(frames.map(|it| TimedPoint { time_s: it.time, position_m: it.position_m }));
         }
     }
+    until_the_last(tracks)
+}
+
+/// Tracks that all end when the last one does: a vehicle that has arrived stands there.
+fn until_the_last(mut tracks: Vec<Vec<TimedPoint>>) -> Vec<Vec<TimedPoint>> {
     let end = tracks.iter().filter_map(|track| track.last()).map(|last| last.time_s).fold(0.0, f64::max);
     for track in &mut tracks {
         track.extend(track.last().map(|last| TimedPoint { time_s: end, ..*last }));

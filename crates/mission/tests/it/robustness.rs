@@ -242,3 +242,46 @@ fn vehicles_that_drive_take_as_long_as_the_way_and_its_rocks_make_them() {
     shards.merge(&driven(rocks, 0..1));
     assert_eq!(shards, among);
 }
+
+/// Two rovers whose paths cross; nature chooses how long each takes.
+const CROSSING: &str = "
+terrain \"tai-plain\" cell 0.6 origin (0, 0);
+location A (24, 52); location B (60, 56); location C (44, 40); location D (44, 70);
+vehicle Alpha : ATRV at A; vehicle Delta : ATRV at C;
+primitive Drive(r, to) contingent [2,30] moves r speed (0.01, 0.5);
+scenario S[0,100] = { { Drive(Alpha, B) }, { delay[1.3,1.3]; Drive(Delta, D) } }";
+
+#[test]
+fn vehicles_that_touch_on_their_paths_end_a_run_without_driving() {
+    let mission = Mission::read(CROSSING);
+    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
+    let (ground, _) = grounds.resolve(&mission.program.world);
+    let problem = Problem { ground: ground.as_ref().map(|(key, map)| (key, map)), ..mission.problem() };
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let settings = settings(100, Uncertainty::default());
+    let sampler = Sampler::new(&problem, &planned, &settings.uncertainty);
+    let sampler = sampler.expect("there is a plan").expect("its times fit");
+    let mut tally = Tally::default();
+    for number in 0..100 {
+        sampler
+            .run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)
+            .expect("its times fit");
+    }
+    let stops: u64 = tally.breaks.values().map(|breaks| breaks.stops).sum();
+    assert!(0 < stops && stops < 100, "{stops} runs stopped");
+    assert_eq!(tally.succeeded + stops, 100);
+    assert!(tally.breaks.values().all(|breaks| breaks.example.contains("touch")), "{:?}", tally.breaks);
+    // The same durations of a plan that reaches the crossing in turn never fail.
+    let apart = Mission::read(&CROSSING.replace("delay[1.3,1.3]", "delay[40,40]"));
+    let problem = Problem { ground: problem.ground, ..apart.problem() };
+    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let sampler = Sampler::new(&problem, &planned, &settings.uncertainty);
+    let sampler = sampler.expect("there is a plan").expect("its times fit");
+    let mut tally = Tally::default();
+    for number in 0..100 {
+        sampler
+            .run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)
+            .expect("its times fit");
+    }
+    assert_eq!(tally.succeeded, 100, "{:?}", tally.breaks);
+}

@@ -10,7 +10,7 @@ use tpn::Network;
 use workbench::state::Selection;
 
 use super::{is_stale, status_look};
-use crate::Context;
+use crate::{Context, inline_code};
 
 /// How far the text of lines is from the left.
 pub(super) const INDENT: f32 = 26.0;
@@ -46,10 +46,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let meta_width = if is_narrow { 0.0 } else { 118.0 };
     let color = if row.is_quiet { tokens.text_muted } else { tokens.text };
     let wrap = (width - left - space::M - meta_width).max(60.0);
-    let mut job = egui::text::LayoutJob::simple(row.text.to_owned(), body, color, wrap);
+    let mut job = inline_code::job(row.text, &body, color, wrap);
     if !row.criterion.is_empty() {
-        let format = egui::TextFormat::simple(small.clone(), tokens.text_muted);
-        job.append(&format!("\n{}", row.criterion), 0.0, format);
+        inline_code::append(&mut job, &format!("\n{}", row.criterion), &small, tokens.text_muted);
     }
     let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
     let below = if is_narrow && !(word.is_empty() && row.place.is_empty()) { 15.0 } else { 0.0 };
@@ -57,7 +56,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
     response.widget_info(|| {
         let parts = [word, row.text, row.criterion, row.place].into_iter().filter(|part| !part.is_empty());
-        let name = parts.collect::<Vec<_>>().join(": ");
+        let name = inline_code::without_backticks(&parts.collect::<Vec<_>>().join(": "));
         WidgetInfo::selected(Role::Button, true, row.is_selected, name)
     });
     if !ui.is_rect_visible(rect) {

@@ -13,6 +13,8 @@ pub(super) struct Scheduled<'a> {
     pub(super) network: &'a Network,
     pub(super) plan: &'a Plan,
     pub(super) times: &'a [Option<Time>],
+    /// Whether an activity takes the least or greatest time that it is declared with, for a purpose.
+    pub(super) is_extreme: bool,
 }
 
 /// One time of it. At a moment, what touches it counts.

@@ -99,6 +99,9 @@ impl Tried {
     /// How it came out and how it was tried, in one sentence without an end.
     pub fn sentence(&self) -> String {
         match (self.verdict(), &self.counterexample) {
+            (Verdict::Contradicted, Some(found)) if found.script == Script::default() => {
+                format!("contradicted: {}", found.text)
+            }
             (Verdict::Contradicted, Some(found)) if found.script.schedule.is_empty() => {
                 format!("contradicted by a run: {}", found.text)
             }
@@ -170,10 +173,21 @@ impl Trial {
                 .iter()
                 .any(|(promise, it)| it.counterexample.is_none() && promise.is_of_schedules());
         let made = self.schedules.as_mut().filter(|_| is_wanted).map(Schedules::make);
-        let times = match made {
-            Some(Made::New(times)) => times,
-            Some(Made::Known) => {
+        let (times, is_extreme) = match made {
+            Some(Made::New { times, is_extreme }) => (times, is_extreme),
+            Some(Made::Impossible(activity, duration)) => {
                 self.num_schedules += 1;
+                let text = format!("{activity} lasts {} in no schedule", duration.readable());
+                for tried in self.declared_durations() {
+                    tried.schedules += 1;
+                    let script = Script::default();
+                    tried.counterexample = Some(Counterexample { text: text.clone(), script });
+                }
+                return true;
+            }
+            Some(Made::Known { is_extreme }) => {
+                self.num_schedules += 1;
+                self.declared_durations().for_each(|tried| tried.schedules += u64::from(is_extreme));
                 return true;
             }
             Some(Made::Overflow) | None => {
@@ -182,8 +196,13 @@ impl Trial {
             }
         };
         self.num_schedules += 1;
-        let scheduled =
-            Scheduled { program: &self.program, network: &self.network, plan: &self.plan, times: &times };
+        let scheduled = Scheduled {
+            program: &self.program,
+            network: &self.network,
+            plan: &self.plan,
+            times: &times,
+            is_extreme,
+        };
         for (promise, tried) in &mut self.lines {
             if tried.counterexample.is_some() {
                 continue;
@@ -199,6 +218,12 @@ impl Trial {
             });
         }
         true
+    }
+
+    /// The lines about declared durations that stand.
+    fn declared_durations(&mut self) -> impl Iterator<Item = &mut Tried> {
+        let stand = self.lines.iter_mut().filter(|(_, tried)| tried.counterexample.is_none());
+        stand.filter(|(it, _)| matches!(it, Promise::DeclaredDurations)).map(|(_, tried)| tried)
     }
 
     /// The next run to make; `None` when there is none, or no line stands that runs say something of.

@@ -36,6 +36,8 @@ pub(super) enum Promise {
     Apart(Vec<Performed>),
     /// Vehicles touch in no run.
     NoContact,
+    /// Each activity can take as short and as long as it is declared with, if the others leave it room.
+    DeclaredDurations,
     /// Nothing that is looked at here.
     Nothing,
 }
@@ -130,6 +132,7 @@ impl Promise {
         match section {
             Section::Conflicts => Self::Valid,
             Section::SeparationViolations => Self::NoContact,
+            Section::Durations => Self::DeclaredDurations,
             _ => Self::Nothing,
         }
     }
@@ -139,6 +142,16 @@ impl Promise {
     fn of_state(network: &Network, plan: &Plan, line: &crate::Line) -> Option<Self> {
         if line.nodes.is_empty() {
             return Some(Self::Valid);
+        }
+        if let [name] = line.names.as_slice() {
+            let stays = network.variables.iter().find(|it| it.name == *name && it.is_lasting);
+            if let Some(variable) = stays {
+                return Some(Self::InOrder {
+                    variable: variable.name.clone(),
+                    nodes: Vec::new(),
+                    by: Vec::new(),
+                });
+            }
         }
         let told = |variable: usize| {
             let labels = network.labels.iter().enumerate().filter(move |(_, label)| {
@@ -180,7 +193,7 @@ impl Promise {
 
     /// Whether a run says something of it.
     pub(super) const fn is_of_runs(&self) -> bool {
-        !matches!(self, Self::Valid | Self::Rule(_) | Self::Nothing)
+        !matches!(self, Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Nothing)
     }
 
     /// What contradicts it in a schedule, if something does; `None` if the schedule says nothing of it.
@@ -202,6 +215,9 @@ impl Promise {
                 let breach = of.first_breach(rule);
                 Some(breach.map(|at| format!("it is not known to hold at {}", at.readable())))
             }
+            Self::DeclaredDurations => of.is_extreme.then_some(None),
+            // One value is in every order.
+            Self::InOrder { nodes, .. } if nodes.len() < 2 => None,
             Self::InOrder { nodes, .. } => {
                 let known = nodes.iter().filter_map(|&(rank, node)| Some((rank, of.times[node.index()]?)));
                 let times: Vec<(usize, Time)> = known.collect();
@@ -289,7 +305,7 @@ impl Promise {
                 let ended = |it: &Performed| came(&format!("{}.end", it.name)).unwrap_or(end);
                 Some(overlap(all, |it| Some([came(&format!("{}.start", it.name))?, ended(it)])))
             }
-            Self::Valid | Self::Rule(_) | Self::Nothing => None,
+            Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Nothing => None,
         }
     }
 }

@@ -1,13 +1,16 @@
-//! Schedules of a plan to try its lines with: the earliest and the latest one, and those in which some events are at the ends
-//! of their windows, or anywhere in them.
+//! Schedules of a plan to try its lines with: the earliest and the latest one, those in which an activity takes the least or
+//! greatest time that it is declared with, and those in which some events are at the ends of their windows, or anywhere in
+//! them.
 
 use std::collections::BTreeSet;
 
+use exact::Bound;
 use exact::Time;
 use executive::plan_network::{ADDED, PlanNetwork};
 use plant::Random;
-use stn::INFINITE;
-use tpn::{Network, Plan};
+use smol_str::SmolStr;
+use stn::{INFINITE, PointId};
+use tpn::{Network, OccurrenceKind, Plan};
 
 /// Makes one schedule after the other.
 pub(super) struct Schedules {
@@ -15,16 +18,27 @@ pub(super) struct Schedules {
     num_nodes: usize,
     chance: Random,
     made: usize,
+    /// Declared extremes of durations that were not tried yet, the next one last.
+    extremes: Vec<Extreme>,
     /// The ticks of all that were made.
     known: BTreeSet<Vec<i64>>,
 }
 
+/// The least or greatest declared duration of an activity.
+struct Extreme {
+    activity: SmolStr,
+    ends: [PointId; 2],
+    ticks: i64,
+}
+
 /// A schedule, if it could be made.
 pub(super) enum Made {
-    /// The time of each node that the plan selects.
-    New(Vec<Option<Time>>),
-    /// One that was made before.
-    Known,
+    /// The time of each node that the plan selects, and whether an activity has an extreme of its duration for a purpose.
+    New { times: Vec<Option<Time>>, is_extreme: bool },
+    /// One that was made before, and the same.
+    Known { is_extreme: bool },
+    /// In no schedule this activity takes so long, although it is declared with that.
+    Impossible(SmolStr, Time),
     /// Times do not fit.
     Overflow,
 }
@@ -36,35 +50,49 @@ impl Schedules {
     /// `None` where times do not fit.
     pub(super) fn new(network: &Network, plan: &Plan, seed: u64) -> Option<Self> {
         let num_nodes = network.nodes.len();
+        let extremes = extremes(network, plan, &PlanNetwork::new(network, plan).ok()?);
         let network = PlanNetwork::new(network, plan).ok()?;
-        Some(Self { network, num_nodes, chance: Random::new(seed), made: 0, known: BTreeSet::new() })
+        let (chance, known) = (Random::new(seed), BTreeSet::new());
+        Some(Self { network, num_nodes, chance, made: 0, extremes, known })
     }
 
     /// Makes the next one.
     pub(super) fn make(&mut self) -> Made {
-        let Some(ticks) = self.next_ticks() else { return Made::Overflow };
+        let number = self.made;
+        self.made += 1;
+        let extreme = if number > 1 && number.is_multiple_of(2) { self.extremes.pop() } else { None };
+        let before = self.network.stn.checkpoint();
+        let ticks = match &extreme {
+            Some(Extreme { ends: [start, end], ticks, .. }) => {
+                let kept = self.network.stn.constrain(*start, *end, *ticks, Some(*ticks), ADDED).ok();
+                kept.and_then(|()| self.bounds()).map(|(earliest, _)| earliest)
+            }
+            None => self.by_chance(number),
+        };
+        self.network.stn.rollback(before);
+        let Some(ticks) = ticks else {
+            let impossible = |it: Extreme| Made::Impossible(it.activity, self.network.time(it.ticks));
+            return extreme.map_or(Made::Overflow, impossible);
+        };
+        let is_extreme = extreme.is_some();
         if self.known.contains(&ticks) {
-            return Made::Known;
+            return Made::Known { is_extreme };
         }
         let mut times = vec![None; self.num_nodes];
         for point in self.network.all_points() {
             times[self.network.node(point).index()] = Some(self.network.time(ticks[point.index()]));
         }
         self.known.insert(ticks);
-        Made::New(times)
+        Made::New { times, is_extreme }
     }
 
-    fn next_ticks(&mut self) -> Option<Vec<i64>> {
-        let before = self.network.stn.checkpoint();
-        let number = self.made;
-        self.made += 1;
+    fn by_chance(&mut self, number: usize) -> Option<Vec<i64>> {
         if number > 1 {
             for _ in 0..=self.chance.below(MAX_PINS) {
                 self.pin()?;
             }
         }
         let (earliest, latest) = self.bounds()?;
-        self.network.stn.rollback(before);
         let has_latest = latest.iter().all(|&ticks| ticks != INFINITE);
         Some(if number % 2 == 1 && has_latest { latest } else { earliest })
     }
@@ -101,4 +129,26 @@ impl Schedules {
         let (origin, point) = (self.network.origin(), self.network.all_points().nth(at)?);
         self.network.stn.constrain(origin, point, ticks, Some(ticks), ADDED).ok()
     }
+}
+
+/// The least and greatest declared durations of the activities that the plan selects and nature does not decide, the first
+/// one of the text last.
+fn extremes(network: &Network, plan: &Plan, points: &PlanNetwork) -> Vec<Extreme> {
+    let primitives = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
+    let own = primitives.filter_map(|occurrence| {
+        let id = occurrence.arc?;
+        let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
+        let arc = network.arcs.get(id.index()).filter(|_| is_selected && !network.is_uncertain(id))?;
+        let ends = [points.point(occurrence.start)?, points.point(occurrence.end)?];
+        let greatest = match arc.upper {
+            Bound::Finite(upper) if upper > arc.lower => Some(upper),
+            _ => None,
+        };
+        let durations = std::iter::once(arc.lower).chain(greatest);
+        let ticks = durations.filter_map(move |it| points.scale().ticks(it).ok());
+        Some(ticks.map(move |ticks| Extreme { activity: occurrence.name.clone(), ends, ticks }))
+    });
+    let mut extremes: Vec<Extreme> = own.flatten().collect();
+    extremes.reverse();
+    extremes
 }

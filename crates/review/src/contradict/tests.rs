@@ -114,6 +114,40 @@ fn a_line_that_promises_too_much_is_contradicted() {
 }
 
 #[test]
+fn durations_are_tried_at_their_declared_ends() {
+    let source = "primitive A()[5,10]; primitive B()[1,2];
+    scenario S[0,LAST] = { A(); B(), B() }";
+    let of = |last: &str| {
+        let all = tried(&source.replace("LAST", last), &[], |review| review.durations.clear());
+        let is_it = |it: &Tried| it.line.section == Section::Durations;
+        all.into_iter().find(is_it).expect("it has passed")
+    };
+    let free = of("30");
+    assert_eq!((free.verdict(), free.schedules), (Verdict::Survived, 6), "two ends of three activities");
+    let tight = of("10");
+    assert_eq!(tight.sentence(), "contradicted: A#1 lasts 10 in no schedule");
+}
+
+#[test]
+fn what_stays_as_it_is_is_tried_in_runs() {
+    let source = "state ARM : {STOWED, OUT} = STOWED; state LAMP : {ON, OFF} = OFF;
+    primitive Drive()[5,10] requires ARM=STOWED; primitive Switch()[1,1] sets LAMP=ON;
+    scenario S[0,100] = { Drive(), Switch() }";
+    let line = |tried: &[Tried], text: &str| {
+        tried.iter().find(|it| it.line.text.starts_with(text)).cloned().expect("it has passed")
+    };
+    let (honest, ..) = run(source, |_| {});
+    assert_eq!(line(&honest, "ARM stays STOWED").how(), "1 run");
+    let (all, ..) = run(source, |review| {
+        for line in review.states.iter_mut().filter(|it| it.text.starts_with("LAMP")) {
+            (line.names, line.text) = (vec!["LAMP".to_owned()], "LAMP stays OFF".to_owned());
+        }
+    });
+    let lamp = line(&all, "LAMP stays OFF");
+    assert_eq!(lamp.verdict(), Verdict::Contradicted, "{lamp:?}");
+}
+
+#[test]
 fn no_schedule_contradicts_what_the_reviews_of_examples_have_passed() {
     let examples: [(&str, &[&str]); 6] = [
         (MISSION, &["PATH1=OK while Group-Traverse-Path", "never Group-Wait while PROCEED=OK"]),
@@ -179,7 +213,7 @@ fn every_schedule_is_executed_at_its_times() {
         let mut schedules = Schedules::new(&network, &plan, 3).expect("its times fit");
         let mut executed = 0;
         for _ in 0..15 {
-            let Made::New(times) = schedules.make() else { continue };
+            let Made::New { times, .. } = schedules.make() else { continue };
             let script = Script { schedule: named_times(&network, &plan, &times), ..Script::default() };
             let (log, ending) = replayed(&mut core, &evaluated, &script);
             assert_eq!(ending, Ending::Finished, "{script:?} {log:?}");
