@@ -274,6 +274,7 @@ fn add_level(network: &mut Network, resource: ResourceId, by: Rational, at: Time
         change,
         amount,
         per_metre: Rational::ZERO,
+        spread: Rational::ZERO,
         arc,
         start: node,
         end: node,

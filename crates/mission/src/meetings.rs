@@ -203,6 +203,7 @@ fn with_order(network: &Network, first: OccurrenceId, then: OccurrenceId) -> Net
             change,
             amount: Rational::ONE,
             per_metre: Rational::ZERO,
+            spread: Rational::ZERO,
             arc,
             start,
             end,

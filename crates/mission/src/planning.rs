@@ -526,6 +526,8 @@ fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64, 
     for used in network.uses.iter_mut().filter(|used| used.owner == Some(occurrence)) {
         let metres = if used.change == Change::Produces { at_least } else { at_most };
         used.amount = with(used.amount, used.per_metre, metres);
+        let spread_m = at_most.checked_sub(at_least).unwrap_or_default();
+        used.spread = with(Rational::ZERO, used.per_metre, spread_m);
     }
     let arc = network.occurrences[occurrence.index()].arc;
     for worth in network.worths.iter_mut().filter(|worth| Some(worth.arc) == arc) {

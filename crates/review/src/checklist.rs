@@ -178,6 +178,8 @@ pub struct ResourceReview {
     pub supply: Supply,
     /// How far the plan uses it, over all schedules.
     pub levels: Levels,
+    /// How much more than that a reservoir may hold because drives consume less, or produce more, than is counted.
+    pub spread: Rational,
     /// What stays free of a reusable resource, and above the minimum level of a reservoir.
     pub spare: Rational,
     /// What stays free below the maximum level of a reservoir.

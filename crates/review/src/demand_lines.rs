@@ -94,6 +94,16 @@ impl DemandLines<'_> {
         (self.has_map && sum.is_positive()).then_some(sum)
     }
 
+    /// How much higher than planned a reservoir's level may be because drives consume less, or produce more, than is counted.
+    fn spread(&self, resource: &Resource) -> Option<Rational> {
+        let is_its = |used: &&Use| {
+            self.network.resources[used.resource.index()].name == resource.name
+                && self.plan.selected_arcs.get(used.arc.index()) == Some(&true)
+        };
+        let all = self.network.uses.iter().filter(is_its).map(|used| used.spread);
+        all.into_iter().try_fold(Rational::ZERO, Rational::checked_add)
+    }
+
     fn requirements(&self) -> Option<Line> {
         let is_lasting = |link: &&tpn::CausalLink| self.network.is_lasting(link.ask);
         let count = self.plan.causal_links.iter().filter(is_lasting).count();
@@ -211,6 +221,7 @@ impl DemandLines<'_> {
 
     fn resource(&self, resource: &Resource, levels: Levels) -> Option<ResourceReview> {
         let name = resource.name.as_str();
+        let spread = self.spread(resource)?;
         let (text, spare, room) = match (resource.supply, levels) {
             (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
                 let spare = capacity.checked_sub(peak)?;
@@ -228,8 +239,7 @@ impl DemandLines<'_> {
             }
             (Supply::Reservoir { least, greatest, .. }, Levels::Range { low, high }) => {
                 let (spare, room) = (low.checked_sub(least)?, greatest.checked_sub(high)?);
-                let [low, high] = [low, high].map(Rational::readable);
-                let [least, greatest] = [least, greatest].map(Rational::readable);
+                let [low, high, least, greatest] = [low, high, least, greatest].map(Rational::readable);
                 let above = if spare.is_zero() {
                     format!("reaches its minimum {least}")
                 } else {
@@ -240,13 +250,18 @@ impl DemandLines<'_> {
                 } else {
                     format!("{} below its maximum {greatest}", room.readable())
                 };
-                (format!("{name} stays between {low} and {high}: {above}, {below}"), spare, Some(room))
+                let mut text = format!("{name} stays between {low} and {high}: {above}, {below}");
+                if spread.is_positive() {
+                    text.push_str(&format!("; drives may leave up to {} more", spread.readable()));
+                }
+                (text, spare, Some(room))
             }
             _ => return None,
         };
         let is_short = spare.is_negative() || room.is_some_and(Rational::is_negative);
         let detours = self.detours(resource);
         let is_tight = room.is_some() && detours.is_some_and(|detours| detours > spare);
+        let may_be_too_full = room.is_some_and(|room| spread > room);
         let (status, text) = match detours {
             _ if is_short => (Status::Failed, text),
             Some(detours) if is_tight => {
@@ -254,9 +269,11 @@ impl DemandLines<'_> {
                 let text = format!("{text}; detours around unmapped rocks may take {more} more");
                 (self.status.max(Status::Attention), text)
             }
+            _ if may_be_too_full => (self.status.max(Status::Attention), text),
             _ => (self.status, text),
         };
         let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());
-        Some(ResourceReview { line, name: name.to_owned(), supply: resource.supply, levels, spare, room })
+        let (name, supply) = (name.to_owned(), resource.supply);
+        Some(ResourceReview { line, name, supply, levels, spread, spare, room })
     }
 }

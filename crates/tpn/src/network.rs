@@ -316,6 +316,9 @@ pub struct Use {
     pub amount: Rational,
     /// How much more for each metre of the planned path.
     pub per_metre: Rational,
+    /// How much less a drive may consume, or how much more it may produce, than `amount` counts: drives differ in length.
+    #[serde(default)]
+    pub spread: Rational,
     /// It counts where this arc is selected.
     pub arc: ArcId,
     /// When it begins.

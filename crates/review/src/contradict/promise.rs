@@ -98,7 +98,7 @@ impl Promise {
             Section::Resources => {
                 let of = &review.resources[index];
                 let (low, high) = match of.levels {
-                    Levels::Range { low, high } => (low, high),
+                    Levels::Range { low, high } => (low, high.checked_add(of.spread).unwrap_or(high)),
                     Levels::Peak(peak) => (Rational::ZERO, peak),
                 };
                 Some(Self::Levels { resource: of.name.clone(), low, high })
@@ -247,7 +247,11 @@ impl Promise {
                 |entry: &&Entry| matches!(&entry.happening, Happening::Executed { name } if name == event);
             log.iter().find(is_it).map(|entry| entry.time)
         };
+        // A contact contradicts that vehicles keep apart, and stops what it is not about.
+        let has_contact =
+            log.iter().any(|entry| matches!(entry.happening, Happening::Violation { is_contact: true, .. }));
         match self {
+            Self::Runs | Self::Lasts { .. } if has_contact => None,
             Self::Runs => {
                 let violation = log.iter().find_map(|entry| match &entry.happening {
                     Happening::Violation { reason, .. } => {

@@ -128,6 +128,44 @@ fn durations_are_tried_at_their_declared_ends() {
     assert_eq!(tight.sentence(), "contradicted: A#1 lasts 10 in no schedule");
 }
 
+/// A battery that is charged while a rover that consumes it drives.
+const CHARGED: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+location P0 (70, 95); location P3 (96, 81); vehicle V0 : ATRV at P0; resource Battery 0..100 = 54;
+primitive Drive(r, to) contingent [8,30] moves r speed (0.01, 0.3) consumes Battery 0.1 per metre;
+primitive Charge()[10,10] produces Battery 15;
+scenario S[0,230] = { Drive(V0, P3), Charge() }";
+
+#[test]
+fn a_drive_that_consumes_less_than_is_counted_leaves_more_than_planned() {
+    let (all, _, evaluated) = run(CHARGED, |_| {});
+    let line = all.iter().find(|it| it.line.section == Section::Resources).expect("it has passed");
+    assert!(line.line.text.contains("; drives may leave up to "), "{line:?}");
+    assert_eq!((line.verdict(), line.runs), (Verdict::Survived, 8), "{line:?}");
+    // Without what drives may leave, the line is contradicted.
+    let (all, ..) = run(CHARGED, |review| review.resources[0].spread = Rational::ZERO);
+    let line = all.iter().find(|it| it.line.section == Section::Resources).expect("it has passed");
+    assert_eq!(line.verdict(), Verdict::Contradicted);
+    // Nor does a flight rule hold that only the counted consumption keeps.
+    let snapshot = evaluated.snapshot();
+    let mut reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
+    let tpn::Levels::Range { high, .. } = reviewed.resources[0].levels else { panic!("a reservoir") };
+    let above = high.checked_add(reviewed.resources[0].spread).expect("it fits");
+    let rule = |most: Rational| MissionRule { rule: format!("Battery <= {most}"), ..MissionRule::default() };
+    let rules = vec![
+        MissionRule {
+            name: "counted".to_owned(),
+            ..rule(Rational::from_f64_up(high.to_f64(), 100).expect("it fits"))
+        },
+        MissionRule {
+            name: "driven".to_owned(),
+            ..rule(Rational::from_f64_up(above.to_f64(), 100).expect("it fits"))
+        },
+    ];
+    reviewed.hold_against(&snapshot, &FlightRules { rules, ..FlightRules::default() }, None, &mut || false);
+    let outcomes: Vec<&Outcome> = reviewed.findings.iter().map(|it| &it.outcome).collect();
+    assert!(!matches!(outcomes[0], Outcome::Holds) && matches!(outcomes[1], Outcome::Holds), "{outcomes:?}");
+}
+
 #[test]
 fn what_stays_as_it_is_is_tried_in_runs() {
     let source = "state ARM : {STOWED, OUT} = STOWED; state LAMP : {ON, OFF} = OFF;

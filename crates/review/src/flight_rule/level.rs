@@ -48,8 +48,10 @@ pub(super) struct Resource {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
     pub(super) node: tpn::NodeId,
-    /// How much more there is from then on.
+    /// How much more there is from then on, at least.
     pub(super) more: Rational,
+    /// How much that may be exceeded.
+    pub(super) spread: Rational,
     /// It is the start of something, which comes behind what ends at the same instant.
     pub(super) is_start: bool,
 }
@@ -59,9 +61,15 @@ impl Change {
         Edge::past(self.node, !(is_instant && self.is_start))
     }
 
+    /// How much more there is from then on, where the level is looked for above or below an amount.
+    fn toward(&self, is_above: bool) -> Option<Rational> {
+        if is_above { self.more.checked_add(self.spread) } else { Some(self.more) }
+    }
+
     /// By how much it changes the level, in whichever direction.
-    pub(super) fn size(&self) -> Option<Rational> {
-        if self.more.is_negative() { self.more.checked_neg() } else { Some(self.more) }
+    pub(super) fn size(&self, is_above: bool) -> Option<Rational> {
+        let more = self.toward(is_above)?;
+        if more.is_negative() { more.checked_neg() } else { Some(more) }
     }
 
     /// Whether it can have come at an instant of `case`, and whether it can still be to come.
@@ -95,7 +103,7 @@ impl Resource {
         // What leads where `wanted` looks is gained, and the rest is lost.
         let leads = |index: &&usize| self.changes[**index].more.is_positive() == wanted.is_above;
         let (gains, losses): (Vec<usize>, Vec<usize>) = free.iter().partition(leads);
-        let size = |&index: &usize| self.changes[index].size();
+        let size = |&index: &usize| self.changes[index].size(wanted.is_above);
         let mut flow = Flow {
             gives: gains.iter().map(size).collect::<Option<_>>()?,
             takes: losses.iter().map(size).collect::<Option<_>>()?,
@@ -117,7 +125,7 @@ impl Resource {
         for (at, index) in losses.iter().enumerate().filter(|(at, _)| lost[*at]) {
             has_come[*index] = lost[at];
         }
-        Some((self.level(&has_come)?, has_come))
+        Some((self.level(&has_come, wanted.is_above)?, has_come))
     }
 
     /// The changes that may have come at an instant of `case`, and may be to come.
@@ -127,10 +135,25 @@ impl Resource {
         changes.filter(is_open).collect()
     }
 
-    /// The level once these changes have come.
-    pub(super) fn level(&self, has_come: &[bool]) -> Option<Rational> {
-        let come = self.changes.iter().zip(has_come).filter(|(_, has_come)| **has_come);
-        come.map(|(change, _)| change.more).try_fold(self.first, Rational::checked_add)
+    /// The greatest or least level once these changes have come.
+    fn level(&self, has_come: &[bool], is_greatest: bool) -> Option<Rational> {
+        let mut come = self.changes.iter().zip(has_come).filter(|(_, has_come)| **has_come);
+        come.try_fold(self.first, |level, (change, _)| level.checked_add(change.toward(is_greatest)?))
+    }
+
+    /// Whether a level once these changes have come is as all of these want it.
+    pub(super) fn meets(&self, has_come: &[bool], all: &[Wanted]) -> bool {
+        let ends = [false, true].map(|is_greatest| self.level(has_come, is_greatest));
+        let [Some(least), Some(greatest)] = ends else { return false };
+        let mut levels: Vec<Rational> = vec![least, greatest];
+        levels.extend(all.iter().map(|it| it.amount).filter(|it| (least..=greatest).contains(it)));
+        levels.sort_unstable();
+        // What is wanted holds on whole stretches between its amounts.
+        let middles = levels
+            .windows(2)
+            .filter_map(|pair| pair[0].checked_add(pair[1])?.checked_mul(Rational::new(1, 2)?));
+        let middles: Vec<Rational> = middles.collect();
+        levels.iter().chain(&middles).any(|&level| all.iter().all(|it| it.is_met_by(level)))
     }
 }
 

@@ -131,11 +131,8 @@ fn met(times: &mut Times, resources: &[Resource], case: &Case, pairs: &mut usize
         let by = come.filter(|(change, has_come)| **has_come && leads(change));
         let by = by.map(|(change, _)| change.node).collect();
         let found = Level { resource: wanted.resource, amount: level, by };
-        let is_met = case.levels.iter().all(|other| {
-            other.resource == wanted.resource
-                && resource.level(&has_come).is_some_and(|level| other.is_met_by(level))
-        });
-        if is_met {
+        let is_of_one = case.levels.iter().all(|other| other.resource == wanted.resource);
+        if is_of_one && resource.meets(&has_come, &case.levels) {
             return Met::Yes(Some(found));
         }
         shown = shown.or(Some(found));
@@ -162,7 +159,7 @@ fn largest_open(times: &mut Times, resources: &[Resource], case: &Case) -> Optio
     for wanted in &case.levels {
         let resource = &resources[wanted.resource];
         for change in resource.open(times, case, wanted.is_instant) {
-            let size = change.size()?;
+            let size = change.size(wanted.is_above)?;
             if largest.as_ref().is_none_or(|(other, _)| size > *other) {
                 largest = Some((size, change.has_come(wanted.is_instant)));
             }
