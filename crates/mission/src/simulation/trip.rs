@@ -27,8 +27,11 @@ const FRAME_STEPS: u32 = 40;
 const CLOSE_M: f64 = 0.5;
 /// How far ahead a frame shows the way, in metres.
 const SHOWN_PLAN_M: f64 = 6.0;
-/// The leader aims to be there this share of its time early: what it meets costs time.
-const EARLY: f64 = 0.985;
+/// The leader aims to be there early, because what it meets costs time: by this share of its time at least, or by some
+/// seconds, which are another share at most. A vehicle that is early waits.
+const EARLY_SHARE: f64 = 0.015;
+const EARLY_S: f64 = 60.0;
+const MAX_EARLY_SHARE: f64 = 0.1;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
 const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
@@ -298,7 +301,8 @@ impl<'a> Trip<'a> {
 
     /// The speed at which the leader is there when the traverse is to end, within the traverse's speeds.
     fn pace_mps(&self) -> f64 {
-        let left_s = EARLY * self.wanted_s - self.convoy.time_s();
+        let early_s = EARLY_S.min(MAX_EARLY_SHARE * self.wanted_s).max(EARLY_SHARE * self.wanted_s);
+        let left_s = self.wanted_s - early_s - self.convoy.time_s();
         let [least, greatest] = self.speeds_mps;
         if left_s <= self.convoy.step_s() {
             return greatest;
