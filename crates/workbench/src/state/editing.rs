@@ -136,7 +136,7 @@ impl Writing<'_> {
             EditorCommand::Hover(place) => self.editor.hovered = place,
             EditorCommand::Compose(text) => self.editor.composition = text,
             EditorCommand::Find { replacing } => self.open_find(replacing),
-            EditorCommand::SetFind(find) => self.editor.find = Some(find),
+            EditorCommand::SetFind(find) => self.find_as_typed(find),
             EditorCommand::CloseFind => {
                 self.editor.find = None;
                 self.window.focus_editor();
@@ -205,6 +205,21 @@ impl Writing<'_> {
         find.wants_focus = true;
         self.editor.find = Some(find);
         self.window.show(PanelKind::Editor);
+    }
+
+    /// Takes what the find bar says now, and shows the match at or after the caret if it looks for something else.
+    fn find_as_typed(&mut self, find: Find) {
+        let looks_for = |find: &Find| {
+            (find.query.clone(), find.is_regex, find.case_sensitive, find.whole_words)
+        };
+        let is_changed = self.editor.find.as_ref().map(looks_for) != Some(looks_for(&find));
+        let pattern = find.pattern().ok().filter(|_| is_changed);
+        let from = self.document.caret().range().start;
+        let found = pattern.and_then(|pattern| pattern.find_after(self.document.text(), from));
+        self.editor.find = Some(find);
+        if let Some(found) = found {
+            self.reveal(Span::new(found.start as u32, found.end as u32));
+        }
     }
 
     fn go_to_match(&mut self, forwards: bool) {

@@ -61,10 +61,16 @@ impl Writing<'_> {
         }
     }
 
-    /// Lists what can be written at the caret, if anything is known.
+    /// Lists what can be written at a stop of a template, unless something complete is written there already.
     fn offer(&mut self) {
         let is_at_stop = self.document.has_stops();
-        self.editor.popup = self.completions().filter(|found| is_at_stop && !found.items.is_empty());
+        let caret = self.document.caret();
+        let is_written = |found: &Popup| {
+            let typed = self.document.text().get(found.span.start as usize..caret.head);
+            caret.is_empty() && found.items.iter().any(|item| Some(item.label.as_str()) == typed)
+        };
+        let found = self.completions().filter(|found| is_at_stop && !found.items.is_empty());
+        self.editor.popup = found.filter(|found| !is_written(found));
     }
 
     /// What can be written at the caret, as a list.

@@ -71,7 +71,9 @@ fn a_template_is_filled_in_from_stop_to_stop_with_what_fits_each() {
     take(&mut app, "vehicle");
     type_text(&mut app, "Rover\t");
     assert!(listed(&app).contains(&"ATRV".to_owned()), "{:?}", listed(&app));
+    type_text(&mut app, "AT");
     take(&mut app, "ATRV");
+    assert!(listed(&app).is_empty(), "what was taken is also the beginning of ATRV-Jr");
     type_text(&mut app, "\t");
     take(&mut app, "BASE");
     type_text(&mut app, "\t");

@@ -163,8 +163,8 @@ fn matches_are_found_round_the_text_and_all_replaced_as_one_step() {
     let find =
         Find { query: "delay".into(), replacement: "wait".into(), case_sensitive: true, ..Find::default() };
     app.run(Command::Editor(EditorCommand::SetFind(find)));
+    assert_eq!(caret(&app), [0, 5], "what is looked for is shown while it is typed");
     for (command, place) in [
-        (EditorCommand::FindNext, [0, 5]),
         (EditorCommand::FindNext, [14, 19]),
         (EditorCommand::FindNext, [0, 5]),
         (EditorCommand::FindPrevious, [14, 19]),
