@@ -1,4 +1,4 @@
-//! The command palette: every command, panel and example, found by the letters of its name.
+//! The command palette: every command, panel and example, found by the letters of its name or by another word for it.
 
 use egui::{Key, Modifiers, RichText, Role, ScrollArea, Sense, TextEdit, Ui, WidgetInfo};
 use panels::Context;
@@ -17,6 +17,8 @@ const WIDTH: f32 = 520.0;
 
 /// One thing to choose.
 struct Entry {
+    /// By what other words find it: the name of a command, or the title of a panel.
+    named: &'static str,
     group: &'static str,
     title: String,
     keys: String,
@@ -84,6 +86,7 @@ pub(super) fn show(
 fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
     let commands = registry::matching(query).into_iter().filter_map(|spec| {
         Some(Entry {
+            named: spec.id,
             group: spec.group.title(),
             title: spec.title.to_owned(),
             keys: chord::texts(ui.ctx(), spec, context.state).into_iter().next().unwrap_or_default(),
@@ -92,6 +95,7 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
         })
     });
     let panels = PanelKind::ALL.iter().map(|&panel| Entry {
+        named: panel.title(),
         group: "Panel",
         title: panel.title().to_owned(),
         keys: String::new(),
@@ -99,6 +103,7 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
         command: Command::Window(WindowCommand::ShowPanel(panel)),
     });
     let missions = context.state.library.missions().into_iter().map(|mission| Entry {
+        named: "",
         group: "Mission",
         title: mission.name.to_string(),
         keys: String::new(),
@@ -106,25 +111,26 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
         command: Command::Library(LibraryCommand::Open(mission.id.clone())),
     });
     let examples = EXAMPLES.iter().map(|example| Entry {
+        named: "",
         group: "Example",
         title: example.title.to_owned(),
         keys: String::new(),
         unavailable: None,
         command: Command::OpenExample(example.name.into()),
     });
-    let others = panels
-        .chain(missions)
-        .chain(examples)
-        .filter(|entry| registry::score(&format!("{} {}", entry.group, entry.title), query).is_some());
+    let others = panels.chain(missions).chain(examples).filter(|entry| score(entry, query).is_some());
     let mut entries: Vec<Entry> = commands.chain(others).collect();
     if !query.is_empty() {
-        entries.sort_by_key(|entry| {
-            let title = registry::score(&entry.title, query).unwrap_or(i32::MIN);
-            let full = registry::score(&format!("{} {}", entry.group, entry.title), query);
-            -title.max(full.map_or(i32::MIN, |score| score - 1))
-        });
+        entries.sort_by_key(|entry| std::cmp::Reverse(score(entry, query)));
     }
     entries
+}
+
+/// How well an entry is found: by its title, by its group and title, or by another word.
+fn score(entry: &Entry, query: &str) -> Option<i32> {
+    let title = registry::score(&entry.title, query);
+    let full = registry::score(&format!("{} {}", entry.group, entry.title), query);
+    title.max(full.map(|score| score - 1)).max(registry::score_of_synonyms(entry.named, query))
 }
 
 fn show_entry(ui: &mut Ui, context: &Context<'_>, entry: &Entry, is_chosen: bool) -> egui::Response {

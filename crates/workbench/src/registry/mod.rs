@@ -14,6 +14,7 @@ mod review;
 mod run;
 mod search;
 mod spec;
+mod synonyms;
 mod terrain;
 mod view;
 
@@ -25,6 +26,7 @@ use crate::state::AppState;
 
 pub use lesson::read_lesson;
 pub use spec::{Availability, Build, CommandSpec, Group, Scope};
+pub use synonyms::score_of_synonyms;
 
 /// Every command, in the order of the menus.
 pub fn all_commands() -> impl Iterator<Item = &'static CommandSpec> {
@@ -62,8 +64,8 @@ pub fn from_json(state: &AppState, id: &str, arguments: &Value) -> Result<Comman
     }
 }
 
-/// The commands without arguments whose title or group has the letters of `query` in order, best first: whole words
-/// and word starts count more than letters in between.
+/// The commands without arguments whose title or group has the letters of `query` in order, or that another word means,
+/// best first: whole words and word starts count more than letters in between.
 pub fn matching(query: &str) -> Vec<&'static CommandSpec> {
     let mut found: Vec<(i32, usize, &CommandSpec)> = all_commands()
         .enumerate()
@@ -71,7 +73,8 @@ pub fn matching(query: &str) -> Vec<&'static CommandSpec> {
         .filter_map(|(order, spec)| {
             let title = score(spec.title, query);
             let with_group = score(&format!("{} {}", spec.group.title(), spec.title), query);
-            Some((title.max(with_group.map(|score| score - 1))?, order, spec))
+            let named = title.max(with_group.map(|score| score - 1));
+            Some((named.max(score_of_synonyms(spec.id, query))?, order, spec))
         })
         .collect();
     found.sort_by_key(|&(score, order, _)| (-score, order));

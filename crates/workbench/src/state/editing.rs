@@ -209,9 +209,8 @@ impl Writing<'_> {
 
     /// Takes what the find bar says now, and shows the match at or after the caret if it looks for something else.
     fn find_as_typed(&mut self, find: Find) {
-        let looks_for = |find: &Find| {
-            (find.query.clone(), find.is_regex, find.case_sensitive, find.whole_words)
-        };
+        let looks_for =
+            |find: &Find| (find.query.clone(), find.is_regex, find.case_sensitive, find.whole_words);
         let is_changed = self.editor.find.as_ref().map(looks_for) != Some(looks_for(&find));
         let pattern = find.pattern().ok().filter(|_| is_changed);
         let from = self.document.caret().range().start;
