@@ -275,6 +275,7 @@ fn add_level(network: &mut Network, resource: ResourceId, by: Rational, at: Time
         amount,
         per_metre: Rational::ZERO,
         spread: Rational::ZERO,
+        detour: Rational::ZERO,
         arc,
         start: node,
         end: node,

@@ -204,6 +204,7 @@ fn with_order(network: &Network, first: OccurrenceId, then: OccurrenceId) -> Net
             amount: Rational::ONE,
             per_metre: Rational::ZERO,
             spread: Rational::ZERO,
+            detour: Rational::ZERO,
             arc,
             start,
             end,

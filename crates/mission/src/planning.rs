@@ -503,7 +503,9 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
         match &traverse.legs {
             Ok(legs) => {
                 let followers = traverse.route.vehicles.len().saturating_sub(1);
-                count_metres(&mut network, occurrence, snapshot::joined(legs).length_m(), followers);
+                let has_map = problem.program.world.terrain.is_some();
+                let length_m = snapshot::joined(legs).length_m();
+                count_metres(&mut network, occurrence, length_m, followers, has_map);
             }
             Err(_) => block(&mut network, occurrence),
         }
@@ -516,7 +518,13 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
 
 /// Adds what a traverse takes, gives and costs for each metre (SPEC 11, 12), rounded up. What a driver takes is counted for
 /// as far as it drives at most along the path, what it gives for as far as it drives at least, and costs for the path itself.
-fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64, followers: usize) {
+fn count_metres(
+    network: &mut Network,
+    occurrence: OccurrenceId,
+    length_m: f64,
+    followers: usize,
+    leaves_out_rocks: bool,
+) {
     let Some(metres) = rounded_up(length_m) else { return };
     let Some(at_most) = rounded_up(motion::driven_at_most_m(length_m, followers)) else { return };
     let at_least = rounded_up(motion::driven_at_least_m(length_m, followers)).unwrap_or_default();
@@ -528,6 +536,10 @@ fn count_metres(network: &mut Network, occurrence: OccurrenceId, length_m: f64, 
         used.amount = with(used.amount, used.per_metre, metres);
         let spread_m = at_most.checked_sub(at_least).unwrap_or_default();
         used.spread = with(Rational::ZERO, used.per_metre, spread_m);
+        if leaves_out_rocks && used.change == Change::Consumes && length_m > 0.0 {
+            let detours_m = rounded_up(motion::detours_at_most_m(followers)).unwrap_or_default();
+            used.detour = with(Rational::ZERO, used.per_metre, detours_m);
+        }
     }
     let arc = network.occurrences[occurrence.index()].arc;
     for worth in network.worths.iter_mut().filter(|worth| Some(worth.arc) == arc) {

@@ -1,7 +1,7 @@
 //! Vehicles that drive one behind the other in simulation: each follows its own path and avoids what it meets, the
 //! leader keeps a pace, and the others keep up with it without touching each other (SPEC 7.4).
 
-use nalgebra::{Point2, distance};
+use nalgebra::{Point2, Vector2, distance};
 use parry2d_f64::query::PointQuery as _;
 use parry2d_f64::shape::Ball;
 use terrain::ConfigurationSpace;
@@ -88,9 +88,21 @@ pub struct Surroundings<'a> {
     pub has_changed: bool,
     /// For each vehicle, the map that keeps it off steep ground.
     pub maps: &'a [ConfigurationSpace],
-    /// Other vehicles that move, as place and radius in metres: a vehicle stands rather than drive at one.
-    pub others: &'a [(Point2<f64>, f64)],
+    /// Other vehicles that move: a vehicle stands rather than drive at one, or to where one will be.
+    pub others: &'a [OtherVehicle],
 }
+
+/// A vehicle that moves along a way of its own, which it does not leave for those that look at it.
+#[derive(Clone, Debug)]
+pub struct OtherVehicle {
+    /// Where it is now, and where it will be soon.
+    pub places_m: Vec<Point2<f64>>,
+    /// Of the disc around its body, in metres.
+    pub radius_m: f64,
+}
+
+/// A vehicle keeps so far from where another one will be, in metres.
+const CROSSING_M: f64 = 0.1;
 
 /// A part of the world this far around a vehicle is kept at hand, in metres.
 const AT_HAND_M: f64 = 14.0;
@@ -361,18 +373,37 @@ impl Convoy {
         self.members.iter().enumerate().filter_map(is_in_its_way).collect()
     }
 
-    /// Whether others that move are close in front of a vehicle.
-    fn is_held_by(&self, vehicle: usize, others: &[(Point2<f64>, f64)]) -> bool {
+    /// Whether others that move are close in front of a vehicle, or will soon be where it drives to.
+    fn is_held_by(&self, vehicle: usize, others: &[OtherVehicle]) -> bool {
         let radius_m = self.members[vehicle].driver.settings().radius_m;
-        others.iter().any(|&(place, other)| self.is_ahead(vehicle, place, radius_m + other + 0.5))
+        others.iter().any(|other| {
+            let reach_m = radius_m + other.radius_m;
+            let is_at = |&place: &Point2<f64>| self.is_ahead(vehicle, place, reach_m + 0.5);
+            other.places_m.first().is_some_and(is_at)
+                || other.places_m.iter().any(|&place| self.drives_to(vehicle, place, reach_m + CROSSING_M))
+        })
+    }
+
+    /// Whether the next step brings a vehicle nearer to a place, and nearer than a reach in metres.
+    fn drives_to(&self, vehicle: usize, place: Point2<f64>, reach_m: f64) -> bool {
+        let state = self.members[vehicle].driver.state();
+        let step_m = self.stopping_m(vehicle).max(CROSSING_M);
+        let next = state.position_m + state.world_from_body() * (Vector2::x() * step_m);
+        let then_m = distance(&next, &place);
+        then_m < reach_m && then_m < distance(&state.position_m, &place)
+    }
+
+    /// How far a vehicle drives before it stands, in metres.
+    fn stopping_m(&self, vehicle: usize) -> f64 {
+        let own = &self.members[vehicle].driver;
+        let speed_mps = own.state().speed_mps;
+        speed_mps * speed_mps / (2.0 * own.settings().limits.acceleration_mps2) + speed_mps * self.step_s
     }
 
     /// Whether a place is in front of a vehicle, and nearer than it can stop and a reach in metres.
     fn is_ahead(&self, vehicle: usize, place: Point2<f64>, reach_m: f64) -> bool {
-        let own = &self.members[vehicle].driver;
-        let state = own.state();
-        let stopping_m = state.speed_mps * state.speed_mps / (2.0 * own.settings().limits.acceleration_mps2)
-            + state.speed_mps * self.step_s;
+        let state = self.members[vehicle].driver.state();
+        let stopping_m = self.stopping_m(vehicle);
         let place_in_body = state.world_from_body().inverse_transform_point(&place);
         place_in_body.x > 0.0 && Ball::new(reach_m + stopping_m).contains_local_point(&place_in_body)
     }

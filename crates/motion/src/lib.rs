@@ -37,7 +37,7 @@ mod tree;
 mod vehicle;
 mod way_around;
 
-pub use convoy::{Convoy, ConvoyMember, Surroundings};
+pub use convoy::{Convoy, ConvoyMember, OtherVehicle, Surroundings};
 pub use driver::{
     DriveEvent, Driver, DriverSettings, detours_at_most_m, driven_at_least_m, driven_at_most_m,
     driven_within_s,

@@ -180,6 +180,8 @@ pub struct ResourceReview {
     pub levels: Levels,
     /// How much more than that a reservoir may hold because drives consume less, or produce more, than is counted.
     pub spread: Rational,
+    /// How much less it may hold because drives go around rocks that the map leaves out.
+    pub detours: Rational,
     /// What stays free of a reusable resource, and above the minimum level of a reservoir.
     pub spare: Rational,
     /// What stays free below the maximum level of a reservoir.

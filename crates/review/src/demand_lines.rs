@@ -3,7 +3,7 @@
 //! valid.
 
 use exact::Rational;
-use rmpl::program::{Change, LabelMode};
+use rmpl::program::LabelMode;
 use snapshot::Planning;
 use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Use, Variable};
 
@@ -15,10 +15,6 @@ pub(super) struct DemandLines<'input> {
     pub(super) network: &'input Network,
     pub(super) plan: &'input Plan,
     pub(super) places: &'input Places<'input>,
-    /// The drives of the plan.
-    pub(super) traverses: &'input [snapshot::Traverse],
-    /// Whether they lead over a map, which may leave out rocks.
-    pub(super) has_map: bool,
     /// How everything stands that the checker examines.
     pub(super) status: Status,
 }
@@ -77,31 +73,16 @@ impl DemandLines<'_> {
             .collect()
     }
 
-    /// What drives may take of a resource beyond what the plan counts, to go around rocks that the map does not show.
-    fn detours(&self, resource: &Resource) -> Option<Rational> {
-        let consumed = |used: &&Use| {
-            self.network.resources[used.resource.index()].name == resource.name
-                && used.change == Change::Consumes
-                && !used.per_metre.is_zero()
-        };
-        let taken = self.network.uses.iter().filter(consumed).filter_map(|used| {
-            let traverse = self.traverses.iter().find(|it| Some(it.occurrence) == used.owner)?;
-            let more_m = motion::detours_at_most_m(traverse.vehicles.len().saturating_sub(1));
-            used.per_metre.checked_mul(Rational::from_f64_nearest(more_m, 1)?)
-        });
-        let taken: Vec<Rational> = taken.collect();
-        let sum = taken.iter().try_fold(Rational::ZERO, |sum, &more| sum.checked_add(more))?;
-        (self.has_map && sum.is_positive()).then_some(sum)
-    }
-
-    /// How much higher than planned a reservoir's level may be because drives consume less, or produce more, than is counted.
-    fn spread(&self, resource: &Resource) -> Option<Rational> {
+    /// How much more than planned a reservoir may hold, because drives consume less or produce more than is counted, and how
+    /// much less, because drives go around rocks that the map leaves out.
+    fn driven_otherwise(&self, resource: &Resource) -> Option<[Rational; 2]> {
         let is_its = |used: &&Use| {
             self.network.resources[used.resource.index()].name == resource.name
                 && self.plan.selected_arcs.get(used.arc.index()) == Some(&true)
         };
-        let all = self.network.uses.iter().filter(is_its).map(|used| used.spread);
-        all.into_iter().try_fold(Rational::ZERO, Rational::checked_add)
+        self.network.uses.iter().filter(is_its).try_fold([Rational::ZERO; 2], |[spread, detours], used| {
+            Some([spread.checked_add(used.spread)?, detours.checked_add(used.detour)?])
+        })
     }
 
     fn requirements(&self) -> Option<Line> {
@@ -221,7 +202,7 @@ impl DemandLines<'_> {
 
     fn resource(&self, resource: &Resource, levels: Levels) -> Option<ResourceReview> {
         let name = resource.name.as_str();
-        let spread = self.spread(resource)?;
+        let [spread, detours] = self.driven_otherwise(resource)?;
         let (text, spare, room) = match (resource.supply, levels) {
             (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
                 let spare = capacity.checked_sub(peak)?;
@@ -254,26 +235,24 @@ impl DemandLines<'_> {
                 if spread.is_positive() {
                     text.push_str(&format!("; drives may leave up to {} more", spread.readable()));
                 }
+                if detours.is_positive() {
+                    let detours = detours.readable();
+                    text.push_str(&format!("; detours around unmapped rocks may take up to {detours} more"));
+                }
                 (text, spare, Some(room))
             }
             _ => return None,
         };
         let is_short = spare.is_negative() || room.is_some_and(Rational::is_negative);
-        let detours = self.detours(resource);
-        let is_tight = room.is_some() && detours.is_some_and(|detours| detours > spare);
-        let may_be_too_full = room.is_some_and(|room| spread > room);
-        let (status, text) = match detours {
-            _ if is_short => (Status::Failed, text),
-            Some(detours) if is_tight => {
-                let more = detours.readable();
-                let text = format!("{text}; detours around unmapped rocks may take {more} more");
-                (self.status.max(Status::Attention), text)
-            }
-            _ if may_be_too_full => (self.status.max(Status::Attention), text),
-            _ => (self.status, text),
+        // Where drives of other lengths leave the range, the plan says nothing sure of what happens.
+        let is_tight = room.is_some_and(|room| detours > spare || spread > room);
+        let status = match (is_short, is_tight) {
+            (true, _) => Status::Failed,
+            (false, true) => self.status.max(Status::Attention),
+            (false, false) => self.status,
         };
         let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());
         let (name, supply) = (name.to_owned(), resource.supply);
-        Some(ResourceReview { line, name, supply, levels, spread, spare, room })
+        Some(ResourceReview { line, name, supply, levels, spread, detours, spare, room })
     }
 }

@@ -45,14 +45,7 @@ impl<'input> PlanLines<'input> {
 
     /// The lines about what lasts and what is limited.
     pub(super) fn demands(&self) -> DemandLines<'input> {
-        DemandLines {
-            network: self.network,
-            plan: self.plan,
-            places: self.places,
-            traverses: &self.snapshot.traverses,
-            has_map: self.snapshot.program.world.terrain.is_some(),
-            status: self.checked,
-        }
+        DemandLines { network: self.network, plan: self.plan, places: self.places, status: self.checked }
     }
 
     pub(super) fn choices(&mut self, stop: &mut dyn FnMut() -> bool) -> Vec<ChoiceReview> {

@@ -263,7 +263,7 @@ fn a_reservoir_without_room_for_detours_needs_attention_where_the_map_may_leave_
     let terrain = "terrain \"tai-plain\" cell 0.6 origin (0, 0);";
     let tight = driving(terrain, 45);
     assert_eq!(tight.status, Status::Attention, "{tight:?}");
-    assert!(tight.text.ends_with("detours around unmapped rocks may take 10 more"), "{tight:?}");
+    assert!(tight.text.ends_with("detours around unmapped rocks may take up to 10 more"), "{tight:?}");
     for (terrain, level) in [(terrain, 60), ("", 45)] {
         let enough = driving(terrain, level);
         assert_eq!(enough.status, Status::Passed, "{enough:?}");

@@ -319,6 +319,9 @@ pub struct Use {
     /// How much less a drive may consume, or how much more it may produce, than `amount` counts: drives differ in length.
     #[serde(default)]
     pub spread: Rational,
+    /// How much more a drive may consume around rocks that the map leaves out.
+    #[serde(default)]
+    pub detour: Rational,
     /// It counts where this arc is selected.
     pub arc: ArcId,
     /// When it begins.

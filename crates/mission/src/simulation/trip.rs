@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use exact::{Rational, Time};
 use executive::Disturbance;
 use motion::{
-    Convoy, ConvoyMember, DriveEvent, DriveLimits, DriverSettings, FineWorld, Path, PlannerKind, Query,
-    RangeScan, ShortcutSettings, Surroundings, VehicleModel,
+    Convoy, ConvoyMember, DriveEvent, DriveLimits, DriverSettings, FineWorld, OtherVehicle, Path,
+    PlannerKind, Query, RangeScan, ShortcutSettings, Surroundings, VehicleModel,
 };
 use nalgebra::{Point2, Vector2, distance};
 use smol_str::SmolStr;
@@ -32,6 +32,9 @@ const SHOWN_PLAN_M: f64 = 6.0;
 const EARLY_SHARE: f64 = 0.015;
 const EARLY_S: f64 = 60.0;
 const MAX_EARLY_SHARE: f64 = 0.1;
+/// A driver looks so many seconds ahead at the ways of others that are this near its leader, in metres.
+const FORESEEN_S: u32 = 30;
+const NEAR_M: f64 = 40.0;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
 const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
@@ -267,9 +270,7 @@ impl<'a> Trip<'a> {
                 has_changed = true;
             }
             let now = self.start + time_s / self.unit_s;
-            let others: Vec<(Point2<f64>, f64)> = (self.others.iter())
-                .filter_map(|(vehicle, radius_m)| Some((vehicle.at(now)?.position_m, *radius_m)))
-                .collect();
+            let others = self.others_from(now);
             let most: Vec<f64> = (0..self.models.len()).map(|index| self.greatest_speed_mps(index)).collect();
             let around = Surroundings { world: &self.world, has_changed, maps: &self.maps, others: &others };
             let before = self.convoy.state(0).position_m;
@@ -288,6 +289,20 @@ impl<'a> Trip<'a> {
         }
         self.extra_metres.push((self.convoy.time_s(), self.driven_m - self.course.drive.path.length_m()));
         Ok(())
+    }
+
+    /// Where others that move are now and will be soon. What is far away does not count.
+    fn others_from(&self, now: f64) -> Vec<OtherVehicle> {
+        let here_m = self.convoy.state(0).position_m;
+        let other = |(vehicle, radius_m): &(&SimulatedVehicle, f64)| {
+            let place =
+                |second: u32| vehicle.at(now + f64::from(second) / self.unit_s).map(|it| it.position_m);
+            let is_near = distance(&place(0)?, &here_m) < NEAR_M;
+            let seconds = if is_near { FORESEEN_S } else { 0 };
+            let places_m = (0..=seconds).filter_map(place).collect();
+            Some(OtherVehicle { places_m, radius_m: *radius_m })
+        };
+        self.others.iter().filter_map(other).collect()
     }
 
     /// What the leader drives beyond its path counts soon after it is driven.

@@ -98,7 +98,10 @@ impl Promise {
             Section::Resources => {
                 let of = &review.resources[index];
                 let (low, high) = match of.levels {
-                    Levels::Range { low, high } => (low, high.checked_add(of.spread).unwrap_or(high)),
+                    Levels::Range { low, high } => (
+                        low.checked_sub(of.detours).unwrap_or(low),
+                        high.checked_add(of.spread).unwrap_or(high),
+                    ),
                     Levels::Peak(peak) => (Rational::ZERO, peak),
                 };
                 Some(Self::Levels { resource: of.name.clone(), low, high })

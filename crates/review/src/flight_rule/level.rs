@@ -48,10 +48,10 @@ pub(super) struct Resource {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
     pub(super) node: tpn::NodeId,
-    /// How much more there is from then on, at least.
+    /// How much more there is from then on, as it is counted.
     pub(super) more: Rational,
-    /// How much that may be exceeded.
-    pub(super) spread: Rational,
+    /// How much that may be exceeded, and undercut.
+    pub(super) spread: [Rational; 2],
     /// It is the start of something, which comes behind what ends at the same instant.
     pub(super) is_start: bool,
 }
@@ -63,7 +63,8 @@ impl Change {
 
     /// How much more there is from then on, where the level is looked for above or below an amount.
     fn toward(&self, is_above: bool) -> Option<Rational> {
-        if is_above { self.more.checked_add(self.spread) } else { Some(self.more) }
+        let [above, below] = self.spread;
+        if is_above { self.more.checked_add(above) } else { self.more.checked_sub(below) }
     }
 
     /// By how much it changes the level, in whichever direction.
