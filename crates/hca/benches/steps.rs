@@ -30,13 +30,13 @@ fn main() {
             .iter()
             .map(|(a, b)| automaton.estimate([("EngineA", *a), ("EngineB", *b), ("Camera", "Off")]))
             .collect();
-        let start_marking = automaton.start();
         let mut stepper = Stepper::new(&automaton);
+        let start = stepper.standing();
         let mut steps = 0_u64;
         let begun = Instant::now();
         while begun.elapsed().as_secs_f64() < 1.0 {
             for _ in 0..10_000 {
-                stepper.set_marking(&start_marking);
+                stepper.return_to(&start);
                 for estimate in &estimates {
                     stepper.step(std::hint::black_box(estimate));
                     steps += 1;

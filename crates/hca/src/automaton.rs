@@ -8,6 +8,7 @@ use rmpl::control::Guard;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
+use crate::clock::{Clock, ClockId, HeldCondition};
 use crate::condition::Condition;
 use crate::knowledge::Estimate;
 use crate::marking::Marking;
@@ -53,6 +54,12 @@ pub enum LocationKind {
     When,
     /// Waits again and again.
     Whenever,
+    /// Lets time pass.
+    Wait,
+    /// Starts its body at a time of the program.
+    At,
+    /// Starts its body again and again.
+    Every,
 }
 
 /// A condition compiled, with the text of its guard.
@@ -60,6 +67,8 @@ pub enum LocationKind {
 pub struct Test {
     /// The guard as written.
     pub guard: Guard,
+    /// With HELD: what has to have lasted, as an index into [`Automaton::held`].
+    pub held: Option<u32>,
     pub(crate) condition: Condition,
 }
 
@@ -82,6 +91,8 @@ pub struct Location {
     pub label: SmolStr,
     /// What it asserts; `None` when it only waits.
     pub assertion: Option<Assertion>,
+    /// What it waits for, if it is a time.
+    pub clock: Option<ClockId>,
     /// Its transitions, as indices into [`Automaton::transitions`].
     pub transitions: Range<u32>,
     /// The composite that directly holds it.
@@ -102,8 +113,10 @@ pub enum CompositeKind {
     Sequence,
     /// `DO-WATCHING`: has a maintenance condition.
     DoWatching,
-    /// A location and the bodies that it starts: `ALWAYS`, `IF…`, `UNLESS…`, `WHEN…`, `WHENEVER…`.
+    /// A location and the bodies that it starts: `ALWAYS`, `IF…`, `UNLESS…`, `WHEN…`, `WHENEVER…`, `AT`, `EVERY`.
     Guarded,
+    /// `TIMEOUT` and `WITHIN`: has a clock; the first child is dropped when it is up, and the second, if any, starts.
+    Timeout,
 }
 
 /// A composite: an automaton inside the automaton.
@@ -115,8 +128,10 @@ pub struct Composite {
     pub parent: Option<CompositeId>,
     /// What it directly holds, in textual order.
     pub children: Vec<Element>,
-    /// The locations that are marked when it starts (Θ).
+    /// The locations that are marked when it starts (Θ); that of AT only until its time has come.
     pub start: Vec<LocationId>,
+    /// When what it does first is dropped.
+    pub clock: Option<ClockId>,
     /// What must hold for it to stay active (M); for `(DO-WATCHING c e)` the non-entailment of `c`.
     pub maintenance: Option<TestId>,
     /// All locations below it; locations are numbered so that they form a range.
@@ -150,8 +165,33 @@ pub struct Automaton {
     pub composites: Vec<Composite>,
     /// Its transitions, grouped by source.
     pub transitions: Vec<Transition>,
+    /// Its clocks, in textual order.
+    pub clocks: Vec<Clock>,
+    /// The conditions that have to have lasted.
+    pub held: Vec<HeldCondition>,
+    /// For each composite, what starting it does.
+    pub(crate) starts: Vec<Start>,
     /// For each composite, the composites with maintenance that it is in, itself not included.
     pub(crate) watched_by: Vec<Vec<CompositeId>>,
+}
+
+/// What starting an element does.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Start {
+    /// These are marked.
+    pub(crate) locations: Vec<LocationId>,
+    /// These clocks count from now.
+    pub(crate) clocks: Vec<ClockId>,
+    /// These composites of AT start what they wait for if its time has come, and otherwise wait.
+    pub(crate) timed: Vec<CompositeId>,
+}
+
+impl Start {
+    pub(crate) fn extend(&mut self, other: &Self) {
+        self.locations.extend(&other.locations);
+        self.clocks.extend(&other.clocks);
+        self.timed.extend(&other.timed);
+    }
 }
 
 impl Automaton {
@@ -171,6 +211,36 @@ impl Automaton {
     /// A condition's guard as written.
     pub fn guard(&self, id: TestId) -> Option<&Guard> {
         self.tests.get(id.0 as usize).map(|test| &test.guard)
+    }
+
+    /// The clock of this id, if the automaton has it.
+    pub fn clock(&self, id: ClockId) -> Option<&Clock> {
+        self.clocks.get(id.0 as usize)
+    }
+
+    /// The locations of an element.
+    pub(crate) fn locations_of(&self, element: Element) -> Range<u32> {
+        match element {
+            Element::Location(location) => location.0..location.0 + 1,
+            Element::Composite(composite) => {
+                self.composite(composite).map_or(0..0, |composite| composite.locations.clone())
+            }
+        }
+    }
+
+    /// What a transition waits for, in drawings: its guard, or that the time of its location is up.
+    pub fn condition_text(&self, transition: &Transition) -> String {
+        if let Some(guard) = transition.guard.and_then(|guard| self.guard(guard)) {
+            return guard.to_string();
+        }
+        let is_timed = self.location(transition.source).is_some_and(|source| source.clock.is_some());
+        let leaves = transition.target != Element::Location(transition.source);
+        if is_timed && leaves { "time is up".to_owned() } else { "true".to_owned() }
+    }
+
+    /// The clock of a composite, if it has one.
+    pub fn clock_of(&self, composite: &Composite) -> Option<&Clock> {
+        self.clock(composite.clock?)
     }
 
     /// The locations that are marked when an element starts.
@@ -243,6 +313,7 @@ impl Automaton {
             LocationKind::Always => 'l',
             LocationKind::If | LocationKind::Unless => 'i',
             LocationKind::When | LocationKind::Whenever => 'w',
+            LocationKind::Wait | LocationKind::At | LocationKind::Every => 't',
         };
         let Some(location) = self.location(id) else { return String::new() };
         let mine = letter(location.kind);

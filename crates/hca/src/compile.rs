@@ -3,17 +3,20 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use exact::Rational;
 use rmpl::control::{
-    Constraint, ConstraintKind, ControlFile, Expression, ExpressionKind, Guard, Name, ParsedControl,
-    expand_main, nearest,
+    Constraint, ConstraintKind, ControlFile, Duration, Expression, ExpressionKind, Guard, Held, Name,
+    ParsedControl, expand_main, nearest,
 };
+use rmpl::diagnostics::bounds;
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
 use crate::automaton::{
     Assertion, Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind,
-    Test, TestId, Transition,
+    Start, Test, TestId, Transition,
 };
+use crate::clock::{Clock, ClockId, ClockKind, HeldCondition};
 use crate::condition::{Condition, Formula};
 use crate::vocabulary::{Variable, VariableId, Vocabulary};
 
@@ -56,7 +59,7 @@ pub fn compile_text(text: &str, vocabulary: &Vocabulary) -> Compilation {
 /// Compiles the main definition of a file that parsed without errors.
 pub fn compile(file: &ControlFile, vocabulary: &Vocabulary) -> (Option<Arc<Automaton>>, Vec<Diagnostic>) {
     let (Some(program), diagnostics) = expand_main(file) else { return (None, expand_main(file).1) };
-    let mut compiler = Compiler::new(vocabulary, diagnostics);
+    let mut compiler = Compiler::new(vocabulary, file.step_secs(), diagnostics);
     compiler.collect(&program);
     let root = compiler.open(CompositeKind::Program, None, None, program.span);
     let element = compiler.expression(&program, root);
@@ -95,11 +98,15 @@ struct Compiler<'vocabulary> {
     transitions: Vec<Vec<Transition>>,
     /// Tests already compiled, by the text of their guard.
     by_guard: BTreeMap<String, TestId>,
+    /// How many seconds a step takes.
+    step_secs: Rational,
+    /// What the durations of the expression that is compiled are divided by.
+    warp: Rational,
     diagnostics: Vec<Diagnostic>,
 }
 
 impl<'vocabulary> Compiler<'vocabulary> {
-    fn new(vocabulary: &'vocabulary Vocabulary, diagnostics: Vec<Diagnostic>) -> Self {
+    fn new(vocabulary: &'vocabulary Vocabulary, step_secs: Rational, diagnostics: Vec<Diagnostic>) -> Self {
         let automaton = Automaton {
             variables: Vec::new(),
             by_name: BTreeMap::new(),
@@ -107,9 +114,20 @@ impl<'vocabulary> Compiler<'vocabulary> {
             locations: Vec::new(),
             composites: Vec::new(),
             transitions: Vec::new(),
+            clocks: Vec::new(),
+            held: Vec::new(),
+            starts: Vec::new(),
             watched_by: Vec::new(),
         };
-        Self { vocabulary, automaton, transitions: Vec::new(), by_guard: BTreeMap::new(), diagnostics }
+        Self {
+            vocabulary,
+            automaton,
+            transitions: Vec::new(),
+            by_guard: BTreeMap::new(),
+            step_secs,
+            warp: Rational::ONE,
+            diagnostics,
+        }
     }
 
     /// Finds all variables and values first, so that every value set is as wide as its domain.
@@ -191,11 +209,85 @@ impl<'vocabulary> Compiler<'vocabulary> {
         if let Some(known) = self.by_guard.get(&key) {
             return *known;
         }
+        let held = guard.held.as_ref().map(|held| self.held(guard, held));
         let condition = Condition::new(self.formula(&guard.constraint));
         let id = TestId(self.automaton.tests.len() as u32);
-        self.automaton.tests.push(Test { guard: guard.clone(), condition });
+        self.automaton.tests.push(Test { guard: guard.clone(), held, condition });
         self.by_guard.insert(key, id);
         id
+    }
+
+    /// What has to have lasted for a guard with HELD, whose duration is that of its place.
+    fn held(&mut self, guard: &Guard, held: &Held) -> u32 {
+        let test = self.test(&Guard { non_entailed: false, held: None, ..guard.clone() });
+        let steps = Duration::read(&held.duration.text).ok();
+        let steps = steps.and_then(|duration| duration.steps(self.step_secs)).unwrap_or(u64::MAX);
+        let condition = HeldCondition { test, non_entailed: held.non_entailed, steps };
+        let known = self.automaton.held.iter().position(|known| *known == condition);
+        known.unwrap_or_else(|| {
+            self.automaton.held.push(condition);
+            self.automaton.held.len() - 1
+        }) as u32
+    }
+
+    /// A guard with its duration as it is where WARP has shortened it.
+    fn warped(&mut self, guard: &Guard) -> Guard {
+        let mut guard = guard.clone();
+        if let Some(held) = &mut guard.held
+            && let Some((duration, _)) = self.counted(&held.duration)
+        {
+            held.duration.text = duration.written();
+        }
+        guard
+    }
+
+    /// A duration, shortened by WARP, with its steps; `None` if they cannot be counted.
+    fn counted(&mut self, written: &Name) -> Option<(Duration, u64)> {
+        let duration = Duration::read(&written.text).ok().and_then(|given| given.shortened(self.warp));
+        let counted = duration.and_then(|duration| Some((duration, duration.steps(self.step_secs)?)));
+        if counted.is_none() && self.diagnostics.iter().all(|known| known.span != written.span) {
+            self.diagnostics.push(bounds::too_long(written.span));
+        }
+        counted
+    }
+
+    /// How a duration is called where WARP has shortened it, with its steps.
+    fn duration(&mut self, written: &Name) -> (SmolStr, u64) {
+        match self.counted(written) {
+            Some((duration, steps)) => (format_smolstr!("{duration}"), steps),
+            None => (written.text.clone(), u64::MAX),
+        }
+    }
+
+    fn clock(&mut self, kind: ClockKind, label: SmolStr, steps: u64, owner: Element) -> ClockId {
+        self.automaton.clocks.push(Clock { kind, label, steps, owner });
+        ClockId(self.automaton.clocks.len() as u32 - 1)
+    }
+
+    fn location_clock(
+        &mut self,
+        location: LocationId,
+        kind: ClockKind,
+        label: SmolStr,
+        steps: u64,
+    ) -> ClockId {
+        let clock = self.clock(kind, label, steps, Element::Location(location));
+        if let Some(data) = self.automaton.locations.get_mut(location.0 as usize) {
+            data.clock = Some(clock);
+        }
+        clock
+    }
+
+    fn start_of(&self, element: Element) -> Start {
+        match element {
+            Element::Location(location) => {
+                let clock = self.automaton.location(location).and_then(|data| data.clock);
+                Start { locations: vec![location], clocks: clock.into_iter().collect(), timed: Vec::new() }
+            }
+            Element::Composite(composite) => {
+                self.automaton.starts.get(composite.0 as usize).cloned().unwrap_or_default()
+            }
+        }
     }
 
     fn opposite(&mut self, guard: &Guard) -> TestId {
@@ -216,10 +308,12 @@ impl<'vocabulary> Compiler<'vocabulary> {
             parent,
             children: Vec::new(),
             start: Vec::new(),
+            clock: None,
             maintenance,
             locations: first..first,
             span,
         });
+        self.automaton.starts.push(Start::default());
         id
     }
 
@@ -227,6 +321,13 @@ impl<'vocabulary> Compiler<'vocabulary> {
         let start: Vec<LocationId> =
             started.iter().flat_map(|element| self.automaton.start_of(element).to_vec()).collect();
         let end = self.automaton.locations.len() as u32;
+        let mut begun = Start::default();
+        for element in started {
+            begun.extend(&self.start_of(*element));
+        }
+        if let Some(known) = self.automaton.starts.get_mut(id.0 as usize) {
+            *known = begun;
+        }
         if let Some(composite) = self.automaton.composites.get_mut(id.0 as usize) {
             composite.children = children;
             composite.start = start;
@@ -247,6 +348,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
             kind,
             label,
             assertion: None,
+            clock: None,
             transitions: 0..0,
             parent,
             span,
@@ -277,7 +379,8 @@ impl<'vocabulary> Compiler<'vocabulary> {
                 self.close(id, children, &first)
             }
             ExpressionKind::DoWatching { guard, body } => {
-                let maintenance = self.opposite(guard);
+                let guard = self.warped(guard);
+                let maintenance = self.opposite(&guard);
                 let id = self.open(CompositeKind::DoWatching, Some(parent), Some(maintenance), span);
                 let child = self.expression(body, id);
                 self.close(id, vec![child], &[child])
@@ -303,12 +406,128 @@ impl<'vocabulary> Compiler<'vocabulary> {
             ExpressionKind::WheneverDoNext { guard, body } => {
                 self.guarded(LocationKind::Whenever, guard, body, None, parent, span)
             }
+            ExpressionKind::Wait(duration) => {
+                let (text, steps) = self.duration(duration);
+                let location =
+                    self.location(LocationKind::Wait, format_smolstr!("wait {text}"), parent, span);
+                self.location_clock(location, ClockKind::Wait, format_smolstr!("WAIT {text}"), steps);
+                Element::Location(location)
+            }
+            ExpressionKind::Timeout { duration, body, otherwise } => {
+                let (text, steps) = self.duration(duration);
+                let label = format_smolstr!("TIMEOUT {text}");
+                self.timeout(label, steps, (body, None), otherwise.as_deref(), parent, span)
+            }
+            ExpressionKind::Within { least, most, body, otherwise } => {
+                self.within((least, most), body, otherwise.as_deref(), parent, span)
+            }
+            ExpressionKind::At { time, body } => self.at(time, body, parent, span),
+            ExpressionKind::Every { period, body } => self.every(period, body, parent, span),
+            ExpressionKind::Warp { factor, body } => {
+                let before = self.warp;
+                let factor_value: Option<Rational> = factor.text.parse().ok();
+                match factor_value.and_then(|factor| before.checked_mul(factor)) {
+                    Some(product) => self.warp = product,
+                    None => self.diagnostics.push(bounds::too_long(factor.span)),
+                }
+                let element = self.expression(body, parent);
+                self.warp = before;
+                element
+            }
+            ExpressionKind::Lock { .. }
+            | ExpressionKind::ChooseProb(_)
+            | ExpressionKind::ChooseReward(_)
+            | ExpressionKind::Reward(_) => {
+                let message = "this construct is not supported yet";
+                self.diagnostics.push(Diagnostic::error(Code("E-FORM"), span, message));
+                self.assertion(&Constraint { kind: ConstraintKind::True, span }, parent, span)
+            }
             // Neither is left in an expanded program without errors; doing nothing is the safe reading.
             ExpressionKind::Call { .. } | ExpressionKind::Unreadable => {
                 let constraint = Constraint { kind: ConstraintKind::True, span };
                 self.assertion(&constraint, parent, span)
             }
         }
+    }
+
+    /// `(TIMEOUT d e f)`; with a least duration, `e` and that run in parallel.
+    fn timeout(
+        &mut self,
+        label: SmolStr,
+        steps: u64,
+        (body, least): (&Expression, Option<&Name>),
+        otherwise: Option<&Expression>,
+        parent: CompositeId,
+        span: Span,
+    ) -> Element {
+        let id = self.open(CompositeKind::Timeout, Some(parent), None, span);
+        let clock = self.clock(ClockKind::Timeout, label, steps, Element::Composite(id));
+        if let Some(data) = self.automaton.composites.get_mut(id.0 as usize) {
+            data.clock = Some(clock);
+        }
+        let first = match least {
+            None => self.expression(body, id),
+            Some(least) => {
+                let both = self.open(CompositeKind::Parallel, Some(id), None, span);
+                let body = self.expression(body, both);
+                let wait = Expression { kind: ExpressionKind::Wait(least.clone()), span: least.span };
+                let wait = self.expression(&wait, both);
+                self.close(both, vec![body, wait], &[body, wait])
+            }
+        };
+        let otherwise = otherwise.map(|otherwise| self.expression(otherwise, id));
+        let element = self.close(id, std::iter::once(first).chain(otherwise).collect(), &[first]);
+        if let Some(start) = self.automaton.starts.get_mut(id.0 as usize) {
+            start.clocks.push(clock);
+        }
+        element
+    }
+
+    fn within(
+        &mut self,
+        (least, most): (&Name, &Name),
+        body: &Expression,
+        otherwise: Option<&Expression>,
+        parent: CompositeId,
+        span: Span,
+    ) -> Element {
+        let steps = |written: &Name| Duration::read(&written.text).ok()?.in_steps(self.step_secs);
+        if let (Some(lower), Some(upper)) = (steps(least), steps(most))
+            && lower > upper
+        {
+            self.diagnostics.push(bounds::within(&least.text, &most.text, least.span.cover(most.span)));
+        }
+        let (lower, _) = self.duration(least);
+        let (upper, steps) = self.duration(most);
+        let label = format_smolstr!("WITHIN {lower} to {upper}");
+        self.timeout(label, steps, (body, Some(least)), otherwise, parent, span)
+    }
+
+    fn at(&mut self, time: &Name, body: &Expression, parent: CompositeId, span: Span) -> Element {
+        let (text, steps) = self.duration(time);
+        let id = self.open(CompositeKind::Guarded, Some(parent), None, span);
+        let location = self.location(LocationKind::At, format_smolstr!("at {text}"), id, span);
+        self.location_clock(location, ClockKind::At, format_smolstr!("AT {text}"), steps);
+        let own = Element::Location(location);
+        let body = self.expression(body, id);
+        self.transition(location, None, body);
+        let element = self.close(id, vec![own, body], &[own]);
+        if let Some(start) = self.automaton.starts.get_mut(id.0 as usize) {
+            *start = Start { timed: vec![id], ..Start::default() };
+        }
+        element
+    }
+
+    fn every(&mut self, period: &Name, body: &Expression, parent: CompositeId, span: Span) -> Element {
+        let (text, steps) = self.duration(period);
+        let id = self.open(CompositeKind::Guarded, Some(parent), None, span);
+        let location = self.location(LocationKind::Every, format_smolstr!("every {text}"), id, span);
+        self.location_clock(location, ClockKind::Every, format_smolstr!("EVERY {text}"), steps);
+        let own = Element::Location(location);
+        let body = self.expression(body, id);
+        self.transition(location, None, own);
+        self.transition(location, None, body);
+        self.close(id, vec![own, body], &[own, body])
     }
 
     fn guarded(
@@ -320,6 +539,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         parent: CompositeId,
         span: Span,
     ) -> Element {
+        let guard = &self.warped(guard);
         let id = self.open(CompositeKind::Guarded, Some(parent), None, span);
         let word = match kind {
             LocationKind::If => "if",
@@ -354,7 +574,8 @@ impl<'vocabulary> Compiler<'vocabulary> {
     fn assertion(&mut self, constraint: &Constraint, parent: CompositeId, span: Span) -> Element {
         let location =
             self.location(LocationKind::Assert, format_smolstr!("assert {constraint}"), parent, span);
-        let test = self.test(&Guard { non_entailed: false, constraint: constraint.clone(), span });
+        let test =
+            self.test(&Guard { non_entailed: false, held: None, constraint: constraint.clone(), span });
         let mut goals = Vec::new();
         let mut settings = Vec::new();
         self.goals(constraint, &mut goals, &mut settings);
@@ -388,28 +609,9 @@ impl<'vocabulary> Compiler<'vocabulary> {
 }
 
 fn constraints_of<'tree>(expression: &'tree Expression, into: &mut Vec<&'tree Constraint>) {
-    match &expression.kind {
-        ExpressionKind::Assert(constraint) => into.push(constraint),
-        ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-            for part in parts {
-                constraints_of(part, into);
-            }
-        }
-        ExpressionKind::Always(body) => constraints_of(body, into),
-        ExpressionKind::IfThenNext { guard, then, otherwise } => {
-            into.push(&guard.constraint);
-            constraints_of(then, into);
-            if let Some(otherwise) = otherwise {
-                constraints_of(otherwise, into);
-            }
-        }
-        ExpressionKind::UnlessThenNext { guard, body }
-        | ExpressionKind::WhenDoNext { guard, body }
-        | ExpressionKind::WheneverDoNext { guard, body }
-        | ExpressionKind::DoWatching { guard, body } => {
-            into.push(&guard.constraint);
-            constraints_of(body, into);
-        }
-        ExpressionKind::Call { .. } | ExpressionKind::Unreadable => {}
+    let guarded = expression.guard().map(|guard| &guard.constraint);
+    into.extend(guarded.into_iter().chain(expression.asserted()));
+    for part in expression.parts() {
+        constraints_of(part, into);
     }
 }

@@ -11,8 +11,7 @@ pub fn dot(automaton: &Automaton) -> String {
     let mut out = String::from("digraph automaton {\n  compound=true;\n  node [shape=box, style=rounded];\n");
     composite(automaton, Automaton::ROOT, 1, &mut out);
     for transition in &automaton.transitions {
-        let guard = transition.guard.and_then(|guard| automaton.guard(guard));
-        let label = guard.map_or_else(|| "true".to_owned(), |guard| format!("{guard}"));
+        let label = automaton.condition_text(transition);
         for target in automaton.start_of(&transition.target).iter().take(1) {
             let head = match transition.target {
                 Element::Composite(composite) if drawn(automaton, composite) => {
@@ -33,11 +32,14 @@ pub fn dot(automaton: &Automaton) -> String {
     out
 }
 
-/// Composites that say something: sequences, and those with a maintenance condition.
+/// Composites that say something: sequences, and those with a maintenance condition or a clock.
 fn drawn(automaton: &Automaton, id: CompositeId) -> bool {
     automaton.composite(id).is_some_and(|composite| {
         composite.maintenance.is_some()
-            || matches!(composite.kind, CompositeKind::Sequence | CompositeKind::Parallel)
+            || matches!(
+                composite.kind,
+                CompositeKind::Sequence | CompositeKind::Parallel | CompositeKind::Timeout
+            )
     })
 }
 
@@ -49,7 +51,7 @@ fn composite(automaton: &Automaton, id: CompositeId, depth: usize, out: &mut Str
         let label = match (data.maintenance.and_then(|test| automaton.guard(test)), data.kind) {
             (Some(guard), _) => format!("maintain {guard}"),
             (None, CompositeKind::Sequence) => "sequence".into(),
-            _ => String::new(),
+            _ => automaton.clock_of(data).map_or(String::new(), |clock| clock.label.to_string()),
         };
         let _ = writeln!(
             out,

@@ -4,6 +4,7 @@
 //! of the plant. Where that knowledge comes from is not this crate's business.
 
 pub mod automaton;
+pub mod clock;
 pub mod compile;
 pub mod condition;
 pub mod dot;
@@ -18,9 +19,10 @@ pub use automaton::{
     Assertion, Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind,
     TestId, Transition, TransitionId,
 };
+pub use clock::{Clock, ClockId, ClockKind, HeldCondition};
 pub use compile::{Compilation, compile, compile_text};
 pub use knowledge::Estimate;
 pub use marking::Marking;
-pub use step::{StepObserver, Stepper, Unobserved};
+pub use step::{Standing, StepObserver, Stepper, Unobserved};
 pub use trace::{Trace, TraceStep, trace};
 pub use vocabulary::{Variable, VariableId, Vocabulary};

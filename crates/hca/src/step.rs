@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use crate::automaton::{
-    Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind, Test,
-    TestId, TransitionId,
+    Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind, Start,
+    Test, TestId, TransitionId,
 };
+use crate::clock::{ClockId, ClockKind, Times};
 use crate::knowledge::Estimate;
 use crate::marking::{Marking, bits};
 use crate::vocabulary::VariableId;
@@ -20,6 +21,8 @@ pub trait StepObserver {
     fn fired(&mut self, _transition: TransitionId) {}
     /// In a sequence the child at this place has ended, and the next has started.
     fn continued(&mut self, _sequence: CompositeId, _child: usize) {}
+    /// A clock was up and did what it is for.
+    fn elapsed(&mut self, _clock: ClockId) {}
 }
 
 /// Observes nothing.
@@ -64,6 +67,20 @@ struct Stage {
     range: std::ops::Range<u32>,
 }
 
+/// Where a run stands between two steps, to come back to: what is marked, and the time of its clocks.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Standing {
+    marking: Marking,
+    times: Times,
+}
+
+impl Standing {
+    /// What is marked.
+    pub const fn marking(&self) -> &Marking {
+        &self.marking
+    }
+}
+
 /// A marking of an automaton and the room to compute the next one.
 #[derive(Clone, Debug)]
 pub struct Stepper {
@@ -75,9 +92,9 @@ pub struct Stepper {
     watches: Vec<Watch>,
     /// Innermost first.
     stages: Vec<Stage>,
-    /// Whether a join is among them: then what a transition starts is started after what is inside its target has been
-    /// looked at.
-    has_joins: bool,
+    /// Whether a join or a clock is among them: then what a transition starts is started after what is inside its target
+    /// has been looked at.
+    starts_late: bool,
     /// Transitions that have fired and whose targets are still to be started, outermost first.
     fired: Vec<TransitionId>,
     /// Which locations and composites complete in this step.
@@ -86,6 +103,9 @@ pub struct Stepper {
     /// Per program variable and overlay: what is known with this step's assertions added.
     overlay: Estimate,
     has_program_variables: bool,
+    times: Times,
+    /// For each condition that has to have lasted, whether it has.
+    is_held: Vec<bool>,
 }
 
 impl Stepper {
@@ -101,24 +121,33 @@ impl Stepper {
             .collect();
         let matters = matters_to_others(&automaton.composites, &automaton.locations);
         let mut stages: Vec<Stage> = numbered()
-            .filter(|(id, data)| data.kind == CompositeKind::Sequence || matters[id.0 as usize])
+            .filter(|(id, data)| {
+                let acts = matches!(data.kind, CompositeKind::Sequence | CompositeKind::Timeout);
+                acts || matters[id.0 as usize]
+            })
             .map(|(composite, data)| Stage { composite, kind: data.kind, range: data.locations.clone() })
             .collect();
         stages.reverse();
+        let is_timed = !automaton.clocks.is_empty();
         let empty = Marking::empty(automaton.locations.len());
+        let mut times = Times::new(automaton.clocks.len(), automaton.held.len());
+        let mut marking = empty.clone();
+        start(automaton, Element::Composite(Automaton::ROOT), &mut marking, &mut times);
         Self {
-            marking: automaton.start(),
+            marking,
             alive: empty.clone(),
             completed: empty.clone(),
             next: empty,
             is_completed: vec![false; automaton.composites.len()],
-            has_joins: stages.iter().any(|stage| stage.kind == CompositeKind::Parallel),
+            starts_late: is_timed || stages.iter().any(|stage| stage.kind == CompositeKind::Parallel),
             fired: Vec::with_capacity(automaton.transitions.len()),
             dropped: vec![false; automaton.composites.len()],
             watches,
             stages,
             overlay: Estimate::unknown(automaton.variables.len()),
             has_program_variables: automaton.variables.iter().any(|variable| variable.is_program_variable),
+            times,
+            is_held: vec![false; automaton.held.len()],
             automaton: Arc::clone(automaton),
         }
     }
@@ -133,11 +162,45 @@ impl Stepper {
         &self.marking
     }
 
-    /// Goes to another marking of the same automaton, as when stepping back.
-    pub fn set_marking(&mut self, marking: &Marking) {
-        if marking.words().len() == self.marking.words().len() {
-            self.marking.copy_from(marking);
-        }
+    /// Where it stands, to come back to.
+    pub fn standing(&self) -> Standing {
+        Standing { marking: self.marking.clone(), times: self.times.clone() }
+    }
+
+    /// Goes to where the same automaton stood before, as when stepping back.
+    pub fn return_to(&mut self, standing: &Standing) {
+        self.marking.copy_from(&standing.marking);
+        self.times.step = standing.times.step;
+        self.times.ends.clone_from(&standing.times.ends);
+        self.times.unsatisfied.clone_from(&standing.times.unsatisfied);
+    }
+
+    /// The running clocks, in textual order, each with the number of steps after which it is up; with 1, at the end of
+    /// the next step.
+    pub fn running_clocks(&self) -> Vec<(ClockId, u64)> {
+        let numbered = (0..).map(ClockId).zip(&self.automaton.clocks);
+        let left = numbered.filter_map(|(id, clock)| {
+            let first = match clock.owner {
+                Element::Location(_) => clock.owner,
+                Element::Composite(composite) => *self.automaton.composite(composite)?.children.first()?,
+            };
+            let is_running = self.marking.intersects(&self.automaton.locations_of(first));
+            let end = match clock.kind {
+                ClockKind::At => clock.steps,
+                _ => self.times.ends.get(id.0 as usize)?.first()?,
+            };
+            is_running.then_some((id, end.saturating_sub(self.times.step)))
+        });
+        left.collect()
+    }
+
+    /// Whether time alone may change what happens next: a clock runs, or a condition may come to have lasted.
+    pub fn depends_on_time(&self) -> bool {
+        !self.running_clocks().is_empty()
+            || self.automaton.held.iter().zip(&self.times.unsatisfied).any(|(held, unsatisfied)| {
+                let lasted = self.times.step - unsatisfied;
+                (1..held.steps).contains(&lasted)
+            })
     }
 
     /// Whether the program has ended.
@@ -155,12 +218,17 @@ impl Stepper {
     pub fn asked(&self) -> Vec<TestId> {
         let watches = self.watches.iter().filter(|watch| self.marking.intersects(&watch.range));
         let mut asked: Vec<TestId> = watches.map(|watch| watch.test).collect();
+        asked.extend(self.automaton.held.iter().map(|held| held.test));
         for location in self.marking.iter().filter_map(|location| self.automaton.location(location)) {
             asked.extend(location.assertion.as_ref().map(|assertion| assertion.test));
             let transitions = location.transitions.clone();
             let transitions = transitions.filter_map(|at| self.automaton.transitions.get(at as usize));
             asked.extend(transitions.filter_map(|transition| transition.guard));
         }
+        // What has to have lasted is asked for itself, in each step.
+        let lasts =
+            |test: &TestId| self.automaton.tests.get(test.0 as usize).is_some_and(|it| it.held.is_some());
+        asked.retain(|test| !lasts(test));
         asked.sort_unstable();
         asked.dedup();
         asked
@@ -214,6 +282,10 @@ impl Stepper {
     }
 
     fn advance(&mut self, known: impl Knowledge, observer: &mut impl StepObserver) {
+        self.times.step += 1;
+        for at in 0..self.is_held.len() {
+            self.look_at_held(at, known);
+        }
         self.preempt(known, observer);
         self.next.clear();
         let has_stages = !self.stages.is_empty();
@@ -230,20 +302,39 @@ impl Stepper {
             for at in 0..self.stages.len() {
                 self.complete(at, observer);
             }
+        }
+        if self.starts_late {
             self.start_fired_down_to(Automaton::ROOT);
         }
         std::mem::swap(&mut self.marking, &mut self.next);
     }
 
+    /// Whether a condition has been satisfied for long enough, this step included.
+    fn look_at_held(&mut self, at: usize, known: impl Knowledge) {
+        let (Some(held), Some(unsatisfied)) =
+            (self.automaton.held.get(at), self.times.unsatisfied.get_mut(at))
+        else {
+            return;
+        };
+        if holds(&self.automaton, held.test, known, &[]) == held.non_entailed {
+            *unsatisfied = self.times.step;
+        }
+        if let Some(is_held) = self.is_held.get_mut(at) {
+            *is_held = self.times.step - *unsatisfied >= held.steps;
+        }
+    }
+
     fn preempt(&mut self, known: impl Knowledge, observer: &mut impl StepObserver) {
         self.alive.copy_from(&self.marking);
         for watch in &self.watches {
-            let fails = self.marking.intersects(&watch.range) && !holds(&self.automaton, watch.test, known);
+            let fails = self.marking.intersects(&watch.range)
+                && !holds(&self.automaton, watch.test, known, &self.is_held);
             if let Some(dropped) = self.dropped.get_mut(watch.composite.0 as usize) {
                 *dropped = fails;
             }
             if fails {
                 self.alive.remove_range(&watch.range);
+                forget_waits(&self.automaton, &watch.range, &mut self.times);
                 observer.preempted(watch.composite);
             }
         }
@@ -253,21 +344,25 @@ impl Stepper {
         let automaton = &*self.automaton;
         let Some(location) = automaton.location(id) else { return };
         if let Some(assertion) = &location.assertion
-            && !holds(automaton, assertion.test, known)
+            && !holds(automaton, assertion.test, known, &self.is_held)
         {
             self.next.insert(id);
+            return;
+        }
+        if let Some(clock) = location.clock {
+            self.wait(id, clock, observer);
             return;
         }
         let (mut stays, mut completes) = (false, true);
         for at in location.transitions.clone() {
             let Some(transition) = automaton.transitions.get(at as usize) else { continue };
-            if transition.guard.is_none_or(|guard| holds(automaton, guard, known)) {
+            if transition.guard.is_none_or(|guard| holds(automaton, guard, known, &self.is_held)) {
                 completes = false;
                 stays |= transition.target == Element::Location(id);
-                if self.has_joins {
+                if self.starts_late {
                     self.fired.push(TransitionId(at));
                 } else {
-                    start(automaton, transition.target, &mut self.next);
+                    start(automaton, transition.target, &mut self.next, &mut self.times);
                 }
                 observer.fired(TransitionId(at));
             }
@@ -277,6 +372,42 @@ impl Stepper {
         }
         if !stays {
             observer.left(id);
+        }
+    }
+
+    /// A location that waits for a time: what it starts and whether it stays.
+    fn wait(&mut self, id: LocationId, clock: ClockId, observer: &mut impl StepObserver) {
+        let automaton = &*self.automaton;
+        let (Some(location), Some(data)) = (automaton.location(id), automaton.clock(clock)) else { return };
+        let now = self.times.step;
+        let (is_up, stays) = match data.kind {
+            ClockKind::At => (now >= data.steps, now < data.steps),
+            ClockKind::Every => (self.times.is_up(clock), true),
+            ClockKind::Wait | ClockKind::Timeout => {
+                let ends = self.times.ends_mut(clock);
+                ends.map_or((true, false), |ends| (ends.take(now), !ends.is_empty()))
+            }
+        };
+        if stays {
+            self.next.insert(id);
+        } else {
+            observer.left(id);
+        }
+        if !is_up {
+            return;
+        }
+        observer.elapsed(clock);
+        match data.kind {
+            ClockKind::Every => self.times.start(clock, data),
+            ClockKind::Wait => self.completed.insert(id),
+            ClockKind::At | ClockKind::Timeout => {}
+        }
+        for at in location.transitions.clone() {
+            let target = automaton.transitions.get(at as usize).map(|transition| transition.target);
+            if target != Some(Element::Location(id)) {
+                self.fired.push(TransitionId(at));
+                observer.fired(TransitionId(at));
+            }
         }
     }
 
@@ -291,7 +422,7 @@ impl Stepper {
             if parent.is_some_and(|parent| parent < composite) {
                 return;
             }
-            start(automaton, transition.target, &mut self.next);
+            start(automaton, transition.target, &mut self.next, &mut self.times);
             self.fired.pop();
         }
     }
@@ -310,11 +441,39 @@ impl Stepper {
                 CompositeKind::DoWatching => {
                     self.dropped.get(id.0 as usize) == Some(&true) || self.some_child_completes(id)
                 }
+                CompositeKind::Timeout => self.time_out(id, observer),
                 CompositeKind::Guarded | CompositeKind::Program => self.some_child_completes(id),
             }
         };
         if let Some(is_completed) = self.is_completed.get_mut(id.0 as usize) {
             *is_completed = completes;
+        }
+    }
+
+    /// Drops what is left of the first child of a composite whose time is up; returns whether the composite completes.
+    fn time_out(&mut self, id: CompositeId, observer: &mut impl StepObserver) -> bool {
+        let automaton = Arc::clone(&self.automaton);
+        let Some(composite) = automaton.composite(id) else { return false };
+        let (Some(clock), [first, rest @ ..]) = (composite.clock, composite.children.as_slice()) else {
+            return false;
+        };
+        let completes = self.some_child_completes(id);
+        let range = automaton.locations_of(*first);
+        if !self.times.is_up(clock) || !self.next.intersects(&range) {
+            return completes;
+        }
+        self.next.remove_range(&range);
+        forget_waits(&automaton, &range, &mut self.times);
+        observer.elapsed(clock);
+        if self.completes(*first) {
+            return true;
+        }
+        match rest.first() {
+            Some(&otherwise) => {
+                start(&automaton, otherwise, &mut self.next, &mut self.times);
+                completes
+            }
+            None => true,
         }
     }
 
@@ -341,7 +500,7 @@ impl Stepper {
         let Some(sequence) = automaton.composite(id) else { return false };
         for (child, pair) in sequence.children.windows(2).enumerate() {
             if self.completes(pair[0]) {
-                start(automaton, pair[1], &mut self.next);
+                start(automaton, pair[1], &mut self.next, &mut self.times);
                 observer.continued(id, child);
             }
         }
@@ -349,11 +508,61 @@ impl Stepper {
     }
 }
 
-/// Marks the locations in which an element starts.
+/// Marks the locations in which an element starts, and starts its clocks.
 #[inline]
-fn start(automaton: &Automaton, element: Element, next: &mut Marking) {
-    for &location in automaton.start_of(&element) {
-        next.insert(location);
+fn start(automaton: &Automaton, element: Element, next: &mut Marking, times: &mut Times) {
+    match element {
+        Element::Location(location) => {
+            next.insert(location);
+            if times.ends.is_empty() {
+                return;
+            }
+            if let Some(id) = automaton.location(location).and_then(|location| location.clock)
+                && let Some(clock) = automaton.clock(id)
+            {
+                times.start(id, clock);
+            }
+        }
+        Element::Composite(composite) => {
+            let Some(begun) = automaton.starts.get(composite.0 as usize) else { return };
+            for &location in &begun.locations {
+                next.insert(location);
+            }
+            if !times.ends.is_empty() {
+                start_timed(automaton, begun, next, times);
+            }
+        }
+    }
+}
+
+fn start_timed(automaton: &Automaton, begun: &Start, next: &mut Marking, times: &mut Times) {
+    for &id in &begun.clocks {
+        if let Some(clock) = automaton.clock(id) {
+            times.start(id, clock);
+        }
+    }
+    for &id in &begun.timed {
+        let Some([Element::Location(own), body]) = automaton.composite(id).map(|it| it.children.as_slice())
+        else {
+            continue;
+        };
+        let clock = automaton.location(*own).and_then(|own| automaton.clock(own.clock?));
+        if clock.is_some_and(|clock| times.step < clock.steps) {
+            next.insert(*own);
+        } else {
+            start(automaton, *body, next, times);
+        }
+    }
+}
+
+/// Forgets the starts of what waits in a range of locations that is dropped.
+fn forget_waits(automaton: &Automaton, range: &std::ops::Range<u32>, times: &mut Times) {
+    for (clock, ends) in automaton.clocks.iter().zip(&mut times.ends) {
+        if clock.kind == ClockKind::Wait
+            && matches!(clock.owner, Element::Location(location) if range.contains(&location.0))
+        {
+            ends.clear();
+        }
     }
 }
 
@@ -367,6 +576,8 @@ fn matters_to_others(composites: &[Composite], locations: &[Location]) -> Vec<bo
         let of_children = |place: usize| match composite.kind {
             CompositeKind::Sequence => own_matters || place + 1 < composite.children.len(),
             CompositeKind::DoWatching | CompositeKind::Guarded => own_matters,
+            // What is dropped when the time is up may complete in that step.
+            CompositeKind::Timeout => own_matters || place == 0,
             CompositeKind::Parallel | CompositeKind::Program => false,
         };
         for (place, child) in composite.children.iter().enumerate() {
@@ -383,12 +594,18 @@ fn matters_to_others(composites: &[Composite], locations: &[Location]) -> Vec<bo
 fn repeats(composite: &Composite, locations: &[Location]) -> bool {
     let first = locations.get(composite.locations.start as usize);
     composite.kind == CompositeKind::Guarded
-        && first.is_some_and(|own| matches!(own.kind, LocationKind::Always | LocationKind::Whenever))
+        && first.is_some_and(|own| {
+            matches!(own.kind, LocationKind::Always | LocationKind::Whenever | LocationKind::Every)
+        })
 }
 
-/// Whether a guard holds: its constraint is entailed, or for a barred guard it is not.
+/// Whether a guard holds: its constraint is entailed, or for a barred guard it is not; with HELD, whether it has lasted.
 #[inline]
-fn holds(automaton: &Automaton, id: TestId, known: impl Knowledge) -> bool {
+fn holds(automaton: &Automaton, id: TestId, known: impl Knowledge, is_held: &[bool]) -> bool {
     let Some(test) = automaton.tests.get(id.0 as usize) else { return true };
-    known.entails(automaton, id, test) != test.guard.non_entailed
+    let holds = match test.held {
+        None => known.entails(automaton, id, test),
+        Some(held) => is_held.get(held as usize) == Some(&true),
+    };
+    holds != test.guard.non_entailed
 }

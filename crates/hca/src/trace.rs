@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use crate::automaton::{Automaton, CompositeId, LocationId, TransitionId};
+use crate::clock::ClockId;
 use crate::knowledge::Estimate;
 use crate::step::{StepObserver, Stepper};
 
@@ -24,6 +25,10 @@ pub struct TraceStep {
     pub preempted: Vec<CompositeId>,
     /// The transitions that fired at its end.
     pub fired: Vec<TransitionId>,
+    /// The running clocks at its start, each with the number of steps after which it is up.
+    pub clocks: Vec<(ClockId, u64)>,
+    /// The clocks that were up at its end and did what they are for.
+    pub elapsed: Vec<ClockId>,
     /// The sequences that moved on at its end, with the place of the child that had ended.
     pub continued: Vec<(CompositeId, usize)>,
 }
@@ -40,6 +45,10 @@ impl StepObserver for TraceStep {
     fn continued(&mut self, sequence: CompositeId, child: usize) {
         self.continued.push((sequence, child));
     }
+
+    fn elapsed(&mut self, clock: ClockId) {
+        self.elapsed.push(clock);
+    }
 }
 
 impl TraceStep {
@@ -52,6 +61,7 @@ impl TraceStep {
             marked: marking.iter().collect(),
             goals: automaton.goals(marking),
             labels: automaton.labels(marking),
+            clocks: stepper.running_clocks(),
             ..Self::default()
         }
     }

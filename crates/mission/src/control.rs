@@ -31,7 +31,7 @@ pub fn read_control(text: &str, plant: Option<&str>) -> (Control, Vec<Diagnostic
     if parsed.has_errors() {
         return (Control::Nothing, parsed.diagnostics);
     }
-    let ControlFile { definitions, classes, instances, options: _ } = &parsed.file;
+    let ControlFile { definitions, classes, instances, .. } = &parsed.file;
     match (definitions.is_empty(), classes.is_empty() && instances.is_empty()) {
         (true, true) => (Control::Nothing, parsed.diagnostics),
         (true, false) => {

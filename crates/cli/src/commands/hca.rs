@@ -77,6 +77,11 @@ fn automaton_json(automaton: &Automaton) -> Value {
     let start = automaton.start();
     let guard =
         |test: Option<hca::TestId>| test.and_then(|test| automaton.guard(test)).map(ToString::to_string);
+    // With the steps that it takes.
+    let clock = |id: Option<hca::ClockId>| {
+        let clock = id.and_then(|id| automaton.clock(id))?;
+        Some(json!({ "label": clock.label, "steps": clock.steps }))
+    };
     let locations: Vec<Value> = automaton
         .locations
         .iter()
@@ -89,6 +94,7 @@ fn automaton_json(automaton: &Automaton) -> Value {
                 "label": location.label,
                 "goals": location.assertion.as_ref().map(|assertion| assertion.goals.clone()).unwrap_or_default(),
                 "start": start.contains(id),
+                "clock": clock(location.clock),
                 "parent": format!("c{}", location.parent.0),
                 "span": { "start": location.span.start, "end": location.span.end },
             })
@@ -101,7 +107,7 @@ fn automaton_json(automaton: &Automaton) -> Value {
             json!({
                 "from": automaton.location_name(transition.source),
                 "to": element_name(automaton, transition.target),
-                "guard": guard(transition.guard).unwrap_or_else(|| "true".into()),
+                "guard": automaton.condition_text(transition),
             })
         })
         .collect();
@@ -117,6 +123,7 @@ fn automaton_json(automaton: &Automaton) -> Value {
                 "children": composite.children.iter().map(|&child| element_name(automaton, child)).collect::<Vec<_>>(),
                 "start": composite.start.iter().map(|id| automaton.location_name(*id)).collect::<Vec<_>>(),
                 "maintenance": guard(composite.maintenance),
+                "clock": clock(composite.clock),
                 "span": { "start": composite.span.start, "end": composite.span.end },
             })
         })
@@ -139,8 +146,7 @@ fn tree(automaton: &Automaton, element: Element, depth: usize, out: &mut String)
             out.push_str(&format!("{indent}{}: {}{mark}\n", automaton.location_name(id), location.label));
             for at in location.transitions.clone() {
                 let Some(transition) = automaton.transitions.get(at as usize) else { continue };
-                let guard = transition.guard.and_then(|test| automaton.guard(test));
-                let guard = guard.map_or_else(|| "true".to_owned(), ToString::to_string);
+                let guard = automaton.condition_text(transition);
                 let targets: Vec<String> = automaton
                     .start_of(&transition.target)
                     .iter()
@@ -158,6 +164,9 @@ fn tree(automaton: &Automaton, element: Element, depth: usize, out: &mut String)
                     .maintenance
                     .and_then(|test| automaton.guard(test))
                     .map(|guard| format!("while {guard}")),
+                hca::CompositeKind::Timeout => {
+                    automaton.clock_of(composite).map(|clock| clock.label.to_string())
+                }
                 hca::CompositeKind::Program | hca::CompositeKind::Guarded => None,
             };
             let inner = depth + usize::from(kind.is_some());

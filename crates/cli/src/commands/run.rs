@@ -10,6 +10,7 @@ use executive::model_based::{
     Options, ProgramTally, Run, RunStatus, StepInput, StepOutcome, StepRecord, System, Trials, run_seed,
     sample,
 };
+use hca::{Automaton, TraceStep};
 use plant::Interval;
 use serde_json::{Map, Value, json};
 use snapshot::Problem;
@@ -187,6 +188,29 @@ fn goals_json(goals: &[smol_str::SmolStr]) -> Value {
     Value::Object(members)
 }
 
+/// The clocks that run before a step, each with the number of steps after which it is up.
+pub(super) fn clocks_json(automaton: &Automaton, trace: &TraceStep) -> Value {
+    let clocks = trace
+        .clocks
+        .iter()
+        .filter_map(|&(id, left)| Some(json!({ "clock": automaton.clock(id)?.label, "steps_left": left })));
+    clocks.collect()
+}
+
+/// The clocks that were up in a step.
+pub(super) fn elapsed<'a>(automaton: &'a Automaton, trace: &TraceStep) -> Vec<&'a str> {
+    trace.elapsed.iter().filter_map(|&id| Some(automaton.clock(id)?.label.as_str())).collect()
+}
+
+/// One line per running clock.
+pub(super) fn clocks_text(automaton: &Automaton, trace: &TraceStep, out: &mut String) {
+    for &(id, left) in &trace.clocks {
+        let Some(clock) = automaton.clock(id) else { continue };
+        let steps = if left == 1 { "step" } else { "steps" };
+        out.push_str(&format!("  clock     {}: {left} {steps} left\n", clock.label));
+    }
+}
+
 fn failed_text(system: &System, id: plant::ComponentId, mode: u8) -> String {
     let name = system.model.component(id).map_or("?", |component| component.name.as_str());
     format!("{name}={}", system.model.mode_name(id, mode))
@@ -224,6 +248,10 @@ fn step_json(system: &System, record: &StepRecord) -> Value {
         step.extend(members.map(|(name, value)| (name.to_owned(), value)));
         if let Some(state) = &record.planned_from {
             step.insert("planned_from".to_owned(), json!(model.state_names(state)));
+        }
+        if !system.automaton.clocks.is_empty() {
+            step.insert("clocks".to_owned(), clocks_json(&system.automaton, &record.trace));
+            step.insert("elapsed".to_owned(), json!(elapsed(&system.automaton, &record.trace)));
         }
         if system.entailment.is_some() {
             let asked = record.asked.iter().map(|asked| {
@@ -275,6 +303,7 @@ fn run_text(system: &System, run: &Run) -> String {
     for record in run.records() {
         out.push_str(&format!("step {}\n", record.trace.step));
         record.trace.labels.iter().for_each(|label| out.push_str(&format!("  marked    {label}\n")));
+        clocks_text(&system.automaton, &record.trace, &mut out);
         out.push_str(&format!("  commands  {}\n", listed(model.command_names(&record.commands), ".")));
         if let Some(state) = &record.planned_from {
             out.push_str(&format!("  planned   from {}\n", listed(model.state_names(state), "=")));
@@ -306,6 +335,9 @@ fn run_text(system: &System, run: &Run) -> String {
         }
         if record.is_uncertain {
             out.push_str("  uncertain more states are possible than the estimator keeps\n");
+        }
+        for label in elapsed(&system.automaton, &record.trace) {
+            out.push_str(&format!("  elapsed   {label}\n"));
         }
         record
             .conflicts

@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use hca::{Estimate, Trace, Vocabulary};
+use hca::{Automaton, Estimate, Trace, Vocabulary};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use smol_str::SmolStr;
 use snapshot::Problem;
 
+use super::run::{clocks_json, clocks_text, elapsed};
 use crate::diagnostics::print_problems;
 use crate::input::{read_control, read_json};
 use crate::output::{Format, WRONG, YES, document, exit, print_json, print_text};
@@ -61,28 +62,36 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .collect();
     let trace = hca::trace(automaton, &estimates);
     match args.format {
-        Format::Json => print_json(&document("step", &problems, trace_json(&trace)))?,
-        Format::Text => print_text(&trace_text(&trace))?,
+        Format::Json => print_json(&document("step", &problems, trace_json(automaton, &trace)))?,
+        Format::Text => print_text(&trace_text(automaton, &trace))?,
     }
     Ok(exit(YES))
 }
 
-fn trace_json(trace: &Trace) -> Value {
-    let steps: Vec<Value> = trace
-        .steps
-        .iter()
-        .map(|step| {
-            json!({ "step": step.step, "num_marked": step.marked.len(), "goals": step.goals, "labels": step.labels })
-        })
-        .collect();
+fn trace_json(automaton: &Automaton, trace: &Trace) -> Value {
+    let each = trace.steps.iter().map(|step| {
+        let mut members = json!({
+            "step": step.step, "num_marked": step.marked.len(), "goals": step.goals, "labels": step.labels,
+        });
+        if let (Value::Object(members), false) = (&mut members, automaton.clocks.is_empty()) {
+            members.insert("clocks".to_owned(), clocks_json(automaton, step));
+            members.insert("elapsed".to_owned(), json!(elapsed(automaton, step)));
+        }
+        members
+    });
+    let steps: Vec<Value> = each.collect();
     json!({ "steps": steps, "terminated": trace.terminated })
 }
 
-fn trace_text(trace: &Trace) -> String {
+fn trace_text(automaton: &Automaton, trace: &Trace) -> String {
     let mut out = String::new();
     for step in &trace.steps {
         out.push_str(&format!("step {}: {} marked\n", step.step, step.marked.len()));
         step.labels.iter().for_each(|label| out.push_str(&format!("  {label}\n")));
+        clocks_text(automaton, step, &mut out);
+        for label in elapsed(automaton, step) {
+            out.push_str(&format!("  elapsed   {label}\n"));
+        }
     }
     out.push_str(if trace.terminated { "The program has ended.\n" } else { "The program has not ended.\n" });
     out

@@ -99,7 +99,8 @@ fn outcome(system: &Arc<System>, faults: &[FinalFault]) -> Outcome {
         }
         let after = (run.marking().clone(), run.true_state().clone(), run.belief().most_likely().clone());
         let has_failed = faults.iter().all(|(id, mode)| after.1.mode(*id) == *mode);
-        still = if before == after && has_failed { still + 1 } else { 0 };
+        let is_still = before == after && has_failed && !run.depends_on_time();
+        still = if is_still { still + 1 } else { 0 };
         if still == STILL_STEPS {
             let first = run.marking().iter().next().and_then(|location| system.automaton.location(location));
             let labels = run.upcoming().labels.iter().map(ToString::to_string).collect();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hca::{Marking, TraceStep};
+use hca::{Marking, Standing, TraceStep};
 use plant::{
     Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Observation, Random, State, VariableId,
 };
@@ -79,8 +79,8 @@ pub enum RunStatus {
 
 /// Where a run stands before a step, to come back to.
 #[derive(Clone, Debug)]
-struct Standing {
-    marking: Marking,
+struct Before {
+    program: Standing,
     closed: ClosedLoop,
 }
 
@@ -91,7 +91,7 @@ pub struct Run {
     estimator: Estimator,
     closed: ClosedLoop,
     records: Vec<StepRecord>,
-    before: Vec<Standing>,
+    before: Vec<Before>,
 }
 
 impl Run {
@@ -161,6 +161,11 @@ impl Run {
         }
     }
 
+    /// Whether time alone may change what happens next.
+    pub fn depends_on_time(&self) -> bool {
+        self.program.stepper.depends_on_time()
+    }
+
     /// The marked locations, goals and labels of the next step.
     pub fn upcoming(&self) -> TraceStep {
         self.program.upcoming()
@@ -168,11 +173,11 @@ impl Run {
 
     /// Takes back the last step; false if there is none.
     pub fn step_back(&mut self) -> bool {
-        let Some(standing) = self.before.pop() else { return false };
+        let Some(before) = self.before.pop() else { return false };
         self.records.pop();
-        self.program.stepper.set_marking(&standing.marking);
+        self.program.stepper.return_to(&before.program);
         self.program.steps -= 1;
-        self.closed = standing.closed;
+        self.closed = before.closed;
         true
     }
 
@@ -187,10 +192,9 @@ impl Run {
 
     /// Takes one step. After an error the run stands where it stood.
     pub fn step(&mut self, input: &StepInput) -> Result<&StepRecord, EstimateError> {
-        let standing =
-            Standing { marking: self.program.stepper.marking().clone(), closed: self.closed.clone() };
+        let before = Before { program: self.program.stepper.standing(), closed: self.closed.clone() };
         let step = self.closed.step(&mut [&mut self.program], &mut self.estimator, input)?;
-        self.before.push(standing);
+        self.before.push(before);
         // There is one trace for the one program.
         let trace = step.traces.into_iter().next().unwrap_or_else(|| self.upcoming());
         self.records.push(StepRecord {

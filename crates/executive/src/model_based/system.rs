@@ -254,36 +254,14 @@ struct Uses {
 
 impl Uses {
     fn expression(&mut self, expression: &Expression) {
-        match &expression.kind {
-            ExpressionKind::Assert(constraint) => names(constraint, &mut self.asserted),
-            ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-                for part in parts {
-                    self.expression(part);
-                }
-            }
-            ExpressionKind::Always(body) => self.expression(body),
-            ExpressionKind::IfThenNext { guard, then, otherwise } => {
-                names(&guard.constraint, &mut self.tested);
-                self.expression(then);
-                if let Some(otherwise) = otherwise {
-                    self.expression(otherwise);
-                }
-            }
-            ExpressionKind::UnlessThenNext { guard, body }
-            | ExpressionKind::WhenDoNext { guard, body }
-            | ExpressionKind::WheneverDoNext { guard, body }
-            | ExpressionKind::DoWatching { guard, body } => {
-                names(&guard.constraint, &mut self.tested);
-                self.expression(body);
-            }
-            ExpressionKind::Call { arguments, .. } => {
-                for argument in arguments {
-                    if let Argument::Expression(inner) = argument {
-                        self.expression(inner);
-                    }
-                }
-            }
-            ExpressionKind::Unreadable => {}
+        if let Some(constraint) = expression.asserted() {
+            names(constraint, &mut self.asserted);
+        }
+        if let Some(guard) = expression.guard() {
+            names(&guard.constraint, &mut self.tested);
+        }
+        for part in expression.parts() {
+            self.expression(part);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use hca::{Automaton, Estimate, Trace, Vocabulary, compile_text, trace};
-use serde_json::Value;
+use serde_json::{Value, json};
 use smol_str::SmolStr;
 
 fn folder() -> PathBuf {
@@ -72,6 +72,24 @@ fn every_trace_of_the_suite_is_reproduced() {
             assert_eq!(step.goals, strings(&expected["goals"]), "{id} step {}", step.step);
             assert_eq!(step.labels, strings(&expected["labels"]), "{id} step {}", step.step);
         }
+        assert_eq!(Value::from(run.terminated), case["expect"]["terminated"], "{id}");
+    }
+}
+
+#[test]
+fn every_program_in_time_of_the_suite_has_the_goals_of_its_case() {
+    let cases = cases("timed-trace");
+    assert!(cases.len() >= 5, "the suite has its programs in time");
+    for (id, case, program) in cases {
+        let compilation = compile_text(&program, &vocabulary(&case));
+        assert_eq!(compilation.diagnostics, [], "{id}");
+        let automaton = compilation.automaton.expect("compiles");
+        let estimates = case["estimates"].as_array().into_iter().flatten();
+        let estimates: Vec<Estimate> = estimates.map(|value| estimate(&automaton, value)).collect();
+        let run = trace(&automaton, &estimates);
+        let goals: Vec<Value> =
+            run.steps.iter().map(|step| json!({ "step": step.step, "goals": step.goals })).collect();
+        assert_eq!(Value::from(goals), case["expect"]["steps"], "{id}");
         assert_eq!(Value::from(run.terminated), case["expect"]["terminated"], "{id}");
     }
 }

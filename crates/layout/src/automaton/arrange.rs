@@ -113,9 +113,9 @@ pub(super) fn arrange(automaton: &Automaton, measure: &dyn Measure) -> Automaton
     let text = |text: &str, role: TextRole| Text::wrapped(text, role, EASY_LINE, measure);
     let locations = automaton.locations.iter().map(|location| text(&location.label, TextRole::Name));
     let transitions = automaton.transitions.iter().map(|transition| {
-        let guard = transition.guard.and_then(|test| automaton.guard(test));
-        let guard = guard.map_or_else(|| "always".to_owned(), ToString::to_string);
-        text(&guard, TextRole::Bounds)
+        let condition = automaton.condition_text(transition);
+        let condition = if condition == "true" && transition.guard.is_none() { "always" } else { &condition };
+        text(condition, TextRole::Bounds)
     });
     let mut arranger = Arranger {
         automaton,
@@ -203,7 +203,7 @@ impl<'a> Arranger<'a> {
             (Some(guard), _) => format_smolstr!("maintain {guard}"),
             (None, CompositeKind::Sequence) => SmolStr::new_static("sequence"),
             (None, CompositeKind::Parallel) => SmolStr::new_static("parallel"),
-            (None, _) => return None,
+            (None, _) => self.automaton.clock_of(composite)?.label.clone(),
         };
         Some(Text::wrapped(&text, TextRole::Muted, room.max(EASY_LINE), self.measure))
     }

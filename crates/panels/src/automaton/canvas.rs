@@ -202,13 +202,20 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
                 LocationKind::Unless => "Starts its body once, unless the condition is known to hold",
                 LocationKind::When => "Waits for the condition, then starts its body once",
                 LocationKind::Whenever => "Starts its body whenever the condition is known to hold",
+                LocationKind::Wait => "Active until the time is up",
+                LocationKind::At => "Starts its body at this time of the program",
+                LocationKind::Every => "Starts its body again and again",
             };
             Some(format!("{}: {}\n{meaning}", automaton.location_name(id), location.label))
         }
         AutomatonItem::Transition(id) => {
             let transition = automaton.transitions.get(id.0 as usize)?;
             let Some(guard) = transition.guard.and_then(|guard| automaton.guard(guard)) else {
-                return Some("Fires at every step".to_owned());
+                let is_timed = automaton.location(transition.source).is_some_and(|it| it.clock.is_some());
+                let leaves = transition.target != hca::Element::Location(transition.source);
+                let when =
+                    if is_timed && leaves { "Fires when the time is up" } else { "Fires at every step" };
+                return Some(when.to_owned());
             };
             let verb = if guard.non_entailed { "is not known to hold" } else { "is known to hold" };
             Some(format!("Fires when {} {verb}", guard.constraint))
@@ -219,6 +226,7 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
                 return match composite.kind {
                     CompositeKind::Parallel => Some("These branches run in parallel".to_owned()),
                     CompositeKind::Sequence => Some("These parts run in sequence".to_owned()),
+                    CompositeKind::Timeout => Some("Ends its first part when the time is up".to_owned()),
                     _ => None,
                 };
             };

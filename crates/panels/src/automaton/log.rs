@@ -64,7 +64,12 @@ pub(super) fn show(
 }
 
 fn cells(shown: Shown<'_>, moment: &Moment, next: Option<&Moment>) -> [String; 5] {
-    let marked = marked_text(shown.automaton, moment);
+    let mut marked = marked_text(shown.automaton, moment);
+    for &(id, left) in &moment.upcoming.clocks {
+        let Some(clock) = shown.automaton.clock(id) else { continue };
+        let steps = if left == 1 { "step" } else { "steps" };
+        marked.push_str(&format!("\n{}: {left} {steps} left", clock.label));
+    }
     let goals = moment.upcoming.goals.join(", ");
     let plant = moment.plant.as_ref().zip(shown.program.model());
     let commands = plant.and_then(|(plant, model)| Some(commands_text(model, plant.next_commands.as_ref()?)));
@@ -76,7 +81,7 @@ fn cells(shown: Shown<'_>, moment: &Moment, next: Option<&Moment>) -> [String; 5
     [marked, goals, commands.unwrap_or_default(), outcome(shown, next), observed.unwrap_or_default()]
 }
 
-/// What was injected, found and preempted in a step.
+/// What was injected, found and preempted in a step, and which times were up.
 fn outcome(shown: Shown<'_>, next: Option<&Moment>) -> String {
     let Some(next) = next else { return String::new() };
     let mut parts = Vec::new();
@@ -102,6 +107,10 @@ fn outcome(shown: Shown<'_>, next: Option<&Moment>) -> String {
     let preempted = next.taken.as_ref().map_or(0, |taken| taken.preempted.len());
     if preempted > 0 {
         parts.push("preempted".to_owned());
+    }
+    for &id in next.taken.iter().flat_map(|taken| &taken.elapsed) {
+        let Some(clock) = shown.automaton.clock(id) else { continue };
+        parts.push(format!("time is up: {}", clock.label));
     }
     parts.join("; ")
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::call_cycles::call_cycles;
 use crate::diagnostic::{Code, Diagnostic, Edit, Fix};
 
+use super::check_timed::{check_held, check_numbers};
 use super::read_program::Reader;
 use super::suggest::nearest;
 use super::syntax::{
@@ -41,30 +42,17 @@ impl<'file> Checker<'file> {
     }
 
     fn expression(&mut self, expression: &'file Expression, within: &'file Definition) {
-        match &expression.kind {
-            ExpressionKind::Assert(constraint) => self.constraint(constraint, within),
-            ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-                for part in parts {
-                    self.expression(part, within);
-                }
-            }
-            ExpressionKind::Always(body) => self.expression(body, within),
-            ExpressionKind::IfThenNext { guard, then, otherwise } => {
-                self.constraint(&guard.constraint, within);
-                self.expression(then, within);
-                if let Some(otherwise) = otherwise {
-                    self.expression(otherwise, within);
-                }
-            }
-            ExpressionKind::UnlessThenNext { guard, body }
-            | ExpressionKind::WhenDoNext { guard, body }
-            | ExpressionKind::WheneverDoNext { guard, body }
-            | ExpressionKind::DoWatching { guard, body } => {
-                self.constraint(&guard.constraint, within);
-                self.expression(body, within);
-            }
-            ExpressionKind::Call { name, arguments, bare } => self.call(name, arguments, *bare, within),
-            ExpressionKind::Unreadable => {}
+        let guarded = expression.guard().map(|guard| &guard.constraint);
+        for constraint in guarded.into_iter().chain(expression.asserted()) {
+            self.constraint(constraint, within);
+        }
+        let numbers = check_numbers(expression, &|name| is_parameter(name, within));
+        self.diagnostics.extend(numbers);
+        if let ExpressionKind::Call { name, arguments, bare } = &expression.kind {
+            self.call(name, arguments, *bare, within);
+        }
+        for part in expression.parts() {
+            self.expression(part, within);
         }
     }
 
@@ -101,10 +89,9 @@ impl<'file> Checker<'file> {
         within: &'file Definition,
     ) {
         for argument in arguments {
-            match argument {
-                Argument::Expression(expression) => self.expression(expression, within),
-                Argument::Guard(guard) => self.constraint(&guard.constraint, within),
-                Argument::Word(_) => {}
+            if let Argument::Guard(guard) = argument {
+                self.constraint(&guard.constraint, within);
+                self.diagnostics.extend(check_held(guard, &|name| is_parameter(name, within)));
             }
         }
         if is_parameter(name, within) {
@@ -197,31 +184,10 @@ fn is_parameter(name: &Name, within: &Definition) -> bool {
 }
 
 fn called<'file>(expression: &'file Expression, into: &mut Vec<&'file Name>) {
-    match &expression.kind {
-        ExpressionKind::Assert(_) | ExpressionKind::Unreadable => {}
-        ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => {
-            for part in parts {
-                called(part, into);
-            }
-        }
-        ExpressionKind::IfThenNext { then, otherwise, .. } => {
-            called(then, into);
-            if let Some(otherwise) = otherwise {
-                called(otherwise, into);
-            }
-        }
-        ExpressionKind::Always(body)
-        | ExpressionKind::UnlessThenNext { body, .. }
-        | ExpressionKind::WhenDoNext { body, .. }
-        | ExpressionKind::WheneverDoNext { body, .. }
-        | ExpressionKind::DoWatching { body, .. } => called(body, into),
-        ExpressionKind::Call { name, arguments, .. } => {
-            into.push(name);
-            for argument in arguments {
-                if let Argument::Expression(inner) = argument {
-                    called(inner, into);
-                }
-            }
-        }
+    if let ExpressionKind::Call { name, .. } = &expression.kind {
+        into.push(name);
+    }
+    for part in expression.parts() {
+        called(part, into);
     }
 }

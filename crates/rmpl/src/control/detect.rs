@@ -27,7 +27,8 @@ pub fn is_control_text(text: &str) -> bool {
             Some(TokenKind::DoubleColon) => control += 3,
             Some(TokenKind::Tilde) => control += 1,
             Some(TokenKind::Open) => {
-                if word(at + 1).is_some_and(is_form_head) {
+                let has_parts = !matches!(kind(at + 2), None | Some(TokenKind::Close | TokenKind::Comma));
+                if has_parts && word(at + 1).is_some_and(is_form_head) {
                     control += 3;
                 } else if kind(at + 2) == Some(TokenKind::Equals) && kind(at + 4) == Some(TokenKind::Close) {
                     control += 1;

@@ -31,7 +31,14 @@ impl fmt::Display for Constraint {
 
 impl fmt::Display for Guard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let bar = if self.non_entailed { "~" } else { "" };
-        write!(f, "{bar}{}", self.constraint)
+        let bar = |is_barred: bool| if is_barred { "~" } else { "" };
+        match &self.held {
+            None => write!(f, "{}{}", bar(self.non_entailed), self.constraint),
+            Some(held) => {
+                let duration = &held.duration.text;
+                let inner = bar(held.non_entailed);
+                write!(f, "{}(HELD {duration} {inner}{})", bar(self.non_entailed), self.constraint)
+            }
+        }
     }
 }

@@ -7,8 +7,10 @@ use smol_str::SmolStr;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 
+use super::check_timed::{check_held, check_numbers};
 use super::syntax::{
-    Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Guard, Name,
+    Alternative, Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind,
+    Guard, Held, Name,
 };
 
 /// An automaton of more expressions than this is refused: no author means it.
@@ -95,12 +97,73 @@ impl Expander<'_> {
                 let body = Box::new(inner(body));
                 ExpressionKind::DoWatching { guard: self.guard(guard, scope), body }
             }
+            ExpressionKind::Wait(duration) => ExpressionKind::Wait(self.word(duration, scope)),
+            ExpressionKind::Timeout { duration, body, otherwise } => {
+                let body = Box::new(inner(body));
+                let otherwise = otherwise.as_ref().map(|otherwise| Box::new(inner(otherwise)));
+                ExpressionKind::Timeout { duration: self.word(duration, scope), body, otherwise }
+            }
+            ExpressionKind::Within { least, most, body, otherwise } => {
+                let body = Box::new(inner(body));
+                let otherwise = otherwise.as_ref().map(|otherwise| Box::new(inner(otherwise)));
+                let (least, most) = (self.word(least, scope), self.word(most, scope));
+                ExpressionKind::Within { least, most, body, otherwise }
+            }
+            ExpressionKind::At { time, body } => {
+                let body = Box::new(inner(body));
+                ExpressionKind::At { time: self.word(time, scope), body }
+            }
+            ExpressionKind::Every { period, body } => {
+                let body = Box::new(inner(body));
+                ExpressionKind::Every { period: self.word(period, scope), body }
+            }
+            ExpressionKind::Warp { factor, body } => {
+                let body = Box::new(inner(body));
+                ExpressionKind::Warp { factor: self.word(factor, scope), body }
+            }
+            ExpressionKind::Lock { constraint, body } => {
+                let body = Box::new(inner(body));
+                ExpressionKind::Lock { constraint: self.constraint(constraint, scope), body }
+            }
+            ExpressionKind::Reward(reward) => ExpressionKind::Reward(self.word(reward, scope)),
+            ExpressionKind::ChooseProb(alternatives) => {
+                ExpressionKind::ChooseProb(self.alternatives(alternatives, scope, calls, depth))
+            }
+            ExpressionKind::ChooseReward(alternatives) => {
+                ExpressionKind::ChooseReward(self.alternatives(alternatives, scope, calls, depth))
+            }
             ExpressionKind::Assert(constraint) => self.assertion(constraint, scope),
             ExpressionKind::Call { name, arguments, .. } => {
                 return self.call(name, arguments, from, scope, calls, depth);
             }
         };
-        Expression { kind, span: from.span }
+        let expanded = Expression { kind, span: from.span };
+        self.check_handed(check_numbers(&expanded, &|_| false));
+        expanded
+    }
+
+    fn alternatives(
+        &mut self,
+        from: &[Alternative],
+        scope: &Scope,
+        calls: &mut Vec<SmolStr>,
+        depth: usize,
+    ) -> Vec<Alternative> {
+        let each = from.iter().map(|alternative| Alternative {
+            weight: self.word(&alternative.weight, scope),
+            body: self.expression(&alternative.body, scope, calls, depth + 1),
+        });
+        each.collect()
+    }
+
+    /// Numbers that calls hand over are known only now; the others have been checked.
+    fn check_handed(&mut self, found: Vec<Diagnostic>) {
+        for diagnostic in found {
+            let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.code == diagnostic.code;
+            if !self.diagnostics.iter().any(is_same) {
+                self.diagnostics.push(diagnostic);
+            }
+        }
     }
 
     /// A constraint that is asserted; a parameter there may also stand for a whole expression.
@@ -191,13 +254,31 @@ impl Expander<'_> {
     }
 
     fn guard(&mut self, from: &Guard, scope: &Scope) -> Guard {
+        let held =
+            from.held.as_ref().map(|held| Held { duration: self.word(&held.duration, scope), ..*held });
         if let ConstraintKind::Parameter(name) = &from.constraint.kind
             && let Some(Argument::Guard(bound)) = scope.get(&name.text)
         {
-            // `~p` with p itself a bar asks whether p does not hold, which is entailment again.
-            return Guard { non_entailed: bound.non_entailed != from.non_entailed, ..bound.clone() };
+            let bound = bound.clone();
+            return match held {
+                // `~p` with p itself a bar asks whether p does not hold, which is entailment again.
+                None => Guard { non_entailed: bound.non_entailed != from.non_entailed, ..bound },
+                Some(held) if bound.held.is_none() => {
+                    let held = Held { non_entailed: bound.non_entailed != held.non_entailed, ..held };
+                    Guard { non_entailed: from.non_entailed, held: Some(held), ..bound }
+                }
+                Some(_) => {
+                    let message =
+                        format!("HELD cannot be inside HELD, but the call passes HELD for `{}`", name.text);
+                    self.error("E-CONSTRAINT", bound.span, message);
+                    bound
+                }
+            };
         }
-        Guard { constraint: self.constraint(&from.constraint, scope), ..*from }
+        let constraint = self.constraint(&from.constraint, scope);
+        let guard = Guard { non_entailed: from.non_entailed, held, constraint, span: from.span };
+        self.check_handed(check_held(&guard, &|_| false).into_iter().collect());
+        guard
     }
 
     fn constraint(&mut self, from: &Constraint, scope: &Scope) -> Constraint {

@@ -1,6 +1,7 @@
 //! The canonical layout of a text in prefix notation: two blanks per depth, one form per line where a line is too long.
 
-use super::keyword::{self, EXPRESSION_KEYWORDS, MODEL_KEYWORDS};
+use super::duration::units;
+use super::keyword::{self, EXPRESSION_KEYWORDS, MODEL_KEYWORDS, TIMED_KEYWORDS};
 use super::lexer::{Token, TokenKind, lex};
 
 /// Lines are broken when they would be longer than this many characters.
@@ -110,7 +111,7 @@ fn canonical(kind: TokenKind, text: &str) -> String {
                 .collect();
             let is_keyword = EXPRESSION_KEYWORDS.contains(&upper.as_str())
                 || MODEL_KEYWORDS.contains(&upper.as_str())
-                || matches!(upper.as_str(), "AND" | "OR" | "NOT" | "NOT-ENTAILED");
+                || matches!(upper.as_str(), "AND" | "OR" | "NOT" | "NOT-ENTAILED" | "HELD");
             // Names are case-sensitive: a variable called `mode` or `port` keeps its case.
             if is_keyword && (upper.contains('-') || text.chars().all(char::is_uppercase)) {
                 upper
@@ -274,10 +275,11 @@ fn kept_on_first_line(inner: &[Piece]) -> usize {
     let Some(head) = inner.first().filter(|piece| piece.kind == TokenKind::Word) else { return 0 };
     let upper = head.text.to_ascii_uppercase();
     let extra = match upper.as_str() {
-        "PARALLEL" | "SEQUENCE" | "ALWAYS" | "AND" | "OR" => 0,
+        "PARALLEL" | "SEQUENCE" | "ALWAYS" | "AND" | "OR" | "CHOOSE-PROB" | "CHOOSE-REWARD" => 0,
+        "WITHIN" => 2,
         _ if keyword::EXPRESSION_KEYWORDS.contains(&upper.as_str()) => 1,
         "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" | "VAR" | "TRANSITION" | "FAULT" => 2,
-        "MODE" | "COMMAND" | "PORT" => 1,
+        "MODE" | "COMMAND" | "PORT" | "HELD" | "DEFSTEP" => 1,
         _ => 0,
     };
     let mut kept = 1;
@@ -290,6 +292,10 @@ fn kept_on_first_line(inner: &[Piece]) -> usize {
             Some(piece) => {
                 kept += piece.length;
                 taken += 1;
+                // The unit of a duration may stand apart.
+                let is_unit = |unit: &&Piece| units().contains(&unit.text.as_str());
+                let is_duration = TIMED_KEYWORDS.contains(&upper.as_str()) || upper == "HELD";
+                kept += usize::from(is_duration && inner.get(kept).as_ref().is_some_and(is_unit));
             }
         }
     }

@@ -6,7 +6,7 @@ use super::lexer::{TokenKind, is_hyphen};
 use super::tree::Node;
 
 /// The heads of expressions.
-pub const EXPRESSION_KEYWORDS: [&str; 9] = [
+pub const EXPRESSION_KEYWORDS: [&str; 19] = [
     "PARALLEL",
     "SEQUENCE",
     "ALWAYS",
@@ -16,10 +16,24 @@ pub const EXPRESSION_KEYWORDS: [&str; 9] = [
     "WHEN-DONEXT",
     "WHENEVER-DONEXT",
     "DO-WATCHING",
+    "WAIT",
+    "TIMEOUT",
+    "WITHIN",
+    "AT",
+    "EVERY",
+    "WARP",
+    "LOCK",
+    "CHOOSE-PROB",
+    "CHOOSE-REWARD",
+    "REWARD",
 ];
 
+/// Those of them that speak of time, locks and choices: a definition of the text may have their names.
+pub(super) const TIMED_KEYWORDS: &[&str] = EXPRESSION_KEYWORDS.split_at(9).1;
+
 /// The heads of options and of the model part, and the words inside its fields.
-pub const MODEL_KEYWORDS: [&str; 12] = [
+pub const MODEL_KEYWORDS: [&str; 13] = [
+    "DEFSTEP",
     "DEFOPTION",
     "DEFCLASS",
     "DEFINSTANCE",

@@ -3,8 +3,10 @@
 //! Parsing never fails: every stage returns a result and diagnostics. Automata and plants are other crates' business.
 
 mod check;
+mod check_timed;
 mod detect;
 mod display;
+mod duration;
 mod expand;
 mod format;
 mod highlight;
@@ -15,12 +17,14 @@ mod probabilities;
 mod read_constraint;
 mod read_model;
 mod read_program;
+mod read_timed;
 mod spans;
 mod suggest;
 mod syntax;
 mod tree;
 
 pub use detect::is_control_text;
+pub use duration::{Duration, DurationError};
 pub use expand::expand_main;
 pub use format::format;
 pub use highlight::{Highlight, HighlightKind, highlight};
@@ -29,8 +33,8 @@ pub use keyword::{EXPRESSION_KEYWORDS, MODEL_KEYWORDS};
 pub use lexer::{Token, TokenKind, lex};
 pub use suggest::nearest;
 pub use syntax::{
-    Argument, Class, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Field,
-    FieldKind, Guard, Initial, Instance, Name, ProgramOption,
+    Alternative, Argument, Class, Constraint, ConstraintKind, ControlFile, Definition, Expression,
+    ExpressionKind, Field, FieldKind, Guard, Held, Initial, Instance, Name, ProgramOption,
 };
 pub use tree::{List, Node, Tree};
 
@@ -63,6 +67,7 @@ pub fn parse(text: &str) -> ParsedControl {
     let (file, found) = read_program::read(text, &tree);
     diagnostics.extend(found);
     diagnostics.extend(check::check(&file));
+    diagnostics.extend(check_timed::check_steps(&file));
     diagnostics.extend(probabilities::check(&file));
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
     ParsedControl { tokens, tree, file, diagnostics: crate::diagnostic::listed(diagnostics) }

@@ -26,14 +26,18 @@ impl Instance {
         let sums = |(weights, common): &(Vec<u64>, u64)| {
             weights.iter().map(|weight| u128::from(*weight)).sum::<u128>() == u128::from(*common)
         };
-        let Some((weights, _)) = weights(prior).filter(sums) else { return Vec::new() };
+        let Some((weights, _)) = weights(&given(prior)).filter(sums) else { return Vec::new() };
         prior.iter().map(|(mode, _)| mode.text.as_str()).zip(weights).collect()
     }
 }
 
-/// The weights of the probabilities of a prior, and their common denominator; `None` if some are wrong or too long.
-fn weights(prior: &[(Name, Name)]) -> Option<(Vec<u64>, u64)> {
-    let parts: Vec<Rational> = prior.iter().map(|(_, given)| positive(&given.text)).collect::<Option<_>>()?;
+fn given(prior: &[(Name, Name)]) -> Vec<&str> {
+    prior.iter().map(|(_, given)| given.text.as_str()).collect()
+}
+
+/// The weights of probabilities, and their common denominator; `None` if some are wrong or too long.
+pub(super) fn weights(given: &[&str]) -> Option<(Vec<u64>, u64)> {
+    let parts: Vec<Rational> = given.iter().map(|given| positive(given)).collect::<Option<_>>()?;
     let mut common = 1_u64;
     for part in &parts {
         let denominator = part.denominator().unsigned_abs();
@@ -81,7 +85,7 @@ fn check_prior(instance: &Instance, diagnostics: &mut Vec<Diagnostic>) {
     if diagnostics.len() > before {
         return;
     }
-    let sum = weights(prior).and_then(|(weights, common)| {
+    let sum = weights(&self::given(prior)).and_then(|(weights, common)| {
         let sum = weights.iter().map(|weight| i128::from(*weight)).sum();
         Rational::from_wide(sum, i128::from(common))
     });
@@ -92,7 +96,7 @@ fn check_prior(instance: &Instance, diagnostics: &mut Vec<Diagnostic>) {
 }
 
 /// A probability above 0.
-fn positive(text: &str) -> Option<Rational> {
+pub(super) fn positive(text: &str) -> Option<Rational> {
     text.parse()
         .ok()
         .filter(|value| (Rational::ZERO..=Rational::ONE).contains(value) && *value != Rational::ZERO)

@@ -1,11 +1,13 @@
 //! From matched parentheses to the typed tree: definitions and expressions (SPEC 2.1).
 
+use std::collections::BTreeSet;
+
 use smol_str::SmolStr;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 
-use super::keyword::{self, EXPRESSION_KEYWORDS};
+use super::keyword::{self, EXPRESSION_KEYWORDS, TIMED_KEYWORDS};
 use super::lexer::{Token, TokenKind};
 use super::suggest::nearest;
 use super::syntax::{
@@ -15,7 +17,8 @@ use super::tree::{List, Node, Tree};
 
 /// Reads all definitions, classes and components of a text.
 pub(super) fn read(text: &str, tree: &Tree) -> (ControlFile, Vec<Diagnostic>) {
-    let mut reader = Reader { text, diagnostics: Vec::new() };
+    let mut reader =
+        Reader { text, diagnostics: Vec::new(), defined: defined(text, &tree.items), parameters: Vec::new() };
     let mut file = ControlFile::default();
     let mut rest = tree.items.as_slice();
     while !rest.is_empty() {
@@ -36,27 +39,38 @@ pub(super) fn read(text: &str, tree: &Tree) -> (ControlFile, Vec<Diagnostic>) {
     (file, reader.diagnostics)
 }
 
+/// The names of the definitions of a text.
+fn defined<'text>(text: &'text str, items: &[Node]) -> BTreeSet<&'text str> {
+    let names = (0..items.len()).filter(|&at| starts_definition(items, at));
+    names.filter_map(|at| Some(keyword::word(text, items.get(at)?)?.0)).collect()
+}
+
+fn starts_definition(items: &[Node], at: usize) -> bool {
+    matches!(items.get(at), Some(Node::Leaf(token)) if token.kind == TokenKind::Word)
+        && matches!(items.get(at + 1), Some(Node::List(_)))
+        && matches!(items.get(at + 2), Some(Node::Leaf(token)) if token.kind == TokenKind::DoubleColon)
+}
+
 /// How many items belong to the definition, class, component or expression at the front.
 fn unit_length(items: &[Node]) -> usize {
-    let starts_definition = |at: usize| {
-        matches!(items.get(at), Some(Node::Leaf(token)) if token.kind == TokenKind::Word)
-            && matches!(items.get(at + 1), Some(Node::List(_)))
-            && matches!(items.get(at + 2), Some(Node::Leaf(token)) if token.kind == TokenKind::DoubleColon)
-    };
-    if !starts_definition(0) {
+    if !starts_definition(items, 0) {
         // A guard's bar stands before its list.
         let barred = matches!(items.first(), Some(Node::Leaf(token)) if token.kind == TokenKind::Tilde);
         return if barred && items.len() > 1 { 2 } else { 1 };
     }
     let barred = matches!(items.get(3), Some(Node::Leaf(token)) if token.kind == TokenKind::Tilde);
     let length = if barred { 5 } else { 4 };
-    if starts_definition(3) { 3 } else { length.min(items.len()) }
+    if starts_definition(items, 3) { 3 } else { length.min(items.len()) }
 }
 
 /// Reads nodes and collects what is wrong with them.
 pub(super) struct Reader<'text> {
     pub(super) text: &'text str,
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// The names of the text's definitions.
+    pub(super) defined: BTreeSet<&'text str>,
+    /// The parameters of the definition that is read.
+    pub(super) parameters: Vec<SmolStr>,
 }
 
 impl Reader<'_> {
@@ -90,6 +104,7 @@ impl Reader<'_> {
                 "DEFCLASS" => return file.classes.extend(self.class(list)),
                 "DEFINSTANCE" => return file.instances.extend(self.instance(list)),
                 "DEFOPTION" => return file.options.extend(self.option(list)),
+                "DEFSTEP" => return file.steps.extend(self.step_length(list)),
                 _ => {}
             }
         }
@@ -150,7 +165,9 @@ impl Reader<'_> {
                 format!("the definition of `{}` is empty: add an expression after `::`", name.text),
             );
         }
+        self.parameters = names.iter().map(|name| name.text.clone()).collect();
         let body = self.expression_of(body, span);
+        self.parameters.clear();
         file.definitions.push(Definition { name, parameters: names, body, span });
     }
 
@@ -169,7 +186,7 @@ impl Reader<'_> {
     }
 
     /// The expression that `items` write; more than a barred or plain node has been cut off before.
-    fn expression_of(&mut self, items: &[Node], span: Span) -> Expression {
+    pub(super) fn expression_of(&mut self, items: &[Node], span: Span) -> Expression {
         match items {
             [] => Expression { kind: ExpressionKind::Unreadable, span },
             [node] => self.expression(node),
@@ -240,15 +257,22 @@ impl Reader<'_> {
                     Some("use it as the guard of IF, UNLESS, WHEN, WHENEVER or DO-WATCHING; to assert the opposite of c, write `(NOT c)`".into());
                 ExpressionKind::Unreadable
             }
-            "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" => {
+            "HELD" if !self.calls_definition(list) => {
+                self.error("E-CONSTRAINT", head.span, "HELD can be a guard, but not an assertion").hint =
+                    Some("use it as the guard of IF, UNLESS, WHEN, WHENEVER or DO-WATCHING".into());
+                ExpressionKind::Unreadable
+            }
+            "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" | "DEFSTEP" => {
                 self.error("E-FORM", head.span, format!("{} cannot be inside an expression", head.upper))
                     .hint = Some(
-                    "move it out of the definition: declare classes, components and options at the top level"
+                    "move it out of the definition: declare classes, components, options and the step at the top level"
                         .into(),
                 );
                 ExpressionKind::Unreadable
             }
-            keyword if EXPRESSION_KEYWORDS.contains(&keyword) => self.form(keyword, head.span, arguments),
+            keyword if EXPRESSION_KEYWORDS.contains(&keyword) && !self.calls_definition(list) => {
+                self.form(keyword, head.span, arguments)
+            }
             _ => self.call(list, arguments),
         }
     }
@@ -259,15 +283,7 @@ impl Reader<'_> {
                 self.error("E-ARITY", span, format!("{keyword} needs at least one expression"));
                 return ExpressionKind::Unreadable;
             }
-            let mut parts: Vec<Expression> = Vec::with_capacity(items.len());
-            let mut rest = items;
-            while let Some(first) = rest.first() {
-                let barred =
-                    matches!(first, Node::Leaf(token) if token.kind == TokenKind::Tilde) && rest.len() > 1;
-                let (part, after) = rest.split_at(if barred { 2 } else { 1 });
-                parts.push(self.expression_of(part, first.span()));
-                rest = after;
-            }
+            let parts = Self::parts_of(items).into_iter().map(|part| self.part(part)).collect();
             return if keyword == "PARALLEL" {
                 ExpressionKind::Parallel(parts)
             } else {
@@ -279,6 +295,9 @@ impl Reader<'_> {
                 return self.wrong_arity(keyword, span, "one expression", items.len());
             };
             return ExpressionKind::Always(Box::new(self.expression(body)));
+        }
+        if TIMED_KEYWORDS.contains(&keyword) {
+            return self.timed_form(keyword, span, items);
         }
         self.guarded_form(keyword, span, items)
     }
@@ -325,21 +344,23 @@ impl Reader<'_> {
         }
     }
 
-    fn wrong_arity(&mut self, keyword: &str, span: Span, wanted: &str, given: usize) -> ExpressionKind {
+    pub(super) fn wrong_arity(
+        &mut self,
+        keyword: &str,
+        span: Span,
+        wanted: &str,
+        given: usize,
+    ) -> ExpressionKind {
         let parts = if given == 1 { "part is" } else { "parts are" };
         self.error("E-ARITY", span, format!("{keyword} takes {wanted}, but {given} {parts} given"));
         ExpressionKind::Unreadable
     }
 
-    fn guard(&mut self, items: &[Node]) -> Guard {
+    pub(super) fn guard(&mut self, items: &[Node]) -> Guard {
         let span = items.iter().map(Node::span).reduce(Span::cover).unwrap_or_default();
         let (bars, constraint) = items.split_at(items.len().saturating_sub(1));
         let Some(node) = constraint.first() else {
-            return Guard {
-                non_entailed: false,
-                constraint: Constraint { kind: ConstraintKind::Unreadable, span },
-                span,
-            };
+            return Guard::unreadable(span);
         };
         if let [_, second, ..] = bars {
             self.error("E-CONSTRAINT", second.span(), "write `~` only once").hint = Some(
@@ -374,7 +395,10 @@ impl Reader<'_> {
             non_entailed = true;
             inner = wrapped;
         }
-        Guard { non_entailed, constraint: self.constraint(inner), span }
+        if let Some(held) = self.held_guard(inner, non_entailed, span) {
+            return held;
+        }
+        Guard { non_entailed, held: None, constraint: self.constraint(inner), span }
     }
 
     fn call(&mut self, list: &List, items: &[Node]) -> ExpressionKind {
@@ -382,19 +406,21 @@ impl Reader<'_> {
             return ExpressionKind::Unreadable;
         };
         let mut arguments = Vec::new();
-        let mut rest = items;
-        while let Some(first) = rest.first() {
-            let barred =
-                matches!(first, Node::Leaf(token) if token.kind == TokenKind::Tilde) && rest.len() > 1;
-            let (part, after) = rest.split_at(if barred { 2 } else { 1 });
-            rest = after;
-            match first {
-                _ if barred => arguments.push(Argument::Guard(self.guard(part))),
-                Node::Leaf(token) if token.kind == TokenKind::Comma => {}
-                Node::Leaf(token) if token.kind == TokenKind::Word => {
-                    arguments.extend(self.name(first).map(Argument::Word));
+        for part in Self::parts_of(items) {
+            match part {
+                [_, _, ..] => arguments.push(Argument::Guard(self.guard(part))),
+                [Node::Leaf(token)] if token.kind == TokenKind::Comma => {}
+                [word @ Node::Leaf(token)] if token.kind == TokenKind::Word => {
+                    arguments.extend(self.name(word).map(Argument::Word));
                 }
-                _ => arguments.push(Argument::Expression(self.expression(first))),
+                [node @ Node::List(inner)] if !self.calls_definition(inner) => {
+                    let held = self.held_guard(node, false, node.span());
+                    arguments.push(match held {
+                        Some(held) => Argument::Guard(held),
+                        None => Argument::Expression(self.expression(node)),
+                    });
+                }
+                _ => arguments.push(Argument::Expression(self.part(part))),
             }
         }
         ExpressionKind::Call { name, arguments, bare: false }

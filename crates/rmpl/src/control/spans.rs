@@ -1,12 +1,13 @@
 //! The places that what is kept of a control program refers to: see [`crate::spans`].
 
-use super::syntax::{Constraint, ConstraintKind, Guard, Name};
+use super::syntax::{Constraint, ConstraintKind, Guard, Held, Name};
 use crate::span::Span;
 use crate::spans::Spans;
 
 crate::spans! {
     Name { span }
-    Guard { constraint, span }
+    Guard { held, constraint, span }
+    Held { duration }
     Constraint { kind, span }
 }
 

@@ -1,8 +1,10 @@
 //! The typed tree of control programs and of the model part (SPEC 2.1 and 2.2).
 
+use exact::Rational;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
+use super::duration::Duration;
 use crate::span::Span;
 
 /// A name or value as written.
@@ -24,12 +26,22 @@ pub struct ControlFile {
     pub instances: Vec<Instance>,
     /// The options in textual order.
     pub options: Vec<ProgramOption>,
+    /// The lengths of a step that the text names, in textual order: one at most is right.
+    pub steps: Vec<Name>,
+    /// How many seconds a step of the mission takes that the text stands in.
+    pub mission_step_secs: Option<Rational>,
 }
 
 impl ControlFile {
     /// The definition that runs: the last one without parameters.
     pub fn main(&self) -> Option<&Definition> {
         self.definitions.iter().rev().find(|definition| definition.parameters.is_empty())
+    }
+
+    /// How many seconds a step takes: as the text says, otherwise as its mission does, otherwise one.
+    pub fn step_secs(&self) -> Rational {
+        let own = self.steps.first().and_then(|step| Duration::read(&step.text).ok()?.seconds());
+        own.or(self.mission_step_secs).unwrap_or(Rational::ONE)
     }
 }
 
@@ -106,6 +118,49 @@ pub enum ExpressionKind {
         /// What is done meanwhile.
         body: Box<Expression>,
     },
+    /// Lets time pass.
+    Wait(Name),
+    /// Ends the body when its time is up.
+    Timeout {
+        duration: Name,
+        body: Box<Expression>,
+        /// Done next if the time is up.
+        otherwise: Option<Box<Expression>>,
+    },
+    /// Gives the body at least one duration and at most another.
+    Within {
+        least: Name,
+        most: Name,
+        body: Box<Expression>,
+        /// Done next if the time is up.
+        otherwise: Option<Box<Expression>>,
+    },
+    /// Starts the body at a time of the program.
+    At {
+        time: Name,
+        body: Box<Expression>,
+    },
+    /// Starts the body again and again.
+    Every {
+        period: Name,
+        body: Box<Expression>,
+    },
+    /// Divides the durations of the body.
+    Warp {
+        factor: Name,
+        body: Box<Expression>,
+    },
+    /// Does the body while nothing else contradicts a constraint.
+    Lock {
+        constraint: Constraint,
+        body: Box<Expression>,
+    },
+    /// Starts one of several by a draw: their weights are probabilities.
+    ChooseProb(Vec<Alternative>),
+    /// Starts the one of several that promises most: their weights are rewards.
+    ChooseReward(Vec<Alternative>),
+    /// Counts a reward.
+    Reward(Name),
     /// A call of a definition, or the use of a parameter when it has no parentheses.
     Call {
         /// What is called.
@@ -116,6 +171,87 @@ pub enum ExpressionKind {
     },
     /// Something unreadable, for which a diagnostic was given.
     Unreadable,
+}
+
+impl Expression {
+    /// The expressions that it directly consists of, in textual order; those that are handed to a definition too.
+    pub fn parts(&self) -> Vec<&Self> {
+        match &self.kind {
+            ExpressionKind::Parallel(parts) | ExpressionKind::Sequence(parts) => parts.iter().collect(),
+            ExpressionKind::IfThenNext { then, otherwise, .. } => {
+                std::iter::once(&**then).chain(otherwise.as_deref()).collect()
+            }
+            ExpressionKind::Timeout { body, otherwise, .. }
+            | ExpressionKind::Within { body, otherwise, .. } => {
+                std::iter::once(&**body).chain(otherwise.as_deref()).collect()
+            }
+            ExpressionKind::Always(body)
+            | ExpressionKind::UnlessThenNext { body, .. }
+            | ExpressionKind::WhenDoNext { body, .. }
+            | ExpressionKind::WheneverDoNext { body, .. }
+            | ExpressionKind::DoWatching { body, .. }
+            | ExpressionKind::At { body, .. }
+            | ExpressionKind::Every { body, .. }
+            | ExpressionKind::Warp { body, .. }
+            | ExpressionKind::Lock { body, .. } => vec![body],
+            ExpressionKind::ChooseProb(alternatives) | ExpressionKind::ChooseReward(alternatives) => {
+                alternatives.iter().map(|alternative| &alternative.body).collect()
+            }
+            ExpressionKind::Call { arguments, .. } => {
+                let expressions = arguments.iter().filter_map(|argument| match argument {
+                    Argument::Expression(inner) => Some(inner),
+                    Argument::Word(_) | Argument::Guard(_) => None,
+                });
+                expressions.collect()
+            }
+            ExpressionKind::Assert(_)
+            | ExpressionKind::Wait(_)
+            | ExpressionKind::Reward(_)
+            | ExpressionKind::Unreadable => Vec::new(),
+        }
+    }
+
+    /// What it asks of the estimate itself.
+    pub const fn guard(&self) -> Option<&Guard> {
+        match &self.kind {
+            ExpressionKind::IfThenNext { guard, .. }
+            | ExpressionKind::UnlessThenNext { guard, .. }
+            | ExpressionKind::WhenDoNext { guard, .. }
+            | ExpressionKind::WheneverDoNext { guard, .. }
+            | ExpressionKind::DoWatching { guard, .. } => Some(guard),
+            _ => None,
+        }
+    }
+
+    /// What it asserts itself.
+    pub const fn asserted(&self) -> Option<&Constraint> {
+        match &self.kind {
+            ExpressionKind::Assert(constraint) | ExpressionKind::Lock { constraint, .. } => Some(constraint),
+            _ => None,
+        }
+    }
+
+    /// The durations that it names itself.
+    pub fn durations(&self) -> Vec<&Name> {
+        let held = self.guard().and_then(|guard| guard.held.as_ref()).map(|held| &held.duration);
+        let own = match &self.kind {
+            ExpressionKind::Wait(duration)
+            | ExpressionKind::Timeout { duration, .. }
+            | ExpressionKind::At { time: duration, .. }
+            | ExpressionKind::Every { period: duration, .. } => vec![duration],
+            ExpressionKind::Within { least, most, .. } => vec![least, most],
+            _ => Vec::new(),
+        };
+        held.into_iter().chain(own).collect()
+    }
+}
+
+/// What CHOOSE-PROB and CHOOSE-REWARD choose from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Alternative {
+    /// A probability or a reward, as written.
+    pub weight: Name,
+    pub body: Expression,
 }
 
 /// An argument of a call.
@@ -134,10 +270,28 @@ pub enum Argument {
 pub struct Guard {
     /// Whether the guard asks for non-entailment (`~c`) rather than entailment.
     pub non_entailed: bool,
+    /// With HELD: for how long the constraint has to have been satisfied.
+    pub held: Option<Held>,
     /// What is asked about.
     pub constraint: Constraint,
     /// Where it is written.
     pub span: Span,
+}
+
+impl Guard {
+    /// One for which a diagnostic was given.
+    pub(super) const fn unreadable(span: Span) -> Self {
+        let constraint = Constraint { kind: ConstraintKind::Unreadable, span };
+        Self { non_entailed: false, held: None, constraint, span }
+    }
+}
+
+/// What `(HELD d c)` says beside `c`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Held {
+    pub duration: Name,
+    /// Whether it is non-entailment that has to have lasted: `(HELD d ~c)`.
+    pub non_entailed: bool,
 }
 
 /// A constraint and where it is written.

@@ -185,7 +185,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Whether `NAME (…) ::`, `(DEFCLASS`, `(DEFINSTANCE` or `(DEFOPTION` starts at token `at`, at a line's beginning.
+    /// Whether `NAME (…) ::`, `(DEFCLASS`, `(DEFINSTANCE`, `(DEFOPTION` or `(DEFSTEP` starts at token `at`, at a line's beginning.
     fn starts_definition(&self, at: usize) -> bool {
         let Some(token) = self.tokens.get(at) else { return false };
         let at_line_start =
@@ -197,7 +197,9 @@ impl Builder<'_> {
         match token.kind {
             TokenKind::Open => following.nth(1).is_some_and(|word| {
                 let word = self.text.get(word.span.range()).unwrap_or("");
-                ["DEFCLASS", "DEFINSTANCE", "DEFOPTION"].iter().any(|head| word.eq_ignore_ascii_case(head))
+                ["DEFCLASS", "DEFINSTANCE", "DEFOPTION", "DEFSTEP"]
+                    .iter()
+                    .any(|head| word.eq_ignore_ascii_case(head))
             }),
             TokenKind::Word => {
                 following.next();

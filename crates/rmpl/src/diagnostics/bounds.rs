@@ -16,7 +16,8 @@ pub const EXPLANATION: Explanation = Explanation {
     meaning: "The minimum must be a finite time of at least 0, and the maximum must not be smaller. Only the maximum may be
 `inf`. The bounds of a call must overlap the declared bounds, because both apply. `contingent` bounds must be finite, and
 those of a call must lie within the declared ones. Bounds that contain names are checked with the values that the names have
-in the scenario.",
+in the scenario. In a control program, durations and the length of a step are finite and above 0, and the minimum of `WITHIN`
+is at most its maximum.",
     example: "primitive Drive()[30,20];
 scenario Day[0,60] = { Drive() }",
     fix: "Swap the two bounds, or correct one of them.",
@@ -50,6 +51,27 @@ pub(crate) fn reversed(lower: (Bound, Span), upper: (Bound, Span), span: Span) -
         ],
     };
     Diagnostic::error(CODE, span, message).with_fix(swap)
+}
+
+/// A duration of a control program that no clock can count.
+pub(crate) fn duration(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("a duration must be finite and above 0, but this one is `{text}`"))
+}
+
+/// A duration of a control program with too many digits.
+pub fn too_long(span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, "this duration is too long or too precise to count exactly")
+}
+
+/// WARP divides durations.
+pub(crate) fn factor(text: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("WARP needs a finite factor above 0, but this one is `{text}`"))
+}
+
+/// WITHIN with a minimum above its maximum.
+pub fn within(least: &str, most: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("the minimum {least} is greater than the maximum {most}"))
+        .with_hint("WITHIN takes the minimum duration first, then the maximum")
 }
 
 /// Nature chooses from finite times.

@@ -12,7 +12,8 @@ pub const EXPLANATION: Explanation = Explanation {
     severity: Severity::Error,
     title: "invalid probability",
     meaning: "Each probability of a prior is above 0 and at most 1, and all of one component sum to 1. The option `entailment` of a
-control program is above 0.5 and at most 1, so that a condition and its opposite are never both known.",
+control program is above 0.5 and at most 1, so that a condition and its opposite are never both known. The alternatives of
+`CHOOSE-PROB` have probabilities above 0 that sum to 1.",
     example: "(DEFOPTION entailment 0.5)
 (WHEN-DONEXT (EngineA = Standby) (Camera = Off))",
     fix: "Write a probability in this range, as a decimal or a fraction.",
@@ -40,4 +41,19 @@ pub(crate) fn sum(component: &str, sum: Option<&str>, span: Span) -> Diagnostic 
         None => format!("the probabilities of the modes of `{component}` have too many digits to be summed"),
     };
     Diagnostic::error(CODE, span, message).with_hint("name every mode in which the component may start")
+}
+
+/// An alternative of CHOOSE-PROB that can never be drawn, or always is beside others.
+pub(crate) fn of_alternative(text: &str, span: Span) -> Diagnostic {
+    let message = format!("the probability of an alternative must be above 0 and at most 1, not `{text}`");
+    Diagnostic::error(CODE, span, message).with_hint("write a decimal or a fraction, such as `0.1` or `1/3`")
+}
+
+/// Alternatives of CHOOSE-PROB that do not sum to one; `sum` is `None` if they have too many digits to be summed.
+pub(crate) fn sum_of_alternatives(sum: Option<&str>, span: Span) -> Diagnostic {
+    let message = match sum {
+        Some(sum) => format!("the probabilities of the alternatives must sum to 1, not to {sum}"),
+        None => "the probabilities of the alternatives have too many digits to be summed".to_owned(),
+    };
+    Diagnostic::error(CODE, span, message)
 }
