@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use exact::Rational;
 use rmpl::Span;
 use rmpl::control::Guard;
 use serde::{Deserialize, Serialize};
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
 
 use crate::clock::{Clock, ClockId, HeldCondition};
 use crate::condition::Condition;
 use crate::knowledge::Estimate;
+use crate::locks::{Lock, LockId};
 use crate::marking::Marking;
 use crate::vocabulary::{Variable, VariableId};
 
@@ -60,6 +62,10 @@ pub enum LocationKind {
     At,
     /// Starts its body again and again.
     Every,
+    /// Waits for a lock.
+    Lock,
+    /// Counts a reward.
+    Reward,
 }
 
 /// A condition compiled, with the text of its guard.
@@ -93,6 +99,8 @@ pub struct Location {
     pub assertion: Option<Assertion>,
     /// What it waits for, if it is a time.
     pub clock: Option<ClockId>,
+    /// What it counts in each step in which it is marked.
+    pub reward: Option<Rational>,
     /// Its transitions, as indices into [`Automaton::transitions`].
     pub transitions: Range<u32>,
     /// The composite that directly holds it.
@@ -117,6 +125,10 @@ pub enum CompositeKind {
     Guarded,
     /// `TIMEOUT` and `WITHIN`: has a clock; the first child is dropped when it is up, and the second, if any, starts.
     Timeout,
+    /// `LOCK`: a location that waits, one that asserts what is locked, and what is done meanwhile.
+    Lock,
+    /// `CHOOSE-PROB`: a start starts one of the children.
+    Choice,
 }
 
 /// A composite: an automaton inside the automaton.
@@ -169,10 +181,30 @@ pub struct Automaton {
     pub clocks: Vec<Clock>,
     /// The conditions that have to have lasted.
     pub held: Vec<HeldCondition>,
+    /// Its locks, in textual order.
+    pub locks: Vec<Lock>,
+    /// Its choices by chance, in textual order.
+    pub choices: Vec<Choice>,
     /// For each composite, what starting it does.
     pub(crate) starts: Vec<Start>,
     /// For each composite, the composites with maintenance that it is in, itself not included.
     pub(crate) watched_by: Vec<Vec<CompositeId>>,
+}
+
+/// Alternatives with their probabilities.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Choice {
+    pub composite: CompositeId,
+    /// Of each child; they sum to the common denominator of the probabilities.
+    pub weights: Vec<u64>,
+}
+
+impl Choice {
+    /// The most likely alternative, of several the first.
+    pub fn likeliest(&self) -> usize {
+        let most = self.weights.iter().max();
+        self.weights.iter().position(|weight| Some(weight) == most).unwrap_or(0)
+    }
 }
 
 /// What starting an element does.
@@ -184,13 +216,24 @@ pub(crate) struct Start {
     pub(crate) clocks: Vec<ClockId>,
     /// These composites of AT start what they wait for if its time has come, and otherwise wait.
     pub(crate) timed: Vec<CompositeId>,
+    /// These locks are waited for.
+    pub(crate) locks: Vec<LockId>,
+    /// Of the children of these composites one is to be chosen.
+    pub(crate) choices: Vec<CompositeId>,
 }
 
 impl Start {
+    /// Whether it does more than marking locations.
+    pub(crate) const fn is_timed(&self) -> bool {
+        !(self.clocks.is_empty() && self.timed.is_empty() && self.locks.is_empty() && self.choices.is_empty())
+    }
+
     pub(crate) fn extend(&mut self, other: &Self) {
         self.locations.extend(&other.locations);
         self.clocks.extend(&other.clocks);
         self.timed.extend(&other.timed);
+        self.locks.extend(&other.locks);
+        self.choices.extend(&other.choices);
     }
 }
 
@@ -211,6 +254,17 @@ impl Automaton {
     /// A condition's guard as written.
     pub fn guard(&self, id: TestId) -> Option<&Guard> {
         self.tests.get(id.0 as usize).map(|test| &test.guard)
+    }
+
+    /// The choice of a composite, if it is one.
+    pub fn choice(&self, composite: CompositeId) -> Option<&Choice> {
+        self.choices.iter().find(|choice| choice.composite == composite)
+    }
+
+    /// What the marked locations count in one step.
+    pub fn reward(&self, marking: &Marking) -> Rational {
+        let rewards = marking.iter().filter_map(|location| self.location(location)?.reward);
+        rewards.fold(Rational::ZERO, |sum, reward| sum.checked_add(reward).unwrap_or(sum))
     }
 
     /// The clock of this id, if the automaton has it.
@@ -238,9 +292,23 @@ impl Automaton {
         if is_timed && leaves { "time is up".to_owned() } else { "true".to_owned() }
     }
 
-    /// The clock of a composite, if it has one.
-    pub fn clock_of(&self, composite: &Composite) -> Option<&Clock> {
-        self.clock(composite.clock?)
+    /// What drawings call a composite with a clock, a lock or a choice.
+    pub fn title(&self, id: CompositeId) -> Option<SmolStr> {
+        let composite = self.composite(id)?;
+        match composite.kind {
+            CompositeKind::Timeout => Some(self.clock(composite.clock?)?.label.clone()),
+            CompositeKind::Lock => Some(self.locks.iter().find(|lock| lock.composite == id)?.label.clone()),
+            CompositeKind::Choice => {
+                let weights = &self.choice(id)?.weights;
+                let total: u64 = weights.iter().sum();
+                let share = |weight: &u64| {
+                    Rational::from_wide(i128::from(*weight), i128::from(total)).unwrap_or(Rational::ZERO)
+                };
+                let shares: Vec<String> = weights.iter().map(|weight| share(weight).to_string()).collect();
+                Some(format_smolstr!("choose {}", shares.join(", ")))
+            }
+            _ => None,
+        }
     }
 
     /// The locations that are marked when an element starts.
@@ -314,6 +382,8 @@ impl Automaton {
             LocationKind::If | LocationKind::Unless => 'i',
             LocationKind::When | LocationKind::Whenever => 'w',
             LocationKind::Wait | LocationKind::At | LocationKind::Every => 't',
+            LocationKind::Lock => 'k',
+            LocationKind::Reward => 'r',
         };
         let Some(location) = self.location(id) else { return String::new() };
         let mine = letter(location.kind);

@@ -8,7 +8,8 @@ use std::collections::VecDeque;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use crate::automaton::{Element, TestId};
+use crate::automaton::{Automaton, CompositeId, Element, TestId};
+use crate::locks::LockState;
 
 /// Index of a clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -109,11 +110,28 @@ pub(crate) struct Times {
     pub(crate) ends: Vec<Ends>,
     /// For each condition that has to have lasted, the last step that did not satisfy it.
     pub(crate) unsatisfied: Vec<u64>,
+    /// Of each lock.
+    pub(crate) locks: Vec<LockState>,
+    /// The choices that are still to be made, in textual order.
+    pub(crate) open: Vec<CompositeId>,
 }
 
 impl Times {
-    pub(crate) fn new(clocks: usize, held: usize) -> Self {
-        Self { step: 0, ends: vec![Ends::default(); clocks], unsatisfied: vec![0; held] }
+    pub(crate) fn new(automaton: &Automaton) -> Self {
+        Self {
+            step: 0,
+            ends: vec![Ends::default(); automaton.clocks.len()],
+            unsatisfied: vec![0; automaton.held.len()],
+            locks: vec![LockState::default(); automaton.locks.len()],
+            open: Vec::new(),
+        }
+    }
+
+    /// A choice is to be made; several starts in one step are one.
+    pub(crate) fn leave_open(&mut self, choice: CompositeId) {
+        if let Err(place) = self.open.binary_search(&choice) {
+            self.open.insert(place, choice);
+        }
     }
 
     pub(crate) fn ends_mut(&mut self, clock: ClockId) -> Option<&mut Ends> {

@@ -5,19 +5,20 @@ use std::sync::Arc;
 
 use exact::Rational;
 use rmpl::control::{
-    Constraint, ConstraintKind, ControlFile, Duration, Expression, ExpressionKind, Guard, Held, Name,
-    ParsedControl, expand_main, nearest,
+    Alternative, Constraint, ConstraintKind, ControlFile, Duration, Expression, ExpressionKind, Guard, Held,
+    Name, ParsedControl, expand_main, nearest,
 };
 use rmpl::diagnostics::bounds;
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
 use crate::automaton::{
-    Assertion, Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind,
-    Start, Test, TestId, Transition,
+    Assertion, Automaton, Choice, Composite, CompositeId, CompositeKind, Element, Location, LocationId,
+    LocationKind, Start, Test, TestId, Transition,
 };
 use crate::clock::{Clock, ClockId, ClockKind, HeldCondition};
 use crate::condition::{Condition, Formula};
+use crate::locks::{Lock, LockId, can_hold_together};
 use crate::vocabulary::{Variable, VariableId, Vocabulary};
 
 /// What compiling a text gives.
@@ -82,7 +83,8 @@ fn watched_by(composites: &[Composite]) -> Vec<Vec<CompositeId>> {
         let mut outer = Vec::new();
         if let Some(parent) = composite.parent {
             outer.extend(found.get(parent.0 as usize).into_iter().flatten().copied());
-            if composites.get(parent.0 as usize).is_some_and(|parent| parent.maintenance.is_some()) {
+            let drops = |outer: &Composite| outer.maintenance.is_some() || outer.kind == CompositeKind::Lock;
+            if composites.get(parent.0 as usize).is_some_and(drops) {
                 outer.push(parent);
             }
         }
@@ -102,7 +104,17 @@ struct Compiler<'vocabulary> {
     step_secs: Rational,
     /// What the durations of the expression that is compiled are divided by.
     warp: Rational,
+    enclosing: Enclosing,
     diagnostics: Vec<Diagnostic>,
+}
+
+/// What is around the expression that is compiled.
+#[derive(Default)]
+struct Enclosing {
+    /// What locks around it lock.
+    locked: Vec<Constraint>,
+    /// How many forms around it may end it: TIMEOUT, WITHIN and DO-WATCHING.
+    bounds: usize,
 }
 
 impl<'vocabulary> Compiler<'vocabulary> {
@@ -116,6 +128,8 @@ impl<'vocabulary> Compiler<'vocabulary> {
             transitions: Vec::new(),
             clocks: Vec::new(),
             held: Vec::new(),
+            locks: Vec::new(),
+            choices: Vec::new(),
             starts: Vec::new(),
             watched_by: Vec::new(),
         };
@@ -126,6 +140,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
             by_guard: BTreeMap::new(),
             step_secs,
             warp: Rational::ONE,
+            enclosing: Enclosing::default(),
             diagnostics,
         }
     }
@@ -282,7 +297,8 @@ impl<'vocabulary> Compiler<'vocabulary> {
         match element {
             Element::Location(location) => {
                 let clock = self.automaton.location(location).and_then(|data| data.clock);
-                Start { locations: vec![location], clocks: clock.into_iter().collect(), timed: Vec::new() }
+                let clocks = clock.into_iter().collect();
+                Start { locations: vec![location], clocks, ..Start::default() }
             }
             Element::Composite(composite) => {
                 self.automaton.starts.get(composite.0 as usize).cloned().unwrap_or_default()
@@ -349,6 +365,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
             label,
             assertion: None,
             clock: None,
+            reward: None,
             transitions: 0..0,
             parent,
             span,
@@ -366,7 +383,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
     fn expression(&mut self, expression: &Expression, parent: CompositeId) -> Element {
         let span = expression.span;
         match &expression.kind {
-            ExpressionKind::Assert(constraint) => self.assertion(constraint, parent, span),
+            ExpressionKind::Assert(constraint) => Element::Location(self.assertion(constraint, parent, span)),
             ExpressionKind::Parallel(parts) => {
                 let id = self.open(CompositeKind::Parallel, Some(parent), None, span);
                 let children: Vec<Element> = parts.iter().map(|part| self.expression(part, id)).collect();
@@ -382,7 +399,9 @@ impl<'vocabulary> Compiler<'vocabulary> {
                 let guard = self.warped(guard);
                 let maintenance = self.opposite(&guard);
                 let id = self.open(CompositeKind::DoWatching, Some(parent), Some(maintenance), span);
+                self.enclosing.bounds += 1;
                 let child = self.expression(body, id);
+                self.enclosing.bounds -= 1;
                 self.close(id, vec![child], &[child])
             }
             ExpressionKind::Always(body) => {
@@ -434,18 +453,27 @@ impl<'vocabulary> Compiler<'vocabulary> {
                 self.warp = before;
                 element
             }
-            ExpressionKind::Lock { .. }
-            | ExpressionKind::ChooseProb(_)
-            | ExpressionKind::ChooseReward(_)
-            | ExpressionKind::Reward(_) => {
-                let message = "this construct is not supported yet";
-                self.diagnostics.push(Diagnostic::error(Code("E-FORM"), span, message));
-                self.assertion(&Constraint { kind: ConstraintKind::True, span }, parent, span)
+            ExpressionKind::Lock { constraint, body } => self.lock(constraint, body, parent, span),
+            ExpressionKind::ChooseProb(alternatives) => self.choice(alternatives, parent, span),
+            ExpressionKind::Reward(reward) => {
+                let label = format_smolstr!("reward {}", reward.text);
+                let location = self.location(LocationKind::Reward, label, parent, span);
+                if let Some(data) = self.automaton.locations.get_mut(location.0 as usize) {
+                    data.reward = reward.text.parse().ok();
+                }
+                Element::Location(location)
+            }
+            ExpressionKind::ChooseReward(_) => {
+                let message = "CHOOSE-REWARD cannot be run";
+                let hint = "choose by what is known with IF-THENNEXT-ELSENEXT, or by chance with CHOOSE-PROB";
+                self.diagnostics.push(Diagnostic::error(Code("E-FORM"), span, message).with_hint(hint));
+                let constraint = Constraint { kind: ConstraintKind::True, span };
+                Element::Location(self.assertion(&constraint, parent, span))
             }
             // Neither is left in an expanded program without errors; doing nothing is the safe reading.
             ExpressionKind::Call { .. } | ExpressionKind::Unreadable => {
                 let constraint = Constraint { kind: ConstraintKind::True, span };
-                self.assertion(&constraint, parent, span)
+                Element::Location(self.assertion(&constraint, parent, span))
             }
         }
     }
@@ -465,6 +493,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         if let Some(data) = self.automaton.composites.get_mut(id.0 as usize) {
             data.clock = Some(clock);
         }
+        self.enclosing.bounds += 1;
         let first = match least {
             None => self.expression(body, id),
             Some(least) => {
@@ -475,11 +504,78 @@ impl<'vocabulary> Compiler<'vocabulary> {
                 self.close(both, vec![body, wait], &[body, wait])
             }
         };
+        self.enclosing.bounds -= 1;
         let otherwise = otherwise.map(|otherwise| self.expression(otherwise, id));
         let element = self.close(id, std::iter::once(first).chain(otherwise).collect(), &[first]);
         if let Some(start) = self.automaton.starts.get_mut(id.0 as usize) {
             start.clocks.push(clock);
         }
+        element
+    }
+
+    fn lock(
+        &mut self,
+        constraint: &Constraint,
+        body: &Expression,
+        parent: CompositeId,
+        span: Span,
+    ) -> Element {
+        let contradicts = |outer: &&Constraint| {
+            !can_hold_together(&[(&self.automaton, *outer), (&self.automaton, constraint)])
+        };
+        if let Some(outer) = self.enclosing.locked.iter().find(contradicts) {
+            let message =
+                format!("this lock can never be granted: it contradicts {outer}, which is locked around it");
+            self.diagnostics.push(
+                Diagnostic::error(Code("E-CONSTRAINT"), constraint.span, message)
+                    .with_hint("move it out of the other lock, or lock something else"),
+            );
+        }
+        let id = self.open(CompositeKind::Lock, Some(parent), None, span);
+        let waiting = self.location(LocationKind::Lock, format_smolstr!("lock {constraint}"), id, span);
+        let assertion = self.assertion(constraint, id, constraint.span);
+        let test = self.test(&Guard {
+            non_entailed: false,
+            held: None,
+            constraint: constraint.clone(),
+            span: constraint.span,
+        });
+        let own = Element::Location(waiting);
+        let number = self.automaton.locks.len();
+        self.automaton.locks.push(Lock {
+            composite: id,
+            label: format_smolstr!("LOCK {constraint}"),
+            test,
+            waiting,
+            assertion,
+            body: own,
+            is_bounded: self.enclosing.bounds > 0,
+        });
+        self.enclosing.locked.push(constraint.clone());
+        let body = self.expression(body, id);
+        self.enclosing.locked.pop();
+        if let Some(lock) = self.automaton.locks.get_mut(number) {
+            lock.body = body;
+        }
+        let element = self.close(id, vec![own, Element::Location(assertion), body], &[own]);
+        if let Some(start) = self.automaton.starts.get_mut(id.0 as usize) {
+            *start = Start { locks: vec![LockId(number as u32)], ..Start::default() };
+        }
+        element
+    }
+
+    fn choice(&mut self, alternatives: &[Alternative], parent: CompositeId, span: Span) -> Element {
+        let id = self.open(CompositeKind::Choice, Some(parent), None, span);
+        let children: Vec<Element> =
+            alternatives.iter().map(|alternative| self.expression(&alternative.body, id)).collect();
+        let element = self.close(id, children.clone(), &children);
+        if let Some(start) = self.automaton.starts.get_mut(id.0 as usize) {
+            *start = Start { choices: vec![id], ..Start::default() };
+        }
+        let given: Vec<&str> =
+            alternatives.iter().map(|alternative| alternative.weight.text.as_str()).collect();
+        let weights = rmpl::control::probability_weights(&given).map_or(Vec::new(), |(weights, _)| weights);
+        self.automaton.choices.push(Choice { composite: id, weights });
         element
     }
 
@@ -571,7 +667,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         self.close(id, children, &[own])
     }
 
-    fn assertion(&mut self, constraint: &Constraint, parent: CompositeId, span: Span) -> Element {
+    fn assertion(&mut self, constraint: &Constraint, parent: CompositeId, span: Span) -> LocationId {
         let location =
             self.location(LocationKind::Assert, format_smolstr!("assert {constraint}"), parent, span);
         let test =
@@ -582,7 +678,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         if let Some(data) = self.automaton.locations.get_mut(location.0 as usize) {
             data.assertion = Some(Assertion { test, goals, program_settings: settings });
         }
-        Element::Location(location)
+        location
     }
 
     fn goals(

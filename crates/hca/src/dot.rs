@@ -51,7 +51,7 @@ fn composite(automaton: &Automaton, id: CompositeId, depth: usize, out: &mut Str
         let label = match (data.maintenance.and_then(|test| automaton.guard(test)), data.kind) {
             (Some(guard), _) => format!("maintain {guard}"),
             (None, CompositeKind::Sequence) => "sequence".into(),
-            _ => automaton.clock_of(data).map_or(String::new(), |clock| clock.label.to_string()),
+            _ => automaton.title(id).map_or(String::new(), |title| title.to_string()),
         };
         let _ = writeln!(
             out,

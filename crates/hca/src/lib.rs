@@ -9,6 +9,7 @@ pub mod compile;
 pub mod condition;
 pub mod dot;
 pub mod knowledge;
+pub mod locks;
 pub mod marking;
 mod spans;
 pub mod step;
@@ -16,12 +17,13 @@ pub mod trace;
 pub mod vocabulary;
 
 pub use automaton::{
-    Assertion, Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind,
-    TestId, Transition, TransitionId,
+    Assertion, Automaton, Choice, Composite, CompositeId, CompositeKind, Element, Location, LocationId,
+    LocationKind, TestId, Transition, TransitionId,
 };
 pub use clock::{Clock, ClockId, ClockKind, HeldCondition};
 pub use compile::{Compilation, compile, compile_text};
 pub use knowledge::Estimate;
+pub use locks::{Lock, LockId};
 pub use marking::Marking;
 pub use step::{Standing, StepObserver, Stepper, Unobserved};
 pub use trace::{Trace, TraceStep, trace};

@@ -63,6 +63,12 @@ impl Marking {
         }
     }
 
+    /// The same without the locations of another set.
+    #[must_use]
+    pub fn without(&self, other: &Self) -> Self {
+        Self { words: self.words.iter().zip(&other.words).map(|(word, other)| word & !other).collect() }
+    }
+
     #[inline]
     pub(crate) fn clear(&mut self) {
         self.words.fill(0);

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use smol_str::SmolStr;
+
 use crate::automaton::{
-    Automaton, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind, Start,
-    Test, TestId, TransitionId,
+    Automaton, Choice, Composite, CompositeId, CompositeKind, Element, Location, LocationId, LocationKind,
+    Start, Test, TestId, TransitionId,
 };
 use crate::clock::{ClockId, ClockKind, Times};
 use crate::knowledge::Estimate;
+use crate::locks::{self, LockId, LockState};
 use crate::marking::{Marking, bits};
 use crate::vocabulary::VariableId;
 
@@ -71,6 +74,7 @@ struct Stage {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Standing {
     marking: Marking,
+    aside: Marking,
     times: Times,
 }
 
@@ -106,11 +110,22 @@ pub struct Stepper {
     times: Times,
     /// For each condition that has to have lasted, whether it has.
     is_held: Vec<bool>,
+    /// The marked locations whose goals contradict what is locked: they are not commanded, and do not complete.
+    aside: Marking,
+    /// Whether the program has locks or choices.
+    acts_after_step: bool,
 }
 
 impl Stepper {
-    /// Starts in the automaton's start marking.
+    /// Starts in the automaton's start marking; choices are made by what is likeliest.
     pub fn new(automaton: &Arc<Automaton>) -> Self {
+        let mut stepper = Self::undecided(automaton);
+        stepper.choose_likeliest();
+        stepper
+    }
+
+    /// Starts in the automaton's start marking, with its choices [open](Self::open_choice).
+    pub fn undecided(automaton: &Arc<Automaton>) -> Self {
         let numbered = || {
             automaton.composites.iter().enumerate().map(|(at, composite)| (CompositeId(at as u32), composite))
         };
@@ -128,14 +143,15 @@ impl Stepper {
             .map(|(composite, data)| Stage { composite, kind: data.kind, range: data.locations.clone() })
             .collect();
         stages.reverse();
-        let is_timed = !automaton.clocks.is_empty();
+        let is_timed = is_timed(automaton);
         let empty = Marking::empty(automaton.locations.len());
-        let mut times = Times::new(automaton.clocks.len(), automaton.held.len());
+        let mut times = Times::new(automaton);
         let mut marking = empty.clone();
         start(automaton, Element::Composite(Automaton::ROOT), &mut marking, &mut times);
         Self {
             marking,
             alive: empty.clone(),
+            aside: empty.clone(),
             completed: empty.clone(),
             next: empty,
             is_completed: vec![false; automaton.composites.len()],
@@ -148,6 +164,7 @@ impl Stepper {
             has_program_variables: automaton.variables.iter().any(|variable| variable.is_program_variable),
             times,
             is_held: vec![false; automaton.held.len()],
+            acts_after_step: !automaton.locks.is_empty() || !automaton.choices.is_empty(),
             automaton: Arc::clone(automaton),
         }
     }
@@ -164,7 +181,8 @@ impl Stepper {
 
     /// Where it stands, to come back to.
     pub fn standing(&self) -> Standing {
-        Standing { marking: self.marking.clone(), times: self.times.clone() }
+        let (marking, aside) = (self.marking.clone(), self.aside.clone());
+        Standing { marking, aside, times: self.times.clone() }
     }
 
     /// Goes to where the same automaton stood before, as when stepping back.
@@ -173,6 +191,96 @@ impl Stepper {
         self.times.step = standing.times.step;
         self.times.ends.clone_from(&standing.times.ends);
         self.times.unsatisfied.clone_from(&standing.times.unsatisfied);
+        self.times.locks.clone_from(&standing.times.locks);
+        self.times.open.clone_from(&standing.times.open);
+        self.aside.copy_from(&standing.aside);
+    }
+
+    /// The first choice by chance that has been started and not been made.
+    pub fn open_choice(&self) -> Option<&Choice> {
+        self.automaton.choice(*self.times.open.first()?)
+    }
+
+    /// Makes the first open choice.
+    pub fn choose(&mut self, alternative: usize) {
+        if self.times.open.is_empty() {
+            return;
+        }
+        let choice = self.times.open.remove(0);
+        let automaton = Arc::clone(&self.automaton);
+        let chosen = automaton.composite(choice).and_then(|choice| choice.children.get(alternative));
+        if let Some(&chosen) = chosen {
+            start(&automaton, chosen, &mut self.marking, &mut self.times);
+        }
+    }
+
+    fn choose_likeliest(&mut self) {
+        while let Some(choice) = self.open_choice() {
+            let likeliest = choice.likeliest();
+            self.choose(likeliest);
+        }
+    }
+
+    /// The marked locations whose goals contradict what is locked: they are not commanded, and do not complete.
+    pub const fn aside(&self) -> &Marking {
+        &self.aside
+    }
+
+    /// What is asserted and not set aside, each goal once, in alphabetical order.
+    pub fn goals(&self) -> Vec<SmolStr> {
+        if self.aside.is_empty() {
+            return self.automaton.goals(&self.marking);
+        }
+        self.automaton.goals(&self.marking.without(&self.aside))
+    }
+
+    pub(crate) fn set_locations_aside(&mut self, locations: &[LocationId]) {
+        self.aside.clear();
+        for &location in locations {
+            self.aside.insert(location);
+        }
+    }
+
+    pub(crate) fn lock_states(&self) -> &[LockState] {
+        &self.times.locks
+    }
+
+    /// For how many steps a lock has been waited for; `None` if it is not.
+    pub(crate) fn waited(&self, lock: LockId) -> Option<u64> {
+        match self.times.locks.get(lock.0 as usize)? {
+            LockState::Waiting(since) => Some(self.times.step - since),
+            LockState::Free | LockState::Held { .. } => None,
+        }
+    }
+
+    /// Starts what is done under a lock that is waited for.
+    pub(crate) fn grant(&mut self, id: LockId) {
+        let automaton = Arc::clone(&self.automaton);
+        let Some(lock) = automaton.locks.get(id.0 as usize) else { return };
+        if let Some(state) = self.times.locks.get_mut(id.0 as usize) {
+            *state = LockState::Held { was_entailed: false };
+        }
+        self.marking.remove_range(&automaton.locations_of(Element::Location(lock.waiting)));
+        self.marking.insert(lock.assertion);
+        start(&automaton, lock.body, &mut self.marking, &mut self.times);
+    }
+
+    /// The names of the locks that are held.
+    pub fn held_locks(&self) -> Vec<SmolStr> {
+        let states = self.automaton.locks.iter().zip(&self.times.locks);
+        let held = states.filter(|(_, state)| matches!(state, LockState::Held { .. }));
+        held.map(|(lock, _)| lock.label.clone()).collect()
+    }
+
+    /// After a step of a program that runs alone: grants locks, and makes the likeliest choices.
+    fn settle(&mut self) {
+        if !self.times.locks.is_empty() {
+            locks::grant(&mut [&mut *self]);
+        }
+        self.choose_likeliest();
+        if !self.times.locks.is_empty() {
+            locks::set_aside(&mut [&mut *self]);
+        }
     }
 
     /// The running clocks, in textual order, each with the number of steps after which it is up; with 1, at the end of
@@ -219,6 +327,9 @@ impl Stepper {
         let watches = self.watches.iter().filter(|watch| self.marking.intersects(&watch.range));
         let mut asked: Vec<TestId> = watches.map(|watch| watch.test).collect();
         asked.extend(self.automaton.held.iter().map(|held| held.test));
+        let locks = self.automaton.locks.iter().zip(&self.times.locks);
+        let held = locks.filter(|(_, state)| matches!(state, LockState::Held { .. }));
+        asked.extend(held.map(|(lock, _)| lock.test));
         for location in self.marking.iter().filter_map(|location| self.automaton.location(location)) {
             asked.extend(location.assertion.as_ref().map(|assertion| assertion.test));
             let transitions = location.transitions.clone();
@@ -236,22 +347,31 @@ impl Stepper {
 
     /// What the marked locations set of the program's own variables, as variable and value number.
     pub fn settings(&self) -> impl Iterator<Item = (VariableId, u32)> + '_ {
-        let marked = self.marking.iter().filter_map(|location| self.automaton.location(location));
+        let marked = self.marking.iter().filter(|location| !self.aside.contains(*location));
+        let marked = marked.filter_map(|location| self.automaton.location(location));
         marked
             .filter_map(|location| location.assertion.as_ref())
             .flat_map(|assertion| assertion.program_settings.iter().copied())
     }
 
     /// Takes one step where the caller says which of the [asked](Self::asked) conditions are entailed, whatever bar is over
-    /// them.
+    /// them. Granting [locks](crate::locks) and making [choices](Self::open_choice) is left to the caller.
     pub fn step_told(&mut self, is_entailed: &dyn Fn(TestId) -> bool, observer: &mut impl StepObserver) {
         self.advance(is_entailed, observer);
     }
 
     /// Takes one step when the plant is known to be in one of several states: what is true in all of them is known.
     ///
-    /// An empty slice knows nothing.
+    /// An empty slice knows nothing. Locks are granted as to a program that runs alone, and choices are made by what is
+    /// likeliest.
     pub fn step_observed(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
+        self.step_known(states, observer);
+        if self.acts_after_step {
+            self.settle();
+        }
+    }
+
+    fn step_known(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
         if let [only] = states {
             if self.has_program_variables {
                 let mut overlay = std::mem::replace(&mut self.overlay, Estimate::unknown(0));
@@ -287,6 +407,9 @@ impl Stepper {
             self.look_at_held(at, known);
         }
         self.preempt(known, observer);
+        if !self.times.locks.is_empty() {
+            self.drop_under_locks(known, observer);
+        }
         self.next.clear();
         let has_stages = !self.stages.is_empty();
         if has_stages {
@@ -306,7 +429,59 @@ impl Stepper {
         if self.starts_late {
             self.start_fired_down_to(Automaton::ROOT);
         }
+        if !self.times.locks.is_empty() {
+            self.release_locks();
+        }
         std::mem::swap(&mut self.marking, &mut self.next);
+    }
+
+    /// Drops what is done under locks whose constraints were entailed and are not any more.
+    fn drop_under_locks(&mut self, known: impl Knowledge, observer: &mut impl StepObserver) {
+        for (lock, state) in self.automaton.locks.iter().zip(&mut self.times.locks) {
+            let is_entailed = holds(&self.automaton, lock.test, known, &self.is_held);
+            let drops = matches!(state, LockState::Held { was_entailed: true }) && !is_entailed;
+            if let LockState::Held { was_entailed } = state {
+                *was_entailed |= is_entailed;
+            }
+            if let Some(dropped) = self.dropped.get_mut(lock.composite.0 as usize) {
+                *dropped = drops;
+            }
+            if drops {
+                self.alive.remove_range(&self.automaton.locations_of(lock.body));
+                observer.preempted(lock.composite);
+            }
+        }
+        for lock in &self.automaton.locks {
+            if self.dropped.get(lock.composite.0 as usize) == Some(&true) {
+                forget_waits(&self.automaton, &self.automaton.locations_of(lock.body), &mut self.times);
+            }
+        }
+    }
+
+    /// Releases the locks under which nothing is left, and forgets those that are not waited for any more.
+    fn release_locks(&mut self) {
+        let automaton = Arc::clone(&self.automaton);
+        for (at, lock) in automaton.locks.iter().enumerate() {
+            let is_waiting = self.next.contains(lock.waiting);
+            let is_left = self.is_left(&automaton.locations_of(lock.body));
+            let Some(state) = self.times.locks.get_mut(at) else { continue };
+            let ends = match state {
+                LockState::Free => false,
+                LockState::Waiting(_) => !is_waiting,
+                LockState::Held { .. } => !is_left,
+            };
+            if ends {
+                *state = LockState::Free;
+            }
+        }
+    }
+
+    /// Whether anything in a range of locations will be marked.
+    fn is_left(&self, range: &std::ops::Range<u32>) -> bool {
+        self.next.intersects(range) || {
+            let first = |choice: &CompositeId| self.automaton.composite(*choice).map(|it| it.locations.start);
+            self.times.open.iter().filter_map(first).any(|first| range.contains(&first))
+        }
     }
 
     /// Whether a condition has been satisfied for long enough, this step included.
@@ -344,8 +519,13 @@ impl Stepper {
         let automaton = &*self.automaton;
         let Some(location) = automaton.location(id) else { return };
         if let Some(assertion) = &location.assertion
-            && !holds(automaton, assertion.test, known, &self.is_held)
+            && (!holds(automaton, assertion.test, known, &self.is_held)
+                || self.acts_after_step && self.aside.contains(id))
         {
+            self.next.insert(id);
+            return;
+        }
+        if location.kind == LocationKind::Lock {
             self.next.insert(id);
             return;
         }
@@ -437,12 +617,15 @@ impl Stepper {
             match kind {
                 CompositeKind::Sequence => self.continue_sequence(id, observer),
                 // A start from outside in this step does not hold a join back: it comes later.
-                CompositeKind::Parallel => !self.next.intersects(&range),
+                CompositeKind::Parallel => !self.is_left(&range),
                 CompositeKind::DoWatching => {
                     self.dropped.get(id.0 as usize) == Some(&true) || self.some_child_completes(id)
                 }
+                CompositeKind::Lock => self.dropped.get(id.0 as usize) == Some(&true) || self.body_completes(id),
                 CompositeKind::Timeout => self.time_out(id, observer),
-                CompositeKind::Guarded | CompositeKind::Program => self.some_child_completes(id),
+                CompositeKind::Guarded | CompositeKind::Choice | CompositeKind::Program => {
+                    self.some_child_completes(id)
+                }
             }
         };
         if let Some(is_completed) = self.is_completed.get_mut(id.0 as usize) {
@@ -459,10 +642,12 @@ impl Stepper {
         };
         let completes = self.some_child_completes(id);
         let range = automaton.locations_of(*first);
-        if !self.times.is_up(clock) || !self.next.intersects(&range) {
+        if !self.times.is_up(clock) || !self.is_left(&range) {
             return completes;
         }
         self.next.remove_range(&range);
+        let first_location = |choice: &CompositeId| automaton.composite(*choice).map(|it| it.locations.start);
+        self.times.open.retain(|choice| first_location(choice).is_none_or(|first| !range.contains(&first)));
         forget_waits(&automaton, &range, &mut self.times);
         observer.elapsed(clock);
         if self.completes(*first) {
@@ -492,6 +677,12 @@ impl Stepper {
     fn some_child_completes(&self, composite: CompositeId) -> bool {
         let data = self.automaton.composite(composite);
         data.is_some_and(|data| data.children.iter().any(|&child| self.completes(child)))
+    }
+
+    /// Whether what is done under a lock completes; that what is locked comes true completes nothing.
+    fn body_completes(&self, lock: CompositeId) -> bool {
+        let body = self.automaton.composite(lock).and_then(|lock| lock.children.last());
+        body.is_some_and(|&body| self.completes(body))
     }
 
     /// Starts the next part after each that completes; returns whether the last one does.
@@ -528,7 +719,7 @@ fn start(automaton: &Automaton, element: Element, next: &mut Marking, times: &mu
             for &location in &begun.locations {
                 next.insert(location);
             }
-            if !times.ends.is_empty() {
+            if begun.is_timed() {
                 start_timed(automaton, begun, next, times);
             }
         }
@@ -536,6 +727,12 @@ fn start(automaton: &Automaton, element: Element, next: &mut Marking, times: &mu
 }
 
 fn start_timed(automaton: &Automaton, begun: &Start, next: &mut Marking, times: &mut Times) {
+    for &choice in &begun.choices {
+        times.leave_open(choice);
+    }
+    for &id in &begun.locks {
+        start_lock(automaton, id, next, times);
+    }
     for &id in &begun.clocks {
         if let Some(clock) = automaton.clock(id) {
             times.start(id, clock);
@@ -553,6 +750,30 @@ fn start_timed(automaton: &Automaton, begun: &Start, next: &mut Marking, times: 
             start(automaton, *body, next, times);
         }
     }
+}
+
+/// What is done under a lock that is held starts anew; otherwise the lock is waited for.
+fn start_lock(automaton: &Automaton, id: LockId, next: &mut Marking, times: &mut Times) {
+    let Some(lock) = automaton.locks.get(id.0 as usize) else { return };
+    let range = automaton.locations_of(lock.body);
+    let first = |choice: &CompositeId| automaton.composite(*choice).map(|choice| choice.locations.start);
+    let is_left =
+        next.intersects(&range) || times.open.iter().filter_map(first).any(|first| range.contains(&first));
+    let step = times.step;
+    let Some(state) = times.locks.get_mut(id.0 as usize) else { return };
+    if matches!(state, LockState::Held { .. }) && is_left {
+        start(automaton, lock.body, next, times);
+        return;
+    }
+    if !matches!(state, LockState::Waiting(_)) || !next.contains(lock.waiting) {
+        *state = LockState::Waiting(step);
+    }
+    next.insert(lock.waiting);
+}
+
+/// Whether what a program does depends on time, locks or choices.
+const fn is_timed(automaton: &Automaton) -> bool {
+    !(automaton.clocks.is_empty() && automaton.locks.is_empty() && automaton.choices.is_empty())
 }
 
 /// Forgets the starts of what waits in a range of locations that is dropped.
@@ -575,7 +796,10 @@ fn matters_to_others(composites: &[Composite], locations: &[Location]) -> Vec<bo
         let own_matters = matters[at];
         let of_children = |place: usize| match composite.kind {
             CompositeKind::Sequence => own_matters || place + 1 < composite.children.len(),
-            CompositeKind::DoWatching | CompositeKind::Guarded => own_matters,
+            CompositeKind::DoWatching
+            | CompositeKind::Guarded
+            | CompositeKind::Choice
+            | CompositeKind::Lock => own_matters,
             // What is dropped when the time is up may complete in that step.
             CompositeKind::Timeout => own_matters || place == 0,
             CompositeKind::Parallel | CompositeKind::Program => false,

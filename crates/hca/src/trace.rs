@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use exact::Rational;
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -25,6 +26,10 @@ pub struct TraceStep {
     pub preempted: Vec<CompositeId>,
     /// The transitions that fired at its end.
     pub fired: Vec<TransitionId>,
+    /// The rewards that the marked locations count.
+    pub reward: Rational,
+    /// The locks that are held at its start, by their names.
+    pub locks: Vec<SmolStr>,
     /// The running clocks at its start, each with the number of steps after which it is up.
     pub clocks: Vec<(ClockId, u64)>,
     /// The clocks that were up at its end and did what they are for.
@@ -59,9 +64,11 @@ impl TraceStep {
         Self {
             step,
             marked: marking.iter().collect(),
-            goals: automaton.goals(marking),
+            goals: stepper.goals(),
             labels: automaton.labels(marking),
             clocks: stepper.running_clocks(),
+            reward: automaton.reward(marking),
+            locks: stepper.held_locks(),
             ..Self::default()
         }
     }

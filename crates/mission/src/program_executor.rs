@@ -238,7 +238,11 @@ impl<'run> ProgramExecutor<'run> {
                 let happening = Happening::Progress { name: active.name.clone(), text };
                 self.told.entry(active.occurrence).or_default().entries.push(Entry { time, happening });
             }
-            if let Some(reason) = unexplained(&system.model, &step.outcome) {
+            let deadlock = moment
+                .closed
+                .deadlock()
+                .map(|names| format!("locks of the programs wait for each other: {}", names.join(", ")));
+            if let Some(reason) = unexplained(&system.model, &step.outcome).or(deadlock) {
                 moment.time = time;
                 self.end_unexplained(&mut moment, &reason);
                 self.moments.push(moment);

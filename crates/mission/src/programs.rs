@@ -10,6 +10,7 @@ use plant::{ComponentId, Model};
 use review::TimeRange;
 use review::distances::Distances;
 use rmpl::control::Name as ControlName;
+use rmpl::diagnostics::duplicate;
 use rmpl::program::{Name, PrimitiveDecl, Program, Runs};
 use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::SmolStr;
@@ -49,11 +50,17 @@ impl Programs {
             return (programs, found);
         }
         let block = program.control.first();
-        let parsed = rmpl::control::parse(block.map_or("", |block| block.text.as_str()));
+        let mut parsed = rmpl::control::parse(block.map_or("", |block| block.text.as_str()));
         if parsed.has_errors() {
             return (programs, found);
         }
         let offset = block.map_or(0, |block| block.text_span.start);
+        let options = &program.options;
+        parsed.file.mission_step_secs =
+            options.control_step.checked_mul(options.time_unit.seconds()).map(Time::units);
+        if let Some(step) = parsed.file.steps.first().filter(|_| options.has_control_step) {
+            found.push(moved(duplicate::step_of_mission(step.span), offset, step.span));
+        }
         let (plant, mut of_plant) = plant::compile(&parsed.file);
         let plant = plant.filter(|_| of_plant.iter().all(|found| found.severity != Severity::Error));
         let plant = plant.map(ControlledPlant::new);

@@ -182,17 +182,18 @@ impl Reading {
             .collect();
         calls.sort_unstable();
         calls.dedup();
-        let step = program.value.options.control_step;
+        let options = &program.value.options;
         let is_known = self.programs.as_ref().is_some_and(|known| {
             known.control == program.value.control
                 && known.runners == runners
                 && known.calls == calls
-                && known.step == step
+                && known.options == *options
         });
         if !is_known {
             let (programs, found) = Programs::compile(&program.value, network);
             let (control, programs) = (program.value.control.clone(), Arc::new(programs));
-            self.programs = Some(CompiledPrograms { control, runners, calls, step, programs, found });
+            let options = options.clone();
+            self.programs = Some(CompiledPrograms { control, runners, calls, options, programs, found });
         }
     }
 

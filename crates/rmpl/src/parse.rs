@@ -19,7 +19,7 @@ use crate::edits::Shift;
 use crate::files::{self, MARK};
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
-use crate::program::{Controllability, ImportDecl, Name, Program, TimeUnit, state_of_component};
+use crate::program::{ControlDecl, Controllability, ImportDecl, Name, Program, TimeUnit, state_of_component};
 use crate::span::Span;
 use crate::syntax::{DeclarationTree, SyntaxNode};
 
@@ -352,7 +352,22 @@ impl Parse {
             }
         }
         fill_states_of_plant(&mut program);
+        fill_control_step(&mut program);
         program
+    }
+}
+
+/// Without an option, a step is as long as the control block says. Of several control blocks the first counts.
+fn fill_control_step(program: &mut Program) {
+    let Program { options, control, .. } = program;
+    let names_step = |block: &&ControlDecl| block.text.to_ascii_uppercase().contains("DEFSTEP");
+    let Some(block) = control.first().filter(names_step).filter(|_| !options.has_control_step) else {
+        return;
+    };
+    let file = crate::control::parse(&block.text).file;
+    let units = Rational::from_integer(options.time_unit.seconds());
+    if let Some(step) = file.own_step_secs().and_then(|secs| secs.checked_div(units)) {
+        options.control_step = Time::from_units(step);
     }
 }
 
@@ -385,6 +400,7 @@ fn add(program: &mut Program, item: Item) {
             ("threat_gap", OptionValue::Number(gap)) => program.options.threat_gap = Time::from_units(gap),
             ("control_step", OptionValue::Number(step)) if step.is_positive() => {
                 program.options.control_step = Time::from_units(step);
+                program.options.has_control_step = true;
             }
             ("strict", OptionValue::Number(value)) => program.options.strict = value == Rational::ONE,
             ("time_unit", OptionValue::Name(unit)) if unit == "second" => {

@@ -605,6 +605,8 @@ pub struct Options {
     pub time_unit: TimeUnit,
     /// How long one step of a control program takes, in mission units; above 0.
     pub control_step: Time,
+    /// Whether an option says so.
+    pub has_control_step: bool,
     /// What plans have to withstand of durations that nature chooses.
     pub controllability: Controllability,
 }
@@ -640,6 +642,7 @@ impl Default for Options {
             strict: false,
             time_unit: TimeUnit::Minute,
             control_step: Time::ONE,
+            has_control_step: false,
             controllability: Controllability::Dynamic,
         }
     }

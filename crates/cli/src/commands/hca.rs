@@ -164,8 +164,8 @@ fn tree(automaton: &Automaton, element: Element, depth: usize, out: &mut String)
                     .maintenance
                     .and_then(|test| automaton.guard(test))
                     .map(|guard| format!("while {guard}")),
-                hca::CompositeKind::Timeout => {
-                    automaton.clock_of(composite).map(|clock| clock.label.to_string())
+                hca::CompositeKind::Timeout | hca::CompositeKind::Lock | hca::CompositeKind::Choice => {
+                    automaton.title(id).map(|title| title.to_string())
                 }
                 hca::CompositeKind::Program | hca::CompositeKind::Guarded => None,
             };

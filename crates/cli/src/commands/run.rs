@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     Ok(exit(match run.status() {
         RunStatus::Ended => YES,
-        RunStatus::Refuted => NO,
+        RunStatus::Refuted | RunStatus::Deadlock => NO,
         RunStatus::Running | RunStatus::LimitReached => LIMIT,
     }))
 }
@@ -188,6 +188,10 @@ fn goals_json(goals: &[smol_str::SmolStr]) -> Value {
     Value::Object(members)
 }
 
+fn counts_rewards(automaton: &Automaton) -> bool {
+    automaton.locations.iter().any(|location| location.reward.is_some())
+}
+
 /// The clocks that run before a step, each with the number of steps after which it is up.
 pub(super) fn clocks_json(automaton: &Automaton, trace: &TraceStep) -> Value {
     let clocks = trace
@@ -253,6 +257,9 @@ fn step_json(system: &System, record: &StepRecord) -> Value {
             step.insert("clocks".to_owned(), clocks_json(&system.automaton, &record.trace));
             step.insert("elapsed".to_owned(), json!(elapsed(&system.automaton, &record.trace)));
         }
+        if !system.automaton.locks.is_empty() {
+            step.insert("locks".to_owned(), json!(record.trace.locks));
+        }
         if system.entailment.is_some() {
             let asked = record.asked.iter().map(|asked| {
                 json!({
@@ -282,6 +289,7 @@ const fn status_name(status: RunStatus) -> &'static str {
         RunStatus::Ended => "ended",
         RunStatus::Refuted => "refuted",
         RunStatus::LimitReached => "limit",
+        RunStatus::Deadlock => "deadlock",
     }
 }
 
@@ -289,7 +297,17 @@ fn run_json(system: &System, run: &Run) -> Value {
     let mut steps: Vec<Value> = run.records().iter().map(|record| step_json(system, record)).collect();
     let last = run.upcoming();
     steps.push(json!({ "step": last.step, "marked": last.labels }));
-    json!({ "steps": steps, "terminated": run.is_done(), "status": status_name(run.status()) })
+    let mut body =
+        json!({ "steps": steps, "terminated": run.is_done(), "status": status_name(run.status()) });
+    if let Value::Object(body) = &mut body {
+        if run.status() == RunStatus::Deadlock {
+            body.insert("deadlock".to_owned(), json!(run.deadlock()));
+        }
+        if counts_rewards(&system.automaton) {
+            body.insert("reward".to_owned(), json!(run.reward()));
+        }
+    }
+    body
 }
 
 fn run_text(system: &System, run: &Run) -> String {
@@ -304,6 +322,7 @@ fn run_text(system: &System, run: &Run) -> String {
         out.push_str(&format!("step {}\n", record.trace.step));
         record.trace.labels.iter().for_each(|label| out.push_str(&format!("  marked    {label}\n")));
         clocks_text(&system.automaton, &record.trace, &mut out);
+        record.trace.locks.iter().for_each(|lock| out.push_str(&format!("  locked    {lock}\n")));
         out.push_str(&format!("  commands  {}\n", listed(model.command_names(&record.commands), ".")));
         if let Some(state) = &record.planned_from {
             out.push_str(&format!("  planned   from {}\n", listed(model.state_names(state), "=")));
@@ -344,12 +363,19 @@ fn run_text(system: &System, run: &Run) -> String {
             .iter()
             .for_each(|conflict| out.push_str(&format!("  diagnosis {}\n", conflict.describe(model))));
     }
+    if counts_rewards(&system.automaton) {
+        out.push_str(&format!("Rewards: {}.\n", run.reward()));
+    }
+    if run.status() == RunStatus::Deadlock {
+        out.push_str(&format!("Deadlock: {}.\n", run.deadlock().join(", ")));
+    }
     if run.is_done() {
         out.push_str(&format!("The program ended after {} steps.\n", run.records().len()));
     } else {
         out.push_str(match run.status() {
             RunStatus::Refuted => "The belief is refuted, so the run ends. Still active:\n",
             RunStatus::LimitReached => "State limit reached. Still active:\n",
+            RunStatus::Deadlock => "Locks wait for each other, so the run ends. Still active:\n",
             RunStatus::Running | RunStatus::Ended => "Step limit reached. Still active:\n",
         });
         run.upcoming().labels.iter().for_each(|label| out.push_str(&format!("  {label}\n")));

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hca::{Stepper, TestId, TraceStep};
+use hca::{Choice, Stepper, TestId, TraceStep, locks};
 use plant::successor::nominal;
 use plant::{
     Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Formula, Goal, Interval, Known,
@@ -34,7 +34,7 @@ pub struct ProgramExecution {
 impl ProgramExecution {
     /// Starts a program.
     pub fn new(system: &Arc<System>) -> Self {
-        Self { system: Arc::clone(system), stepper: Stepper::new(&system.automaton), steps: 0 }
+        Self { system: Arc::clone(system), stepper: Stepper::undecided(&system.automaton), steps: 0 }
     }
 
     /// The marked locations, goals and labels of the next step.
@@ -110,6 +110,8 @@ pub struct ClosedLoop {
     observation: Observation,
     /// How the last step came out: after one that is not explained there is no further one.
     outcome: StepOutcome,
+    /// The locks that wait for each other for ever.
+    deadlock: Option<Vec<SmolStr>>,
     random: Option<Random>,
 }
 
@@ -154,8 +156,29 @@ impl ClosedLoop {
             believed,
             observation: Observation::default(),
             outcome: StepOutcome::Explained,
+            deadlock: None,
             random,
         }
+    }
+
+    /// The names of the locks that wait for each other for ever, if there are any after the last step.
+    pub fn deadlock(&self) -> Option<&[SmolStr]> {
+        self.deadlock.as_deref()
+    }
+
+    /// Makes the choices of the programs that have been started, by chance if there is any, and sets aside the goals that
+    /// contradict what is locked.
+    pub fn settle(&mut self, programs: &mut [&mut ProgramExecution]) {
+        for program in programs.iter_mut() {
+            while let Some(choice) = program.stepper.open_choice() {
+                let alternative = match &mut self.random {
+                    Some(random) => drawn(choice, random),
+                    None => choice.likeliest(),
+                };
+                program.stepper.choose(alternative);
+            }
+        }
+        locks::set_aside(&mut steppers(programs));
     }
 
     /// The plant's true state.
@@ -201,6 +224,7 @@ impl ClosedLoop {
         estimator: &mut Estimator,
         input: &StepInput,
     ) -> Result<LoopStep, EstimateError> {
+        self.settle(programs);
         let mut traces: Vec<TraceStep> = programs.iter().map(|program| program.upcoming()).collect();
         let planned_from = self.planning_state(system, programs);
         let state = planned_from.as_ref().unwrap_or_else(|| self.belief().most_likely());
@@ -246,6 +270,11 @@ impl ClosedLoop {
             }
             program.steps += 1;
         }
+        if is_explained {
+            locks::grant(&mut steppers(programs));
+            self.settle(programs);
+            self.deadlock = locks::deadlock(&steppers(programs));
+        }
         Ok(LoopStep {
             traces,
             commands,
@@ -273,6 +302,7 @@ impl ClosedLoop {
             let Some(entailed_from) = &program.system.entailment else { continue };
             let settings: Vec<_> = program.stepper.settings().collect();
             let marked = program.stepper.marking().iter();
+            let marked = marked.filter(|location| !program.stepper.aside().contains(*location));
             let marked = marked.filter_map(|location| program.system.automaton.location(location));
             for goal in marked.filter_map(|location| location.assertion.as_ref()) {
                 let goal = program.system.condition(goal.test, settings.clone());
@@ -287,6 +317,21 @@ impl ClosedLoop {
     }
 }
 
+fn steppers<'programs>(programs: &'programs mut [&mut ProgramExecution]) -> Vec<&'programs mut Stepper> {
+    programs.iter_mut().map(|program| &mut program.stepper).collect()
+}
+
+/// One of the alternatives, each with its probability.
+fn drawn(choice: &Choice, random: &mut Random) -> usize {
+    let mut left = random.below(choice.weights.iter().sum());
+    let is_it = |weight: &u64| {
+        let is_it = left < *weight;
+        left = left.saturating_sub(*weight);
+        is_it
+    };
+    choice.weights.iter().position(is_it).unwrap_or(0)
+}
+
 /// The commands from a state towards the goals of the marked locations.
 fn command(
     programs: &[&mut ProgramExecution],
@@ -297,7 +342,8 @@ fn command(
     let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
     for program in programs {
         let system = &program.system;
-        for location in program.stepper.marking().iter() {
+        let marked = program.stepper.marking().iter();
+        for location in marked.filter(|location| !program.stepper.aside().contains(*location)) {
             let Some(configurations) = system.goal_configurations(location) else { continue };
             if let Some(found) = configurations.goals(estimator.planner(), state) {
                 goals.extend(found);

@@ -89,7 +89,7 @@ fn outcome(system: &Arc<System>, faults: &[FinalFault]) -> Outcome {
         match run.status() {
             RunStatus::Running => {}
             RunStatus::Ended => return Outcome::Ends,
-            RunStatus::Refuted | RunStatus::LimitReached => return Outcome::Open,
+            RunStatus::Refuted | RunStatus::LimitReached | RunStatus::Deadlock => return Outcome::Open,
         }
         let before = (run.marking().clone(), run.true_state().clone(), run.belief().most_likely().clone());
         let input =

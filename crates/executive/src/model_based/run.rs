@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use exact::Rational;
 use hca::{Marking, Standing, TraceStep};
 use plant::{
     Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Observation, Random, State, VariableId,
@@ -75,6 +76,8 @@ pub enum RunStatus {
     Refuted,
     /// The limit of states leaves open whether some trajectory explains what was observed.
     LimitReached,
+    /// Locks of the program wait for each other for ever.
+    Deadlock,
 }
 
 /// Where a run stands before a step, to come back to.
@@ -103,13 +106,10 @@ impl Run {
 
     /// The same with an estimator that remembers what earlier runs asked.
     pub fn with_estimator(system: &Arc<System>, options: Options, mut estimator: Estimator) -> Self {
-        Self {
-            closed: ClosedLoop::new(system, &mut estimator, options.seed.map(Random::new)),
-            estimator,
-            program: ProgramExecution::new(system),
-            records: Vec::new(),
-            before: Vec::new(),
-        }
+        let mut closed = ClosedLoop::new(system, &mut estimator, options.seed.map(Random::new));
+        let mut program = ProgramExecution::new(system);
+        closed.settle(&mut [&mut program]);
+        Self { closed, estimator, program, records: Vec::new(), before: Vec::new() }
     }
 
     /// Runs again what was logged.
@@ -157,8 +157,20 @@ impl Run {
             StepOutcome::Refuted { .. } => RunStatus::Refuted,
             StepOutcome::LimitReached => RunStatus::LimitReached,
             StepOutcome::Explained if self.is_done() => RunStatus::Ended,
+            StepOutcome::Explained if self.closed.deadlock().is_some() => RunStatus::Deadlock,
             StepOutcome::Explained => RunStatus::Running,
         }
+    }
+
+    /// The names of the locks that wait for each other for ever.
+    pub fn deadlock(&self) -> &[SmolStr] {
+        self.closed.deadlock().unwrap_or_default()
+    }
+
+    /// The sum of the rewards that were counted.
+    pub fn reward(&self) -> Rational {
+        let rewards = self.records.iter().map(|record| record.trace.reward);
+        rewards.fold(Rational::ZERO, |sum, reward| sum.checked_add(reward).unwrap_or(sum))
     }
 
     /// Whether time alone may change what happens next.

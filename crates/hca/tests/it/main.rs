@@ -3,3 +3,4 @@
 mod conformance;
 mod esterel;
 mod interpreter;
+mod timed;

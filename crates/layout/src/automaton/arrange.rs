@@ -203,7 +203,7 @@ impl<'a> Arranger<'a> {
             (Some(guard), _) => format_smolstr!("maintain {guard}"),
             (None, CompositeKind::Sequence) => SmolStr::new_static("sequence"),
             (None, CompositeKind::Parallel) => SmolStr::new_static("parallel"),
-            (None, _) => self.automaton.clock_of(composite)?.label.clone(),
+            (None, _) => self.automaton.title(id)?,
         };
         Some(Text::wrapped(&text, TextRole::Muted, room.max(EASY_LINE), self.measure))
     }

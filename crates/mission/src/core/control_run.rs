@@ -145,6 +145,10 @@ impl RunOfSystem {
         let mut answered_millis = host.now_millis();
         let mut trouble = None;
         for input in wanted.iter().chain([&beyond]).skip(common) {
+            if self.run.status() == RunStatus::Deadlock {
+                trouble =
+                    Some(format!("These locks wait for each other: {}.", self.run.deadlock().join(", ")));
+            }
             if self.run.status() != RunStatus::Running {
                 break;
             }

@@ -204,6 +204,8 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
                 LocationKind::Whenever => "Starts its body whenever the condition is known to hold",
                 LocationKind::Wait => "Active until the time is up",
                 LocationKind::At => "Starts its body at this time of the program",
+                LocationKind::Lock => "Active until the lock is granted",
+                LocationKind::Reward => "Counts a reward",
                 LocationKind::Every => "Starts its body again and again",
             };
             Some(format!("{}: {}\n{meaning}", automaton.location_name(id), location.label))
@@ -226,6 +228,8 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
                 return match composite.kind {
                     CompositeKind::Parallel => Some("These branches run in parallel".to_owned()),
                     CompositeKind::Sequence => Some("These parts run in sequence".to_owned()),
+                    CompositeKind::Lock => Some("Runs while nothing contradicts what it locks".to_owned()),
+                    CompositeKind::Choice => Some("Starts one of these by a draw".to_owned()),
                     CompositeKind::Timeout => Some("Ends its first part when the time is up".to_owned()),
                     _ => None,
                 };

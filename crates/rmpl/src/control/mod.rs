@@ -31,6 +31,7 @@ pub use highlight::{Highlight, HighlightKind, highlight};
 pub use inherit::{ComponentModes, MergedClass, MergedVariable, component_modes, merge_all};
 pub use keyword::{EXPRESSION_KEYWORDS, MODEL_KEYWORDS};
 pub use lexer::{Token, TokenKind, lex};
+pub use probabilities::weights as probability_weights;
 pub use suggest::nearest;
 pub use syntax::{
     Alternative, Argument, Class, Constraint, ConstraintKind, ControlFile, Definition, Expression,

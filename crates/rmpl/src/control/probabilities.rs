@@ -36,7 +36,7 @@ fn given(prior: &[(Name, Name)]) -> Vec<&str> {
 }
 
 /// The weights of probabilities, and their common denominator; `None` if some are wrong or too long.
-pub(super) fn weights(given: &[&str]) -> Option<(Vec<u64>, u64)> {
+pub fn weights(given: &[&str]) -> Option<(Vec<u64>, u64)> {
     let parts: Vec<Rational> = given.iter().map(|given| positive(given)).collect::<Option<_>>()?;
     let mut common = 1_u64;
     for part in &parts {

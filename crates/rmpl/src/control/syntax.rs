@@ -38,10 +38,14 @@ impl ControlFile {
         self.definitions.iter().rev().find(|definition| definition.parameters.is_empty())
     }
 
+    /// How many seconds a step takes, if the text says so.
+    pub fn own_step_secs(&self) -> Option<Rational> {
+        Duration::read(&self.steps.first()?.text).ok()?.seconds()
+    }
+
     /// How many seconds a step takes: as the text says, otherwise as its mission does, otherwise one.
     pub fn step_secs(&self) -> Rational {
-        let own = self.steps.first().and_then(|step| Duration::read(&step.text).ok()?.seconds());
-        own.or(self.mission_step_secs).unwrap_or(Rational::ONE)
+        self.own_step_secs().or(self.mission_step_secs).unwrap_or(Rational::ONE)
     }
 }
 
