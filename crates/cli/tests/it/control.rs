@@ -620,3 +620,49 @@ fn check_warns_of_orbit_insertion_without_an_engine_left() {
         "{found:?}"
     );
 }
+
+#[test]
+fn a_run_lists_the_clocks_with_the_steps_left_and_those_that_were_up() {
+    let text = format!("{ENGINE}Main ():: (TIMEOUT 2s (EngineA = Failed) (SEQUENCE (EngineA = Firing) (REWARD 2.5)))");
+    let program = written("timed.rmpl", &text);
+    let answer = enroute(&["run", &program, "--format", "json"]);
+    let document = answer.json();
+    assert_eq!((answer.status, &document["status"]), (0, &json!("ended")), "{answer}");
+    assert_eq!(document["steps"][0]["clocks"], json!([{ "clock": "TIMEOUT 2 s", "steps_left": 2 }]));
+    assert_eq!(document["steps"][0]["elapsed"], json!([]));
+    assert_eq!(document["steps"][1]["elapsed"], json!(["TIMEOUT 2 s"]));
+    assert_eq!(document["steps"][2]["goals"], json!({ "EngineA": "Firing" }));
+    assert_eq!(document["reward"], json!(2.5), "{document}");
+    let answer = enroute(&["run", &program]);
+    assert!(answer.output.contains("  clock     TIMEOUT 2 s: 1 step left\n"), "{answer}");
+    assert!(answer.output.contains("  elapsed   TIMEOUT 2 s\n") && answer.output.contains("Rewards: 2.5."), "{answer}");
+}
+
+#[test]
+fn locks_that_wait_for_each_other_end_the_run_with_their_names() {
+    let text = format!(
+        "{ENGINE}Main ():: (PARALLEL
+           (LOCK (EngineA = Standby) (LOCK (EngineA.thrust = zero) (WAIT 3)))
+           (LOCK (EngineA.thrust = full) (LOCK (EngineA = Firing) (WAIT 3))))"
+    );
+    let program = written("deadlock.rmpl", &text);
+    let answer = enroute(&["run", &program, "--format", "json"]);
+    let document = answer.json();
+    assert_eq!((answer.status, &document["status"]), (1, &json!("deadlock")), "{answer}");
+    let names = ["EngineA=Standby", "EngineA.thrust=zero", "EngineA.thrust=full", "EngineA=Firing"];
+    assert_eq!(document["deadlock"], json!(names.map(|name| format!("LOCK {name}"))), "{document}");
+}
+
+#[test]
+fn a_choice_is_drawn_with_a_seed() {
+    let text = format!("{ENGINE}Main ():: (CHOOSE-PROB (0.6 (EngineA = Standby)) (0.4 (EngineA.thrust = zero)))");
+    let program = written("choice.rmpl", &text);
+    let first = |arguments: &[&str]| {
+        let answer = enroute(&[&["run", &program, "--format", "json"], arguments].concat());
+        answer.json()["steps"][0]["marked"][0].as_str().expect("a label").to_owned()
+    };
+    assert_eq!(first(&[]), "assert EngineA=Standby", "the likeliest");
+    let drawn: std::collections::BTreeSet<String> =
+        (0..20_u64).map(|seed| first(&["--fault-seed", &seed.to_string()])).collect();
+    assert_eq!(drawn.len(), 2, "{drawn:?}");
+}

@@ -464,3 +464,19 @@ fn a_refuted_belief_violates_the_activity_and_the_run_says_why() {
     let expected = "no tracked state of the plant explains EngineA.power_in=nominal";
     assert!(reasons.iter().any(|reason| reason.contains(expected)), "{reasons:?}");
 }
+
+#[test]
+fn a_control_block_may_set_the_length_of_its_steps() {
+    let program = "Cool (e):: (SEQUENCE (DO-WATCHING (e = Firing) (e = Firing)) (WAIT 90s))";
+    let text = engines("primitive Start(e)[1,9] runs Cool(e);\nscenario S[0,20] = { Start(EngineA) }");
+    let with = |step: &str| text.replace("control {", &format!("control {{\n{step}\n{program}"));
+    for (step, end) in [("", Time::new(4, 1)), ("(DEFSTEP 30s)", Time::new(5, 2))] {
+        let (_, ran) = execute(&with(step), &[]);
+        assert_eq!(time(&ran, "Start#1.end"), end, "{step}: {:?}", ran.outcome.log);
+    }
+    let twice = format!("option control_step = 2;\n{}", with("(DEFSTEP 30s)"));
+    assert_eq!(
+        diagnostics(&twice),
+        ["E-DUP the mission sets the length of a step before: `option control_step`"]
+    );
+}

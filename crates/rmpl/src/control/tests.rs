@@ -232,3 +232,43 @@ fn options_and_priors_are_laid_out_on_their_lines() {
     assert_eq!(format(text), laid_out);
     assert_eq!(format(laid_out), laid_out);
 }
+
+#[test]
+fn forms_in_time_are_read_with_their_durations_and_laid_out() {
+    let text = "(DEFSTEP 100 ms)
+Main ():: (WARP 2 (SEQUENCE (TIMEOUT 5 s (x = a) (y = b)) (WITHIN 1 s 2min (WAIT 3)) (AT 1h (EVERY 250ms (x = b)))
+ (WHENEVER-DONEXT ~(HELD 2 s ~(x = a)) (LOCK (y = a) (CHOOSE-PROB (0.5 (REWARD 2)) (0.5 (x = a)))))))";
+    let parsed = parse(text);
+    assert_eq!(parsed.diagnostics, []);
+    assert_eq!(parsed.file.step_secs().to_string(), "0.1");
+    let mut durations = Vec::new();
+    let mut left = vec![&parsed.file.definitions[0].body];
+    while let Some(expression) = left.pop() {
+        durations.extend(expression.durations().into_iter().map(|name| name.text.as_str()));
+        left.extend(expression.parts().into_iter().rev());
+    }
+    assert_eq!(durations, ["5 s", "1 s", "2min", "3", "1h", "250ms", "2 s"]);
+    let once = format(text);
+    assert_eq!(format(&once), once, "{once}");
+    assert_eq!(outline(&parse(&once).file), outline(&parsed.file), "{once}");
+    assert!(once.contains("(TIMEOUT 5 s (x = a) (y = b))"), "{once}");
+}
+
+#[test]
+fn a_duration_may_be_a_parameter_and_is_checked_where_it_is_handed_over() {
+    let text = |given: &str| format!("P (d s):: (TIMEOUT d (WAIT 3 s)) Main ():: (P {given} x)");
+    assert_eq!(parse(&text("5s")).diagnostics.len(), 1, "`s` is a parameter there, so WAIT has too much");
+    let text = |given: &str| format!("P (d):: (SEQUENCE (WAIT d) (x = a)) Main ():: (P {given})");
+    assert_eq!(parse(&text("5s")).diagnostics, []);
+    for (given, expected) in [("5s", None), ("0s", Some("E-BOUNDS")), ("soon", Some("E-SYNTAX"))] {
+        let (_, found) = expand_main(&parse(&text(given)).file);
+        assert_eq!(found.first().map(|found| found.code.0), expected, "{given}");
+    }
+}
+
+#[test]
+fn words_of_time_alone_do_not_make_a_mission_a_control_program() {
+    assert!(!is_control_text("scenario S = { Drive(at), Move(wait); }"));
+    assert!(is_control_text("(WAIT 3)"));
+    assert!(is_control_text("(TIMEOUT 3 (x = a))"));
+}
