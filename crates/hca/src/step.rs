@@ -621,7 +621,9 @@ impl Stepper {
                 CompositeKind::DoWatching => {
                     self.dropped.get(id.0 as usize) == Some(&true) || self.some_child_completes(id)
                 }
-                CompositeKind::Lock => self.dropped.get(id.0 as usize) == Some(&true) || self.body_completes(id),
+                CompositeKind::Lock => {
+                    self.dropped.get(id.0 as usize) == Some(&true) || self.body_completes(id)
+                }
                 CompositeKind::Timeout => self.time_out(id, observer),
                 CompositeKind::Guarded | CompositeKind::Choice | CompositeKind::Program => {
                     self.some_child_completes(id)

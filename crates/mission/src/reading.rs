@@ -5,10 +5,9 @@
 
 use std::sync::Arc;
 
-use exact::Time;
 use interchange::is_network_text;
 use link::Source;
-use rmpl::program::{ControlDecl, Program, Runs};
+use rmpl::program::{ControlDecl, Options, Program, Runs};
 use rmpl::spans::Spans as _;
 use rmpl::{Diagnostic, Parse, Severity, Shift};
 use smol_str::SmolStr;
@@ -69,7 +68,7 @@ struct CompiledPrograms {
     runners: Vec<(SmolStr, Runs)>,
     /// What activities are called with whose programs are handed that.
     calls: Vec<(SmolStr, Vec<SmolStr>)>,
-    step: Time,
+    options: Options,
     programs: Arc<Programs>,
     found: Vec<Diagnostic>,
 }

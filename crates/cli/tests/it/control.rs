@@ -623,7 +623,9 @@ fn check_warns_of_orbit_insertion_without_an_engine_left() {
 
 #[test]
 fn a_run_lists_the_clocks_with_the_steps_left_and_those_that_were_up() {
-    let text = format!("{ENGINE}Main ():: (TIMEOUT 2s (EngineA = Failed) (SEQUENCE (EngineA = Firing) (REWARD 2.5)))");
+    let text = format!(
+        "{ENGINE}Main ():: (TIMEOUT 2s (EngineA = Failed) (SEQUENCE (EngineA = Firing) (REWARD 2.5)))"
+    );
     let program = written("timed.rmpl", &text);
     let answer = enroute(&["run", &program, "--format", "json"]);
     let document = answer.json();
@@ -635,7 +637,10 @@ fn a_run_lists_the_clocks_with_the_steps_left_and_those_that_were_up() {
     assert_eq!(document["reward"], json!(2.5), "{document}");
     let answer = enroute(&["run", &program]);
     assert!(answer.output.contains("  clock     TIMEOUT 2 s: 1 step left\n"), "{answer}");
-    assert!(answer.output.contains("  elapsed   TIMEOUT 2 s\n") && answer.output.contains("Rewards: 2.5."), "{answer}");
+    assert!(
+        answer.output.contains("  elapsed   TIMEOUT 2 s\n") && answer.output.contains("Rewards: 2.5."),
+        "{answer}"
+    );
 }
 
 #[test]
@@ -655,7 +660,8 @@ fn locks_that_wait_for_each_other_end_the_run_with_their_names() {
 
 #[test]
 fn a_choice_is_drawn_with_a_seed() {
-    let text = format!("{ENGINE}Main ():: (CHOOSE-PROB (0.6 (EngineA = Standby)) (0.4 (EngineA.thrust = zero)))");
+    let text =
+        format!("{ENGINE}Main ():: (CHOOSE-PROB (0.6 (EngineA = Standby)) (0.4 (EngineA.thrust = zero)))");
     let program = written("choice.rmpl", &text);
     let first = |arguments: &[&str]| {
         let answer = enroute(&[&["run", &program, "--format", "json"], arguments].concat());
