@@ -46,7 +46,7 @@ struct Imported {
 #[derive(Clone, PartialEq)]
 struct SpaceKey {
     map: MapKey,
-    model: SmolStr,
+    model: VehicleModel,
     obstacles: Vec<ObstacleShape>,
 }
 
@@ -106,7 +106,7 @@ impl Grounds {
         model: &VehicleModel,
         obstacles: Vec<ObstacleShape>,
     ) -> FreeSpace {
-        let wanted = SpaceKey { map: key.clone(), model: SmolStr::new(model.name), obstacles };
+        let wanted = SpaceKey { map: key.clone(), model: *model, obstacles };
         if let Some(at) = self.spaces.iter().position(|(known, _)| *known == wanted) {
             let found = self.spaces.remove(at);
             let space = found.1.clone();

@@ -454,7 +454,7 @@ fn found_legs(
 ) -> Result<Vec<Leg>, Undrivable> {
     let keep_outs = problem.keep_outs.and_then(|keep_outs| keep_outs.get(&route.occurrence));
     let obstacles = route.obstacles.iter().chain(keep_outs.into_iter().flatten()).cloned().collect();
-    let space = grounds.space(key, map, route.model, obstacles);
+    let space = grounds.space(key, map, &route.model, obstacles);
     let route = &on_free_ground(route, &space);
     let mut legs = paths.legs(route, &space, problem.seed, Preference::Roomy);
     let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, route, legs, map).is_some();
@@ -572,8 +572,8 @@ fn timings(route: &Route, leg: &Leg, map: &Terrain, heading: Option<f64>) -> Vec
     let path = motion::Path::new(leg.points_m.clone());
     let speeds = SpeedLimits { min_mps, max_mps };
     match &route.limits {
-        Some(limits) => motion::time_path_within(&path, map, route.model, speeds, (limits, heading)),
-        None => motion::time_path(&path, map, route.model, speeds),
+        Some(limits) => motion::time_path_within(&path, map, &route.model, speeds, (limits, heading)),
+        None => motion::time_path(&path, map, &route.model, speeds),
     }
 }
 
@@ -686,7 +686,7 @@ pub(crate) fn conclude(
         for route in routes {
             let Some(Inserted { legs: Ok(legs), .. }) = inserted.get(&route.occurrence) else { continue };
             let path = snapshot::joined(legs);
-            let space = grounds.space(key, map, route.model, route.obstacles.clone());
+            let space = grounds.space(key, map, &route.model, route.obstacles.clone());
             let drive = drive(world, &network, plan, &route, path.clone(), &space.exact);
             let tracks = drive.as_ref().map_or_else(|| vec![path.clone()], driving::tracks_m);
             let clearances_m = tracks.iter().map(|it| traverse::clearance_m(&space.exact, &it.points_m));

@@ -82,10 +82,10 @@ impl<'a> Seeing<'a> {
 impl tpn::Ground for Seeing<'_> {
     fn hidden(&self, vehicle: &str, location: &str) -> Vec<Hidden> {
         let vehicle = self.world.vehicles.iter().find(|it| it.name.text == vehicle);
-        let model = vehicle.and_then(|it| motion::vehicle_model(&it.model.text));
+        let model = vehicle.and_then(|it| snapshot::vehicle::model(self.world, &it.model.text));
         let target = self.world.locations.iter().find(|it| it.name.text == location);
         let (Some(model), Some(target)) = (model, target) else { return Vec::new() };
         let places = self.world.locations.iter();
-        places.filter_map(|place| self.hidden_from(model, place, target)).collect()
+        places.filter_map(|place| self.hidden_from(&model, place, target)).collect()
     }
 }

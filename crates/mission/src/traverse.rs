@@ -10,6 +10,8 @@ use executive::facts::StandingPlace;
 use motion::{DriveLimits, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::Point2;
 use rmpl::Span;
+use rmpl::diagnostics::model as wording;
+use rmpl::fleet::lineage;
 use rmpl::program::{ObstacleShape, Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
@@ -28,7 +30,7 @@ pub struct Route {
     /// Indices of the vehicles into the program's world; the first leads.
     pub vehicles: Vec<usize>,
     /// The model whose ground the path must be: of the vehicles that drive, or of all if none drives, the widest.
-    pub model: &'static VehicleModel,
+    pub model: VehicleModel,
     /// Least and greatest speed in metres per second. At a least speed of 0 the vehicle may stop on its way.
     pub speed_mps: (Rational, Rational),
     /// What its vehicles may not enter.
@@ -174,10 +176,9 @@ fn route(
         .filter_map(|name| world.vehicles.iter().position(|vehicle| vehicle.name.text == *name))
         .collect();
     let &leader = vehicles.first()?;
-    let models =
-        || vehicles.iter().filter_map(|&vehicle| motion::vehicle_model(&world.vehicles[vehicle].model.text));
-    let drives = |model: &&VehicleModel| matches!(model.drive, motion::Drive::SkidSteer { .. });
-    let widest = |a: &&'static VehicleModel, b: &&'static VehicleModel| {
+    let models = || vehicles.iter().filter_map(|&vehicle| vehicle::model_of(world, vehicle));
+    let drives = |model: &VehicleModel| matches!(model.drive, motion::Drive::SkidSteer { .. });
+    let widest = |a: &VehicleModel, b: &VehicleModel| {
         (drives(a), a.radius_m()).partial_cmp(&(drives(b), b.radius_m())).unwrap_or(Ordering::Equal)
     };
     let model = models().max_by(widest)?;
@@ -190,11 +191,17 @@ fn route(
     }
     waypoints.extend(named);
     waypoints.dedup_by(|next, before| next.position_m == before.position_m);
-    let own_speed_mps = Rational::from_f64_nearest(own_mps, 1000)?;
-    let speed_mps = moving.moves.speed_mps.unwrap_or((Rational::ZERO, own_speed_mps));
+    let least_mps = models().map(|model| model.least_speed_mps).fold(0.0, f64::max);
+    let own_speed_mps = (
+        Rational::from_f64_nearest(least_mps.min(own_mps), 1000)?,
+        Rational::from_f64_nearest(own_mps, 1000)?,
+    );
+    let speed_mps = moving.moves.speed_mps.unwrap_or(own_speed_mps);
     let from = positions[leader].as_ref().map(|before| before.name.clone());
-    let limits =
-        models().map(DriveLimits::of).reduce(DriveLimits::of_both).filter(|_| moving.moves.is_kinodynamic);
+    let limits = models()
+        .map(|model| DriveLimits::of(&model))
+        .reduce(DriveLimits::of_both)
+        .filter(|_| moving.moves.is_kinodynamic);
     let activity = &network.occurrences[id.index()].activity;
     let obstacles = closed_to(world, &vehicles, activity).map(|it| it.shape.clone()).collect();
     Some(Route { occurrence: id, vehicles, model, speed_mps, obstacles, limits, from, waypoints })
@@ -237,6 +244,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
             }
         }
     }
+    found.extend(too_fast(network, program));
     if world.terrain.is_none() {
         for primitive in &program.primitives {
             let amounts =
@@ -249,7 +257,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
         }
     }
     for vehicle in &world.vehicles {
-        if motion::vehicle_model(&vehicle.model.text).is_none() {
+        if vehicle::model(world, &vehicle.model.text).is_none() {
             let known: Vec<&str> = motion::VEHICLE_MODELS.iter().map(|model| model.name).collect();
             let message = format!("unknown vehicle model `{}`", vehicle.model.text);
             let hint = format!("the models are {}", known.join(", "));
@@ -261,6 +269,31 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
         if waypoint(world, &vehicle.start.text).is_none() {
             let message = format!("unknown location `{}`", vehicle.start.text);
             found.push(rmpl::Diagnostic::error(rmpl::Code("E-UNDEF"), vehicle.start.span, message));
+        }
+    }
+    found
+}
+
+/// Speeds of `moves` clauses that the declared model of a vehicle does not reach (SPEC 23). Those of the built-in models are
+/// measured on flat ground, and missions may ask for others.
+fn too_fast(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
+    let world = &program.world;
+    let mut found: Vec<rmpl::Diagnostic> = Vec::new();
+    for occurrence in &network.occurrences {
+        let Some(moving) = moving(program, occurrence) else { continue };
+        let Some((_, wanted)) = moving.moves.speed_mps else { continue };
+        for name in &moving.vehicles {
+            let Some(declared) = world.vehicles.iter().find(|it| it.name.text == *name) else { continue };
+            let is_declared = !lineage(world, &declared.model.text).is_empty();
+            let model = vehicle::model(world, &declared.model.text).filter(|_| is_declared);
+            let Some(model) = model.filter(|model| wanted.to_f64() > model.speed_mps) else { continue };
+            let (wanted, greatest) = (wanted.to_f64(), model.speed_mps.to_string());
+            let span = moving.moves.span;
+            let diagnostic =
+                wording::too_fast(&wanted.to_string(), name, &declared.model.text, &greatest, span);
+            if !found.contains(&diagnostic) {
+                found.push(diagnostic);
+            }
         }
     }
     found

@@ -6,7 +6,7 @@ use terrain::{ConfigurationSpace, Obstacle, Occupancy, Terrain, Traversability};
 /// What a vehicle is and can do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VehicleModel {
-    /// The name in a `vehicle` declaration.
+    /// The name in a `vehicle` declaration; of a model that a mission declares, that of the one which it is made from.
     pub name: &'static str,
     /// From front to back in metres.
     pub length_m: f64,
@@ -20,6 +20,8 @@ pub struct VehicleModel {
     pub circumradius_m: f64,
     /// What is kept free around that disc, in metres.
     pub margin_m: f64,
+    /// Least speed in metres per second; at 0 the vehicle may stop on its way.
+    pub least_speed_mps: f64,
     /// Greatest speed in metres per second.
     pub speed_mps: f64,
     /// Greatest turning rate in radians per second.
@@ -69,6 +71,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         mast_m: 1.5,
         circumradius_m: 0.661,
         margin_m: 0.1,
+        least_speed_mps: 0.0,
         speed_mps: 0.8,
         turn_rate_rps: 0.4,
         acceleration_mps2: 0.5,
@@ -89,6 +92,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         mast_m: 1.5,
         circumradius_m: 0.515,
         margin_m: 0.1,
+        least_speed_mps: 0.0,
         speed_mps: 1.0,
         turn_rate_rps: 0.5,
         acceleration_mps2: 0.6,
@@ -109,6 +113,7 @@ pub const VEHICLE_MODELS: [VehicleModel; 3] = [
         mast_m: 0.0,
         circumradius_m: 4.124,
         margin_m: 0.5,
+        least_speed_mps: 0.0,
         speed_mps: 4.0,
         turn_rate_rps: 0.3,
         acceleration_mps2: 0.4,
@@ -123,6 +128,51 @@ pub fn vehicle_model(name: &str) -> Option<&'static VehicleModel> {
 }
 
 impl VehicleModel {
+    /// The same with another body, whose wheels stand as far apart in proportion.
+    #[must_use]
+    pub fn with_body(mut self, length_m: f64, width_m: f64) -> Self {
+        if let Drive::SkidSteer { track_m, .. } = &mut self.drive {
+            *track_m *= width_m / self.width_m;
+        }
+        let circumradius_m = 0.5 * (length_m * length_m + width_m * width_m).sqrt();
+        Self { length_m, width_m, circumradius_m, ..self }
+    }
+
+    /// The same with another steepest slope, in radians; what flies has none.
+    #[must_use]
+    pub fn with_slope(mut self, angle_rad: f64) -> Self {
+        if let Drive::SkidSteer { max_grade, .. } = &mut self.drive {
+            *max_grade = libm::tan(angle_rad);
+        }
+        self
+    }
+
+    /// The same with another size of what passes below: a rock, or for what flies the height over the ground.
+    #[must_use]
+    pub const fn with_clearance(mut self, size_m: f64) -> Self {
+        match &mut self.drive {
+            Drive::SkidSteer { rock_diameter_m, .. } => *rock_diameter_m = size_m,
+            Drive::Flight { ground_clearance_m, .. } => *ground_clearance_m = size_m,
+        }
+        self
+    }
+
+    /// The same with another band of altitudes; what drives has none.
+    #[must_use]
+    pub const fn with_altitude_band(mut self, band_m: [f64; 2]) -> Self {
+        if let Drive::Flight { altitude_band_m, .. } = &mut self.drive {
+            *altitude_band_m = band_m;
+        }
+        self
+    }
+
+    /// The same with another radius of the tightest turn at the greatest speed, in metres.
+    #[must_use]
+    pub const fn with_turning_radius(mut self, radius_m: f64) -> Self {
+        self.turn_rate_rps = self.speed_mps / radius_m;
+        self
+    }
+
     /// The radius by which obstacles are grown: circumradius and margin, in metres.
     pub fn radius_m(&self) -> f64 {
         self.circumradius_m + self.margin_m
@@ -183,6 +233,22 @@ mod tests {
                 0.5 * (model.length_m * model.length_m + model.width_m * model.width_m).sqrt();
             assert!((model.circumradius_m - half_diagonal).abs() < 0.001, "{}", model.name);
         }
+    }
+
+    #[test]
+    fn a_model_made_from_another_one_differs_in_what_it_says() {
+        let rover = *vehicle_model("ATRV").unwrap();
+        let small = rover.with_body(0.6, 0.42).with_slope(0.1).with_clearance(0.2).with_turning_radius(0.5);
+        assert!((small.circumradius_m - 0.366).abs() < 0.001);
+        let Drive::SkidSteer { track_m, max_grade, rock_diameter_m, .. } = small.drive else { panic!() };
+        assert_eq!((track_m, rock_diameter_m), (0.31, 0.2));
+        assert!((max_grade - 0.1003).abs() < 0.0001);
+        assert_eq!(small.turn_rate_rps, 1.6);
+        assert_eq!(small.with_altitude_band([1.0, 2.0]), small);
+        let blimp = vehicle_model("Blimp").unwrap().with_altitude_band([20.0, 30.0]).with_clearance(9.0);
+        let Drive::Flight { altitude_band_m, ground_clearance_m, .. } = blimp.drive else { panic!() };
+        assert_eq!((altitude_band_m, ground_clearance_m), ([20.0, 30.0], 9.0));
+        assert_eq!(blimp.with_slope(0.1), blimp);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use exact::{Bound, Time};
 use motion::DriveLimits;
 use rmpl::Span;
 use rmpl::program::{Change, LabelMode};
-use snapshot::vehicle::{is_way, moving};
+use snapshot::vehicle::{is_way, model_of, moving};
 use snapshot::{Planning, Snapshot, joined, standing};
 use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceKind, Plan};
 
@@ -415,9 +415,8 @@ impl<'input> PlanLines<'input> {
         let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
         let occurrence = &self.network.occurrences[traverse.occurrence.index()];
         let said_mps = moving(program, occurrence).and_then(|moving| moving.moves.speed_mps);
-        let vehicles =
-            traverse.vehicles.iter().filter_map(|&vehicle| program.world.vehicles.get(vehicle as usize));
-        let models = vehicles.filter_map(|vehicle| motion::vehicle_model(&vehicle.model.text));
+        let models =
+            traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
         let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
         let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
         let followers = traverse.vehicles.len().saturating_sub(1);
@@ -468,10 +467,9 @@ impl<'input> PlanLines<'input> {
         let program = &self.snapshot.program;
         let occurrence = &self.network.occurrences[traverse.occurrence.index()];
         let moving = moving(program, occurrence).filter(|moving| moving.moves.is_kinodynamic)?;
-        let vehicles =
-            traverse.vehicles.iter().filter_map(|&vehicle| program.world.vehicles.get(vehicle as usize));
-        let models = vehicles.filter_map(|vehicle| motion::vehicle_model(&vehicle.model.text));
-        let mut limits = models.map(DriveLimits::of).reduce(DriveLimits::of_both)?;
+        let models =
+            traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
+        let mut limits = models.map(|model| DriveLimits::of(&model)).reduce(DriveLimits::of_both)?;
         // How fast a traverse may be is no limit of its wheels in a turn.
         (limits.turn_rate_rps, limits.half_track_m) = (limits.turn_rate_in_place_rps(), 0.0);
         if let Some((_, greatest)) = moving.moves.speed_mps {
@@ -485,9 +483,9 @@ impl<'input> PlanLines<'input> {
 
     /// What all vehicles of a traverse can climb.
     fn slope_limit_rad(&self, traverse: &snapshot::Traverse) -> Option<f64> {
-        let vehicles = &self.snapshot.program.world.vehicles;
+        let world = &self.snapshot.program.world;
         let grades = traverse.vehicles.iter().filter_map(|&vehicle| {
-            let model = motion::vehicle_model(&vehicles.get(vehicle as usize)?.model.text)?;
+            let model = model_of(world, vehicle as usize)?;
             match model.drive {
                 motion::Drive::SkidSteer { max_grade, .. } => Some(max_grade),
                 motion::Drive::Flight { .. } => None,

@@ -11,6 +11,7 @@ pub mod editor;
 mod edits;
 pub mod explanation;
 pub mod files;
+pub mod fleet;
 pub mod format;
 mod lower;
 pub mod parse;

@@ -17,6 +17,7 @@ use crate::diagnostic::{Diagnostic, Edit, Known, Listed, Severity};
 use crate::diagnostics::{syntax, undefined};
 use crate::edits::Shift;
 use crate::files::{self, MARK};
+use crate::fleet;
 use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
 use crate::program::{ControlDecl, Controllability, ImportDecl, Name, Program, TimeUnit, state_of_component};
@@ -353,6 +354,7 @@ impl Parse {
         }
         fill_states_of_plant(&mut program);
         fill_control_step(&mut program);
+        fleet::equip(&mut program);
         program
     }
 }
@@ -420,7 +422,12 @@ fn add(program: &mut Program, item: Item) {
         Item::Terrain(decl) => program.world.terrain = program.world.terrain.take().or(Some(decl)),
         Item::Location(decl) => program.world.locations.push(decl),
         Item::Obstacle(decl) => program.world.obstacles.push(decl),
-        Item::Vehicle(decl) => program.world.vehicles.push(decl),
+        Item::Vehicles(decl) => {
+            program.world.vehicles.extend(decl.vehicles);
+            program.fleets.extend(decl.fleets);
+        }
+        Item::Model(decl) => program.world.models.push(decl),
+        Item::Group(decl) => program.groups.push(decl),
     }
 }
 

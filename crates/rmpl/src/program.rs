@@ -44,6 +44,10 @@ pub struct Program {
     pub control: Vec<ControlDecl>,
     /// The world of the mission (SPEC 1.8).
     pub world: World,
+    /// Vehicles that one declaration numbers; each is in the world as well.
+    pub fleets: Vec<FleetDecl>,
+    /// What `any` and `each` range over, beside fleets.
+    pub groups: Vec<GroupDecl>,
 }
 
 /// `control { … }`: control programs and their plant, in prefix notation (SPEC 2).
@@ -171,6 +175,8 @@ pub struct PrimitiveDecl {
     pub name: Name,
     /// Its formal parameters.
     pub formals: Vec<Name>,
+    /// What each parameter stands for, where that is written (SPEC 23).
+    pub kinds: Vec<Option<Name>>,
     /// Its default duration; `[0,inf]` when absent.
     pub bounds: Option<Bounds>,
     /// Present if the primitive is a traverse.
@@ -200,6 +206,102 @@ pub struct Runs {
     pub program: Name,
     /// What it is handed: names of its plant, or parameters of the primitive that stand for them.
     pub arguments: Vec<Name>,
+}
+
+/// `model NAME extends PARENT { … }`: what vehicles of it can do, and the equipment that each of them has (SPEC 23).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelDecl {
+    pub name: Name,
+    /// The model that says what this one does not.
+    pub parent: Option<Name>,
+    /// In textual order.
+    pub properties: Vec<PropertyDecl>,
+    /// Each vehicle has its own.
+    pub resources: Vec<ResourceDecl>,
+    /// Each vehicle has its own.
+    pub states: Vec<VariableDecl>,
+    /// The whole declaration.
+    pub span: Span,
+}
+
+/// `speed (0.01, 0.8);` of a model
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PropertyDecl {
+    pub property: Property,
+    /// Without the semicolon.
+    pub span: Span,
+}
+
+/// What a vehicle model can do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Property {
+    /// From front to back and from side to side, in meters.
+    Body { length_m: f64, width_m: f64 },
+    /// Least and greatest speed in meters per second.
+    Speed { least_mps: Rational, greatest_mps: Rational },
+    /// The steepest slope that is driven, in radians.
+    Slope { angle_rad: f64 },
+    /// The size of what passes below, in meters: a rock, or for what flies the height over the ground.
+    Clearance { size_m: f64 },
+    /// The radius of the tightest turn at the greatest speed, in meters.
+    Turning { radius_m: f64 },
+    /// Height of the antenna in meters.
+    Mast { height_m: f64 },
+    /// Least and greatest altitude over the map's lowest ground, in meters.
+    Flies { altitude_band_m: [f64; 2] },
+}
+
+impl Property {
+    /// The word of the language.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Body { .. } => "body",
+            Self::Speed { .. } => "speed",
+            Self::Slope { .. } => "slope",
+            Self::Clearance { .. } => "clearance",
+            Self::Turning { .. } => "turning",
+            Self::Mast { .. } => "mast",
+            Self::Flies { .. } => "flies",
+        }
+    }
+}
+
+/// `S[1..4]` of a `vehicle` declaration
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FleetDecl {
+    pub name: Name,
+    /// The number of the first member.
+    pub first: u32,
+    /// The number of the last member; an empty or too large range is reported, and has none.
+    pub last: u32,
+    /// The brackets.
+    pub range_span: Span,
+}
+
+/// Fleets have no more members than this.
+pub const MAX_FLEET: u32 = 1000;
+
+impl FleetDecl {
+    /// The names of its vehicles; none if the range is empty or too large.
+    pub fn members(&self) -> impl Iterator<Item = SmolStr> + '_ {
+        let is_sound = self.first <= self.last && self.last - self.first < MAX_FLEET;
+        let last = is_sound.then_some(self.last);
+        last.into_iter().flat_map(|last| self.first..=last).map(|number| member_name(&self.name.text, number))
+    }
+}
+
+/// The name of a vehicle of a fleet: `S[3]`.
+fn member_name(fleet: &str, number: u32) -> SmolStr {
+    smol_str::format_smolstr!("{fleet}[{number}]")
+}
+
+/// `group NAME = R1, S, OTHERS;`
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GroupDecl {
+    pub name: Name,
+    pub members: Vec<Name>,
+    /// The whole declaration.
+    pub span: Span,
 }
 
 /// `requires ARM=OUT` or `requires at start ARM=OUT`
@@ -309,6 +411,8 @@ pub struct ActivityDecl {
     pub name: Name,
     /// Its formal parameters.
     pub formals: Vec<Name>,
+    /// What each parameter stands for, where that is written (SPEC 23).
+    pub kinds: Vec<Option<Name>>,
     pub bounds: HeaderBounds,
     pub body: Statement,
     /// The whole definition.
@@ -502,7 +606,8 @@ impl Statement {
             | StatementKind::IfThennext(_, body)
             | StatementKind::Repeat(_, body)
             | StatementKind::Named(body, _)
-            | StatementKind::Using(body, ..) => std::slice::from_ref(body),
+            | StatementKind::Using(body, ..)
+            | StatementKind::Members(Members { body, .. }) => std::slice::from_ref(body),
             StatementKind::Call(..) | StatementKind::Condition(..) | StatementKind::Delay => &[],
         }
     }
@@ -539,12 +644,39 @@ pub enum StatementKind {
     Using(Box<Statement>, Name, Option<Expr>),
     /// `body as NAME` (SPEC 14).
     Named(Box<Statement>, Name),
+    /// `any x in G body` or `each x in G body` (SPEC 23).
+    Members(Members),
     /// `Name(args)`, or a bare name that is a declared activity or primitive.
     Call(Name, Vec<Argument>),
     /// `c`, `tell c` (an assertion) or `ask c`.
     Condition(LabelMode, Condition),
     /// `delay`
     Delay,
+}
+
+/// A statement for one member of a group, or for each.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Members {
+    pub form: MembersForm,
+    /// What stands for the member in the body.
+    pub variable: Name,
+    /// A group or a fleet.
+    pub group: Name,
+    /// In [`MembersForm::Parallel`] it begins with a delay.
+    pub body: Box<Statement>,
+}
+
+/// How the copies of a statement for members of a group belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MembersForm {
+    /// `any`: one is chosen.
+    Any,
+    /// `each`: all of them, each when it fits.
+    Parallel,
+    /// `each … in sequence`: one after the other.
+    Sequence,
+    /// `each … unordered`: all of them, no two at a time.
+    Unordered,
 }
 
 /// Whether a condition is asserted or required.
@@ -582,7 +714,7 @@ pub enum ArgumentValue {
 /// (SPEC 1.3) and on substitution of formals; [`crate::program::Program`]'s users resolve it after substitution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// The variable, the atom, or a formal that stands for one; of a vehicle's place `V.at`.
+    /// The variable, the atom, or a formal that stands for one; of a vehicle's place `V.at`, of its state `V.arm`.
     pub variable: Name,
     /// The value, or several of which the variable has one; an atom has none, and neither has what is to see a location.
     pub values: Vec<Name>,
@@ -674,7 +806,10 @@ pub struct World {
     pub terrain: Option<TerrainDecl>,
     pub locations: Vec<LocationDecl>,
     pub obstacles: Vec<ObstacleDecl>,
+    /// Those of fleets included.
     pub vehicles: Vec<VehicleDecl>,
+    /// The vehicle models that the mission declares (SPEC 23).
+    pub models: Vec<ModelDecl>,
 }
 
 impl ObstacleDecl {
@@ -749,14 +884,14 @@ pub enum ObstacleShape {
     },
 }
 
-/// The vehicle models of SPEC 1.8.
+/// The vehicle models of SPEC 1.8, which models can extend.
 pub(crate) const VEHICLE_MODELS: [&str; 3] = ["ATRV", "ATRV-Jr", "Blimp"];
 
-/// `vehicle NAME : MODEL at LOCATION;`
+/// A vehicle of `vehicle NAME, NAME : MODEL at LOCATION;`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VehicleDecl {
     pub name: Name,
-    /// Its model: ATRV, ATRV-Jr or Blimp.
+    /// Its model: ATRV, ATRV-Jr, Blimp, or a declared one.
     pub model: Name,
     /// The location it starts from.
     pub start: Name,

@@ -7,10 +7,10 @@ use crate::diagnostic::{Diagnostic, Edit, Fix};
 use crate::edits::Shift;
 use crate::program::{
     ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ConstrainDecl,
-    ControlDecl, Effect, EventName, Expr, ExprKind, GoalDecl, HeaderBound, HeaderBounds, ImportDecl,
-    LocationDecl, Moves, Name, ObjectiveDecl, ObstacleDecl, ObstacleKind, PrimitiveDecl, Program,
-    Requirement, ResourceDecl, ResourceUse, Runs, ScenarioDecl, Statement, StatementKind, Supply,
-    TerrainDecl, VariableDecl, VehicleDecl, World,
+    ControlDecl, Effect, EventName, Expr, ExprKind, FleetDecl, GoalDecl, GroupDecl, HeaderBound,
+    HeaderBounds, ImportDecl, LocationDecl, Members, ModelDecl, Moves, Name, ObjectiveDecl, ObstacleDecl,
+    ObstacleKind, PrimitiveDecl, Program, PropertyDecl, Requirement, ResourceDecl, ResourceUse, Runs,
+    ScenarioDecl, Statement, StatementKind, Supply, TerrainDecl, VariableDecl, VehicleDecl, World,
 };
 use crate::span::Span;
 
@@ -33,6 +33,12 @@ pub trait Spans {
         let mut bare = self.clone();
         bare.visit_spans(&mut |span| *span = Span::default());
         bare
+    }
+}
+
+impl<T: Spans> Spans for Box<T> {
+    fn visit_spans(&mut self, visit: &mut dyn FnMut(&mut Span)) {
+        (**self).visit_spans(visit);
     }
 }
 
@@ -73,7 +79,7 @@ macro_rules! spans {
 spans! {
     Program {
         constants, variables, resources, objectives, primitives, activities, scenarios, constraints, imports, control,
-        world
+        world, fleets, groups
     }
     Name { span }
     Runs { program, arguments }
@@ -84,14 +90,14 @@ spans! {
     ObjectiveDecl { goals, span }
     GoalDecl { span }
     PrimitiveDecl {
-        name, formals, bounds, moves, runs, requires, sets, uses, costs, rewards, aborts, span
+        name, formals, kinds, bounds, moves, runs, requires, sets, uses, costs, rewards, aborts, span
     }
     Requirement { condition }
     Effect { variable, value, span }
     ResourceUse { resource, amount, span }
     Amount { value, span }
     Moves { vehicles, span }
-    ActivityDecl { name, formals, bounds, body, span }
+    ActivityDecl { name, formals, kinds, bounds, body, span }
     ScenarioDecl { name, bounds, body, span }
     ConstrainDecl { from, to, bounds, span }
     EventName { name, span }
@@ -101,11 +107,16 @@ spans! {
     Statement { kind, bounds, span }
     Argument { value, span }
     Condition { variable, values, sees, span }
-    World { terrain, locations, obstacles, vehicles }
+    World { terrain, locations, obstacles, vehicles, models }
     TerrainDecl { asset_span, span }
     LocationDecl { name, numbers_span, span }
     ObstacleDecl { name, kind, numbers_span, span }
     VehicleDecl { name, model, start, span }
+    ModelDecl { name, parent, properties, resources, states, span }
+    PropertyDecl { span }
+    FleetDecl { name, range_span }
+    GroupDecl { name, members, span }
+    Members { variable, group, body }
     Diagnostic { span, fixes }
     Fix { edits }
     Edit { span }
@@ -208,6 +219,7 @@ impl Spans for StatementKind {
                 name.visit_spans(visit);
                 arguments.visit_spans(visit);
             }
+            Self::Members(members) => members.visit_spans(visit),
             Self::Condition(_, condition) => condition.visit_spans(visit),
             Self::Delay => {}
         }

@@ -1,6 +1,7 @@
 //! The ground of a mission: declared obstacles and keep-out areas.
 
 use nalgebra::Point2;
+use rmpl::fleet::is_of;
 use rmpl::program::{Name, ObstacleDecl, ObstacleKind, ObstacleShape, World};
 use terrain::Obstacle;
 
@@ -15,7 +16,8 @@ pub fn closed_to<'a>(
 ) -> impl Iterator<Item = &'a ObstacleDecl> {
     let is_named = move |name: &Name| {
         let mut moved = vehicles.iter().filter_map(|&vehicle| world.vehicles.get(vehicle));
-        name.text == activity || moved.any(|it| it.name.text == name.text || it.model.text == name.text)
+        name.text == activity
+            || moved.any(|it| it.name.text == name.text || is_of(world, &it.model.text, &name.text))
     };
     world.obstacles.iter().filter(move |obstacle| match &obstacle.kind {
         ObstacleKind::Solid => {

@@ -103,7 +103,7 @@ impl Scene<'_> {
         let time = self.state.playback.time;
         let vehicles = world.vehicles.iter().enumerate().filter_map(|(index, vehicle)| {
             let (place, _) = scene::vehicle_pose(self.snapshot, index, time)?;
-            let lift_m = scene::flight_height_m(self.ground, vehicle, place).unwrap_or(1.0);
+            let lift_m = scene::flight_height_m(self.ground, world, vehicle, place).unwrap_or(1.0);
             Some((away(place, lift_m), Selection::Vehicle(vehicle.name.text.clone())))
         });
         let locations = world.locations.iter().map(|location| {

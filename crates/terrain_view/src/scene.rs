@@ -162,8 +162,8 @@ fn smooth_heading(motion: &snapshot::VehicleMotion, time: f64) -> Option<f32> {
 }
 
 /// How high over the ground below a vehicle flies at a place; `None` for one that drives.
-pub fn flight_height_m(ground: &Ground, vehicle: &VehicleDecl, place_m: Vec2) -> Option<f32> {
-    let model = motion::vehicle_model(&vehicle.model.text)?;
+pub fn flight_height_m(ground: &Ground, world: &World, vehicle: &VehicleDecl, place_m: Vec2) -> Option<f32> {
+    let model = snapshot::vehicle::model(world, &vehicle.model.text)?;
     let motion::Drive::Flight { altitude_band_m: [low, high], ground_clearance_m, .. } = model.drive else {
         return None;
     };
@@ -309,11 +309,11 @@ fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
         let selected = *input.selection == Selection::Vehicle(vehicle.name.text.clone());
         let color = palette.vehicles[index % palette.vehicles.len()];
         trail(shapes, input, index, color);
-        let model = motion::vehicle_model(&vehicle.model.text);
+        let model = snapshot::vehicle::model(&snapshot.program.world, &vehicle.model.text);
         let (length_m, width_m) =
             model.map_or((1.0, 0.8), |model| (model.length_m as f32, model.width_m as f32));
         // Airships are large enough to be seen as they are.
-        let height_m = flight_height_m(ground, vehicle, position);
+        let height_m = flight_height_m(ground, &snapshot.program.world, vehicle, position);
         let scale = if height_m.is_some() { options.vehicle_scale.sqrt() } else { options.vehicle_scale };
         let shape = VehicleShape {
             place_m: position,

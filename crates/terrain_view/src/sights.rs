@@ -37,7 +37,8 @@ pub fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
             world.vehicles.iter().find(|it| variable.name.strip_suffix(".at") == Some(it.name.text.as_str()));
         for name in variable.values.iter().filter(|name| **name != sight.location) {
             let Some(from) = position(name) else { continue };
-            let height_m = vehicle.and_then(|it| flight_height_m(input.ground, it, from)).unwrap_or(POST_M);
+            let height_m =
+                vehicle.and_then(|it| flight_height_m(input.ground, world, it, from)).unwrap_or(POST_M);
             let view = view(sight, name);
             if drawn.insert((&sight.location, name, height_m.to_bits(), view == View::Clear)) {
                 line(shapes, input, [(from, height_m), (target, POST_M)], view);

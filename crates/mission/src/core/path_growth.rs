@@ -70,16 +70,15 @@ impl Core {
         let query = Query { start_m: *leg.points_m.first()?, goal_m: *leg.points_m.last()? };
         let world = &evaluated.compiled.program.world;
         let vehicles: Vec<usize> = traverse.vehicles.iter().map(|&it| it as usize).collect();
-        let vehicle = world.vehicles.get(*vehicles.first()?)?;
-        let model = motion::vehicle_model(&vehicle.model.text)?;
+        let model = snapshot::vehicle::model_of(world, *vehicles.first()?)?;
         let (key, map) = evaluated.ground.as_ref()?;
         let activity = &network.occurrences.get(traverse.occurrence.index())?.activity;
         let obstacles = closed_to(world, &vehicles, activity).map(|it| it.shape.clone()).collect();
-        let space = self.grounds.space(key, map, model, obstacles).exact;
+        let space = self.grounds.space(key, map, &model, obstacles).exact;
         let settings = Settings {
             seed: wanted.update.seed,
             max_samples: MAX_SAMPLES,
-            limits: motion::DriveLimits::of(model),
+            limits: motion::DriveLimits::of(&model),
             ..Settings::of(PlannerKind::Rrt)
         };
         Some(Task { space, query, settings })

@@ -58,7 +58,7 @@ pub(super) struct Trip<'a> {
     course: &'a Course,
     map: &'a Terrain,
     names: Vec<&'a str>,
-    models: Vec<&'static VehicleModel>,
+    models: Vec<VehicleModel>,
     maps: Vec<ConfigurationSpace>,
     pub(super) convoy: Convoy,
     world: FineWorld,
@@ -111,11 +111,8 @@ impl<'a> Trip<'a> {
         let start = start.to_f64();
         let drive = &course.drive;
         let declared = |vehicle: u32| world.vehicles.get(vehicle as usize);
-        let model = |vehicle: &u32| {
-            let named = declared(*vehicle).and_then(|it| motion::vehicle_model(&it.model.text));
-            named.unwrap_or(course.route.model)
-        };
-        let models: Vec<&'static VehicleModel> = drive.vehicles.iter().map(model).collect();
+        let model = |vehicle: &u32| vehicle::model_of(world, *vehicle as usize).unwrap_or(course.route.model);
+        let models: Vec<VehicleModel> = drive.vehicles.iter().map(model).collect();
         let speeds_mps = [course.route.speed_mps.0, course.route.speed_mps.1].map(Rational::to_f64);
         let members: Vec<ConvoyMember> = drive
             .vehicles
@@ -393,7 +390,7 @@ impl<'a> Trip<'a> {
                 after.first().filter(|place| rest_m <= 0.0 || vehicle == 0 || !is_taken(**place))?;
             let seed = self.reroutes;
             let mut ways =
-                spaces.iter().filter_map(|space| way_between(space, rooms_m, here, goal_m, model, seed));
+                spaces.iter().filter_map(|space| way_between(space, rooms_m, here, goal_m, &model, seed));
             Some((ways.next()?, after))
         });
         let Some((mut way, after)) = found else { return Err(stuck) };

@@ -4,6 +4,7 @@ mod agreement;
 mod days;
 mod enroute;
 mod exploration;
+mod fleets;
 mod geojson;
 mod kinodynamics;
 mod levels;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use motion::VehicleModel;
 use rmpl::program::ObstacleShape;
-use smol_str::SmolStr;
 use snapshot::ground::closed_to;
 use snapshot::{MapKey, Snapshot};
 use terrain::{Obstacle, Terrain};
@@ -17,7 +17,7 @@ pub struct Clearance {
     map: MapKey,
     obstacles: Vec<ObstacleShape>,
     /// The model of the vehicle whose room it shows.
-    pub model: SmolStr,
+    pub model: VehicleModel,
     /// Metres from the vehicle's rim to the nearest obstacle, one number per cell, rows from the south.
     pub room_m: Arc<[f32]>,
 }
@@ -35,7 +35,7 @@ impl Clearance {
         let wanted = vehicle(snapshot, selection);
         let declared = wanted.and_then(|index| world.vehicles.get(index));
         let name = declared.map_or(motion::VEHICLE_MODELS[0].name, |vehicle| vehicle.model.text.as_str());
-        let model = motion::vehicle_model(name)?;
+        let model = snapshot::vehicle::model(world, name)?;
         let occurrence = selected_traverse(snapshot, selection).map(|it| it.occurrence);
         let network = snapshot.network.as_deref();
         let driven = network.zip(occurrence).and_then(|(it, driven)| it.occurrences.get(driven.index()));
@@ -45,19 +45,14 @@ impl Clearance {
         let shapes: Vec<ObstacleShape> = closed.map(|it| it.shape.clone()).collect();
         if let Some(before) = before
             && before.map == *key
-            && before.model == model.name
+            && before.model == model
             && before.obstacles == shapes
         {
             return Some(before);
         }
         let obstacles: Vec<Obstacle> = shapes.iter().map(snapshot::ground::obstacle).collect();
         let space = model.configuration_space(map, &obstacles);
-        Some(Self {
-            map: key.clone(),
-            obstacles: shapes,
-            model: SmolStr::new(model.name),
-            room_m: space.clearance_map_m().into(),
-        })
+        Some(Self { map: key.clone(), obstacles: shapes, model, room_m: space.clearance_map_m().into() })
     }
 }
 

@@ -86,7 +86,8 @@ impl Overlay<'_> {
         for (index, vehicle) in world.vehicles.iter().enumerate() {
             let pose = scene::vehicle_pose(self.snapshot, index, state.playback.time);
             let Some((place, _)) = pose else { continue };
-            let height = scene::flight_height_m(self.ground, vehicle, place).map(|height| height + 2.5);
+            let height =
+                scene::flight_height_m(self.ground, world, vehicle, place).map(|height| height + 2.5);
             let lift = height.unwrap_or(0.9 * vehicle_scale(self.camera.distance_m));
             let name = &vehicle.name.text;
             let color = self.tokens().series(index);

@@ -29,9 +29,10 @@ impl TerrainPanel {
         let ground = &shown.ground;
         let time = context.state.playback.time;
         let followed = self.follow.and_then(|index| {
-            let vehicle = snapshot.program.world.vehicles.get(index)?;
+            let world = &snapshot.program.world;
+            let vehicle = world.vehicles.get(index)?;
             let (place, _) = scene::vehicle_pose(snapshot, index, time)?;
-            Some(ground.drape(place, scene::flight_height_m(ground, vehicle, place).unwrap_or(0.5)))
+            Some(ground.drape(place, scene::flight_height_m(ground, world, vehicle, place).unwrap_or(0.5)))
         });
         if let Some(flight) = self.flight {
             let flight = followed.map_or(flight, |target| flight.toward(target));

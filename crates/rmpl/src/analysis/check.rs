@@ -8,14 +8,15 @@ use smol_str::SmolStr;
 use super::index::{DeclarationKey, Facts, Index, Namespace};
 use super::names::{Names, Symbol};
 use super::structure;
-use super::summary::{Call, Definition, Summary, Use, UseKind};
+use super::summary::{Call, Definition, Equipment, Summary, Use, UseKind};
 use crate::diagnostic::{Diagnostic, Known, Severity};
 use crate::diagnostics::{
-    arity, bounds, contingent, controllability, duplicate, similar, traverse, undefined, unknown_name,
+    arity, bounds, contingent, controllability, duplicate, fleet, similar, traverse, undefined, unknown_name,
     unused, value,
 };
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{Change, VEHICLE_MODELS};
+use crate::span::Span;
 
 /// The outcome of checking one declaration.
 #[derive(Clone, Debug, Default)]
@@ -46,9 +47,10 @@ pub(crate) fn check(
         nearest: FxHashMap::default(),
         arguments: arguments_by_call(summary),
     };
-    if let Some(definition) = &summary.definition {
+    for definition in summary.definitions() {
         checker.definition(key, definition);
     }
+    checker.own_names();
     for (number, call) in summary.calls.iter().enumerate() {
         checker.call(number as u32, call);
     }
@@ -91,13 +93,22 @@ impl Meaning<'_> {
 
     /// The domain of a declared variable.
     pub(crate) fn domain(&self, variable: Symbol) -> Option<&[Symbol]> {
-        self.index.definition(Namespace::Variable, variable).map(|definition| definition.values.as_slice())
+        let declared = self.index.definition(Namespace::Variable, variable);
+        declared
+            .map(|definition| definition.values.as_slice())
+            .or_else(|| self.own_state(variable).map(|state| state.values.as_slice()))
+    }
+
+    /// The state of a vehicle that `R1.drill` is.
+    pub(crate) fn own_state(&self, variable: Symbol) -> Option<&Equipment> {
+        self.index.equipment(self.names, variable).filter(|own| own.initial.is_some())
     }
 
     /// Whether a declared variable keeps its value until something changes it.
     pub(crate) fn is_state(&self, variable: Symbol) -> bool {
         let definition = self.index.definition(Namespace::Variable, variable);
         definition.is_some_and(|definition| definition.initial.is_some() || definition.is_from_plant)
+            || self.own_state(variable).is_some()
     }
 
     /// Whether `X_V`, with `X` and `V` given, is about `X` (SPEC 1.3).
@@ -201,6 +212,17 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// Names that one declaration declares twice.
+    fn own_names(&mut self) {
+        let mut known = FxHashSet::default();
+        for definition in self.summary.definitions() {
+            if !known.insert((definition.namespace, definition.name)) {
+                let name = self.text(definition.name);
+                self.push(duplicate::declaration(definition.namespace, name, definition.span));
+            }
+        }
+    }
+
     /// The state of a component that the plant does not have.
     fn no_component(&mut self, definition: &Definition) {
         let nearest = self.names.nearest(definition.name, self.index.components());
@@ -274,7 +296,8 @@ impl<'a> Checker<'a> {
 
     fn name_use(&mut self, used: &Use) {
         let (namespace, what) = match used.kind {
-            UseKind::Argument(_) | UseKind::HeaderBound => return,
+            // What members are, and whether they are of one kind, all groups together decide.
+            UseKind::Argument(_) | UseKind::HeaderBound | UseKind::Member => return,
             UseKind::Number => {
                 self.number(used);
                 return;
@@ -293,6 +316,14 @@ impl<'a> Checker<'a> {
             }
             UseKind::Occurrence => {
                 self.occurrence(used);
+                return;
+            }
+            UseKind::Model => {
+                self.model(used);
+                return;
+            }
+            UseKind::Group => {
+                self.group(used);
                 return;
             }
             UseKind::Start => (Namespace::Location, "location"),
@@ -331,7 +362,8 @@ impl<'a> Checker<'a> {
         let name = self.text(used.name);
         let facts = self.index.facts(used.name);
         let moves = || self.index.definition(Namespace::Callable, used.name).is_some_and(|it| it.moves);
-        if VEHICLE_MODELS.contains(&name) || facts.definition(Namespace::Vehicle).is_some() || moves() {
+        let is_model = VEHICLE_MODELS.contains(&name) || facts.definition(Namespace::Model).is_some();
+        if is_model || facts.definition(Namespace::Vehicle).is_some() || moves() {
             return;
         }
         let is_activity = facts.definition(Namespace::Callable).is_some();
@@ -340,7 +372,59 @@ impl<'a> Checker<'a> {
         self.push(diagnostic);
     }
 
+    /// The model of a vehicle, or the one that a model extends.
+    fn model(&mut self, used: &Use) {
+        let name = self.text(used.name);
+        let is_declared = self.index.facts(used.name).definition(Namespace::Model).is_some();
+        if !is_declared && !VEHICLE_MODELS.contains(&name) {
+            let nearest = self.nearest(used.name, Namespace::Model);
+            self.push(value::model(name, used.span, nearest.as_deref(), &VEHICLE_MODELS));
+        }
+    }
+
+    /// What `any` or `each` ranges over.
+    fn group(&mut self, used: &Use) {
+        if self.index.facts(used.name).definition(Namespace::Group).is_none() {
+            let nearest = self.nearest(used.name, Namespace::Group);
+            self.push(fleet::unknown_group(self.text(used.name), used.span, nearest.as_deref()));
+        }
+    }
+
+    /// A resource of a vehicle, `R1.battery`.
+    fn own_resource(&mut self, used: &Use, owner: &str, part: &str) {
+        if self.index.equipment(self.names, used.name).is_some_and(|own| own.initial.is_none()) {
+            return;
+        }
+        let name = self.text(used.name);
+        let diagnostic = self.unknown_equipment(name, owner, part, "resource", used.span);
+        self.push_once(Namespace::Resource, used.name, diagnostic);
+    }
+
+    /// A resource or a state that a vehicle does not have, or whose vehicle is not declared.
+    pub(super) fn unknown_equipment(
+        &mut self,
+        name: &str,
+        owner: &str,
+        part: &str,
+        what: &str,
+        span: Span,
+    ) -> Diagnostic {
+        let symbol = self.names.find(owner);
+        let vehicle = symbol.and_then(|owner| self.index.definition(Namespace::Vehicle, owner));
+        let Some(vehicle) = vehicle else {
+            let nearest = symbol.and_then(|owner| self.nearest(owner, Namespace::Vehicle));
+            let owner_span = Span::new(span.start, span.end - (name.len() - owner.len()) as u32);
+            return undefined::place(owner, owner_span, nearest.as_deref());
+        };
+        let model = vehicle.model.map_or("NAME", |model| self.text(model));
+        fleet::unknown_equipment(owner, part, model, what, span)
+    }
+
     fn resource(&mut self, used: &Use, change: Change) {
+        if let Some((owner, part)) = self.text(used.name).split_once('.') {
+            self.own_resource(used, owner, part);
+            return;
+        }
         if self.index.facts(used.name).definition(Namespace::Resource).is_none() {
             let nearest = self.nearest(used.name, Namespace::Resource);
             let (name, start) = (self.text(used.name), self.summary.start);
@@ -374,7 +458,7 @@ const fn is_unused(namespace: Namespace, facts: &Facts) -> bool {
         Namespace::Variable => facts.literals == 0 && facts.arguments == 0,
         Namespace::Constant => facts.arguments + facts.numbers == 0,
         Namespace::Location => facts.arguments + facts.starts + facts.places == 0,
-        Namespace::Resource => facts.resources == 0,
+        Namespace::Resource => facts.resources + facts.arguments == 0,
         _ => false,
     }
 }

@@ -9,13 +9,15 @@ use smol_str::SmolStr;
 use super::constant;
 use super::index::Namespace;
 use super::names::{Names, Symbol};
-use super::summary::{Call, ComponentState, Definition, Literal, Origin, Summary, Use, UseKind, Vehicle};
+use super::summary::{
+    Call, ComponentState, Definition, Equipment, Literal, Origin, Summary, Use, UseKind, Vehicle,
+};
 use crate::control::component_modes;
-use crate::lower::{Item, OptionValue};
+use crate::lower::{Item, OptionValue, VehiclesDecl};
 use crate::program::{
     Argument, ArgumentValue, Bounds, Change, Condition, ControlDecl, Expr, ExprKind, HeaderBound,
-    HeaderBounds, LabelMode, Name, ObstacleKind, PrimitiveDecl, Statement, StatementKind, Supply,
-    component_of_state, state_of_component,
+    HeaderBounds, LabelMode, ModelDecl, Name, ObstacleKind, PrimitiveDecl, Statement, StatementKind, Supply,
+    VEHICLE_MODELS, state_of_component,
 };
 use crate::span::Span;
 
@@ -61,14 +63,7 @@ impl Collector<'_> {
             }
             Item::Resource(decl) => {
                 self.define(Namespace::Resource, &decl.name, 0, None, Vec::new());
-                match &decl.supply {
-                    Supply::Reusable { capacity } => capacity.iter().for_each(|it| self.expression(it)),
-                    Supply::Reservoir { least, greatest, level } => {
-                        for level in [least, greatest, level] {
-                            self.expression(level);
-                        }
-                    }
-                }
+                self.supply(&decl.supply);
             }
             Item::Objective(decl) => {
                 let word = "objective";
@@ -147,11 +142,79 @@ impl Collector<'_> {
                     }
                 }
             }
-            Item::Vehicle(decl) => {
-                self.define(Namespace::Vehicle, &decl.name, 0, None, Vec::new());
-                self.begins_with(&decl.start);
-                self.name_use(UseKind::Start, &decl.start.text, decl.start.span);
+            Item::Vehicles(decl) => self.vehicles(decl),
+            Item::Model(decl) => self.model(decl),
+            Item::Group(decl) => {
+                self.define(Namespace::Group, &decl.name, 0, None, Vec::new());
+                for member in &decl.members {
+                    self.name_use(UseKind::Member, &member.text, member.span);
+                }
             }
+        }
+    }
+
+    fn vehicles(&mut self, decl: &VehiclesDecl) {
+        let model = self.names.intern(&decl.model.text);
+        let mut all = Vec::new();
+        for vehicle in &decl.vehicles {
+            self.define(Namespace::Vehicle, &vehicle.name, 0, None, Vec::new());
+            self.begins_with(&decl.start);
+            if let Some(mut definition) = self.summary.definition.take() {
+                definition.model = (!VEHICLE_MODELS.contains(&decl.model.text.as_str())).then_some(model);
+                all.push(definition);
+            }
+        }
+        for fleet in &decl.fleets {
+            self.define(Namespace::Group, &fleet.name, 0, None, Vec::new());
+            all.extend(self.summary.definition.take());
+        }
+        let mut all = all.into_iter();
+        self.summary.definition = all.next();
+        self.summary.others = all.collect();
+        self.name_use(UseKind::Start, &decl.start.text, decl.start.span);
+        self.name_use(UseKind::Model, &decl.model.text, decl.model.span);
+    }
+
+    fn model(&mut self, decl: &ModelDecl) {
+        self.define(Namespace::Model, &decl.name, 0, None, Vec::new());
+        let parent = decl.parent.as_ref().map(|parent| self.names.intern(&parent.text));
+        let mut equipment = Vec::new();
+        for resource in &decl.resources {
+            let name = self.names.intern(&resource.name.text);
+            equipment.push(Equipment { name, values: Vec::new(), initial: None });
+            self.supply(&resource.supply);
+        }
+        for state in &decl.states {
+            let name = self.names.intern(&state.name.text);
+            let values = state.values.iter().map(|value| self.names.intern(&value.text)).collect();
+            let initial = state.initial.as_ref().map(|initial| self.names.intern(&initial.text));
+            equipment.push(Equipment { name, values, initial });
+        }
+        if let Some(definition) = &mut self.summary.definition {
+            (definition.model, definition.equipment) = (parent, equipment);
+        }
+        if let Some(parent) = &decl.parent {
+            self.name_use(UseKind::Model, &parent.text, parent.span);
+        }
+    }
+
+    fn supply(&mut self, supply: &Supply) {
+        match supply {
+            Supply::Reusable { capacity } => capacity.iter().for_each(|it| self.expression(it)),
+            Supply::Reservoir { least, greatest, level } => {
+                for level in [least, greatest, level] {
+                    self.expression(level);
+                }
+            }
+        }
+    }
+
+    /// A use of a resource; what a parameter stands for, or whose vehicle it does, is known at the call.
+    fn resource(&mut self, change: Change, name: &Name) {
+        let owner = name.text.split_once('.').map(|(owner, _)| SmolStr::new(owner));
+        let is_formal = |name: &SmolStr| self.formals.contains(name);
+        if !is_formal(&name.text) && !owner.as_ref().is_some_and(is_formal) {
+            self.name_use(UseKind::Resource(change), &name.text, name.span);
         }
     }
 
@@ -190,7 +253,7 @@ impl Collector<'_> {
             self.literal(LabelMode::Tell, &condition, Origin::Effect, false);
         }
         for used in &decl.uses {
-            self.name_use(UseKind::Resource(used.change), &used.resource.text, used.resource.span);
+            self.resource(used.change, &used.resource);
         }
         let amounts = decl.uses.iter().filter_map(|used| used.amount.as_ref()).chain(&decl.costs);
         for expression in amounts.map(|amount| &amount.value).chain(&decl.rewards) {
@@ -225,6 +288,8 @@ impl Collector<'_> {
             is_from_plant: false,
             is_activity: false,
             moves: false,
+            model: None,
+            equipment: Vec::new(),
             // The lowest bit says activity or primitive.
             fingerprint: (hasher.finish() & !1) | 2,
         });
@@ -308,13 +373,24 @@ impl Collector<'_> {
                 self.expression(count);
                 self.statement(body);
             }
+            StatementKind::Members(members) => {
+                if !self.formals.contains(&members.group.text) {
+                    self.name_use(UseKind::Group, &members.group.text, members.group.span);
+                }
+                // What stands for a member is like a parameter.
+                self.formals.push(members.variable.text.clone());
+                self.summary.numbers.push(members.variable.clone());
+                self.statement(&members.body);
+                self.formals.pop();
+                self.summary.numbers.pop();
+            }
             StatementKind::Telling(body, condition) => {
                 self.statement(body);
                 self.literal(LabelMode::Tell, condition, Origin::Written, false);
             }
             StatementKind::Using(body, resource, amount) => {
                 self.statement(body);
-                self.name_use(UseKind::Resource(Change::Uses), &resource.text, resource.span);
+                self.resource(Change::Uses, resource);
                 if let Some(amount) = amount {
                     self.expression(amount);
                 }
@@ -324,7 +400,10 @@ impl Collector<'_> {
                 for argument in arguments {
                     match &argument.value {
                         ArgumentValue::Name(text) if !self.formals.contains(text) => {
-                            self.name_use(UseKind::Argument(call), text, argument.span);
+                            let owner = owner_of_equipment(text).map(SmolStr::new);
+                            if owner.is_none_or(|owner| !self.formals.contains(&owner)) {
+                                self.name_use(UseKind::Argument(call), text, argument.span);
+                            }
                         }
                         ArgumentValue::Expression(expr) => self.expression(expr),
                         // What it is used for, asked or told, is known where the parameter stands.
@@ -407,7 +486,7 @@ impl Collector<'_> {
             negated: condition.negated,
             span: condition.span,
             variable_is_formal: self.formals.contains(text)
-                || component_of_state(text).is_some_and(|owner| self.formals.contains(&SmolStr::new(owner))),
+                || owner_of_equipment(text).is_some_and(|owner| self.formals.contains(&SmolStr::new(owner))),
             value_is_formal: condition.values.iter().any(|value| self.formals.contains(&value.text)),
             is_sight: condition.sees.is_some(),
             is_bare,
@@ -416,6 +495,11 @@ impl Collector<'_> {
         };
         self.summary.literals.push(literal);
     }
+}
+
+/// The vehicle or component whose state a variable of this name is; the place of a vehicle is no equipment.
+fn owner_of_equipment(variable: &str) -> Option<&str> {
+    variable.split_once('.').filter(|(_, part)| *part != "at").map(|(owner, _)| owner)
 }
 
 fn header_interval(bounds: &HeaderBounds) -> Option<(Time, Bound)> {

@@ -8,7 +8,7 @@ use smol_str::SmolStr;
 
 use super::alike::Alphabet;
 use super::names::{Names, Symbol};
-use super::summary::{ComponentState, Definition, Literal, Origin, Summary, UseKind};
+use super::summary::{ComponentState, Definition, Equipment, Literal, Origin, Summary, UseKind};
 use crate::program::LabelMode;
 
 /// A declaration, as long as it is not parsed again.
@@ -38,10 +38,14 @@ pub(crate) enum Namespace {
     Objective,
     /// What `as` names inside a declaration.
     Occurrence,
+    /// Vehicle models.
+    Model,
+    /// Groups and fleets.
+    Group,
 }
 
 impl Namespace {
-    pub(crate) const COUNT: usize = 12;
+    pub(crate) const COUNT: usize = 14;
 
     /// A set of namespaces with this one alone.
     pub(crate) const fn bit(self) -> u16 {
@@ -126,8 +130,8 @@ pub(crate) const MAX_COMPARED: usize = 256;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Index {
     facts: Vec<Facts>,
-    /// The definition of each declaration, by key.
-    definitions: Vec<Option<Definition>>,
+    /// The definitions of each declaration, by key.
+    definitions: Vec<Vec<Definition>>,
     revision: u32,
     pub(crate) scenarios: u32,
     strict: u32,
@@ -210,7 +214,7 @@ impl Index {
         if let Some(key) = self.free_keys.pop() {
             return key;
         }
-        self.definitions.push(None);
+        self.definitions.push(Vec::new());
         DeclarationKey(self.definitions.len() as u32 - 1)
     }
 
@@ -226,7 +230,24 @@ impl Index {
 
     /// The definition of `symbol` that counts: the first in the text.
     pub(crate) fn definition(&self, namespace: Namespace, symbol: Symbol) -> Option<&Definition> {
-        self.first_key(namespace, symbol).and_then(|key| self.definitions.get(key.index())?.as_ref())
+        let own = self.definitions.get(self.first_key(namespace, symbol)?.index())?;
+        own.iter().find(|definition| definition.namespace == namespace && definition.name == symbol)
+    }
+
+    /// What a name with a dot, such as `R1.battery`, is in the vehicle's model or in one that it extends.
+    pub(crate) fn equipment(&self, names: &Names, symbol: Symbol) -> Option<&Equipment> {
+        let (owner, part) = names.text(symbol).split_once('.')?;
+        let part = names.find(part)?;
+        let vehicle = self.definition(Namespace::Vehicle, names.find(owner)?)?;
+        self.lineage(vehicle.model?).find_map(|model| model.equipment.iter().find(|own| own.name == part))
+    }
+
+    /// The declared models that make up this one, itself first.
+    pub(crate) fn lineage(&self, model: Symbol) -> impl Iterator<Item = &Definition> {
+        // A circle is an error of its own.
+        let declared = self.defined(Namespace::Model).len();
+        let next = |definition: &&Definition| self.definition(Namespace::Model, definition.model?);
+        std::iter::successors(self.definition(Namespace::Model, model), next).take(declared)
     }
 
     pub(crate) fn first_key(&self, namespace: Namespace, symbol: Symbol) -> Option<DeclarationKey> {
@@ -247,10 +268,13 @@ impl Index {
         self.fill_states_of_plant();
         self.first_of_rivals.clear();
         for key in keys {
-            let Some(Some(definition)) = self.definitions.get(key.index()) else { continue };
-            let named = (definition.namespace, definition.name);
-            if self.facts(definition.name).definitions.len() > 1 {
-                self.first_of_rivals.entry(named).or_insert(key);
+            for definition in self.definitions.get(key.index()).into_iter().flatten() {
+                let named = (definition.namespace, definition.name);
+                let rivals =
+                    self.facts.get(definition.name.index()).map_or(0, |facts| facts.definitions.len());
+                if rivals > 1 {
+                    self.first_of_rivals.entry(named).or_insert(key);
+                }
             }
         }
     }
@@ -310,6 +334,10 @@ impl Index {
         }
         let before: Vec<Visible> = touched.iter().map(|&symbol| self.facts(symbol).visible()).collect();
         let global_before = self.globals();
+        if old.clone().chain(new.clone()).any(|(_, summary)| summary.equips()) {
+            self.global_changed_at = self.revision;
+            self.last_change = self.revision;
+        }
         let names_before = names_defined(old.clone());
         let names_after = names_defined(new.clone());
         for (namespace, changed_at) in self.names_changed_at.iter_mut().enumerate() {
@@ -364,7 +392,8 @@ impl Index {
     /// Gives states that are read from the plant the modes of their components, as these are now.
     fn fill_states_of_plant(&mut self) {
         for key in &self.states_of_plant {
-            let Some(Some(definition)) = self.definitions.get_mut(key.index()) else { continue };
+            let own = self.definitions.get_mut(key.index());
+            let Some(definition) = own.and_then(|own| own.first_mut()) else { continue };
             let component = self.components.get(&definition.name);
             let initial = component.map(|component| component.initial);
             let values = component.map_or(&[][..], |component| component.modes.as_slice());
@@ -393,7 +422,7 @@ impl Index {
         let step = |count: &mut u32| {
             *count = if is_added { *count + 1 } else { count.saturating_sub(1) };
         };
-        if let Some(definition) = &summary.definition {
+        for definition in summary.definitions() {
             let facts = &mut self.facts[definition.name.index()];
             let was_defined = facts.definition(definition.namespace).is_some();
             if is_added {
@@ -401,7 +430,7 @@ impl Index {
                 facts.definition_fingerprint =
                     facts.definition_fingerprint.wrapping_add(definition.fingerprint);
             } else {
-                facts.definitions.retain(|&(_, other)| other != key);
+                facts.definitions.retain(|&other| other != (definition.namespace, key));
                 facts.definition_fingerprint =
                     facts.definition_fingerprint.wrapping_sub(definition.fingerprint);
             }
@@ -433,7 +462,7 @@ impl Index {
             }
         }
         if let Some(slot) = self.definitions.get_mut(key.index()) {
-            *slot = summary.definition.clone().filter(|_| is_added);
+            *slot = if is_added { summary.definitions().cloned().collect() } else { Vec::new() };
         }
         if summary.strict == Some(true) {
             step(&mut self.strict);
@@ -465,7 +494,7 @@ impl Index {
         for used in &summary.uses {
             let facts = &mut self.facts[used.name.index()];
             match used.kind {
-                UseKind::Argument(_) => step(&mut facts.arguments),
+                UseKind::Argument(_) | UseKind::Member => step(&mut facts.arguments),
                 UseKind::Start => step(&mut facts.starts),
                 UseKind::Vehicle => step(&mut facts.vehicles),
                 UseKind::Place => step(&mut facts.places),
@@ -473,7 +502,7 @@ impl Index {
                 UseKind::Occurrence => step(&mut facts.constraints),
                 UseKind::Number | UseKind::HeaderBound => step(&mut facts.numbers),
                 // To close an area to something is not to use it.
-                UseKind::ClosedTo => {}
+                UseKind::ClosedTo | UseKind::Model | UseKind::Group => {}
             }
         }
         for literal in &summary.literals {
@@ -572,13 +601,14 @@ fn names_defined<'a>(
             let sum = &mut sums[Namespace::Occurrence as usize];
             *sum = sum.wrapping_add((name.index() as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         }
-        let Some(definition) = &summary.definition else { continue };
-        // Among variables, those that keep their value are a kind of their own.
-        let named = (definition.name.index() as u64) << 1
-            | u64::from(definition.initial.is_some() || definition.is_from_plant);
-        let hash = (named + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let sum = &mut sums[definition.namespace as usize];
-        *sum = sum.wrapping_add(hash ^ hash >> 29);
+        for definition in summary.definitions() {
+            // Among variables, those that keep their value are a kind of their own.
+            let named = (definition.name.index() as u64) << 1
+                | u64::from(definition.initial.is_some() || definition.is_from_plant);
+            let hash = (named + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let sum = &mut sums[definition.namespace as usize];
+            *sum = sum.wrapping_add(hash ^ hash >> 29);
+        }
     }
     sums
 }

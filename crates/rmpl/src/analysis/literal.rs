@@ -25,6 +25,15 @@ impl Checker<'_> {
         if self.meaning().is_unknown_component(variable) {
             return;
         }
+        if let Some((owner, part)) = self.text(variable).split_once('.')
+            && part != "mode"
+            && self.meaning().own_state(variable).is_none()
+        {
+            let name = self.text(variable);
+            let diagnostic = self.unknown_equipment(name, owner, part, "state", literal.variable_span);
+            self.push_once(Namespace::Variable, variable, diagnostic);
+            return;
+        }
         let is_of_component = component_of_state(self.text(variable)).is_some();
         if (literal.origin == Origin::Effect || is_of_component) && !self.meaning().is_state(variable) {
             self.no_state(literal);
@@ -215,7 +224,8 @@ impl Checker<'_> {
             }
             None => self.index.definition(Namespace::Variable, variable),
         };
-        let initial = first.and_then(|definition| definition.initial).map(Told::at_first);
+        let own = meaning.own_state(variable).and_then(|state| state.initial);
+        let initial = first.and_then(|definition| definition.initial).or(own).map(Told::at_first);
         let domain = meaning.domain(variable);
         let is_about = |told: &Told| {
             !told.is_split

@@ -12,7 +12,7 @@ use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
     Bounds, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape,
-    PrimitiveDecl, Statement, StatementKind, VEHICLE_MODELS, VariableDecl,
+    PrimitiveDecl, Statement, StatementKind, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
@@ -114,9 +114,12 @@ impl Local {
                     self.found.push(value::not_positive("the radius", decl.numbers_span));
                 }
             }
-            Item::Vehicle(decl) => {
-                if !VEHICLE_MODELS.contains(&decl.model.text.as_str()) {
-                    self.found.push(value::model(&decl.model, &VEHICLE_MODELS));
+            Item::Model(decl) => {
+                for state in &decl.states {
+                    self.distinct(&state.values, "value");
+                    if let Some(initial) = &state.initial {
+                        self.initial(state, initial);
+                    }
                 }
             }
             Item::Control(decl) => {
@@ -124,7 +127,12 @@ impl Local {
                 let found = parsed.diagnostics.into_iter();
                 self.found.extend(found.map(|diagnostic| diagnostic.moved(decl.text_span.start)));
             }
-            Item::Location(_) | Item::Constant(_) | Item::Resource(_) | Item::Import(_) => {}
+            Item::Location(_)
+            | Item::Constant(_)
+            | Item::Resource(_)
+            | Item::Import(_)
+            | Item::Vehicles(_)
+            | Item::Group(_) => {}
         }
     }
 

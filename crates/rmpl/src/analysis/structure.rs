@@ -9,7 +9,9 @@ use super::index::Namespace;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{slack, together, window};
 use crate::lower::Item;
-use crate::program::{Condition, Expr, HeaderBound, HeaderBounds, LabelMode, Statement, StatementKind};
+use crate::program::{
+    Condition, Expr, HeaderBound, HeaderBounds, LabelMode, MembersForm, Statement, StatementKind,
+};
 use crate::span::Span;
 
 /// Least and greatest duration.
@@ -100,6 +102,12 @@ impl Structure<'_> {
                 is_leaf = false;
                 let once = self.duration(body);
                 repeated(count, once)
+            }
+            StatementKind::Members(members) => {
+                is_leaf = false;
+                let once = self.duration(&members.body);
+                // How many members there are, other declarations say; there is at least one.
+                if members.form == MembersForm::Any { once } else { (once.0, Bound::Infinite) }
             }
             StatementKind::Call(name, _) => {
                 is_leaf = true;
@@ -243,6 +251,7 @@ impl Structure<'_> {
             StatementKind::Choose(_)
             | StatementKind::Call(..)
             | StatementKind::Repeat(..)
+            | StatementKind::Members(_)
             | StatementKind::Unordered(_) => false,
         }
     }

@@ -11,6 +11,8 @@ use crate::span::Span;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Summary {
     pub(crate) definition: Option<Definition>,
+    /// What it declares beside: further vehicles, and those of fleets.
+    pub(crate) others: Vec<Definition>,
     pub(crate) calls: Vec<Call>,
     pub(crate) literals: Vec<Literal>,
     pub(crate) uses: Vec<Use>,
@@ -61,8 +63,22 @@ pub(crate) struct Definition {
     pub(crate) is_activity: bool,
     /// It is a traverse (SPEC 1.8).
     pub(crate) moves: bool,
+    /// The model of a vehicle, or the one that a model extends.
+    pub(crate) model: Option<Symbol>,
+    /// What each vehicle of a model has of its own.
+    pub(crate) equipment: Vec<Equipment>,
     /// Changes when anything changes that users of the name depend on.
     pub(crate) fingerprint: u64,
+}
+
+/// A resource or a state of a vehicle model.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Equipment {
+    pub(crate) name: Symbol,
+    /// The domain of a state.
+    pub(crate) values: Vec<Symbol>,
+    /// The first value of a state; a resource has none.
+    pub(crate) initial: Option<Symbol>,
 }
 
 /// A call, or a name alone that may be one.
@@ -145,6 +161,12 @@ pub(crate) enum UseKind {
     Vehicle,
     /// The place of a vehicle, compared or set: a location.
     Place,
+    /// The model of a vehicle, or the one that a model extends.
+    Model,
+    /// What `any` and `each` range over: a group or a fleet.
+    Group,
+    /// A member of a group: a vehicle, a fleet, a location, a value, or a group.
+    Member,
     /// Whom a keep-out area is closed to: a vehicle, a vehicle model, or an activity that moves vehicles.
     ClosedTo,
     /// A resource that something is done to.
@@ -158,9 +180,20 @@ pub(crate) enum UseKind {
 }
 
 impl Summary {
+    /// All that it declares.
+    pub(crate) fn definitions(&self) -> impl Iterator<Item = &Definition> {
+        self.definition.iter().chain(&self.others)
+    }
+
+    /// Whether names with a dot in other declarations may mean something else because of it.
+    pub(crate) fn equips(&self) -> bool {
+        self.definitions()
+            .any(|definition| definition.model.is_some() || definition.namespace == Namespace::Model)
+    }
+
     /// Every name that checks of this declaration look up; some more than once.
     pub(crate) fn symbols(&self) -> impl Iterator<Item = Symbol> + '_ {
-        let defined = self.definition.iter().map(|definition| definition.name);
+        let defined = self.definitions().map(|definition| definition.name);
         let called = self.calls.iter().map(|call| call.name);
         let used = self.uses.iter().map(|used| used.name);
         let asked = self.literals.iter().map(|literal| literal.variable);

@@ -62,9 +62,35 @@ pub(crate) fn declaration(namespace: Namespace, name: &str, span: Span) -> Diagn
         Namespace::Objective => "an objective is already declared".to_owned(),
         Namespace::Occurrence => format!("occurrence `{name}` is already named"),
         Namespace::Vehicle => format!("vehicle `{name}` is already declared"),
+        Namespace::Model => format!("vehicle model `{name}` is already declared"),
+        Namespace::Group => format!("group or fleet `{name}` is already declared"),
     };
     Diagnostic::error(CODE, span, message)
         .with_hint("only the first declaration takes effect: rename or remove this one")
+}
+
+/// A model with the name of a built-in one.
+pub(crate) fn built_in_model(name: &Name) -> Diagnostic {
+    Diagnostic::error(CODE, name.span, format!("`{}` is a built-in model", name.text))
+        .with_hint(format!("choose another name; `extends {}` keeps what it can do", name.text))
+}
+
+/// A resource or a state of a model that an extended model has.
+pub(crate) fn inherited_equipment(name: &Name) -> Diagnostic {
+    Diagnostic::error(CODE, name.span, format!("the extended model already has `{}`", name.text))
+        .with_hint("choose another name, or remove this one")
+}
+
+/// A resource or a state with a name that every vehicle has.
+pub(crate) fn reserved_equipment(name: &Name) -> Diagnostic {
+    let what = if name.text == "at" { "the place of a vehicle" } else { "the mode of a component" };
+    Diagnostic::error(CODE, name.span, format!("`{}` is {what}", name.text)).with_hint("choose another name")
+}
+
+/// A property that a model says twice.
+pub(crate) fn property(word: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("the model already says `{word}`"))
+        .with_hint("remove one of the two")
 }
 
 /// A name that stands twice in one list.

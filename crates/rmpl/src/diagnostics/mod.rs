@@ -9,11 +9,14 @@ pub mod controllability;
 pub mod duplicate;
 pub mod encounter;
 pub mod exogenous;
+pub mod fleet;
 pub mod form;
+pub mod kind;
 pub mod lex;
 pub mod limit;
 pub mod liveness;
 pub mod mixed;
+pub mod model;
 pub mod network;
 pub mod no_scenario;
 pub mod option;
@@ -52,6 +55,8 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &no_scenario::EXPLANATION,
     &limit::EXPLANATION,
     &resource::EXPLANATION,
+    &kind::EXPLANATION,
+    &model::EXPLANATION,
     &constraint::EXPLANATION,
     &form::EXPLANATION,
     &unreadable_network::EXPLANATION,

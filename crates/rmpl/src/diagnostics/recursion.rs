@@ -13,7 +13,7 @@ pub const EXPLANATION: Explanation = Explanation {
     title: "recursive definition",
     meaning: "The planner expands every call into a finite network, so an activity cannot call itself, directly or through
 others. A constant cannot depend on itself: `const A = B; const B = A + 1;` gives neither a value. Files cannot import each
-other in a cycle.",
+other in a cycle, a model cannot extend itself, and a group cannot hold itself.",
     example: "primitive Drive()[20,30];
 Patrol() = { Drive(); Patrol() }
 scenario Day[0,60] = { Patrol() }",
@@ -29,6 +29,24 @@ pub fn cycle(way: &[&str], call: Span) -> Diagnostic {
     let steps: Vec<String> = way.iter().chain([&first]).map(|name| format!("`{name}`")).collect();
     let message = format!("an activity cannot call itself, but `{first}` does: {}", steps.join(" calls "));
     Diagnostic::error(CODE, call, message).with_hint("give the number of repetitions, as in `repeat 2 { … }`")
+}
+
+/// A cycle of models: each extends the next one.
+pub(crate) fn models(way: &[&str], place: Span) -> Diagnostic {
+    let message = format!("a model cannot extend itself, but {}", circle(way, " extends "));
+    Diagnostic::error(CODE, place, message).with_hint("remove one `extends`")
+}
+
+/// A cycle of groups: each holds the next one.
+pub(crate) fn groups(way: &[&str], place: Span) -> Diagnostic {
+    let message = format!("a group cannot hold itself, but {}", circle(way, " holds "));
+    Diagnostic::error(CODE, place, message).with_hint("remove one of the members")
+}
+
+fn circle(way: &[&str], verb: &str) -> String {
+    let first = way.first().copied().unwrap_or_default();
+    let steps: Vec<String> = way.iter().chain([&first]).map(|name| format!("`{name}`")).collect();
+    steps.join(verb)
 }
 
 /// A cycle of imports: the files of the cycle, and where it closes.

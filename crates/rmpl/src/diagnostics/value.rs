@@ -3,7 +3,6 @@
 use crate::diagnostic::{Code, Diagnostic, Severity, some_of};
 use crate::explanation::Explanation;
 use crate::parser::{insertion, replacement};
-use crate::program::Name;
 use crate::span::Span;
 
 pub const CODE: Code = Code("E-VALUE");
@@ -95,11 +94,12 @@ pub(crate) fn option(name: &str, wanted: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("the option `{name}` must be {wanted}"))
 }
 
-pub(crate) fn model(model: &Name, models: &[&str]) -> Diagnostic {
-    let diagnostic = Diagnostic::error(CODE, model.span, format!("unknown vehicle model `{}`", model.text))
-        .with_hint(format!("the models are {}", models.join(", ")));
-    models.iter().fold(diagnostic, |diagnostic, known| {
-        diagnostic.with_fix(replacement(format!("Change to `{known}`"), model.span, *known))
+pub(crate) fn model(name: &str, span: Span, nearest: Option<&str>, built_in: &[&str]) -> Diagnostic {
+    let diagnostic = Diagnostic::error(CODE, span, format!("unknown vehicle model `{name}`")).with_hint(
+        format!("declare it with `model {name} {{ … }}`; the built-in models are {}", built_in.join(", ")),
+    );
+    nearest.into_iter().chain(built_in.iter().copied()).fold(diagnostic, |diagnostic, known| {
+        diagnostic.with_fix(replacement(format!("Change to `{known}`"), span, known))
     })
 }
 

@@ -82,6 +82,7 @@ fn runs_of_declarations(parse: &Parse) -> Vec<Fold> {
                     | SyntaxKind::LocationDecl
                     | SyntaxKind::ObstacleDecl
                     | SyntaxKind::VehicleDecl
+                    | SyntaxKind::GroupDecl
                     | SyntaxKind::PrimitiveDecl
             )
         });

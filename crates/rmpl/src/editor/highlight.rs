@@ -25,7 +25,7 @@ pub enum HighlightKind {
     BoundName,
     /// A location or an obstacle.
     Location,
-    /// A vehicle or its model.
+    /// A vehicle, its model, or a group.
     Vehicle,
     /// An option or its value.
     Option,
@@ -120,13 +120,13 @@ const fn of_control(kind: control::HighlightKind) -> HighlightKind {
 const fn of_name(kind: &NameKind) -> HighlightKind {
     match kind {
         NameKind::Activity | NameKind::ControlProgram => HighlightKind::Activity,
-        NameKind::Variable | NameKind::Resource => HighlightKind::Variable,
+        NameKind::Variable | NameKind::Resource | NameKind::Equipment => HighlightKind::Variable,
         NameKind::Value(_) => HighlightKind::Value,
         NameKind::Parameter => HighlightKind::Parameter,
         NameKind::BoundName | NameKind::Constant => HighlightKind::BoundName,
         NameKind::Scenario => HighlightKind::Scenario,
         NameKind::Location | NameKind::Obstacle => HighlightKind::Location,
-        NameKind::Vehicle | NameKind::Model => HighlightKind::Vehicle,
+        NameKind::Vehicle | NameKind::Model | NameKind::Group => HighlightKind::Vehicle,
         NameKind::Option | NameKind::OptionValue => HighlightKind::Option,
         NameKind::Symbol | NameKind::Occurrence => HighlightKind::Symbol,
     }

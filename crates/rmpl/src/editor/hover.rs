@@ -227,6 +227,8 @@ fn describe(parse: &Parse, name: &NameUse, evaluation: &Evaluation) -> String {
         (_, NameKind::Vehicle) => parts.push(format!("`{}`: an undeclared vehicle", name.text)),
         (_, NameKind::Occurrence) => parts.push(format!("`{}`: unknown name", name.text)),
         (_, NameKind::Model) => parts.push(format!("`{}`: a vehicle model", name.text)),
+        (_, NameKind::Group) => parts.push(format!("`{}`: an undeclared group", name.text)),
+        (_, NameKind::Equipment) => parts.push(format!("`{}`: equipment of a vehicle", name.text)),
         (_, NameKind::ControlProgram) => parts.push(format!("`{}`: a control program", name.text)),
         _ => parts.push(format!("`{}`: a symbol", name.text)),
     }
@@ -406,6 +408,32 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
             "`constrain X.start to Y.end [l,u];`: Y must end at least l and at most u after X starts, if both are selected."
         }
         "import" => "`import \"file\";`: includes the declarations of another file of the mission.",
+        "model" | "extends" => {
+            "`model M extends N { … }`: what vehicles of M can do, and the resources and states that each of them has. What M \
+             does not say, N says."
+        }
+        "group" => {
+            "`group G = R1, S, A;`: vehicles, fleets, locations, values or groups, for `any` and `each`."
+        }
+        "any" => "`any x in G A`: the planner chooses one member x of the group G, and A is done for it.",
+        "each" | "sequence" => {
+            "`each x in G A`: A for every member x of the group G, in parallel. `in sequence`: one after the other. \
+             `unordered`: one at a time, in an order that the planner chooses."
+        }
+        "body" => "`body 0.8 x 0.6`: length and width, in meters.",
+        "slope" => "`slope 20 degrees`: the steepest slope that the vehicle drives; at most 60 degrees.",
+        "clearance" => {
+            "`clearance 0.3`: diameter of the largest rock that the vehicle passes over, in meters. For a model that flies, the \
+             least height over the ground."
+        }
+        "turning" => "`turning 0.5`: radius of the tightest turn at the maximum speed, in meters.",
+        "mast" => "`mast 1.2`: height of the antenna over the ground, in meters, for `visible`.",
+        "flies" => {
+            "`flies (10, 40)`: minimum and maximum altitude over the lowest ground of the map, in meters."
+        }
+        "vehicle" => {
+            "`vehicle R1, S[1..4] : M at L;`: vehicles of the model M that start at L: R1, S[1] to S[4]."
+        }
         "moves" => "`moves V1, V2`: the activity is a traverse; the first vehicle leads.",
         "speed" => "`speed (minimum, maximum)`, in meters per second.",
         "kinodynamic" => {

@@ -4,8 +4,9 @@ use smol_str::SmolStr;
 
 use crate::analysis::{Meaning, Namespace};
 use crate::parse::Parse;
+use crate::program::VEHICLE_MODELS;
 use crate::span::Span;
-use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
+use crate::syntax::{Element, SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// What a name stands for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +26,11 @@ pub enum NameKind {
     Location,
     Obstacle,
     Vehicle,
+    /// A group or a fleet.
+    Group,
     Resource,
+    /// A resource or a state that each vehicle of a model has.
+    Equipment,
     /// An occurrence that `as` names.
     Occurrence,
     /// A vehicle model.
@@ -74,6 +79,7 @@ pub(super) fn names_in(parse: &Parse, root: SyntaxNode<'_>) -> Vec<NameUse> {
     let mut collector = Collector {
         meaning: parse.meaning(),
         declaration: root.span(),
+        is_model: root.child(SyntaxKind::ModelDecl).is_some(),
         parameters: Vec::new(),
         found: Vec::new(),
     };
@@ -93,9 +99,19 @@ fn is_mode(dotted: SyntaxNode<'_>) -> bool {
         .is_some_and(|part| part.text == "mode")
 }
 
+/// What `V.at` or a state of a vehicle is compared with.
+fn value_kind(dotted: SyntaxNode<'_>) -> NameKind {
+    match dotted.own_tokens().filter(|token| token.kind == SyntaxKind::Name).nth(1) {
+        Some(part) if part.text != "at" => NameKind::Value(part.text.into()),
+        _ => NameKind::Location,
+    }
+}
+
 struct Collector<'a> {
     meaning: Meaning<'a>,
     declaration: Span,
+    /// Resources and states are those of a model's vehicles.
+    is_model: bool,
     parameters: Vec<&'a str>,
     found: Vec<NameUse>,
 }
@@ -107,11 +123,17 @@ impl<'a> Collector<'a> {
             SyntaxKind::VariableDecl => self.variable(node, names().next()),
             // The first name is the word `state` itself.
             SyntaxKind::StateDecl => self.variable(node, names().nth(1)),
-            SyntaxKind::ResourceDecl => self.define(names().nth(1), NameKind::Resource),
-            SyntaxKind::ResourceUse => self.refer(names().next(), NameKind::Resource),
+            SyntaxKind::ResourceDecl => {
+                let kind = if self.is_model { NameKind::Equipment } else { NameKind::Resource };
+                self.define(names().nth(1), kind);
+            }
+            SyntaxKind::ResourceUse => self.resource(names().next()),
             // `using` and the resource; other words of `do` are keywords.
-            SyntaxKind::Do => self.refer(names().nth(1), NameKind::Resource),
-            SyntaxKind::Dotted if !is_mode(node) => self.vehicle(names().next()),
+            SyntaxKind::Do => self.resource(names().nth(1)),
+            SyntaxKind::Dotted if !is_mode(node) => {
+                self.vehicle(names().next());
+                self.refer(names().nth(1).filter(|part| part.text != "at"), NameKind::Equipment);
+            }
             SyntaxKind::Naming => self.define(names().nth(1), NameKind::Occurrence),
             SyntaxKind::EventName => self.refer(names().next(), NameKind::Occurrence),
             SyntaxKind::Effect => self.effect(node),
@@ -138,9 +160,23 @@ impl<'a> Collector<'a> {
             }
             SyntaxKind::LocationDecl => self.define(names().nth(1), NameKind::Location),
             SyntaxKind::ObstacleDecl => self.define(names().nth(1), NameKind::Obstacle),
-            SyntaxKind::VehicleDecl => {
-                self.define(names().nth(1), NameKind::Vehicle);
-                self.refer(names().nth(2), NameKind::Model);
+            SyntaxKind::VehicleDecl => self.vehicles(node),
+            SyntaxKind::ModelDecl => self.define(names().nth(1), NameKind::Model),
+            SyntaxKind::Extends => self.refer(names().nth(1), NameKind::Model),
+            SyntaxKind::GroupDecl => {
+                let mut names = names().skip(1);
+                self.define(names.next(), NameKind::Group);
+                names.for_each(|member| self.member(member));
+            }
+            SyntaxKind::ParameterKind => self.kind(names().next()),
+            SyntaxKind::Members => {
+                let mut names = names().skip(1);
+                let (variable, group) = (names.next(), names.nth(1));
+                self.define(variable, NameKind::Parameter);
+                self.parameters.extend(variable.map(|variable| variable.text));
+                if let Some(group) = group {
+                    self.refer_to(group, NameKind::Group);
+                }
             }
             SyntaxKind::ClosedTo => names().skip(1).for_each(|name| self.closed_to(name)),
             SyntaxKind::At => self.refer(names().nth(1), NameKind::Location),
@@ -195,7 +231,7 @@ impl<'a> Collector<'a> {
 
     /// `var` and `state` with their values.
     fn variable(&mut self, node: SyntaxNode<'a>, name: Option<SyntaxToken<'a>>) {
-        self.define(name, NameKind::Variable);
+        self.define(name, if self.is_model { NameKind::Equipment } else { NameKind::Variable });
         let Some(variable) = name else { return };
         let kind = || NameKind::Value(variable.text.into());
         let values = |kind: SyntaxKind| node.child(kind).into_iter().flat_map(SyntaxNode::own_tokens);
@@ -208,6 +244,10 @@ impl<'a> Collector<'a> {
 
     /// A vehicle, a model, or an activity after `for` of a keep-out area.
     fn closed_to(&mut self, name: SyntaxToken<'a>) {
+        if let Some((fleet, _)) = name.text.split_once('[') {
+            self.fleet(name, fleet);
+            return;
+        }
         let kind = if self.is_declared(Namespace::Vehicle, name.text) {
             NameKind::Vehicle
         } else if self.is_declared(Namespace::Callable, name.text) {
@@ -218,9 +258,67 @@ impl<'a> Collector<'a> {
         self.refer(Some(name), kind);
     }
 
+    /// A vehicle; of a fleet's, the name of the fleet.
     fn vehicle(&mut self, name: Option<SyntaxToken<'_>>) {
+        let Some(name) = name else { return };
+        match name.text.split_once('[') {
+            Some((fleet, _)) => self.fleet(name, fleet),
+            None => self.refer_to(name, NameKind::Vehicle),
+        }
+    }
+
+    fn fleet(&mut self, name: SyntaxToken<'_>, fleet: &str) {
+        let start = name.span.start;
+        self.add(Span::new(start, start + fleet.len() as u32), fleet, NameKind::Group, false);
+    }
+
+    fn resource(&mut self, name: Option<SyntaxToken<'_>>) {
         if let Some(name) = name {
-            self.refer_to(name, NameKind::Vehicle);
+            self.refer_to(name, NameKind::Resource);
+        }
+    }
+
+    /// `vehicle R1, S[1..4] : MODEL at PLACE`
+    fn vehicles(&mut self, node: SyntaxNode<'_>) {
+        let mut elements =
+            node.elements().skip_while(|element| matches!(element, Element::Node(_))).skip(1).peekable();
+        let mut is_behind_colon = false;
+        while let Some(element) = elements.next() {
+            let Element::Token(token) = element else { continue };
+            match token.kind {
+                SyntaxKind::Colon => is_behind_colon = true,
+                SyntaxKind::Name if is_behind_colon => self.refer(Some(token), NameKind::Model),
+                SyntaxKind::Name => {
+                    let is_fleet = matches!(elements.peek(), Some(Element::Node(next)) if next.kind() == SyntaxKind::FleetRange);
+                    self.define(Some(token), if is_fleet { NameKind::Group } else { NameKind::Vehicle });
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A member of a group.
+    fn member(&mut self, name: SyntaxToken<'_>) {
+        if let Some((fleet, _)) = name.text.split_once('[') {
+            self.fleet(name, fleet);
+            return;
+        }
+        let namespaces = [
+            (Namespace::Vehicle, NameKind::Vehicle),
+            (Namespace::Group, NameKind::Group),
+            (Namespace::Location, NameKind::Location),
+        ];
+        let declared = namespaces.into_iter().find(|(namespace, _)| self.is_declared(*namespace, name.text));
+        self.refer(Some(name), declared.map_or(NameKind::Symbol, |(_, kind)| kind));
+    }
+
+    /// What a parameter stands for, if it is the name of something.
+    fn kind(&mut self, name: Option<SyntaxToken<'_>>) {
+        let Some(name) = name else { return };
+        if self.is_declared(Namespace::Model, name.text) || VEHICLE_MODELS.contains(&name.text) {
+            self.refer(Some(name), NameKind::Model);
+        } else if self.is_declared(Namespace::Variable, name.text) {
+            self.refer(Some(name), NameKind::Variable);
         }
     }
 
@@ -229,7 +327,8 @@ impl<'a> Collector<'a> {
         let mut names = node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
         if let Some(dotted) = node.child(SyntaxKind::Dotted) {
             if !is_mode(dotted) {
-                names.for_each(|location| self.refer_to(location, NameKind::Location));
+                let kind = value_kind(dotted);
+                names.for_each(|value| self.refer_to(value, kind.clone()));
             }
             return;
         }
@@ -247,6 +346,10 @@ impl<'a> Collector<'a> {
 
     fn argument(&mut self, name: Option<SyntaxToken<'_>>) {
         let Some(name) = name else { return };
+        if let Some((fleet, _)) = name.text.split_once('[') {
+            self.fleet(name, fleet);
+            return;
+        }
         let kind = if self.parameters.contains(&name.text) {
             NameKind::Parameter
         } else if self.is_declared(Namespace::Location, name.text) {
@@ -257,6 +360,8 @@ impl<'a> Collector<'a> {
             NameKind::Constant
         } else if self.is_declared(Namespace::Vehicle, name.text) {
             NameKind::Vehicle
+        } else if self.is_declared(Namespace::Resource, name.text) {
+            NameKind::Resource
         } else {
             NameKind::Symbol
         };
@@ -299,7 +404,8 @@ impl<'a> Collector<'a> {
             }
             let domain = node.child(SyntaxKind::Domain);
             let places = domain.unwrap_or(node).own_tokens().filter(|token| token.kind == SyntaxKind::Name);
-            places.for_each(|location| self.refer_to(location, NameKind::Location));
+            let kind = value_kind(dotted);
+            places.for_each(|value| self.refer_to(value, kind.clone()));
             return;
         }
         if let Some(domain) = node.child(SyntaxKind::Domain) {

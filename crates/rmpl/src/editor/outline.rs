@@ -2,7 +2,7 @@
 
 use crate::parse::Parse;
 use crate::span::Span;
-use crate::syntax::{SyntaxKind, SyntaxNode};
+use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// What an entry of the outline is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,6 +22,10 @@ pub enum OutlineKind {
     Location,
     Obstacle,
     Vehicle,
+    /// A vehicle model.
+    Model,
+    /// A group, or vehicles that one declaration numbers.
+    Group,
 }
 
 /// A declaration.
@@ -40,7 +44,37 @@ pub struct OutlineItem {
 
 /// The declarations that have a name, in textual order.
 pub fn outline(parse: &Parse) -> Vec<OutlineItem> {
-    parse.declarations().filter_map(|root| root.children().find_map(item)).collect()
+    parse.declarations().flat_map(|root| root.children().find_map(items).unwrap_or_default()).collect()
+}
+
+fn items(node: SyntaxNode<'_>) -> Option<Vec<OutlineItem>> {
+    if node.kind() == SyntaxKind::VehicleDecl {
+        Some(vehicles(node))
+    } else {
+        item(node).map(|item| vec![item])
+    }
+}
+
+/// The vehicles and fleets of one declaration.
+fn vehicles(node: SyntaxNode<'_>) -> Vec<OutlineItem> {
+    let colon = node.token(SyntaxKind::Colon).map_or(node.span().end, |colon| colon.span.start);
+    let shared = node.text().get((colon - node.span().start) as usize..).unwrap_or("");
+    let shared: Vec<&str> = shared.trim_matches([';', ' ', '\n']).split_whitespace().collect();
+    let names = node.own_tokens().filter(|token| token.kind == SyntaxKind::Name && token.span.end <= colon);
+    let ranges = || node.children().filter(|child| child.kind() == SyntaxKind::FleetRange);
+    // The first name is the word `vehicle` itself.
+    let item = |name: SyntaxToken<'_>| {
+        let range = ranges().find(|range| range.span().start == name.span.end);
+        let detail = range.map(SyntaxNode::text).into_iter().chain(shared.iter().copied());
+        OutlineItem {
+            kind: if range.is_some() { OutlineKind::Group } else { OutlineKind::Vehicle },
+            name: name.text.to_owned(),
+            detail: detail.collect::<Vec<_>>().join(" "),
+            name_span: name.span,
+            span: node.span(),
+        }
+    };
+    names.skip(1).map(item).collect()
 }
 
 fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
@@ -57,7 +91,8 @@ fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
         SyntaxKind::TerrainDecl => (OutlineKind::Terrain, 0),
         SyntaxKind::LocationDecl => (OutlineKind::Location, 1),
         SyntaxKind::ObstacleDecl => (OutlineKind::Obstacle, 1),
-        SyntaxKind::VehicleDecl => (OutlineKind::Vehicle, 1),
+        SyntaxKind::ModelDecl => (OutlineKind::Model, 1),
+        SyntaxKind::GroupDecl => (OutlineKind::Group, 1),
         _ => return None,
     };
     let wanted = if kind == OutlineKind::Terrain { SyntaxKind::String } else { SyntaxKind::Name };
@@ -67,7 +102,8 @@ fn item(node: SyntaxNode<'_>) -> Option<OutlineItem> {
         || node.own_tokens().filter(|token| token.kind == wanted).nth(nth).map(|name| (name.text, name.span));
     let (name, name_span) = dotted.map_or_else(own, |dotted| Some((dotted.text(), dotted.span())))?;
     let body = node.child(SyntaxKind::Block).map(SyntaxNode::span);
-    let end = body.map_or(node.span().end, |body| body.start);
+    let brace = node.token(SyntaxKind::LeftBrace).filter(|_| kind == OutlineKind::Model);
+    let end = body.or(brace.map(|brace| brace.span)).map_or(node.span().end, |body| body.start);
     let start = node.span().start;
     let rest = node.text().get((name_span.end - start) as usize..(end - start) as usize).unwrap_or("");
     let detail: Vec<&str> = rest.trim_matches([';', '=', ' ', '\n']).split_whitespace().collect();

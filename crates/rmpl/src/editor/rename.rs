@@ -48,6 +48,10 @@ impl std::error::Error for RenameProblem {}
 pub fn prepare_rename(parse: &Parse, offset: u32) -> Result<(Span, String), RenameProblem> {
     let name = name_at(parse, offset).ok_or(RenameProblem::NothingHere)?;
     match name.kind {
+        // The built-in models are declared nowhere.
+        NameKind::Model if references_of(parse, &name).iter().any(|place| place.is_definition) => {
+            Ok((name.span, name.text.to_string()))
+        }
         NameKind::Model | NameKind::Option | NameKind::OptionValue => Err(RenameProblem::Fixed),
         _ => Ok((name.span, name.text.to_string())),
     }

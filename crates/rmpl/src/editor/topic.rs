@@ -69,7 +69,12 @@ impl Topic {
             NameKind::Variable | NameKind::Value(_) => Self::Conditions,
             NameKind::Parameter | NameKind::Symbol => Self::Parameters,
             NameKind::BoundName => Self::Bounds,
-            NameKind::Location | NameKind::Obstacle | NameKind::Vehicle | NameKind::Model => Self::World,
+            NameKind::Location
+            | NameKind::Obstacle
+            | NameKind::Vehicle
+            | NameKind::Model
+            | NameKind::Group
+            | NameKind::Equipment => Self::World,
             NameKind::Resource => Self::Resources,
             NameKind::Occurrence => Self::ThreadBounds,
             NameKind::Option | NameKind::OptionValue => Self::Options,
@@ -105,7 +110,8 @@ impl Topic {
             "s" | "min" | "h" | "d" | "sol" => Self::Bounds,
             "as" | "constrain" | "to" => Self::ThreadBounds,
             "import" => Self::Files,
-            "at" | "moves" | "speed" | "kinodynamic" | "cell" | "origin" => Self::World,
+            "at" | "moves" | "speed" | "kinodynamic" | "cell" | "origin" | "model" | "extends" | "group"
+            | "body" | "slope" | "clearance" | "turning" | "mast" | "flies" => Self::World,
             "runs" | "mode" | "from" | "plant" => Self::Programs,
             _ => Self::Statements,
         }

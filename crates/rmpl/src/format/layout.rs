@@ -39,6 +39,11 @@ pub(super) fn layout(root: SyntaxNode<'_>) -> Layout {
     let Some(declaration) = root.children().next() else { return layout };
     layout.break_at(declaration, 0);
     layout.break_clauses(declaration);
+    if declaration.kind() == SyntaxKind::ModelDecl
+        && (declaration.text().contains('\n') || layout.width(declaration) > LINE_WIDTH)
+    {
+        layout.break_model(declaration);
+    }
     if let Some(block) = declaration.child(SyntaxKind::Block)
         && (block.text().contains('\n') || layout.width(declaration) > LINE_WIDTH)
     {
@@ -70,7 +75,7 @@ impl Layout {
             | SyntaxKind::Effect => Place::Condition,
             SyntaxKind::Visible => Place::Sight,
             SyntaxKind::Goal => Place::Expression,
-            SyntaxKind::Coordinates => Place::Coordinates,
+            SyntaxKind::Coordinates | SyntaxKind::Property => Place::Coordinates,
             SyntaxKind::Domain => Place::Domain,
             SyntaxKind::Argument => Place::Argument,
             SyntaxKind::ConstrainDecl | SyntaxKind::Aborts => {
@@ -171,6 +176,16 @@ impl Layout {
             for clause in clauses {
                 self.break_at(clause, INDENT);
             }
+        }
+    }
+
+    /// Gives each property, resource and state of a model a line of its own.
+    fn break_model(&mut self, model: SyntaxNode<'_>) {
+        for part in model.children().filter(|part| part.kind() != SyntaxKind::Extends) {
+            self.break_at(part, INDENT);
+        }
+        if let Some(close) = model.token(SyntaxKind::RightBrace) {
+            self.breaks.insert(close.index as usize, 0);
         }
     }
 

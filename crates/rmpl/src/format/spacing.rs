@@ -45,6 +45,8 @@ pub(super) fn has_space_between(previous: SyntaxToken<'_>, token: SyntaxToken<'_
             Place::Bounds => false,
             _ => previous.kind != Kind::Name,
         },
+        // A unit of speed.
+        (Kind::Slash, _) | (_, Kind::Slash) if place == Place::Coordinates => false,
         (Kind::RightBracket, _) => true,
         _ if place == Place::Bounds => false,
         // A unit of time.

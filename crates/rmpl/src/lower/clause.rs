@@ -2,7 +2,7 @@
 
 use super::bounds::{bounds_in, expression};
 use super::condition::{Formula, formula, is_condition};
-use super::declaration::{formals, moves};
+use super::declaration::{formals, kinds, moves};
 use super::{Lowering, name_of, names, variable_in};
 use crate::diagnostics::syntax;
 use crate::program::{Amount, Change, Condition, Effect, Per, PrimitiveDecl, Requirement, ResourceUse, Runs};
@@ -14,6 +14,7 @@ impl Lowering<'_> {
         let mut decl = PrimitiveDecl {
             name: names(node).next()?,
             formals: formals(node),
+            kinds: kinds(node),
             bounds: bounds_in(node),
             moves: node.child(SyntaxKind::Moves).and_then(moves),
             runs: node.child(SyntaxKind::Runs).and_then(runs),
@@ -62,7 +63,7 @@ impl Lowering<'_> {
             _ => Change::Produces,
         };
         for node in clause.children().filter(|child| child.kind() == SyntaxKind::ResourceUse) {
-            let Some(resource) = names(node).next() else { continue };
+            let Some(resource) = variable_in(node) else { continue };
             let amount = node.child(SyntaxKind::Amount).map(|amount| self.amount(amount, change.word()));
             // A broken amount is not one that is left out.
             let is_whole = amount.as_ref().map_or(change == Change::Uses, Option::is_some);

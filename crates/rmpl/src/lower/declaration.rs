@@ -9,10 +9,9 @@ use super::{Lowering, OptionDecl, OptionValue, name_of, names};
 use crate::program::{
     ActivityDecl, Bounds, ConstantDecl, ConstrainDecl, ControlDecl, EventName, ImportDecl, LocationDecl,
     Moves, Name, ObstacleDecl, ObstacleKind, ObstacleShape, ScenarioDecl, TerrainDecl, VariableDecl,
-    VehicleDecl,
 };
 use crate::span::Span;
-use crate::syntax::{KEEPOUT, SyntaxKind, SyntaxNode};
+use crate::syntax::{Element, KEEPOUT, SyntaxKind, SyntaxNode};
 
 impl Lowering<'_> {
     pub(super) fn activity(&mut self, node: SyntaxNode<'_>) -> Option<ActivityDecl> {
@@ -21,6 +20,7 @@ impl Lowering<'_> {
         Some(ActivityDecl {
             name,
             formals: formals(node),
+            kinds: kinds(node),
             bounds: header_bounds_in(node),
             body: self.block(node.child(SyntaxKind::Block)?),
             span: node.span(),
@@ -64,6 +64,23 @@ pub(super) fn import(node: SyntaxNode<'_>) -> Option<ImportDecl> {
 
 pub(super) fn formals(node: SyntaxNode<'_>) -> Vec<Name> {
     node.child(SyntaxKind::Formals).map(|formals| names(formals).collect()).unwrap_or_default()
+}
+
+/// What is written of the kinds of parameters, one for each.
+pub(super) fn kinds(node: SyntaxNode<'_>) -> Vec<Option<Name>> {
+    let mut kinds = Vec::new();
+    for element in node.child(SyntaxKind::Formals).into_iter().flat_map(SyntaxNode::elements) {
+        match element {
+            Element::Token(token) if token.kind == SyntaxKind::Name => kinds.push(None),
+            Element::Node(kind) if kind.kind() == SyntaxKind::ParameterKind => {
+                if let Some(last) = kinds.last_mut() {
+                    *last = names(kind).next();
+                }
+            }
+            _ => {}
+        }
+    }
+    kinds
 }
 
 pub(super) fn constant(node: SyntaxNode<'_>) -> Option<ConstantDecl> {
@@ -193,11 +210,4 @@ pub(super) fn obstacle(node: SyntaxNode<'_>) -> Option<ObstacleDecl> {
         ObstacleKind::Solid
     };
     Some(ObstacleDecl { name, kind, shape, numbers_span, span: node.span() })
-}
-
-pub(super) fn vehicle(node: SyntaxNode<'_>) -> Option<VehicleDecl> {
-    let mut words = names(node).skip(1);
-    let (name, model) = (words.next()?, words.next()?);
-    let start = names(node.child(SyntaxKind::At)?).nth(1)?;
-    Some(VehicleDecl { name, model, start, span: node.span() })
 }

@@ -5,6 +5,7 @@ mod clause;
 pub(crate) mod condition;
 mod contingent;
 mod declaration;
+mod fleet;
 mod lasting;
 mod statement;
 
@@ -13,8 +14,9 @@ use smol_str::SmolStr;
 
 use crate::diagnostic::Diagnostic;
 use crate::program::{
-    ActivityDecl, ConstantDecl, ConstrainDecl, ControlDecl, ImportDecl, LocationDecl, Name, ObjectiveDecl,
-    ObstacleDecl, PrimitiveDecl, ResourceDecl, ScenarioDecl, TerrainDecl, VariableDecl, VehicleDecl,
+    ActivityDecl, ConstantDecl, ConstrainDecl, ControlDecl, FleetDecl, GroupDecl, ImportDecl, LocationDecl,
+    ModelDecl, Name, ObjectiveDecl, ObstacleDecl, PrimitiveDecl, ResourceDecl, ScenarioDecl, TerrainDecl,
+    VariableDecl, VehicleDecl,
 };
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken, is_dash};
@@ -36,7 +38,19 @@ pub(crate) enum Item {
     Terrain(TerrainDecl),
     Location(LocationDecl),
     Obstacle(ObstacleDecl),
-    Vehicle(VehicleDecl),
+    Vehicles(VehiclesDecl),
+    Model(ModelDecl),
+    Group(GroupDecl),
+}
+
+/// `vehicle R1, S[1..4] : MODEL at LOCATION;`
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct VehiclesDecl {
+    /// The vehicles, those of fleets included, in textual order.
+    pub(crate) vehicles: Vec<VehicleDecl>,
+    pub(crate) fleets: Vec<FleetDecl>,
+    pub(crate) model: Name,
+    pub(crate) start: Name,
 }
 
 /// `option name = value;`
@@ -93,7 +107,9 @@ impl Lowering<'_> {
             SyntaxKind::TerrainDecl => declaration::terrain(node).map(Item::Terrain),
             SyntaxKind::LocationDecl => declaration::location(node).map(Item::Location),
             SyntaxKind::ObstacleDecl => declaration::obstacle(node).map(Item::Obstacle),
-            _ => declaration::vehicle(node).map(Item::Vehicle),
+            SyntaxKind::ModelDecl => fleet::model(node).map(Item::Model),
+            SyntaxKind::GroupDecl => fleet::group(node).map(Item::Group),
+            _ => fleet::vehicles(node).map(Item::Vehicles),
         }
     }
 }
@@ -108,10 +124,16 @@ fn name_of(token: SyntaxToken<'_>) -> Name {
     Name { text, span: token.span }
 }
 
-/// The variable of a condition or an effect: that of a vehicle's place is one name `V.at`, that of a component's mode
-/// `C.mode`.
+/// The variable of a condition or an effect, or the resource of a use: of two parts with a dot it is one name, as `V.at`.
 fn variable_in(node: SyntaxNode<'_>) -> Option<Name> {
-    let Some(dotted) = node.child(SyntaxKind::Dotted) else { return names(node).next() };
+    match node.child(SyntaxKind::Dotted) {
+        Some(parts) => dotted(parts),
+        None => names(node).next(),
+    }
+}
+
+/// The name of two parts that a node is, if it is whole.
+fn dotted(dotted: SyntaxNode<'_>) -> Option<Name> {
     let mut parts = names(dotted);
     let (owner, part) = (parts.next()?, parts.next()?);
     // What stands between them has been reported, and is part of no name.

@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::bounds::expression;
 use super::condition::{depth, is_condition, literal};
-use super::{Lowering, name_of, names};
+use super::{Lowering, dotted, name_of, names};
 use crate::program::{Argument, ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
@@ -40,7 +40,7 @@ impl Lowering<'_> {
     }
 
     /// A statement, with its name around it if it has one.
-    fn statement(&mut self, node: SyntaxNode<'_>) -> Option<Statement> {
+    pub(super) fn statement(&mut self, node: SyntaxNode<'_>) -> Option<Statement> {
         let body = self.unnamed(node)?;
         let name = node.child(SyntaxKind::Naming).and_then(|naming| names(naming).nth(1));
         let Some(name) = name else { return Some(body) };
@@ -92,6 +92,7 @@ impl Lowering<'_> {
                     Statement { kind: StatementKind::Sequence(Vec::new()), bounds: None, span: word.span };
                 StatementKind::Choose(vec![body, nothing])
             }
+            SyntaxKind::Members => self.members(core)?,
             SyntaxKind::Unordered => StatementKind::Unordered(self.steps(core.child(SyntaxKind::Block)?)),
             SyntaxKind::Call => {
                 let name = name_of(core.token(SyntaxKind::Name)?);
@@ -152,7 +153,11 @@ impl Lowering<'_> {
         let mut words = names(node);
         if words.next().is_some() {
             let amount = node.children().skip(1).find_map(expression);
-            return Some(StatementKind::Using(Box::new(body), words.next()?, amount));
+            let resource = match node.child(SyntaxKind::Dotted) {
+                Some(parts) => dotted(parts)?,
+                None => words.next()?,
+            };
+            return Some(StatementKind::Using(Box::new(body), resource, amount));
         }
         let is_watching = node.token(SyntaxKind::WatchingKeyword).is_some();
         let condition = node.children().find(|child| is_condition(child.kind()))?;
@@ -177,6 +182,9 @@ fn collapse(steps: Vec<Statement>, span: Span) -> Statement {
 
 fn argument(node: SyntaxNode<'_>) -> Option<Argument> {
     let span = node.span();
+    if let Some(parts) = node.child(SyntaxKind::Dotted) {
+        return Some(Argument { value: ArgumentValue::Name(dotted(parts)?.text), span });
+    }
     if let Some(inner) = node.children().find(|child| child.kind() != SyntaxKind::Skipped) {
         let value = if inner.kind() == SyntaxKind::Condition {
             ArgumentValue::Condition(literal(inner)?)

@@ -172,11 +172,21 @@ impl Parser<'_> {
     /// `NAME amount`
     fn resource_use(&mut self, needs_amount: bool) {
         let node = self.open();
-        self.declared_name("the name of a resource");
+        self.resource_name();
         if needs_amount || self.at_number() || self.at_per() {
             self.amount();
         }
         self.close(node, SyntaxKind::ResourceUse);
+    }
+
+    /// The name of a resource; of a vehicle's own `V.battery`.
+    pub(super) fn resource_name(&mut self) {
+        self.join_index_before_dot(self.current);
+        if self.at(SyntaxKind::Name) && self.peek() == SyntaxKind::Dot {
+            self.dotted_name(None);
+        } else {
+            self.declared_name("the name of a resource");
+        }
     }
 
     /// An expression, perhaps with `per` and a unit.
@@ -228,6 +238,7 @@ impl Parser<'_> {
         }
         let word = self.text_of(index);
         let next = self.index_after(index);
+        self.join_index_before_dot(next);
         let is_before_name = self.kind_at(next) == SyntaxKind::Name && {
             let unit = self.index_after(next);
             self.text_of(next) != "per" || Per::by_name(self.text_of(unit)).is_none()

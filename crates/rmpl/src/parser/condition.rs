@@ -63,6 +63,7 @@ impl Parser<'_> {
             index = self.index_after(index);
         }
         let is_quoted = self.is_rule && self.kind_at(index) == SyntaxKind::String;
+        self.join_index_before_dot(index);
         if open_parens == 0 || (self.kind_at(index) != SyntaxKind::Name && !is_quoted) {
             return false;
         }
@@ -145,6 +146,7 @@ impl Parser<'_> {
         if self.is_rule && self.eat(SyntaxKind::String) {
             return;
         }
+        self.join_index_before_dot(self.current);
         let is_place = self.at(SyntaxKind::Name) && self.peek() == SyntaxKind::Dot;
         if !self.variable_name() {
             let keyword = self.kind.is_keyword() && self.kind != SyntaxKind::ThennextKeyword;
@@ -174,7 +176,7 @@ impl Parser<'_> {
             self.bump();
             self.value();
         } else if is_place {
-            self.report_expected("`=` and a location");
+            self.report_expected("`=` and a location or a value");
             self.skip_until(|parser| !parser.at(SyntaxKind::LeftParen));
         }
     }
@@ -197,26 +199,34 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Visible);
     }
 
-    /// The name of a variable: that of a vehicle's place is `V.at`, that of a component's mode `C.mode`.
+    /// The name of a variable: that of a vehicle's place is `V.at`, of its state `V.arm`, of a component's mode `C.mode`.
     pub(super) fn variable_name(&mut self) -> bool {
+        self.join_index_before_dot(self.current);
         if !self.at(SyntaxKind::Name) || self.peek() != SyntaxKind::Dot {
             return self.eat(SyntaxKind::Name);
         }
-        self.dotted_name(&["at", "mode"]);
+        self.dotted_name(None);
         true
     }
 
-    /// A name, and behind its dot one of these words.
-    pub(super) fn dotted_name(&mut self, words: &[&str]) {
+    /// A name, and behind its dot another one, which may have to be this one.
+    pub(super) fn dotted_name(&mut self, word: Option<&str>) {
         let node = self.open();
         self.bump();
         self.bump();
         let is_adjacent = self.start_of(self.current) == self.previous_end();
-        if !is_adjacent || !words.iter().any(|word| self.eat_word(word)) {
-            self.report_expected(if words.contains(&"at") {
-                "`at` (place of a vehicle) or `mode` (of a component) directly after `.`"
-            } else {
-                "`mode` directly after `.`"
+        let is_part = match word {
+            Some(word) => self.at_word(word),
+            None => self.at(SyntaxKind::Name),
+        };
+        if is_adjacent && is_part {
+            self.bump();
+        } else {
+            self.report_expected(match word {
+                None => {
+                    "`at` (place of a vehicle), `mode` (of a component), or a state or resource directly after `.`"
+                }
+                Some(_) => "`mode` directly after `.`",
             });
             if self.at(SyntaxKind::Name) {
                 self.bump();

@@ -19,6 +19,8 @@ impl Parser<'_> {
             _ if self.at_constant() => self.constant(),
             _ if self.at_constrain() => self.constrain(),
             _ if self.at_import() => self.import(),
+            _ if self.at_model() => self.model(),
+            _ if self.at_group_declaration() => self.group(),
             _ if self.at_lasting_declaration() => self.lasting_declaration(),
             _ if self.at_world_declaration() => self.world_declaration(),
             _ if self.at_definition(false) => self.activity(),
@@ -86,6 +88,22 @@ impl Parser<'_> {
 
     /// Names separated by commas, at least one; stops before `close`.
     pub(super) fn names_until(&mut self, close: SyntaxKind, wanted: &str) {
+        self.names_with(close, wanted, |_| {});
+    }
+
+    /// `: vehicle` behind a parameter
+    fn parameter_kind(&mut self) {
+        if !self.at(SyntaxKind::Colon) {
+            return;
+        }
+        let node = self.open();
+        self.bump();
+        self.declared_name("`vehicle`, `location`, `number`, `resource`, `condition`, a model or a state");
+        self.close(node, SyntaxKind::ParameterKind);
+    }
+
+    /// The same, with `behind` each name.
+    fn names_with(&mut self, close: SyntaxKind, wanted: &str, behind: impl Fn(&mut Self)) {
         loop {
             if !self.eat(SyntaxKind::Name) {
                 self.report_expected(wanted);
@@ -96,6 +114,7 @@ impl Parser<'_> {
                     self.hush();
                 }
             }
+            behind(self);
             if self.eat(SyntaxKind::Comma) {
                 continue;
             }
@@ -214,7 +233,7 @@ impl Parser<'_> {
         let node = self.open();
         self.bump();
         if !self.at(SyntaxKind::RightParen) {
-            self.names_until(SyntaxKind::RightParen, "the name of a parameter");
+            self.names_with(SyntaxKind::RightParen, "the name of a parameter", Self::parameter_kind);
         }
         self.expect_behind(SyntaxKind::RightParen, ")");
         self.close(node, SyntaxKind::Formals);

@@ -20,9 +20,9 @@ impl Parser<'_> {
     }
 
     /// `state X : {V1, V2} = V1;` or `state C.mode from plant;`
-    fn state(&mut self) -> SyntaxKind {
+    pub(super) fn state(&mut self) -> SyntaxKind {
         if self.at(SyntaxKind::Name) && self.peek() == SyntaxKind::Dot {
-            self.dotted_name(&["mode"]);
+            self.dotted_name(Some("mode"));
             self.source();
             return SyntaxKind::StateDecl;
         }
@@ -55,7 +55,7 @@ impl Parser<'_> {
     }
 
     /// `resource NAME;`, `resource NAME capacity 3;` or `resource NAME 0..100 = 40;`
-    fn resource(&mut self) -> SyntaxKind {
+    pub(super) fn resource(&mut self) -> SyntaxKind {
         self.declared_name("the name of the resource");
         if self.at_capacity() {
             let node = self.open();

@@ -9,6 +9,7 @@ mod bounds;
 mod clause;
 mod condition;
 mod declaration;
+mod fleet;
 mod lasting;
 mod occurrence;
 mod recovery;
@@ -18,6 +19,7 @@ mod world;
 
 pub(crate) use bounds::CONTINGENT;
 pub(crate) use clause::CLAUSE_WORDS;
+pub(crate) use fleet::PROPERTY_WORDS;
 
 use crate::diagnostic::{Diagnostic, Fix};
 use crate::diagnostics::{lex, syntax};

@@ -108,6 +108,7 @@ impl Parser<'_> {
         let is_optional = self.at_prefix("optional");
         let is_unordered = self.at_word("unordered") && self.peek() == SyntaxKind::LeftBrace;
         let is_constrain = self.at_constrain();
+        let is_members = self.at_members();
         match self.kind {
             SyntaxKind::LeftBrace => self.block(),
             SyntaxKind::ChooseKeyword => self.choose(),
@@ -119,6 +120,7 @@ impl Parser<'_> {
                 self.close(node, SyntaxKind::Delay);
             }
             SyntaxKind::Name if is_constrain => self.constrain_in_block(),
+            SyntaxKind::Name if is_members => self.members(),
             SyntaxKind::Name if is_repeat => self.repeat(),
             SyntaxKind::Name if is_free => self.prefixed(SyntaxKind::Free),
             SyntaxKind::Name if is_optional => self.prefixed(SyntaxKind::Optional),
@@ -218,7 +220,7 @@ impl Parser<'_> {
     /// `using NAME amount`
     fn using(&mut self) {
         self.bump();
-        self.declared_name("the name of a resource");
+        self.resource_name();
         let is_amount = match self.kind {
             SyntaxKind::Name => {
                 let next = self.peek();
@@ -276,6 +278,7 @@ impl Parser<'_> {
     }
 
     fn call_or_assertion(&mut self) {
+        self.join_index_before_dot(self.current);
         match self.peek() {
             SyntaxKind::LeftParen => {
                 let node = self.open();
@@ -384,15 +387,18 @@ impl Parser<'_> {
 
     fn argument(&mut self) {
         let node = self.open();
+        self.join_index(self.current);
         let next = self.peek();
         let is_operator = matches!(
             next,
             SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Star | SyntaxKind::Slash | SyntaxKind::Percent
         );
         let is_membership = self.at_membership();
+        let is_equipment = self.at_equipment();
         let is_plain_number = !is_operator && !self.at_quantity();
         match self.kind {
             SyntaxKind::Number if is_plain_number => self.bump(),
+            SyntaxKind::Name if is_equipment => self.dotted_name(None),
             SyntaxKind::Name
                 if matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals | SyntaxKind::Dot) =>
             {

@@ -61,9 +61,9 @@ impl Parser<'_> {
         if self.at_word("for") {
             let node = self.open();
             self.bump();
-            self.declared_name(CLOSED_TO);
+            self.member_name(CLOSED_TO);
             while self.eat(SyntaxKind::Comma) {
-                self.declared_name(CLOSED_TO);
+                self.member_name(CLOSED_TO);
             }
             self.close(node, SyntaxKind::ClosedTo);
         }
@@ -90,6 +90,11 @@ impl Parser<'_> {
 
     fn vehicle(&mut self) -> SyntaxKind {
         self.declared_name("the name of the vehicle");
+        self.fleet_range_if_any();
+        while self.eat(SyntaxKind::Comma) {
+            self.declared_name("the name of another vehicle");
+            self.fleet_range_if_any();
+        }
         self.expect(SyntaxKind::Colon);
         self.declared_name("the vehicle's model");
         if self.at_word("at") {
@@ -107,9 +112,9 @@ impl Parser<'_> {
     pub(super) fn moves(&mut self) {
         let node = self.open();
         self.bump();
-        self.declared_name("the name of a vehicle");
+        self.member_name("the name of a vehicle");
         while self.eat(SyntaxKind::Comma) {
-            self.declared_name("the name of a vehicle");
+            self.member_name("the name of a vehicle");
         }
         if self.at_word("speed") {
             let speed = self.open();

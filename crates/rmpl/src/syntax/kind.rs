@@ -62,7 +62,7 @@ pub enum SyntaxKind {
     Star,
     /// `/`
     Slash,
-    /// `.` right behind a name: `Rover.at`
+    /// `.` right behind a name or an index: `Rover.at`, `S[1].at`
     Dot,
     /// `..`
     DotDot,
@@ -131,10 +131,24 @@ pub enum SyntaxKind {
     ConstrainDecl,
     /// `import "…";`
     ImportDecl,
+    /// `model NAME … { … }`
+    ModelDecl,
+    /// `group NAME = … ;`
+    GroupDecl,
     /// `vehicle NAME : … ;`
     VehicleDecl,
     /// Text that is no declaration; it has been reported.
     Garbage,
+    /// `extends NAME` of a model.
+    Extends,
+    /// `body 0.8 x 0.6` and its like of a model.
+    Property,
+    /// A number of a property, perhaps with a unit.
+    Quantity,
+    /// `[1..4]` of a fleet.
+    FleetRange,
+    /// `: vehicle` of a parameter.
+    ParameterKind,
     /// `(p, q)` in a header.
     Formals,
     /// `{V1, V2}` of a variable.
@@ -217,6 +231,8 @@ pub enum SyntaxKind {
     Optional,
     /// `unordered { … }`
     Unordered,
+    /// `any … in …` or `each … in …`
+    Members,
     /// `Name( … )`
     Call,
     /// `( … )` of a call.

@@ -111,7 +111,7 @@ impl<'t> Lexer<'t> {
         } else {
             self.punctuation(first, start)
         };
-        self.is_behind_name = kind == SyntaxKind::Name;
+        self.is_behind_name = matches!(kind, SyntaxKind::Name | SyntaxKind::RightBracket);
         (kind, self.position as u32)
     }
 

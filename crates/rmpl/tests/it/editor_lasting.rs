@@ -71,7 +71,7 @@ fn clauses_are_completed_by_what_they_are_about() {
     completes("primitive Dig(s)[1,2] sets ARM=OUT, $0", &["ARM", "Scout.at"], &["LIGHT"]);
     completes("primitive Dig(s)[1,2] sets ARM=OUT $0", &["uses", "costs"], &["ARM", "and"]);
     completes("primitive Dig(s)[1,2] sets Scout.at=$0", &["BASE", "s"], &["OUT"]);
-    completes("primitive Dig(s)[1,2] uses $0", &["Power", "Battery"], &["ARM", "s", "DEPTH"]);
+    completes("primitive Dig(s)[1,2] uses $0", &["Power", "Battery", "s"], &["ARM", "DEPTH"]);
     completes("primitive Dig(s)[1,2] uses Power $0", &["DEPTH", "s", "consumes"], &["Power"]);
     completes("primitive Dig(s)[1,2] uses Power 2, $0", &["Battery"], &["DEPTH"]);
     completes("primitive Dig(s)[1,2] consumes Battery 2 $0", &["per", "sets"], &["DEPTH", "Battery"]);

@@ -12,7 +12,9 @@ fn codes(text: &str) -> Vec<&'static str> {
 }
 
 /// Kinds that only compiling or planning can report.
-const LATER: [&str; 9] = [
+const LATER: [&str; 11] = [
+    "E-KIND",
+    "E-MODEL",
     "E-NOSCENARIO",
     "E-LIMIT",
     "E-RESOURCE",

@@ -377,7 +377,7 @@ fn one_mistake_gives_one_diagnostic() {
     clause("requires A, at start B", ",", "its own clause");
     clause("requires A B", "A", "expected `,`");
     clause("requires A== V sets B=V", "=", "single `=`");
-    clause("requires s.place=V sets B=V", "place", "`at`");
+    clause("requires s.=V sets B=V", "=", "`at`");
     clause("requires s. at=V sets B=V", "at", "directly after `.`");
     clause("sets not A=V", "not", "exactly one value");
     clause("sets A!=V, B=V", "!=", "exactly one value");

@@ -122,6 +122,8 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "E-NOSCENARIO",
         "E-LIMIT",
         "E-RESOURCE",
+        "E-KIND",
+        "E-MODEL",
         "E-FORM",
         "E-CONSTRAINT",
         "E-PROBABILITY",

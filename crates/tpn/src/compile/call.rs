@@ -249,6 +249,7 @@ impl<'program> Expander<'program> {
                         .argument(name)
                         .or_else(|| scope.number_argument(name))
                         .or_else(|| constant().map(|number| ArgumentValue::Number(number.units())))
+                        .or_else(|| name.contains('.').then(|| ArgumentValue::Name(scope.owned_name(name))))
                 }
                 ArgumentValue::Expression(expr) => Some(ArgumentValue::Number(self.number(expr, scope))),
                 ArgumentValue::Condition(condition) => {

@@ -1,15 +1,17 @@
 //! The compile rules of SPEC 3.3, one function per construct, over the program with its calls expanded.
 
+use std::rc::Rc;
+
 use exact::{Bound, Time};
-use rmpl::diagnostics::limit;
-use rmpl::program::{Bounds, Expr, LabelMode, ScenarioDecl, Statement, StatementKind};
+use rmpl::diagnostics::{fleet, limit};
+use rmpl::program::{Bounds, Expr, LabelMode, Members, MembersForm, ScenarioDecl, Statement, StatementKind};
 use rmpl::{Diagnostic, Span};
 use smol_str::SmolStr;
 
 use super::bounds::{self, Interval};
 use super::build::Root;
 use super::call::{Invocation, themselves};
-use super::expander::{End, Entry, Expander, Piece};
+use super::expander::{Branch, End, Entry, Expander, Piece};
 use super::names::E_UNDEF;
 use super::scope::Scope;
 use super::shape::starts_with_decision;
@@ -108,9 +110,15 @@ impl<'program> Expander<'program> {
     fn unbounded(&mut self, statement: &'program Statement, entry: Entry, scope: &Scope) -> Piece {
         let (span, written) = (statement.span, statement.bounds.as_ref());
         match &statement.kind {
-            StatementKind::Sequence(items) => self.sequence(items.iter(), false, span, entry, scope),
-            StatementKind::Parallel(branches) => self.parallel(branches, span, entry, scope),
-            StatementKind::Choose(alternatives) => self.choose(alternatives, span, entry, scope),
+            StatementKind::Sequence(items) => {
+                let items = items.iter().map(|statement| Branch { statement, scope, is_copy: false });
+                self.sequence(items, span, entry)
+            }
+            StatementKind::Parallel(branches) => self.parallel(&Branch::all(branches, scope), span, entry),
+            StatementKind::Choose(alternatives) => {
+                self.choose(&Branch::all(alternatives, scope), span, entry)
+            }
+            StatementKind::Members(members) => self.members(members, span, entry, scope),
             StatementKind::Maintaining(body, condition) => {
                 self.conditional(body, condition, LabelMode::Ask, span, entry, scope)
             }
@@ -123,7 +131,7 @@ impl<'program> Expander<'program> {
             }
             StatementKind::IfThennext(condition, body) => self.guard(condition, body, span, entry, scope),
             StatementKind::Repeat(count, body) => self.repeat(count, body, span, entry, scope),
-            StatementKind::Unordered(branches) => self.unordered(branches, span, entry, scope),
+            StatementKind::Unordered(branches) => self.unordered(&Branch::all(branches, scope), span, entry),
             StatementKind::Named(body, name) => {
                 let piece = self.statement(body, entry, scope);
                 self.named.add(name, piece.start, piece.end);
@@ -162,14 +170,46 @@ impl<'program> Expander<'program> {
         }
     }
 
-    /// One after the other. In copies of one statement, names are those of the copy.
-    fn sequence(
+    /// A statement for one member of a group, or for each (SPEC 23).
+    fn members(&mut self, members: &'program Members, span: Span, entry: Entry, scope: &Scope) -> Piece {
+        let groups = Rc::clone(&self.groups);
+        let group = scope.name(&members.group.text);
+        let Some(names) = groups.members(&group) else {
+            self.diagnostics.push(fleet::unknown_group(&group, members.group.span, None));
+            return self.nothing(span, entry);
+        };
+        let scopes: Vec<Scope> =
+            names.iter().map(|member| scope.with_member(&members.variable.text, member)).collect();
+        let copy = |scope| Branch { statement: &members.body, scope, is_copy: true };
+        let branches: Vec<Branch<'program, '_>> = scopes.iter().map(copy).collect();
+        match (members.form, branches.as_slice()) {
+            (MembersForm::Any, branches) => self.choose(branches, span, entry),
+            (MembersForm::Unordered, branches) => self.unordered(branches, span, entry),
+            // One member has nobody beside it.
+            (MembersForm::Parallel, [only]) => self.branch(only, entry),
+            (MembersForm::Parallel, branches) => self.parallel(branches, span, entry),
+            (MembersForm::Sequence, branches) => self.sequence(branches.iter().copied(), span, entry),
+        }
+    }
+
+    /// One of several statements. In copies of one statement, names are those of the copy.
+    pub(super) fn branch(&mut self, branch: &Branch<'program, '_>, entry: Entry) -> Piece {
+        if branch.is_copy {
+            self.named.enter();
+        }
+        let piece = self.statement(branch.statement, entry, branch.scope);
+        if branch.is_copy {
+            self.named.leave();
+        }
+        piece
+    }
+
+    /// One after the other.
+    fn sequence<'scope>(
         &mut self,
-        items: impl Iterator<Item = &'program Statement>,
-        are_copies: bool,
+        items: impl Iterator<Item = Branch<'program, 'scope>>,
         span: Span,
         entry: Entry,
-        scope: &Scope,
     ) -> Piece {
         let mut pieces: Vec<Piece> = Vec::new();
         for item in items {
@@ -180,13 +220,7 @@ impl<'program> Expander<'program> {
                 None => entry,
                 Some(last) => Entry::After { node: last.end, end: last.end_kind, link: ArcKind::Glue },
             };
-            if are_copies {
-                self.named.enter();
-            }
-            let piece = self.statement(item, entry, scope);
-            if are_copies {
-                self.named.leave();
-            }
+            let piece = self.branch(&item, entry);
             pieces.push(piece);
         }
         if pieces.len() == 1 {
@@ -226,7 +260,10 @@ impl<'program> Expander<'program> {
             }
         });
         match copies {
-            Ok(copies) => self.sequence(std::iter::repeat_n(body, copies), true, span, entry, scope),
+            Ok(copies) => {
+                let copy = Branch { statement: body, scope, is_copy: true };
+                self.sequence(std::iter::repeat_n(copy, copies), span, entry)
+            }
             Err(error) => {
                 self.diagnostics.push(error);
                 self.nothing(span, entry)
@@ -234,20 +271,14 @@ impl<'program> Expander<'program> {
         }
     }
 
-    fn parallel(
-        &mut self,
-        branches: &'program [Statement],
-        span: Span,
-        entry: Entry,
-        scope: &Scope,
-    ) -> Piece {
+    fn parallel(&mut self, branches: &[Branch<'program, '_>], span: Span, entry: Entry) -> Piece {
         let fork = self.enter(entry, End::Structural, span);
         let mut ends = Vec::with_capacity(branches.len());
         let mut blocks = Vec::with_capacity(branches.len());
         for branch in branches {
             let entry = Entry::After { node: fork, end: End::Event, link: ArcKind::Fork };
-            let piece = self.statement(branch, entry, scope);
-            ends.push((piece.end, branch.span));
+            let piece = self.branch(branch, entry);
+            ends.push((piece.end, branch.statement.span));
             blocks.push(piece.block);
         }
         let join = self.builder.node();
@@ -258,13 +289,7 @@ impl<'program> Expander<'program> {
         Piece { start: fork, end: join, end_kind: End::Structural, block, arc: None, occurrence: None }
     }
 
-    fn choose(
-        &mut self,
-        alternatives: &'program [Statement],
-        span: Span,
-        entry: Entry,
-        scope: &Scope,
-    ) -> Piece {
+    fn choose(&mut self, alternatives: &[Branch<'program, '_>], span: Span, entry: Entry) -> Piece {
         if alternatives.is_empty() {
             return self.nothing(span, entry);
         }
@@ -273,11 +298,12 @@ impl<'program> Expander<'program> {
         let mut ends = Vec::with_capacity(alternatives.len());
         let mut blocks = Vec::with_capacity(alternatives.len());
         for alternative in alternatives {
-            let arc = self.builder.reserve(ArcKind::Choice, Interval::ZERO, alternative.span);
-            self.builder.alternative(decision, arc, alternative.span);
-            let piece = self.statement(alternative, Entry::Free, scope);
+            let span = alternative.statement.span;
+            let arc = self.builder.reserve(ArcKind::Choice, Interval::ZERO, span);
+            self.builder.alternative(decision, arc, span);
+            let piece = self.branch(alternative, Entry::Free);
             self.builder.connect(arc, node, piece.start);
-            ends.push((piece.end, alternative.span));
+            ends.push((piece.end, span));
             blocks.push(piece.block);
         }
         let merge = self.builder.node();

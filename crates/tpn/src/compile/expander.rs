@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use rmpl::Diagnostic;
-use rmpl::program::{ActivityDecl, PrimitiveDecl, Program};
+use rmpl::fleet::Groups;
+use rmpl::program::{ActivityDecl, PrimitiveDecl, Program, Statement};
 
 use super::build::{Builder, Root};
 use super::constants::Constants;
 use super::constraint::Named;
 use super::ground::Ground;
 use super::names::Vocabulary;
+use super::scope::Scope;
 use crate::network::{ArcId, ArcKind, BlockId, Network, NodeId, OccurrenceId, ResourceId};
 
 /// What kind of node stands at an end of a piece, which decides what may share the node (rule M).
@@ -33,6 +35,22 @@ pub(super) enum Entry {
     After { node: NodeId, end: End, link: ArcKind },
 }
 
+/// A statement with what its names mean: one of several that stand side by side.
+#[derive(Clone, Copy)]
+pub(super) struct Branch<'program, 'scope> {
+    pub(super) statement: &'program Statement,
+    pub(super) scope: &'scope Scope,
+    /// Whether it is one of several copies, in which names are those of the copy.
+    pub(super) is_copy: bool,
+}
+
+impl<'program, 'scope> Branch<'program, 'scope> {
+    /// Statements that mean the same wherever they stand.
+    pub(super) fn all(statements: &'program [Statement], scope: &'scope Scope) -> Vec<Self> {
+        statements.iter().map(|statement| Self { statement, scope, is_copy: false }).collect()
+    }
+}
+
 /// A compiled piece of the program.
 pub(super) struct Piece {
     pub(super) start: NodeId,
@@ -52,6 +70,7 @@ pub(super) struct Expander<'program> {
     pub(super) constants: Rc<Constants<'program>>,
     pub(super) activities: Rc<BTreeMap<&'program str, &'program ActivityDecl>>,
     pub(super) primitives: Rc<BTreeMap<&'program str, &'program PrimitiveDecl>>,
+    pub(super) groups: Rc<Groups>,
     pub(super) builder: Builder,
     pub(super) diagnostics: Vec<Diagnostic>,
     /// The activities being expanded, outermost first.
@@ -73,6 +92,7 @@ pub(super) struct Declared<'program> {
     pub(super) constants: Rc<Constants<'program>>,
     activities: Rc<BTreeMap<&'program str, &'program ActivityDecl>>,
     primitives: Rc<BTreeMap<&'program str, &'program PrimitiveDecl>>,
+    groups: Rc<Groups>,
 }
 
 impl<'program> Declared<'program> {
@@ -95,19 +115,22 @@ impl<'program> Declared<'program> {
             constants: Rc::new(constants),
             activities: Rc::new(activities),
             primitives: Rc::new(primitives),
+            // What is wrong with them has been said.
+            groups: Rc::new(Groups::new(program).0),
         }
     }
 }
 
 impl<'program> Expander<'program> {
     pub(super) fn new(declared: Declared<'program>) -> Self {
-        let Declared { program, vocabulary, constants, activities, primitives } = declared;
+        let Declared { program, vocabulary, constants, activities, primitives, groups } = declared;
         let mut expander = Self {
             program,
             vocabulary,
             constants,
             activities,
             primitives,
+            groups,
             builder: Builder::default(),
             diagnostics: Vec::new(),
             active: Vec::new(),

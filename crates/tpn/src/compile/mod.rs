@@ -23,7 +23,7 @@ mod statics;
 use std::collections::BTreeSet;
 
 use exact::{Bound, Time};
-use rmpl::diagnostics::recursion;
+use rmpl::diagnostics::{kind, recursion};
 use rmpl::program::{Program, ScenarioDecl};
 use rmpl::{Code, Diagnostic, Severity, Span, listed};
 use smol_str::SmolStr;
@@ -81,7 +81,7 @@ pub fn compile_on(program: &Program, top: &Top, ground: &dyn Ground) -> (Option<
     let (constants, mut diagnostics) = Constants::new(program);
     let are_constants_sound = diagnostics.is_empty();
     diagnostics.extend(statics::check(program, &constants));
-    if !are_constants_sound || diagnostics.iter().any(|found| found.code == recursion::CODE) {
+    if !are_constants_sound || diagnostics.iter().any(prevents_expansion) {
         return (None, listed(without_repeats(diagnostics)));
     }
     let (network, found) = expand(program, Declared::new(program, constants, ground), top);
@@ -101,7 +101,7 @@ pub fn compile_scenarios(
     let (constants, mut diagnostics) = Constants::new(program);
     let are_constants_sound = diagnostics.is_empty();
     diagnostics.extend(statics::check(program, &constants));
-    if !are_constants_sound || diagnostics.iter().any(|found| found.code == recursion::CODE) {
+    if !are_constants_sound || diagnostics.iter().any(prevents_expansion) {
         return listed(without_repeats(diagnostics));
     }
     let declared = Declared::new(program, constants, ground);
@@ -113,6 +113,11 @@ pub fn compile_scenarios(
         take(network.filter(|_| is_sound));
     }
     listed(without_repeats(diagnostics))
+}
+
+/// Whether a mistake would only bring others with it, or no end.
+fn prevents_expansion(found: &Diagnostic) -> bool {
+    found.code == recursion::CODE || found.code == kind::CODE
 }
 
 fn expand<'program>(

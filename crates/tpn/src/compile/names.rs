@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
+use rmpl::diagnostics::fleet;
 use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind};
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
@@ -94,6 +95,8 @@ pub(super) struct Vocabulary<'program> {
     initial: Vec<(SmolStr, SmolStr, Span)>,
     /// The places that vehicles can be at, by `V.at`.
     places: BTreeMap<SmolStr, Vec<&'program str>>,
+    /// The models of vehicles.
+    models: BTreeMap<&'program str, &'program str>,
     ground: &'program dyn Ground,
     /// From which places vehicles do not see locations, by `V.at` and location, as far as it was asked for.
     hidden: RefCell<BTreeMap<(SmolStr, SmolStr), Vec<Hidden>>>,
@@ -144,7 +147,9 @@ impl<'program> Vocabulary<'program> {
             });
         }
         let hidden = RefCell::default();
-        Self { domains, without_component, compared, initial, places, ground, hidden }
+        let vehicles = program.world.vehicles.iter();
+        let models = vehicles.map(|it| (it.name.text.as_str(), it.model.text.as_str())).collect();
+        Self { domains, without_component, compared, initial, places, models, ground, hidden }
     }
 
     /// Whether a variable keeps its value until something changes it (SPEC 10).
@@ -260,6 +265,11 @@ impl<'program> Vocabulary<'program> {
                     let message = format!("unknown state variable `{}`", fact.variable);
                     let hint = format!("declare it: `state {} from plant;`", fact.variable);
                     Err(Diagnostic::error(E_UNDEF, condition.variable.span, message).with_hint(hint))
+                }
+                Some((owner, part)) if self.places.contains_key(&format_smolstr!("{owner}.at")) => {
+                    let model = self.models.get(owner).copied().unwrap_or_default();
+                    let span = condition.variable.span;
+                    Err(fleet::unknown_equipment(owner, part, model, "state", span))
                 }
                 Some((owner, _)) => {
                     let message = format!("unknown vehicle `{owner}`");

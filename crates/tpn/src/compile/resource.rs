@@ -2,13 +2,14 @@
 //! `unordered` blocks, whose branches share an unnamed one (SPEC 14). Objectives (SPEC 12) are read here, too.
 
 use exact::{Rational, Time};
+use rmpl::diagnostics::fleet;
 use rmpl::program::{self, Amount, Change, DurationUnit, Expr, Name, Per, ResourceUse, Statement};
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::format_smolstr;
 
 use super::bounds::{self, E_BOUNDS, Interval};
 use super::clauses::Activity;
-use super::expander::{End, Entry, Expander, Piece};
+use super::expander::{Branch, End, Entry, Expander, Piece};
 use super::names::E_UNDEF;
 use crate::network::{ArcKind, BlockKind, Goal, Resource, ResourceId, Supply, Use};
 
@@ -86,7 +87,7 @@ impl<'program> Expander<'program> {
         written: &ResourceUse,
         called: Span,
     ) {
-        let Some(resource) = self.resource(&written.resource) else { return };
+        let Some(resource) = self.resource(&written.resource, activity.scope, called) else { return };
         let mut per_metre = Rational::default();
         let amount = match &written.amount {
             None => Rational::ONE,
@@ -151,16 +152,29 @@ impl<'program> Expander<'program> {
         })
     }
 
-    fn resource(&mut self, name: &Name) -> Option<ResourceId> {
-        if let Some(known) = self.resources.get(name.text.as_str()) {
+    /// The resource of a use; `called` is where the call stands that says what parameters are.
+    fn resource(&mut self, written: &Name, scope: &super::scope::Scope, called: Span) -> Option<ResourceId> {
+        let name = scope.owned_name(&written.text);
+        if let Some(known) = self.resources.get(name.as_str()) {
             return *known;
         }
-        let message = format!("unknown resource `{}`", name.text);
-        self.diagnostics.push(
-            Diagnostic::error(E_UNDEF, name.span, message)
-                .with_hint(format!("declare it: `resource {};`", name.text)),
-        );
+        let span = if name == written.text { written.span } else { called };
+        let diagnostic = match name.split_once('.') {
+            Some((owner, part)) => self.unknown_equipment(owner, part, "resource", span),
+            None => Diagnostic::error(E_UNDEF, span, format!("unknown resource `{name}`"))
+                .with_hint(format!("declare it: `resource {name};`")),
+        };
+        self.diagnostics.push(diagnostic);
         None
+    }
+
+    /// A resource or a state that a vehicle does not have, or whose vehicle is not declared.
+    fn unknown_equipment(&self, owner: &str, part: &str, what: &str, span: Span) -> Diagnostic {
+        match self.program.world.vehicles.iter().find(|it| it.name.text == owner) {
+            Some(vehicle) => fleet::unknown_equipment(owner, part, &vehicle.model.text, what, span),
+            None => Diagnostic::error(E_UNDEF, span, format!("unknown vehicle `{owner}`"))
+                .with_hint("declare it: `vehicle V : MODEL at PLACE;`"),
+        }
     }
 
     /// Adds a use, if its resource can ever bear it. `called` is where the call stands, `written` where the use does.
@@ -213,7 +227,7 @@ impl<'program> Expander<'program> {
         entry: Entry,
         scope: &super::scope::Scope,
     ) -> Piece {
-        let resource_id = self.resource(resource);
+        let resource_id = self.resource(resource, scope, span);
         let amount = amount.map_or(Rational::ONE, |written| self.amount(written, scope));
         let (piece, arc, owner) = self.with_arc(body, span, entry, scope);
         if let (Some(resource_id), Some(arc)) = (resource_id, arc) {
@@ -236,13 +250,7 @@ impl<'program> Expander<'program> {
     }
 
     /// `unordered { a; b; … }`: parallel branches that start when they like, and share a resource of capacity 1.
-    pub(super) fn unordered(
-        &mut self,
-        branches: &'program [Statement],
-        span: Span,
-        entry: Entry,
-        scope: &super::scope::Scope,
-    ) -> Piece {
+    pub(super) fn unordered(&mut self, branches: &[Branch<'program, '_>], span: Span, entry: Entry) -> Piece {
         if branches.is_empty() {
             return self.nothing(span, entry);
         }
@@ -257,9 +265,10 @@ impl<'program> Expander<'program> {
         let mut ends = Vec::with_capacity(branches.len());
         let mut blocks = Vec::with_capacity(branches.len());
         for branch in branches {
-            let arc = self.builder.reserve(ArcKind::Fork, Interval::ANY, branch.span);
+            let span = branch.statement.span;
+            let arc = self.builder.reserve(ArcKind::Fork, Interval::ANY, span);
             let first = self.builder.next_occurrence();
-            let piece = self.statement(branch, Entry::Free, scope);
+            let piece = self.branch(branch, Entry::Free);
             self.builder.connect(arc, fork, piece.start);
             self.builder.uses.push(Use {
                 resource,
@@ -272,9 +281,9 @@ impl<'program> Expander<'program> {
                 start: piece.start,
                 end: piece.end,
                 owner: piece.occurrence.or_else(|| self.builder.made(first)),
-                span: Some(branch.span),
+                span: Some(span),
             });
-            ends.push((piece.end, branch.span));
+            ends.push((piece.end, span));
             blocks.push(piece.block);
         }
         let join = self.builder.node();

@@ -29,6 +29,14 @@ impl Scope {
         Self { occurrence, arguments: pairs.collect(), bounds: Vec::new() }
     }
 
+    /// The same where `variable` stands for a member of a group.
+    pub(super) fn with_member(&self, variable: &SmolStr, member: &SmolStr) -> Self {
+        let mut inner = self.clone();
+        inner.bounds.retain(|(parameter, _)| parameter != variable);
+        inner.arguments.insert(0, (variable.clone(), ArgumentValue::Name(member.clone())));
+        inner
+    }
+
     /// Binds a bound parameter.
     pub(super) fn bind(&mut self, parameter: &SmolStr, bound: Bound) {
         self.bounds.push((parameter.clone(), bound));
@@ -81,6 +89,11 @@ impl Scope {
             Some(ArgumentValue::Name(argument)) => argument,
             _ => name.clone(),
         }
+    }
+
+    /// A name of two parts, or of one, after substitution.
+    pub(super) fn owned_name(&self, name: &SmolStr) -> SmolStr {
+        substituted(name, &|name| self.argument(name))
     }
 
     /// What expressions mean in this instance.

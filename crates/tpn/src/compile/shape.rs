@@ -1,6 +1,6 @@
 //! What a statement will compile to, known before it is compiled: a single arc, one instance, a decision first.
 
-use rmpl::program::{ArgumentValue, Condition, LabelMode, Name, Statement, StatementKind};
+use rmpl::program::{ArgumentValue, Condition, LabelMode, MembersForm, Name, Statement, StatementKind};
 
 use super::expander::Expander;
 use super::scope::Scope;
@@ -27,6 +27,7 @@ impl Expander<'_> {
             | StatementKind::Unordered(_)
             | StatementKind::Choose(_)
             | StatementKind::IfThennext(..)
+            | StatementKind::Members(_)
             | StatementKind::Repeat(..) => false,
         }
     }
@@ -77,6 +78,11 @@ pub(super) fn starts_with_decision(statement: &Statement, is_bounded_outside: bo
         StatementKind::Sequence(items) => {
             items.first().is_some_and(|first| starts_with_decision(first, false))
         }
+        StatementKind::Members(members) => match members.form {
+            MembersForm::Any => true,
+            MembersForm::Sequence => starts_with_decision(&members.body, false),
+            MembersForm::Parallel | MembersForm::Unordered => false,
+        },
         // If there are no copies at all, the nodes around nothing do no harm.
         StatementKind::Repeat(_, body) | StatementKind::Named(body, _) => starts_with_decision(body, false),
         _ => false,

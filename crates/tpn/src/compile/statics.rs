@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use rmpl::call_cycles::call_cycles;
 use rmpl::diagnostics::recursion as wording;
+use rmpl::fleet;
 use rmpl::program::{ActivityDecl, Bounds, HeaderBound, HeaderBounds, Program, StatementKind};
 use rmpl::{Diagnostic, Span};
 
@@ -13,6 +14,7 @@ use super::constants::Constants;
 /// Everything that is wrong whatever is compiled.
 pub(super) fn check(program: &Program, constants: &Constants<'_>) -> Vec<Diagnostic> {
     let mut found = recursion(program);
+    found.extend(fleet::check(program));
     let mut check_bounds = |written: &Bounds| {
         if bounds::is_constant(written)
             && let Err(error) = bounds::interval(written, constants)

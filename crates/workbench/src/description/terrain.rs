@@ -1,5 +1,6 @@
 //! What is done on the terrain, and where the vehicles are.
 
+use rmpl::program::World;
 use serde::Serialize;
 use snapshot::Snapshot;
 #[cfg(test)]
@@ -136,7 +137,8 @@ pub(super) fn vehicles(state: &AppState, snapshot: &Snapshot) -> Vec<Vehicle> {
                 name: vehicle.name.text.to_string(),
                 x: place.x,
                 y: place.y,
-                z: height.map(|height| height + flight_height_m(&vehicle.model.text)),
+                z: height
+                    .map(|height| height + flight_height_m(&snapshot.program.world, &vehicle.model.text)),
                 heading,
                 time,
             })
@@ -145,8 +147,8 @@ pub(super) fn vehicles(state: &AppState, snapshot: &Snapshot) -> Vec<Vehicle> {
 }
 
 /// How high over the ground a vehicle of this model is drawn; 0 for what drives.
-fn flight_height_m(model: &str) -> f64 {
-    match motion::vehicle_model(model).map(|model| model.drive) {
+fn flight_height_m(world: &World, model: &str) -> f64 {
+    match snapshot::vehicle::model(world, model).map(|model| model.drive) {
         Some(motion::Drive::Flight { altitude_band_m: [low, high], .. }) => f64::midpoint(low, high),
         _ => 0.0,
     }

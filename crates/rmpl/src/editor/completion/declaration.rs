@@ -1,13 +1,19 @@
 //! Places in the declarations that have no body, and in the clauses of primitives.
 
 use super::place::{Place, in_set, innermost, is_sight, value_of};
-use crate::parser::{CLAUSE_WORDS, CONTINGENT};
+use crate::parser::{CLAUSE_WORDS, CONTINGENT, PROPERTY_WORDS};
 use crate::program::{Measure, Per};
 use crate::syntax::{KEEPOUT, SyntaxKind, SyntaxToken};
 
 /// Places in the declarations that have no body.
 pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {
     let first = context.first()?;
+    if first.text == "model"
+        && first.kind == SyntaxKind::Name
+        && context.get(1).is_none_or(|name| name.kind == SyntaxKind::Name)
+    {
+        return in_model(context, last);
+    }
     let is_open = !context.iter().any(|token| matches!(token.kind, SyntaxKind::Semicolon));
     if !is_open {
         return None;
@@ -29,7 +35,11 @@ pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>)
         (SyntaxKind::Name, "vehicle") => match (last.kind, last.text) {
             (SyntaxKind::Colon, _) => Place::Model,
             (SyntaxKind::Name, "at") if names > 2 => Place::Location,
-            (SyntaxKind::Name, _) if names == 3 => Place::Words(vec!["at"]),
+            (SyntaxKind::Name, _) if is_behind_colon(context) => Place::Words(vec!["at"]),
+            _ => Place::Nothing,
+        },
+        (SyntaxKind::Name, "group") if is_constant => match last.kind {
+            SyntaxKind::Equals | SyntaxKind::Comma => Place::Member,
             _ => Place::Nothing,
         },
         (SyntaxKind::Name, "const")
@@ -54,6 +64,39 @@ pub(super) fn in_declaration(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>)
         (SyntaxKind::Name, "const") if is_constant => Place::Nothing,
         (SyntaxKind::Name, "obstacle" | "location") | (SyntaxKind::VarKeyword, _) => Place::Nothing,
         _ => return None,
+    })
+}
+
+/// Whether the model of a vehicle has just been written.
+fn is_behind_colon(context: &[SyntaxToken<'_>]) -> bool {
+    context.len().checked_sub(2).and_then(|at| context.get(at)).is_some_and(|it| it.kind == SyntaxKind::Colon)
+}
+
+/// `model NAME extends PARENT { … }`; nothing behind it.
+fn in_model(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {
+    let brace = context.iter().position(|token| token.kind == SyntaxKind::LeftBrace);
+    let Some(brace) = brace else {
+        return Some(match (context.len(), last.text) {
+            (2, _) => Place::Words(vec!["extends"]),
+            (3, "extends") => Place::Model,
+            _ => Place::Nothing,
+        });
+    };
+    innermost(context)?;
+    let body = context.get(brace + 1..).unwrap_or_default();
+    let begin = body.iter().rposition(|token| token.kind == SyntaxKind::Semicolon).map_or(0, |at| at + 1);
+    let part = body.get(begin..).unwrap_or_default();
+    Some(match part.first() {
+        None => Place::Words([PROPERTY_WORDS.as_slice(), &["resource", "state"]].concat()),
+        Some(first) if first.text == "state" => in_state(part, last),
+        Some(first) if first.text == "resource" => in_resource(part, last),
+        Some(first) if first.text == "slope" && last.kind == SyntaxKind::Number => {
+            Place::Words(vec!["degrees", "rad"])
+        }
+        Some(first) if first.text == "body" && last.kind == SyntaxKind::Number && part.len() == 2 => {
+            Place::Words(vec!["x"])
+        }
+        Some(_) => Place::Nothing,
     })
 }
 

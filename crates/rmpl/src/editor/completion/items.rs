@@ -43,7 +43,28 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
         Place::Values(values) => {
             items.extend(values.iter().map(|value| plain(value, CompletionKind::Value)));
         }
-        Place::Resource => declared(parse, OutlineKind::Resource, CompletionKind::Variable, &mut items),
+        Place::Resource => {
+            local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, &mut items);
+            declared(parse, OutlineKind::Resource, CompletionKind::Variable, &mut items);
+            declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
+        }
+        Place::BehindDot(owner) => {
+            items.push(keyword("at", "at"));
+            items.push(keyword("mode", "mode"));
+            equipment(parse, owner, &mut items);
+        }
+        Place::Group => declared(parse, OutlineKind::Group, CompletionKind::Vehicle, &mut items),
+        Place::Member => {
+            declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
+            declared(parse, OutlineKind::Group, CompletionKind::Vehicle, &mut items);
+            declared(parse, OutlineKind::Location, CompletionKind::Location, &mut items);
+        }
+        Place::Kind => {
+            let words = ["vehicle", "location", "number", "resource", "condition"];
+            items.extend(words.map(|word| keyword(word, word)));
+            models(parse, &mut items);
+            declared(parse, OutlineKind::State, CompletionKind::Variable, &mut items);
+        }
         Place::Amount => numbers(parse, offset, &mut items),
         Place::AmountOr(words) => {
             items.extend(words.iter().map(|word| keyword(word, word)));
@@ -73,9 +94,7 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
             items.push(keyword("visible", "visible($1)$0"));
             items.push(keyword("{ … }", "{$1}$0"));
         }
-        Place::Model => {
-            items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
-        }
+        Place::Model => models(parse, &mut items),
         Place::Option => {
             let options = [
                 ("threat_gap", "threat_gap = 1;"),
@@ -100,7 +119,7 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
         }
         Place::ClosedTo => {
             declared(parse, OutlineKind::Vehicle, CompletionKind::Vehicle, &mut items);
-            items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
+            models(parse, &mut items);
             declared(parse, OutlineKind::Primitive, CompletionKind::Primitive, &mut items);
         }
         Place::Shape => {
@@ -117,7 +136,9 @@ pub(super) fn items(parse: &Parse, offset: u32, place: &Place) -> Vec<Completion
     items
 }
 
-const DECLARATIONS: [(&str, &str); 15] = [
+const DECLARATIONS: [(&str, &str); 17] = [
+    ("model", "model $1 {\n  $2\n}$0"),
+    ("group", "group $1 = $2;$0"),
     ("constrain", "constrain $1.start to $2.end [$3,$4];$0"),
     ("import", "import \"$1\";$0"),
     ("state", "state $1 : {$2} = $3;$0"),
@@ -135,7 +156,9 @@ const DECLARATIONS: [(&str, &str); 15] = [
     ("vehicle", "vehicle $1 : $2 at $3;$0"),
 ];
 
-const STATEMENTS: [(&str, &str); 15] = [
+const STATEMENTS: [(&str, &str); 17] = [
+    ("any", "any $1 in $2 $0"),
+    ("each", "each $1 in $2 $0"),
     ("optional", "optional "),
     ("unordered", "unordered { $1 }$0"),
     ("do … using", "do { $1 } using $0"),
@@ -246,6 +269,29 @@ fn values(parse: &Parse, variable: &str, items: &mut Vec<CompletionItem>) {
             }
         }
     }
+}
+
+/// Declared and built-in vehicle models.
+fn models(parse: &Parse, items: &mut Vec<CompletionItem>) {
+    declared(parse, OutlineKind::Model, CompletionKind::Vehicle, items);
+    items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
+}
+
+/// What a vehicle has of its own; what stands for one may have what any model has.
+fn equipment(parse: &Parse, owner: &str, items: &mut Vec<CompletionItem>) {
+    let meaning = parse.meaning();
+    let vehicle =
+        meaning.names.find(owner).and_then(|owner| meaning.index.definition(Namespace::Vehicle, owner));
+    let all = || {
+        let models = meaning.index.defined(Namespace::Model).iter();
+        models.filter_map(|&model| meaning.index.definition(Namespace::Model, model)).collect()
+    };
+    let models: Vec<_> = match vehicle {
+        Some(vehicle) => vehicle.model.into_iter().flat_map(|model| meaning.index.lineage(model)).collect(),
+        None => all(),
+    };
+    let names = models.into_iter().flat_map(|model| &model.equipment);
+    items.extend(names.map(|own| plain(meaning.names.text(own.name), CompletionKind::Variable)));
 }
 
 /// What `as` names.

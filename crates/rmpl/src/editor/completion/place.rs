@@ -32,6 +32,14 @@ pub(super) enum Place {
     /// Behind `V.at in`.
     SetOfLocations,
     Model,
+    /// Behind the dot of this vehicle.
+    BehindDot(String),
+    /// Behind `any x in`.
+    Group,
+    /// Behind `group G =`.
+    Member,
+    /// Behind the colon of a parameter.
+    Kind,
     Option,
     OptionValue(String),
     Shape,
@@ -50,14 +58,21 @@ pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
     if last.kind == Kind::Dot {
         let is_event = context.first().is_some_and(|first| first.text == "constrain");
         let is_state = context.first().is_some_and(|first| first.text == "state") && context.len() == 3;
-        return Place::Words(match (is_event, is_state) {
-            (true, _) => vec!["start", "end"],
-            (_, true) => vec!["mode"],
-            _ => vec!["at", "mode"],
-        });
+        let owner = context.len().checked_sub(2).and_then(|at| context.get(at));
+        return match (is_event, is_state) {
+            (true, _) => Place::Words(vec!["start", "end"]),
+            (_, true) => Place::Words(vec!["mode"]),
+            _ => Place::BehindDot(owner.map_or(String::new(), |owner| owner.text.to_owned())),
+        };
     }
     if let Some(place) = behind_place_in(context) {
         return place;
+    }
+    if last.kind == Kind::Colon && innermost(context).is_some_and(|(kind, _)| kind == Kind::LeftParen) {
+        return Place::Kind;
+    }
+    if is_behind_members(context) {
+        return Place::Group;
     }
     if let Some(place) = in_declaration(context, *last) {
         return place;
@@ -124,12 +139,21 @@ pub(super) fn behind_place_in(context: &[SyntaxToken<'_>]) -> Option<Place> {
     (is_in && from_end(3)?.kind == SyntaxKind::Dot).then_some(Place::SetOfLocations)
 }
 
+/// Whether the tokens end with `any x in` or `each x in`.
+fn is_behind_members(context: &[SyntaxToken<'_>]) -> bool {
+    let from_end = |back: usize| context.len().checked_sub(back).and_then(|at| context.get(at));
+    let is_in = from_end(1).is_some_and(|last| last.text == "in" && last.kind == SyntaxKind::Name);
+    is_in && from_end(3).is_some_and(|word| matches!(word.text, "any" | "each"))
+}
+
 /// The values of the variable before `at`; those of `V.at` are the locations, those of `C.mode` the component's modes.
 pub(super) fn value_of(context: &[SyntaxToken<'_>], at: usize) -> Place {
     let before = |back: usize| at.checked_sub(back).and_then(|at| context.get(at));
     if before(2).is_some_and(|token| token.kind == SyntaxKind::Dot) {
         return match (before(3), before(1)) {
-            (Some(owner), Some(part)) if part.text == "mode" => Place::Value(format!("{}.mode", owner.text)),
+            (Some(owner), Some(part)) if part.text != "at" => {
+                Place::Value(format!("{}.{}", owner.text, part.text))
+            }
             _ => Place::Location,
         };
     }
