@@ -7,6 +7,7 @@ mod contingent;
 mod contradicted;
 mod controllability;
 mod explanations;
+mod fleets;
 mod interchange;
 mod language;
 mod larger_missions;

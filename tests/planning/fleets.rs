@@ -1,0 +1,240 @@
+//! Missions of fleets (SPEC 23) against the same missions with every vehicle written out: the networks are equal but for names,
+//! and so are the plans. The generator writes both texts from one mission and expands nothing with the program's own code.
+
+use acceptance::mission::{first_plan, network};
+use kirk::Search;
+use tpn::Network;
+use tpn::generate::Rng;
+
+/// Random missions.
+const MISSIONS: u64 = 200;
+
+/// Who does something: a vehicle by its index, or what stands for a member, by how many are around it.
+#[derive(Clone, Copy)]
+enum Who {
+    Vehicle(usize),
+    Member(usize),
+}
+
+enum Node {
+    Work(usize, Who),
+    Both(Who),
+    Group(&'static str, Vec<Node>),
+    Optional(Box<Node>),
+    /// `any` or one of the forms of `each`, over the fleet alone or over all vehicles.
+    Members { form: usize, is_fleet: bool, body: Box<Node> },
+}
+
+const FORMS: [(&str, &str); 4] = [("any", ""), ("each", ""), ("each", " in sequence"), ("each", " unordered")];
+
+struct Mission {
+    /// How many vehicles the fleet has; one more is alone.
+    fleet: usize,
+    /// Of each primitive what follows the parameters; `@` stands for the vehicle.
+    clauses: Vec<String>,
+    level: i64,
+    horizon: i64,
+    root: Node,
+}
+
+struct Maker {
+    rng: Rng,
+    left: i64,
+    fleet: usize,
+}
+
+impl Maker {
+    fn mission(seed: u64) -> Mission {
+        let mut maker = Self { rng: Rng::new(seed ^ 0xF1EE), left: 0, fleet: 0 };
+        maker.left = maker.rng.between(1, 4);
+        maker.fleet = maker.rng.between(1, 2) as usize;
+        let clauses = (0..3).map(|_| maker.clauses()).collect();
+        let (level, horizon) = (maker.rng.between(0, 9), maker.rng.between(4, 14));
+        let branches = (0..maker.rng.between(1, 2)).map(|_| maker.node(0, 0)).collect();
+        Mission { fleet: maker.fleet, clauses, level, horizon, root: Node::Group("all", branches) }
+    }
+
+    fn clauses(&mut self) -> String {
+        let least = self.rng.between(0, 2);
+        let mut text = format!("[{least},{}]", least + self.rng.between(0, 2));
+        if self.rng.chance(40) {
+            let when = if self.rng.chance(50) { "at start " } else { "" };
+            text.push_str(&format!(" requires {when}@drill={}", self.value()));
+        }
+        if self.rng.chance(40) {
+            text.push_str(&format!(" sets @drill={}", self.value()));
+        }
+        if self.rng.chance(40) {
+            text.push_str(" uses @arm");
+        }
+        if self.rng.chance(40) {
+            let change = if self.rng.chance(60) { "consumes" } else { "produces" };
+            text.push_str(&format!(" {change} @battery {}", self.rng.between(1, 5)));
+        }
+        text
+    }
+
+    fn value(&mut self) -> &'static str {
+        ["A", "B"][self.rng.below(2) as usize]
+    }
+
+    fn who(&mut self, members: usize) -> Who {
+        if members > 0 && self.rng.chance(80) {
+            Who::Member(self.rng.below(members as u64) as usize)
+        } else {
+            Who::Vehicle(self.rng.below(self.fleet as u64 + 1) as usize)
+        }
+    }
+
+    fn node(&mut self, depth: usize, members: usize) -> Node {
+        self.left -= 1;
+        let is_leaf = depth > 2 || self.left <= 0;
+        match self.rng.below(if is_leaf { 3 } else { 9 }) {
+            0 | 1 => {
+                let who = self.who(members);
+                Node::Work(self.rng.below(3) as usize, who)
+            }
+            2 => Node::Both(self.who(members)),
+            3 => Node::Optional(Box::new(self.node(depth + 1, members))),
+            4 => {
+                let kind = ["sequence", "choose", "all"][self.rng.below(3) as usize];
+                Node::Group(kind, (0..2).map(|_| self.node(depth + 1, members)).collect())
+            }
+            _ => {
+                let form = self.rng.below(4) as usize;
+                let is_fleet = self.rng.chance(50);
+                Node::Members { form, is_fleet, body: Box::new(self.node(depth + 1, members + 1)) }
+            }
+        }
+    }
+}
+
+impl Mission {
+    /// The names of the vehicles, as fleets write them, or as names of their own.
+    fn names(&self, is_short: bool) -> Vec<String> {
+        let of_fleet = (1..=self.fleet).map(|number| if is_short { format!("S[{number}]") } else { format!("S-{number}") });
+        std::iter::once("R".to_owned()).chain(of_fleet).collect()
+    }
+
+    fn short(&self) -> String {
+        let primitives = self.clauses.iter().enumerate();
+        let primitives: String = primitives
+            .map(|(index, clauses)| format!("primitive P{index}(r){};\n", clauses.replace('@', "r.")))
+            .collect();
+        format!(
+            "location BASE (0, 0);\nmodel Scout {{ resource battery 0..9 = {}; resource arm; state drill : {{A, B}} = A; }}\n\
+             vehicle R, S[1..{}] : Scout at BASE;\ngroup G = R, S;\n{primitives}Both(r) = {{ P0(r); P1(r) }}\n\
+             scenario Sol[0,{}] = {{ {} }}\n",
+            self.level,
+            self.fleet,
+            self.horizon,
+            self.written(&self.root, &mut Vec::new(), true),
+        )
+    }
+
+    fn long(&self) -> String {
+        let names = self.names(false);
+        let mut text = "location BASE (0, 0);\n".to_owned();
+        for name in &names {
+            text.push_str(&format!(
+                "resource {name}-battery 0..9 = {}; resource {name}-arm; state {name}-drill : {{A, B}} = A;\n\
+                 vehicle {name} : ATRV at BASE;\nBoth-{name}() = {{ P0-{name}(); P1-{name}() }}\n",
+                self.level
+            ));
+            for (index, clauses) in self.clauses.iter().enumerate() {
+                text.push_str(&format!("primitive P{index}-{name}(){};\n", clauses.replace('@', &format!("{name}-"))));
+            }
+        }
+        let body = self.written(&self.root, &mut Vec::new(), false);
+        text + &format!("scenario Sol[0,{}] = {{ {body} }}\n", self.horizon)
+    }
+
+    /// A statement, with members around it by index: in the long form with every member written out.
+    fn written(&self, node: &Node, members: &mut Vec<usize>, is_short: bool) -> String {
+        let names = self.names(is_short);
+        let who = |who: &Who, members: &[usize]| match *who {
+            Who::Member(at) if is_short => format!("m{at}"),
+            Who::Member(at) => names[members[at]].clone(),
+            Who::Vehicle(index) => names[index].clone(),
+        };
+        match node {
+            Node::Work(index, by) if is_short => format!("P{index}({})", who(by, members)),
+            Node::Work(index, by) => format!("P{index}-{}()", who(by, members)),
+            Node::Both(by) if is_short => format!("Both({})", who(by, members)),
+            Node::Both(by) => format!("Both-{}()", who(by, members)),
+            Node::Optional(body) => format!("optional {{ {} }}", self.written(body, members, is_short)),
+            Node::Group(kind, parts) => {
+                let parts: Vec<String> =
+                    parts.iter().map(|part| format!("{{ {} }}", self.written(part, members, is_short))).collect();
+                grouped(kind, &parts)
+            }
+            Node::Members { form, is_fleet, body } if is_short => {
+                let (word, order) = FORMS[*form];
+                let group = if *is_fleet { "S" } else { "G" };
+                let depth = members.len();
+                members.push(0);
+                let body = self.written(body, members, is_short);
+                members.pop();
+                format!("{word} m{depth} in {group}{order} {{ {body} }}")
+            }
+            Node::Members { form, is_fleet, body } => {
+                let range = usize::from(*is_fleet)..=self.fleet;
+                let copies = range.map(|member| {
+                    members.push(member);
+                    let body = self.written(body, members, is_short);
+                    members.pop();
+                    if *form == 1 { format!("free {{ {body} }}") } else { format!("{{ {body} }}") }
+                });
+                let copies: Vec<String> = copies.collect();
+                grouped(["choose", "all", "sequence", "unordered"][*form], &copies)
+            }
+        }
+    }
+}
+
+fn grouped(kind: &str, parts: &[String]) -> String {
+    match kind {
+        "choose" => format!("choose {{ {} }}", parts.join(", ")),
+        "unordered" => format!("unordered {{ {} }}", parts.join("; ")),
+        "sequence" => format!("{{ {} }}", parts.join("; ")),
+        _ => format!("{{ {} }}", parts.join(", ")),
+    }
+}
+
+/// Everything of a network but names and where it is written.
+fn structure(network: &Network) -> Vec<String> {
+    let arcs = network.arcs.iter().map(|arc| {
+        format!("{}→{} [{},{}] {:?} {:?}", arc.from.0, arc.to.0, arc.lower, arc.upper, arc.kind, arc.labels)
+    });
+    let labels = network.labels.iter().map(|it| format!("{:?} {:?} {:?} {:?}", it.arc, it.mode, it.extent, it.literal));
+    let variables = network.variables.iter().map(|it| format!("{:?} {} {}", it.values, it.closed, it.is_lasting));
+    let resources = network.resources.iter().map(|it| format!("{:?}", it.supply));
+    let uses = network.uses.iter().map(|it| {
+        format!("{:?} {:?} {} {:?} {:?} {:?}", it.resource, it.change, it.amount, it.arc, it.start, it.end)
+    });
+    let decisions = network.decisions.iter().map(|it| format!("{:?} {:?}", it.node, it.alternatives));
+    arcs.chain(labels).chain(variables).chain(resources).chain(uses).chain(decisions).collect()
+}
+
+#[test]
+fn a_fleet_means_what_its_vehicles_written_out_mean() {
+    let (mut planned, mut failed) = (0, 0);
+    for seed in 0..MISSIONS {
+        let mission = Maker::mission(seed);
+        let (short, long) = (mission.short(), mission.long());
+        let (of_short, of_long) = (network(&short), network(&long));
+        assert_eq!(structure(&of_short), structure(&of_long), "mission {seed}:\n{short}\n{long}");
+        for search in [Search::Chronological, Search::ConflictDirected] {
+            let [one, other] = [&of_short, &of_long].map(|network| first_plan(network, search));
+            assert_eq!(one.plans.len(), other.plans.len(), "mission {seed}:\n{short}\n{long}");
+            for (one, other) in one.plans.iter().zip(&other.plans) {
+                assert_eq!(one.choices, other.choices, "mission {seed}:\n{short}");
+                assert_eq!(one.windows, other.windows, "mission {seed}:\n{short}");
+                assert_eq!(one.causal_links, other.causal_links, "mission {seed}:\n{short}");
+                assert_eq!(one.uses_ordered, other.uses_ordered, "mission {seed}:\n{short}");
+            }
+            *if one.plans.is_empty() { &mut failed } else { &mut planned } += 1;
+        }
+    }
+    assert!(planned > 100 && failed > 50, "{planned} {failed}");
+}
