@@ -56,11 +56,17 @@ fn a_negative_minimum_lets_either_event_come_first() {
     };
     // The drive ends at 5.
     expect(&with("constrain Leg.end to Relay.start [-3,7];"), &[("Pass#1.start", 2, 12)]);
-    expect(&with("const EARLY = 4; constrain Leg.end to Relay.start [-EARLY,-(1+1)];"), &[("Pass#1.start", 1, 3)]);
+    expect(
+        &with("const EARLY = 4; constrain Leg.end to Relay.start [-EARLY,-(1+1)];"),
+        &[("Pass#1.start", 1, 3)],
+    );
     expect(&with("constrain Relay.start to Leg.end [2,4];"), &[("Pass#1.start", 1, 3)]);
     let backwards = with("constrain Leg.end to Relay.start [-9,-6];");
     for search in [Search::Chronological, Search::ConflictDirected] {
-        assert!(first_plan(&backwards, search).plans.is_empty(), "the relay would start before 0, {search:?}");
+        assert!(
+            first_plan(&backwards, search).plans.is_empty(),
+            "the relay would start before 0, {search:?}"
+        );
     }
     // The same event is always within bounds that hold 0.
     expect(&with("constrain Leg.end to Leg.end [-3,7];"), &[("Drive#1.end", 5, 5)]);

@@ -22,10 +22,15 @@ enum Node {
     Group(&'static str, Vec<Node>),
     Optional(Box<Node>),
     /// `any` or one of the forms of `each`, over the fleet alone or over all vehicles.
-    Members { form: usize, is_fleet: bool, body: Box<Node> },
+    Members {
+        form: usize,
+        is_fleet: bool,
+        body: Box<Node>,
+    },
 }
 
-const FORMS: [(&str, &str); 4] = [("any", ""), ("each", ""), ("each", " in sequence"), ("each", " unordered")];
+const FORMS: [(&str, &str); 4] =
+    [("any", ""), ("each", ""), ("each", " in sequence"), ("each", " unordered")];
 
 struct Mission {
     /// How many vehicles the fleet has; one more is alone.
@@ -112,7 +117,8 @@ impl Maker {
 impl Mission {
     /// The names of the vehicles, as fleets write them, or as names of their own.
     fn names(&self, is_short: bool) -> Vec<String> {
-        let of_fleet = (1..=self.fleet).map(|number| if is_short { format!("S[{number}]") } else { format!("S-{number}") });
+        let of_fleet = (1..=self.fleet)
+            .map(|number| if is_short { format!("S[{number}]") } else { format!("S-{number}") });
         std::iter::once("R".to_owned()).chain(of_fleet).collect()
     }
 
@@ -142,7 +148,10 @@ impl Mission {
                 self.level
             ));
             for (index, clauses) in self.clauses.iter().enumerate() {
-                text.push_str(&format!("primitive P{index}-{name}(){};\n", clauses.replace('@', &format!("{name}-"))));
+                text.push_str(&format!(
+                    "primitive P{index}-{name}(){};\n",
+                    clauses.replace('@', &format!("{name}-"))
+                ));
             }
         }
         let body = self.written(&self.root, &mut Vec::new(), false);
@@ -164,8 +173,10 @@ impl Mission {
             Node::Both(by) => format!("Both-{}()", who(by, members)),
             Node::Optional(body) => format!("optional {{ {} }}", self.written(body, members, is_short)),
             Node::Group(kind, parts) => {
-                let parts: Vec<String> =
-                    parts.iter().map(|part| format!("{{ {} }}", self.written(part, members, is_short))).collect();
+                let parts: Vec<String> = parts
+                    .iter()
+                    .map(|part| format!("{{ {} }}", self.written(part, members, is_short)))
+                    .collect();
                 grouped(kind, &parts)
             }
             Node::Members { form, is_fleet, body } if is_short => {
@@ -206,8 +217,12 @@ fn structure(network: &Network) -> Vec<String> {
     let arcs = network.arcs.iter().map(|arc| {
         format!("{}→{} [{},{}] {:?} {:?}", arc.from.0, arc.to.0, arc.lower, arc.upper, arc.kind, arc.labels)
     });
-    let labels = network.labels.iter().map(|it| format!("{:?} {:?} {:?} {:?}", it.arc, it.mode, it.extent, it.literal));
-    let variables = network.variables.iter().map(|it| format!("{:?} {} {}", it.values, it.closed, it.is_lasting));
+    let labels = network
+        .labels
+        .iter()
+        .map(|it| format!("{:?} {:?} {:?} {:?}", it.arc, it.mode, it.extent, it.literal));
+    let variables =
+        network.variables.iter().map(|it| format!("{:?} {} {}", it.values, it.closed, it.is_lasting));
     let resources = network.resources.iter().map(|it| format!("{:?}", it.supply));
     let uses = network.uses.iter().map(|it| {
         format!("{:?} {:?} {} {:?} {:?} {:?}", it.resource, it.change, it.amount, it.arc, it.start, it.end)

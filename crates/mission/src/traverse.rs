@@ -10,8 +10,6 @@ use executive::facts::StandingPlace;
 use motion::{DriveLimits, PlannerKind, Query, SearchResult, ShortcutSettings, VehicleModel};
 use nalgebra::Point2;
 use rmpl::Span;
-use rmpl::diagnostics::model as wording;
-use rmpl::fleet::lineage;
 use rmpl::program::{ObstacleShape, Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
@@ -244,7 +242,6 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
             }
         }
     }
-    found.extend(too_fast(network, program));
     if world.terrain.is_none() {
         for primitive in &program.primitives {
             let amounts =
@@ -269,31 +266,6 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
         if waypoint(world, &vehicle.start.text).is_none() {
             let message = format!("unknown location `{}`", vehicle.start.text);
             found.push(rmpl::Diagnostic::error(rmpl::Code("E-UNDEF"), vehicle.start.span, message));
-        }
-    }
-    found
-}
-
-/// Speeds of `moves` clauses that the declared model of a vehicle does not reach (SPEC 23). Those of the built-in models are
-/// measured on flat ground, and missions may ask for others.
-fn too_fast(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
-    let world = &program.world;
-    let mut found: Vec<rmpl::Diagnostic> = Vec::new();
-    for occurrence in &network.occurrences {
-        let Some(moving) = moving(program, occurrence) else { continue };
-        let Some((_, wanted)) = moving.moves.speed_mps else { continue };
-        for name in &moving.vehicles {
-            let Some(declared) = world.vehicles.iter().find(|it| it.name.text == *name) else { continue };
-            let is_declared = !lineage(world, &declared.model.text).is_empty();
-            let model = vehicle::model(world, &declared.model.text).filter(|_| is_declared);
-            let Some(model) = model.filter(|model| wanted.to_f64() > model.speed_mps) else { continue };
-            let (wanted, greatest) = (wanted.to_f64(), model.speed_mps.to_string());
-            let span = moving.moves.span;
-            let diagnostic =
-                wording::too_fast(&wanted.to_string(), name, &declared.model.text, &greatest, span);
-            if !found.contains(&diagnostic) {
-                found.push(diagnostic);
-            }
         }
     }
     found

@@ -223,6 +223,9 @@ impl Reader<'_> {
         let name = node.own_tokens().find(is_name);
         if let Some(order) = node.token(SyntaxKind::Order) {
             let amount = node.children().find_map(|child| Some((expression(child)?, child.span())));
+            // A vehicle's own resource is a name of two parts.
+            let own = node.child(SyntaxKind::Dotted).map(|own| (own.text(), own.span()));
+            let name = own.or(name.map(|name| (name.text, name.span)));
             return Some(denied(self.amount(name, node.span(), order, amount)?));
         }
         let arguments = node.child(SyntaxKind::Arguments);
@@ -246,15 +249,14 @@ impl Reader<'_> {
 
     fn amount(
         &mut self,
-        name: Option<SyntaxToken<'_>>,
+        name: Option<(&str, Span)>,
         span: Span,
         order: SyntaxToken<'_>,
         amount: Option<(crate::program::Expr, Span)>,
     ) -> Option<Formula> {
         let resources = || self.program.resources.iter().map(|it| it.name.text.as_str());
-        let Some(name) = name.filter(|name| resources().any(|it| it == name.text)) else {
-            let written = name.map_or("this", |name| name.text);
-            let place = name.map_or(span, |name| name.span);
+        let Some((name, _)) = name.filter(|(name, _)| resources().any(|it| it == *name)) else {
+            let (written, place) = name.unwrap_or(("this", span));
             let nearest = nearest(written, resources());
             self.unknown(format!("unknown resource `{written}`"), place, nearest);
             return None;
@@ -270,7 +272,7 @@ impl Reader<'_> {
             ">" => Order::Above,
             _ => Order::AtLeast,
         };
-        Some(Formula::Amount { resource: name.text.into(), order, amount: amount.units() })
+        Some(Formula::Amount { resource: name.into(), order, amount: amount.units() })
     }
 
     fn is_known(&self, variable: &str) -> bool {
@@ -510,6 +512,26 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
         assert_eq!(read("\"Dig\"").expect("one").holds, underway("Dig"));
         assert_eq!(read("never \"Gone(B)\""), Err(vec!["6 E-UNDEF: unknown activity `Gone(B)`".to_owned()]));
         assert!(read("\"Go To(A)").is_err(), "the quotation is not closed");
+    }
+
+    #[test]
+    fn a_vehicles_own_resources_and_states_are_named_with_it() {
+        let mission = "location A (0, 0); vehicle S[1..2] : M at A; scenario Day[0,9] = { delay }
+            model M { resource battery 0..9 = 5; state drill : {IN, OUT} = IN; }";
+        let program = crate::parse(mission).program();
+        let read = |text: &str| super::read(text, &program, Undeclared::default()).expect(text).holds;
+        let amount = Rational::from_integer(3);
+        let level = Formula::Amount { resource: "S[2].battery".into(), order: Order::AtLeast, amount };
+        assert_eq!(read("S[2].battery >= 3"), level);
+        assert_eq!(
+            read("(S[1].drill = IN or S[2].battery >= 3)"),
+            Formula::Any(vec![is("S[1].drill", "IN"), level])
+        );
+        let unknown = super::read("S[1].fuel >= 3", &program, Undeclared::default());
+        assert_eq!(
+            unknown.map_err(|it| it[0].message.clone()),
+            Err("unknown resource `S[1].fuel`".to_owned())
+        );
     }
 
     #[test]

@@ -11,8 +11,8 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
-    Bounds, ConstrainDecl, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape,
-    PrimitiveDecl, Statement, StatementKind, VariableDecl,
+    Bounds, ConstrainDecl, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name,
+    ObstacleShape, PrimitiveDecl, Statement, StatementKind, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};

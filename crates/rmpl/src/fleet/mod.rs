@@ -9,6 +9,7 @@ mod kinds;
 
 use std::collections::BTreeSet;
 
+use exact::Rational;
 use smol_str::{SmolStr, format_smolstr};
 
 use crate::diagnostic::Diagnostic;
@@ -19,6 +20,10 @@ use crate::program::{
 };
 
 pub use groups::{GroupKind, Groups};
+
+/// What models that extend none are made from: the first if they drive, the second if they fly.
+const ROVER: &str = VEHICLE_MODELS[0];
+const BLIMP: &str = VEHICLE_MODELS[2];
 
 /// Everything that is wrong with models, fleets, groups and what parameters stand for, whatever is compiled.
 pub fn check(program: &Program) -> Vec<Diagnostic> {
@@ -93,7 +98,7 @@ pub fn built_in<'world>(world: &'world World, name: &'world str) -> Option<&'wor
         return VEHICLE_MODELS.iter().copied().find(|known| *known == parent.text);
     }
     let flies = properties(&lineage).any(|property| matches!(property, Property::Flies { .. }));
-    Some(if flies { VEHICLE_MODELS[2] } else { VEHICLE_MODELS[0] })
+    Some(if flies { BLIMP } else { ROVER })
 }
 
 /// The properties of a declared model, those of the models that it extends first: of two of a kind the later one counts.
@@ -101,6 +106,16 @@ pub fn properties<'models>(
     lineage: &'models [&'models ModelDecl],
 ) -> impl Iterator<Item = Property> + 'models {
     lineage.iter().flat_map(|model| &model.properties).map(|written| written.property)
+}
+
+/// The greatest speed in meters per second that a declared model says, or a model that it extends.
+pub fn said_speed_mps(world: &World, model: &str) -> Option<Rational> {
+    let lineage = lineage(world, model);
+    let speeds = properties(&lineage).filter_map(|property| match property {
+        Property::Speed { greatest_mps, .. } => Some(greatest_mps),
+        _ => None,
+    });
+    speeds.last()
 }
 
 fn check_model(world: &World, model: &ModelDecl, found: &mut Vec<Diagnostic>) {
@@ -144,9 +159,9 @@ fn equipment(model: &ModelDecl) -> impl Iterator<Item = &Name> {
 }
 
 fn check_properties(world: &World, model: &ModelDecl, lineage: &[&ModelDecl], found: &mut Vec<Diagnostic>) {
-    let flies = built_in(world, &model.name.text) == Some(VEHICLE_MODELS[2])
+    let flies = built_in(world, &model.name.text) == Some(BLIMP)
         || properties(lineage).any(|property| matches!(property, Property::Flies { .. }));
-    let is_rover = built_in(world, &model.name.text).is_some_and(|base| base != VEHICLE_MODELS[2]);
+    let is_rover = built_in(world, &model.name.text).is_some_and(|base| base != BLIMP);
     let mut words = BTreeSet::new();
     for written in &model.properties {
         let word = written.property.word();

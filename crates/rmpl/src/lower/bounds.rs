@@ -63,7 +63,8 @@ pub(crate) fn expression(node: SyntaxNode<'_>) -> Option<Expr> {
             return Some(Expr { span, ..inner });
         }
         SyntaxKind::Negative => {
-            let zero = Expr { kind: ExprKind::Number(Rational::ZERO), span: Span::new(span.start, span.start) };
+            let zero =
+                Expr { kind: ExprKind::Number(Rational::ZERO), span: Span::new(span.start, span.start) };
             let inner = expression(node.children().next()?)?;
             ExprKind::Binary(BinaryOp::Subtract, Box::new(zero), Box::new(inner))
         }

@@ -1,6 +1,8 @@
 //! The clauses of a primitive at one call of it: what it requires, changes, uses and is worth (SPEC 10.1, 11, 12).
 
 use exact::Rational;
+use rmpl::diagnostics::model as model_wording;
+use rmpl::fleet::said_speed_mps;
 use rmpl::program::{ArgumentValue, Condition, LabelMode, Moves, Name, Per, PrimitiveDecl};
 use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
@@ -45,6 +47,7 @@ impl Expander<'_> {
             self.primitive_use(activity, piece, written, called);
         }
         self.worth(activity);
+        self.check_speed(activity);
         if let Some(written) = &activity.declared.aborts {
             let interval = self.interval(written, activity.scope);
             if let Some(upper) = interval.upper.finite() {
@@ -95,6 +98,22 @@ impl Expander<'_> {
             }
         }
         effects
+    }
+
+    /// Reports vehicles whose declared models do not reach the speed that the traverse is to have (SPEC 23). What the built-in
+    /// models reach is no limit: their speeds are measured on flat ground.
+    fn check_speed(&mut self, activity: &Activity<'_>) {
+        let Some(moves) = &activity.declared.moves else { return };
+        let Some((_, wanted_mps)) = moves.speed_mps else { return };
+        let world = &self.program.world;
+        for name in moved(moves, activity.scope) {
+            let Some(vehicle) = world.vehicles.iter().find(|it| it.name.text == name) else { continue };
+            let model = &vehicle.model.text;
+            if let Some(greatest_mps) = said_speed_mps(world, model).filter(|most| wanted_mps > *most) {
+                let [wanted, greatest] = [wanted_mps, greatest_mps].map(|speed| speed.to_f64().to_string());
+                self.diagnostics.push(model_wording::too_fast(&wanted, &name, model, &greatest, moves.span));
+            }
+        }
     }
 
     fn last_location(&self, arguments: &[ArgumentValue]) -> Option<SmolStr> {

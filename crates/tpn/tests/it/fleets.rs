@@ -167,6 +167,31 @@ fn any_is_a_choice_and_each_is_for_all() {
 }
 
 #[test]
+fn a_group_may_be_handed_to_an_activity() {
+    let world = "location A (0, 0); vehicle S[1..2] : ATRV at A; vehicle R : ATRV at A; group G = R, S[2];
+                 primitive P(r)[1,2] requires r.at=A; All(group) = { each r in group in sequence P(r) }";
+    let calls = |body: &str| {
+        let network = network(&format!("{world} scenario Sol[0,99] = {{ {body} }}"));
+        let calls = network.occurrences.iter().filter(|it| it.activity == "P");
+        calls.map(|it| it.arguments[0].to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(calls("All(G); All(S)"), ["R", "S[2]", "S[1]", "S[2]"]);
+    let (network, told) = compiled(&format!("{world} scenario Sol[0,99] = {{ All(R) }}"));
+    assert!(network.is_none());
+    assert_eq!(told, [("E-UNDEF", "group".to_owned(), "unknown group `R`".to_owned())]);
+}
+
+#[test]
+fn a_level_is_no_condition() {
+    let (network, told) = compiled(
+        "location A (0, 0); model M { resource b 0..9 = 5; } vehicle R : M at A;
+         primitive P(r)[1,2] requires r.b >= 3; scenario Sol[0,99] = { P(R) }",
+    );
+    assert!(network.is_none());
+    assert_eq!(told[0].0, "E-LEX");
+}
+
+#[test]
 fn a_name_in_each_copy_is_that_copys() {
     let world = "location A (0, 0); vehicle S[1..2] : ATRV at A; primitive P(r)[1,2]; primitive Q(r)[1,2];";
     let network = network(&format!(
@@ -310,6 +335,21 @@ fn models_say_nothing_twice_and_nothing_impossible() {
     assert_eq!(first("model A { resource b 0..9 = 12; } vehicle R : A at A; "), "E-BOUNDS 12");
     tells(&model("model A extends Blimp { flies (20, 30); clearance 4; }"), &[]);
     tells(&model("model A { slope 60 degrees; turning 0.5; }"), &[]);
+}
+
+#[test]
+fn a_traverse_is_no_faster_than_the_declared_models_of_its_vehicles() {
+    let text = |speed: &str| {
+        format!(
+            "{WORLD} model Scout {{ speed (0, 0.8); }} model Slow extends Scout {{ mast 1; }}
+             vehicle R : Slow at BASE; vehicle T : ATRV at BASE;
+             primitive Drive(r, to)[0,60] moves r speed {speed};
+             scenario Day[0,60] = {{ Drive(T, ROCK); Drive(R, ROCK) }}"
+        )
+    };
+    tells(&text("(0, 0.8)"), &[]);
+    let message = "`R` cannot move at 1 m/s: its model `Slow` does at most 0.8 m/s";
+    tells(&text("(1, 1)"), &[("E-MODEL", "moves r speed (1, 1)", message)]);
 }
 
 #[test]
