@@ -1,6 +1,6 @@
 //! Bounds between events of different threads (SPEC 14): in force where both are selected, and nowhere else.
 
-use acceptance::mission::{all_plans, error_codes, first_plan, network};
+use acceptance::mission::{all_plans, first_plan, network};
 use exact::{Bound, Time};
 use kirk::{FailureKind, Options, Search, Status, Unlimited};
 use tpn::{ArcKind, Network, Plan};
@@ -45,47 +45,6 @@ fn a_bound_between_threads_moves_the_windows_of_both() {
     assert_eq!(arcs.len(), 1);
     let arc = &network.arcs[arcs[0].index()];
     assert!(network.nodes[arc.from.index()].out_arcs.iter().all(|out| *out != arcs[0]));
-}
-
-#[test]
-fn a_negative_minimum_lets_either_event_come_first() {
-    let with = |constraint: &str| {
-        mission(&format!(
-            "scenario S[0,20] = {{ {{ Drive()[5,5] as Leg }}, {{ delay; Pass()[4,4] as Relay }} }} {constraint}"
-        ))
-    };
-    // The drive ends at 5.
-    expect(&with("constrain Leg.end to Relay.start [-3,7];"), &[("Pass#1.start", 2, 12)]);
-    expect(
-        &with("const EARLY = 4; constrain Leg.end to Relay.start [-EARLY,-(1+1)];"),
-        &[("Pass#1.start", 1, 3)],
-    );
-    expect(&with("constrain Relay.start to Leg.end [2,4];"), &[("Pass#1.start", 1, 3)]);
-    let backwards = with("constrain Leg.end to Relay.start [-9,-6];");
-    for search in [Search::Chronological, Search::ConflictDirected] {
-        assert!(
-            first_plan(&backwards, search).plans.is_empty(),
-            "the relay would start before 0, {search:?}"
-        );
-    }
-    // The same event is always within bounds that hold 0.
-    expect(&with("constrain Leg.end to Leg.end [-3,7];"), &[("Drive#1.end", 5, 5)]);
-    assert_eq!(error_codes("scenario S = { A() as X } constrain X.start to X.end [5,-3];"), ["E-BOUNDS"]);
-    assert_eq!(error_codes("scenario S = { A() as X } constrain X.start to X.end [-inf,3];"), ["E-BOUNDS"]);
-}
-
-#[test]
-fn a_negative_minimum_allows_what_both_orders_allow() {
-    // Two activities of 3 that exclude each other: the bound decides which may come first.
-    let plans = |bounds: &str| {
-        let network = network(&format!(
-            "resource R; primitive P()[3,3] uses R; primitive Q()[3,3] uses R;
-             scenario S[0,9] = {{ {{ delay; P() as X }}, {{ delay; Q() as Y }} }}
-             constrain X.start to Y.start {bounds};"
-        ));
-        all_plans(&network, Search::Chronological).plans.len()
-    };
-    assert_eq!((plans("[-9,9]"), plans("[-9,-3]"), plans("[3,9]"), plans("[-2,2]")), (1, 1, 1, 0));
 }
 
 #[test]

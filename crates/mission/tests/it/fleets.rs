@@ -74,7 +74,8 @@ fn a_speed_bounds_how_long_a_traverse_takes() {
 
 #[test]
 fn a_body_decides_where_a_vehicle_fits() {
-    let declared = "model Wide { body 8 x 8; }";
+    // The obstacle leaves 5 m of the gap.
+    let declared = "model Wide { body 8 x 8; } obstacle Rock polygon (27, -30, 33, -30, 33, 6, 27, 6);";
     assert!(can(declared, "ATRV", "Drive(V, BASE)"));
     assert!(!can(declared, "Wide", "Drive(V, BASE)"));
 }

@@ -11,8 +11,8 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
-    Bounds, ConstrainDecl, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name,
-    ObstacleShape, PrimitiveDecl, Statement, StatementKind, VariableDecl,
+    Bounds, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape,
+    PrimitiveDecl, Statement, StatementKind, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
@@ -100,10 +100,7 @@ impl Local {
                 self.statement(&decl.body);
                 self.named(&decl.body, &mut Occurrences::default());
             }
-            Item::Constrain(ConstrainDecl { bounds, .. }) => {
-                // Either of the two events may come first.
-                self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span, true);
-            }
+            Item::Constrain(decl) => self.bounds(Some(&decl.bounds)),
             Item::Option(decl) => self.option(decl),
             Item::Terrain(decl) => {
                 if decl.cell_m.is_some_and(|cell_m| cell_m <= 0.0) {
@@ -227,25 +224,25 @@ impl Local {
             HeaderBound::Parameter(_) => None,
         };
         let (lower, upper) = (limit(lower), limit(upper));
-        self.sides(lower.as_ref(), upper.as_ref(), *span, false);
+        self.sides(lower.as_ref(), upper.as_ref(), *span);
         names
     }
 
     fn bounds(&mut self, bounds: Option<&Bounds>) {
         let Some(bounds) = bounds else { return };
-        self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span, false);
+        self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span);
         if bounds.is_contingent && constant::evaluate(&bounds.upper) == Ok(Bound::Infinite) {
             self.found.push(bounds::unlimited(bounds.upper.span));
         }
     }
 
     /// Checks the sides that are constants; one mistake is reported once.
-    fn sides(&mut self, lower: Option<&Expr>, upper: Option<&Expr>, span: Span, may_be_negative: bool) {
+    fn sides(&mut self, lower: Option<&Expr>, upper: Option<&Expr>, span: Span) {
         let mut values = [None, None];
         for (slot, side) in values.iter_mut().zip([lower, upper]) {
             let Some(side) = side else { continue };
             match constant::evaluate(side) {
-                Ok(Bound::Finite(time)) if time.is_negative() && !may_be_negative => {
+                Ok(Bound::Finite(time)) if time.is_negative() => {
                     self.found.push(bounds::negative(time, side.span));
                     return;
                 }

@@ -21,4 +21,4 @@ pub(crate) use collect::summarize;
 pub(crate) use index::{DeclarationKey, Index, Namespace};
 pub(crate) use names::{Names, Symbol};
 pub(crate) use recursion::recursion;
-pub(crate) use summary::{Call, Literal, Origin, Summary, UseKind};
+pub(crate) use summary::{Call, Definition, Literal, Origin, Summary, UseKind};

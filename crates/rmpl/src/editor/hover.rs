@@ -116,7 +116,6 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
                 | SyntaxKind::PercentOf
                 | SyntaxKind::Operand
                 | SyntaxKind::Grouped
-                | SyntaxKind::Negative
         )
     })?;
     // The whole side says more than its parts, unless the pointer is on a name.
@@ -406,8 +405,7 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         }
         "as" => "`A as NAME`: names this occurrence, so that `constrain` can refer to its start and its end.",
         "constrain" | "to" => {
-            "`constrain X.start to Y.end [l,u];`: Y must end at least l and at most u after X starts, if both are selected. Negative \
-             numbers let Y end before that."
+            "`constrain X.start to Y.end [l,u];`: Y must end at least l and at most u after X starts, if both are selected."
         }
         "import" => "`import \"file\";`: includes the declarations of another file of the mission.",
         "model" | "extends" => {

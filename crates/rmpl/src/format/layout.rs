@@ -60,7 +60,6 @@ impl Layout {
             | SyntaxKind::Product
             | SyntaxKind::PercentOf
             | SyntaxKind::Grouped
-            | SyntaxKind::Negative
             | SyntaxKind::Operand => {
                 let first = first_token(node).map(|first| self.place(first));
                 if matches!(first, Some(Place::Bounds | Place::Expression)) {

@@ -1,11 +1,9 @@
 //! Bounds and the expressions in them.
 
-use exact::Rational;
 use smol_str::SmolStr;
 
 use crate::parser::CONTINGENT;
 use crate::program::{BinaryOp, Bounds, DurationUnit, Expr, ExprKind, HeaderBound, HeaderBounds};
-use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// The bounds behind a construct, if they stand directly in `node` and are whole.
@@ -61,12 +59,6 @@ pub(crate) fn expression(node: SyntaxNode<'_>) -> Option<Expr> {
         SyntaxKind::Grouped => {
             let inner = expression(node.children().next()?)?;
             return Some(Expr { span, ..inner });
-        }
-        SyntaxKind::Negative => {
-            let zero =
-                Expr { kind: ExprKind::Number(Rational::ZERO), span: Span::new(span.start, span.start) };
-            let inner = expression(node.children().next()?)?;
-            ExprKind::Binary(BinaryOp::Subtract, Box::new(zero), Box::new(inner))
         }
         SyntaxKind::PercentOf => ExprKind::Percent(Box::new(expression(node.children().next()?)?)),
         SyntaxKind::Sum | SyntaxKind::Product => return chain(node),

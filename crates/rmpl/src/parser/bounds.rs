@@ -195,12 +195,6 @@ impl Parser<'_> {
                 self.expect_behind(SyntaxKind::RightParen, ")");
                 self.close(node, SyntaxKind::Grouped);
             }
-            SyntaxKind::Minus if self.has_signs => {
-                let node = self.open();
-                self.bump();
-                self.nested(Self::operand);
-                self.close(node, SyntaxKind::Negative);
-            }
             SyntaxKind::Minus => {
                 let diagnostic = syntax::negative_bound(self.here());
                 self.report(diagnostic);

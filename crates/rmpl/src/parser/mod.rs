@@ -85,8 +85,6 @@ struct Parser<'t> {
     is_cut: bool,
     /// Conditions are those of flight rules, which know activities and amounts as well.
     is_rule: bool,
-    /// Bounds are those between two events, of which either may come first.
-    has_signs: bool,
 }
 
 impl<'t> Parser<'t> {
@@ -108,7 +106,6 @@ impl<'t> Parser<'t> {
             depth: 0,
             is_cut: false,
             is_rule: false,
-            has_signs: false,
         };
         parser.current = parser.next_significant(0);
         parser.kind = parser.kind_at(parser.current);

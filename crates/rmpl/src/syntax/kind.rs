@@ -206,8 +206,6 @@ pub enum SyntaxKind {
     PercentOf,
     /// `( … )` in a bound.
     Grouped,
-    /// `-` and an operand, in a bound between two events.
-    Negative,
     /// A number, perhaps with a unit of time, `inf` or a name in an expression.
     Operand,
 

@@ -19,7 +19,7 @@ pub(super) trait Values {
     fn in_mission_units(&self, unit: DurationUnit) -> Option<Rational>;
 }
 
-/// A least and a greatest duration: `lower ≤ upper`, and `0 ≤ lower` except between two events of which either may come first.
+/// A least and a greatest duration: `0 ≤ lower ≤ upper`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Interval {
     pub(super) lower: Time,
@@ -63,28 +63,19 @@ pub(super) fn interval(bounds: &Bounds, values: &dyn Values) -> Result<Interval,
 
 /// The interval of two evaluated sides, or what is wrong with it.
 pub(super) fn checked_interval(lower: Bound, upper: Bound, span: Span) -> Result<Interval, Diagnostic> {
-    if lower < Bound::ZERO {
-        let message = format!("the minimum {lower} is negative: an end cannot come before its start");
-        return Err(Diagnostic::error(E_BOUNDS, span, message));
-    }
-    ordered(lower, upper, span)
-}
-
-fn ordered(lower: Bound, upper: Bound, span: Span) -> Result<Interval, Diagnostic> {
     let Bound::Finite(least) = lower else {
         return Err(Diagnostic::error(E_BOUNDS, span, "the minimum must be finite")
             .with_hint("only the maximum may be `inf`"));
     };
+    if least.is_negative() {
+        let message = format!("the minimum {lower} is negative: an end cannot come before its start");
+        return Err(Diagnostic::error(E_BOUNDS, span, message));
+    }
     if lower > upper {
         let message = format!("the minimum {lower} is greater than the maximum {upper}");
         return Err(Diagnostic::error(E_BOUNDS, span, message).with_hint("write the smaller bound first"));
     }
     Ok(Interval { lower: least, upper })
-}
-
-/// The bounds between two events, of which either may come first.
-pub(super) fn between(bounds: &Bounds, values: &dyn Values) -> Result<Interval, Diagnostic> {
-    ordered(value(&bounds.lower, values)?, value(&bounds.upper, values)?, bounds.span)
 }
 
 /// Whether the value of `bounds` depends on no name.

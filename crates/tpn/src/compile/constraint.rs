@@ -7,12 +7,11 @@
 
 use std::collections::BTreeMap;
 
-use exact::Bound;
 use rmpl::Span;
 use rmpl::diagnostics::limit;
 use rmpl::program::{EventName, Name};
 
-use super::bounds::{self, Interval};
+use super::bounds::Interval;
 use super::expander::Expander;
 use super::scope::Scope;
 use crate::network::{ArcKind, NodeId};
@@ -75,14 +74,7 @@ impl Expander<'_> {
     /// Adds all bounds between events.
     pub(super) fn constrain(&mut self) {
         for declared in &self.program.constraints {
-            let values = Scope::default();
-            let interval = match bounds::between(&declared.bounds, &values.values(&self.constants)) {
-                Ok(interval) => interval,
-                Err(error) => {
-                    self.diagnostics.push(error);
-                    continue;
-                }
-            };
+            let interval = self.interval(&declared.bounds, &Scope::default());
             let (from, to) = (self.named.of(&declared.from.name.text), self.named.of(&declared.to.name.text));
             if from.len().saturating_mul(to.len()) > MAX_PAIRS {
                 let what = format!("`{}` and `{}` make", declared.from.name.text, declared.to.name.text);
@@ -100,8 +92,7 @@ impl Expander<'_> {
     }
 
     fn relate(&mut self, (from, to): (NodeId, NodeId), interval: Interval, span: Span) {
-        let allows_same_time = !interval.lower.is_positive() && interval.upper >= Bound::ZERO;
-        if from != to || !allows_same_time {
+        if from != to || !interval.lower.is_zero() {
             self.builder.arc(from, to, ArcKind::Constraint, interval, span);
         }
     }

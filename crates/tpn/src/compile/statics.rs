@@ -50,11 +50,7 @@ pub(super) fn check(program: &Program, constants: &Constants<'_>) -> Vec<Diagnos
         });
     }
     for constraint in &program.constraints {
-        if bounds::is_constant(&constraint.bounds)
-            && let Err(error) = bounds::between(&constraint.bounds, constants)
-        {
-            found.push(error);
-        }
+        check_bounds(&constraint.bounds);
     }
     found
 }

@@ -188,7 +188,7 @@ fn a_level_is_no_condition() {
          primitive P(r)[1,2] requires r.b >= 3; scenario Sol[0,99] = { P(R) }",
     );
     assert!(network.is_none());
-    assert_eq!(told[0].0, "E-LEX");
+    assert!(told.iter().any(|(code, place, _)| (*code, place.as_str()) == ("E-LEX", ">")), "{told:?}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use smol_str::SmolStr;
 
 use super::place::Place;
 use super::{CompletionItem, CompletionKind};
-use crate::analysis::{Namespace, Symbol};
+use crate::analysis::{Definition, Namespace, Symbol};
 use crate::editor::cursor::declaration_at_cursor;
 use crate::editor::name::{NameKind, names_in};
 use crate::editor::outline::{OutlineItem, OutlineKind, outline};
@@ -254,6 +254,13 @@ fn conditions(parse: &Parse, offset: u32, items: &mut Vec<CompletionItem>) {
 /// The domain of a variable; for an undeclared one, the values that the file compares it with.
 fn values(parse: &Parse, variable: &str, items: &mut Vec<CompletionItem>) {
     let meaning = parse.meaning();
+    if let Some((owner, part)) = variable.split_once('.').filter(|(_, part)| *part != "mode") {
+        let states = models_of(parse, owner).into_iter().flat_map(|model| &model.equipment);
+        let states = states.filter(|own| meaning.names.text(own.name) == part);
+        let values = states.flat_map(|state| &state.values);
+        items.extend(values.map(|value| plain(meaning.names.text(*value), CompletionKind::Value)));
+        return;
+    }
     let Some(symbol) = meaning.names.find(variable) else { return };
     if let Some(domain) = meaning.domain(symbol) {
         items.extend(domain.iter().map(|value| plain(meaning.names.text(*value), CompletionKind::Value)));
@@ -280,18 +287,20 @@ fn models(parse: &Parse, items: &mut Vec<CompletionItem>) {
 /// What a vehicle has of its own; what stands for one may have what any model has.
 fn equipment(parse: &Parse, owner: &str, items: &mut Vec<CompletionItem>) {
     let meaning = parse.meaning();
+    let names = models_of(parse, owner).into_iter().flat_map(|model| &model.equipment);
+    items.extend(names.map(|own| plain(meaning.names.text(own.name), CompletionKind::Variable)));
+}
+
+/// The declared models of a vehicle; of what stands for one, all of them.
+fn models_of<'a>(parse: &'a Parse, owner: &str) -> Vec<&'a Definition> {
+    let meaning = parse.meaning();
     let vehicle =
         meaning.names.find(owner).and_then(|owner| meaning.index.definition(Namespace::Vehicle, owner));
-    let all = || {
-        let models = meaning.index.defined(Namespace::Model).iter();
-        models.filter_map(|&model| meaning.index.definition(Namespace::Model, model)).collect()
-    };
-    let models: Vec<_> = match vehicle {
-        Some(vehicle) => vehicle.model.into_iter().flat_map(|model| meaning.index.lineage(model)).collect(),
-        None => all(),
-    };
-    let names = models.into_iter().flat_map(|model| &model.equipment);
-    items.extend(names.map(|own| plain(meaning.names.text(own.name), CompletionKind::Variable)));
+    if let Some(vehicle) = vehicle {
+        return vehicle.model.into_iter().flat_map(|model| meaning.index.lineage(model)).collect();
+    }
+    let models = meaning.index.defined(Namespace::Model).iter();
+    models.filter_map(|&model| meaning.index.definition(Namespace::Model, model)).collect()
 }
 
 /// What `as` names.
