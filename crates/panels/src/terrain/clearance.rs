@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use motion::VehicleModel;
 use rmpl::program::ObstacleShape;
+use smol_str::SmolStr;
 use snapshot::ground::closed_to;
 use snapshot::{MapKey, Snapshot};
 use terrain::{Obstacle, Terrain};
@@ -16,8 +17,9 @@ use super::card::selected_traverse;
 pub struct Clearance {
     map: MapKey,
     obstacles: Vec<ObstacleShape>,
-    /// The model of the vehicle whose room it shows.
-    pub model: VehicleModel,
+    /// The name of the model of the vehicle whose room it shows.
+    pub model: SmolStr,
+    vehicle: VehicleModel,
     /// Metres from the vehicle's rim to the nearest obstacle, one number per cell, rows from the south.
     pub room_m: Arc<[f32]>,
 }
@@ -35,7 +37,7 @@ impl Clearance {
         let wanted = vehicle(snapshot, selection);
         let declared = wanted.and_then(|index| world.vehicles.get(index));
         let name = declared.map_or(motion::VEHICLE_MODELS[0].name, |vehicle| vehicle.model.text.as_str());
-        let model = snapshot::vehicle::model(world, name)?;
+        let vehicle = snapshot::vehicle::model(world, name)?;
         let occurrence = selected_traverse(snapshot, selection).map(|it| it.occurrence);
         let network = snapshot.network.as_deref();
         let driven = network.zip(occurrence).and_then(|(it, driven)| it.occurrences.get(driven.index()));
@@ -45,14 +47,21 @@ impl Clearance {
         let shapes: Vec<ObstacleShape> = closed.map(|it| it.shape.clone()).collect();
         if let Some(before) = before
             && before.map == *key
-            && before.model == model
+            && before.model == name
+            && before.vehicle == vehicle
             && before.obstacles == shapes
         {
             return Some(before);
         }
         let obstacles: Vec<Obstacle> = shapes.iter().map(snapshot::ground::obstacle).collect();
-        let space = model.configuration_space(map, &obstacles);
-        Some(Self { map: key.clone(), obstacles: shapes, model, room_m: space.clearance_map_m().into() })
+        let space = vehicle.configuration_space(map, &obstacles);
+        Some(Self {
+            map: key.clone(),
+            obstacles: shapes,
+            model: SmolStr::new(name),
+            vehicle,
+            room_m: space.clearance_map_m().into(),
+        })
     }
 }
 
