@@ -447,13 +447,23 @@ export type OpenLesson = {
 
 /** What a stop asks. */
 export type Question = {
-  kind: "choice" | "number" | "word" | "task";
+  kind: "choice" | "number" | "word" | "task" | "prediction";
   text: string;
   choices: Array<string>;
-  /** What was answered last. */
+  /** What was answered last; of a prediction, the last one that has been shown. */
   given: string | null;
   /** Whether that was right; of a task, whether it is done. */
   isRight: boolean | null;
+  /** What was predicted at this stop, if that is asked for. */
+  predictions: PredictionCounts | null;
+};
+
+/** How often somebody predicted what came. */
+export type PredictionCounts = {
+  made: number;
+  right: number;
+  /** Whether nothing is left to predict. */
+  isOver: boolean;
 };
 
 /** Something wrong in a lesson. */

@@ -2,7 +2,7 @@
 
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
-use terrain::{Collision, ConfigurationSpace, Random};
+use terrain::{Collision, ConfigurationSpace, GridFrame, Random};
 
 use crate::trajectory::DriveLimits;
 use crate::vehicle::VEHICLE_MODELS;
@@ -64,6 +64,14 @@ impl Settings {
             limits: DriveLimits::of(&VEHICLE_MODELS[0]),
             seed: 1,
         }
+    }
+
+    /// The length of edges that suits a map: a 25th of its longer side, in metres.
+    ///
+    /// RRT* only compares paths through vertices within one edge of each other. With edges far below the radius that makes
+    /// it asymptotically optimal (Karaman and Frazzoli 2011), a tree has too few such neighbours to shorten anything.
+    pub fn step_across_m(frame: &GridFrame) -> f64 {
+        f64::from(frame.width.max(frame.height)) * frame.cell_size_m / 25.0
     }
 }
 

@@ -182,10 +182,8 @@ fn load(args: &Args) -> anyhow::Result<Map> {
 fn search(args: &Args, map: &Map, run: u64) -> Run {
     let space = &map.space;
     let seed = args.seed.wrapping_add(run);
-    let frame = space.frame();
-    let longer_side = f64::from(frame.width.max(frame.height)) * frame.cell_size_m;
     let settings = Settings {
-        step_m: args.step.unwrap_or(longer_side / 25.0),
+        step_m: args.step.unwrap_or_else(|| Settings::step_across_m(space.frame())),
         goal_bias: args.goal_bias.clamp(0.0, 1.0),
         max_samples: args.samples,
         seed,

@@ -75,11 +75,14 @@ impl Core {
         let activity = &network.occurrences.get(traverse.occurrence.index())?.activity;
         let obstacles = closed_to(world, &vehicles, activity).map(|it| it.shape.clone()).collect();
         let space = self.grounds.space(key, map, &model, obstacles).exact;
+        let defaults = Settings::of(PlannerKind::Rrt);
         let settings = Settings {
             seed: wanted.update.seed,
+            // The same for all planners, so that they can be compared.
+            step_m: defaults.step_m.max(Settings::step_across_m(space.frame())),
             max_samples: MAX_SAMPLES,
             limits: motion::DriveLimits::of(&model),
-            ..Settings::of(PlannerKind::Rrt)
+            ..defaults
         };
         Some(Task { space, query, settings })
     }

@@ -5,7 +5,7 @@ use markdown::Document;
 use theme::icon::{self, Icon};
 use theme::space;
 use workbench::command::{Command, CommandSender};
-use workbench::lesson::{Answer, Ask, Choice};
+use workbench::lesson::{Answer, Ask, Choice, Forecast};
 use workbench::state::lesson::LessonCommand;
 
 use super::{follow_link, prose};
@@ -24,7 +24,11 @@ pub(super) fn show(
     let is_right = given.is_some_and(|given| given.is_right);
     Frame::new().fill(tokens.raised).corner_radius(6.0).inner_margin(Margin::same(10)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let title = if matches!(ask.answer, Answer::Task(_)) { "Task" } else { "Question" };
+        let title = match ask.answer {
+            Answer::Task(_) => "Task",
+            Answer::Prediction(_) => "Prediction",
+            Answer::Choice(_) | Answer::Number(..) | Answer::Word(_) => "Question",
+        };
         ui.label(theme::strong(title).color(tokens.accent));
         ui.add_space(space::XS);
         paragraph(ui, context, &ask.text, commands);
@@ -32,6 +36,13 @@ pub(super) fn show(
             Answer::Choice(choices) => show_choices(ui, context, choices, commands),
             Answer::Number(..) | Answer::Word(_) => show_field(ui, &ask.answer, typed, commands),
             Answer::Task(_) => show_task(ui, context, ask, is_right, commands),
+            Answer::Prediction(forecast) => {
+                show_prediction(ui, context, forecast, commands);
+                if context.state.lesson.predictions().is_over() && !ask.because.is_empty() {
+                    paragraph(ui, context, &ask.because, commands);
+                }
+                return;
+            }
         }
         ui.add_space(space::S);
         let (sign, color, text) = match (given, &ask.answer) {
@@ -107,5 +118,53 @@ fn show_task(ui: &mut Ui, context: &Context<'_>, ask: &Ask, is_done: bool, comma
         egui::CollapsingHeader::new("Hint").id_salt(("hint", ask.line)).show(ui, |ui| {
             paragraph(ui, context, &ask.hint, commands);
         });
+    }
+}
+
+/// What was predicted last and what came, how often predictions were right, and what can be predicted next.
+fn show_prediction(ui: &mut Ui, context: &Context<'_>, forecast: &Forecast, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let predictions = context.state.lesson.predictions();
+    if let Some(last) = predictions.made().last() {
+        let (sign, color, text) = if last.is_right() {
+            (Icon::Check, tokens.good, format!("Correct: {}.", last.shown))
+        } else {
+            let text = format!("Incorrect. You predicted “{}”; the result is “{}”.", last.given, last.shown);
+            (Icon::Close, tokens.error, text)
+        };
+        ui.horizontal_wrapped(|ui| {
+            icon::label(ui, sign, color);
+            ui.label(RichText::new(text).color(color));
+        });
+        let made = predictions.made().len();
+        let predicted = if made == 1 { "prediction" } else { "predictions" };
+        let text = format!("{} of {made} {predicted} correct", predictions.right());
+        ui.label(RichText::new(text).color(tokens.text_muted));
+        ui.add_space(space::S);
+    }
+    if predictions.is_over() {
+        return;
+    }
+    let choices = context.state.forecasts();
+    if choices.is_empty() {
+        let text = if predictions.is_pending() || context.state.lesson.is_due() {
+            "Computing…"
+        } else {
+            "The panels already show the result. To predict again, click Reset view."
+        };
+        ui.label(RichText::new(text).color(tokens.text_muted));
+        return;
+    }
+    let next = match forecast {
+        Forecast::Decision => "The next decision:".to_owned(),
+        Forecast::Failure => "The last choice of the next failure:".to_owned(),
+        Forecast::Estimate(component) => format!("The most likely mode of {component} after the next step:"),
+    };
+    ui.label(next);
+    for choice in choices {
+        let button = Button::new(&choice).wrap();
+        if ui.add(button.min_size(egui::vec2(ui.available_width(), space::ROW + 4.0))).clicked() {
+            commands.send(Command::Lesson(LessonCommand::Answer(choice)));
+        }
     }
 }

@@ -69,6 +69,7 @@ static TABLE: [Row; 9] = [
             Program,
             Run,
             Terrain,
+            Review,
             Input::Pins,
             Input::Selection,
             Lesson,

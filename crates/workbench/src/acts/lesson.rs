@@ -20,7 +20,7 @@ use crate::panel_effect::PanelEffect;
 use crate::panel_kind::PanelKind;
 use crate::registry::{self, read_lesson};
 use crate::state::AppState;
-use crate::state::lesson::{Given, LessonCommand, learned_key};
+use crate::state::lesson::{Given, LessonCommand, Predictions, learned_key};
 use crate::state::search::SearchCommand;
 use crate::state::settings::{PlanSettings, Settings};
 
@@ -203,6 +203,8 @@ impl AppState {
         let Some(lesson) = &self.lesson.open else { return };
         self.lesson.stop = stop.min(lesson.stops.len().saturating_sub(1));
         self.lesson.is_due = true;
+        self.lesson.predictions =
+            Predictions { revision: self.document.revision(), ..Predictions::default() };
         let wanted = self.lesson.stop().map(|stop| stop.show.panels.clone()).unwrap_or_default();
         if !wanted.is_empty() && wanted != self.lesson.panels {
             self.lesson.panels = wanted;
@@ -243,8 +245,10 @@ impl AppState {
 
     fn answer(&mut self, text: String) {
         let Some(ask) = self.lesson.stop().and_then(|stop| stop.ask.as_ref()) else { return };
-        if matches!(ask.answer, Answer::Task(_)) {
-            return;
+        match ask.answer {
+            Answer::Task(_) => return,
+            Answer::Prediction(_) => return self.predict(text),
+            Answer::Choice(_) | Answer::Number(..) | Answer::Word(_) => {}
         }
         let Some(is_right) = ask.answer.is_right(&text, &Description::of(self)) else {
             self.window.info("Wait until planning ends, then check your answer");

@@ -10,6 +10,7 @@ mod lesson;
 mod missions;
 mod opening;
 mod parts;
+mod prediction;
 mod showing;
 mod transport;
 

@@ -33,10 +33,12 @@ impl AppState {
             let show = self.lesson.stop().map(|stop| stop.show.clone()).unwrap_or_default();
             self.show(&show);
             self.check_expectation();
+            self.follow_predictions();
             return;
         }
         self.draw_samples();
         self.judge_task();
+        self.follow_predictions();
     }
 
     /// Draws the samples that the stop shows, once the core has found them.

@@ -8,6 +8,7 @@ use tpn::{Network, NodeId, Plan};
 
 use super::{Description, PlantState};
 use crate::state::automaton::{Moment, PlantMoment, Program};
+use crate::state::lesson::Predictions;
 use crate::state::search::{Counts, Recording};
 use crate::state::{Selection, Status};
 
@@ -101,6 +102,16 @@ impl<'a> Description<'a> {
         let view = self.state.search.shown()?;
         let entry = view.recording.trace().events.get(view.step.step)?;
         Some((&view.recording, &entry.event))
+    }
+
+    /// The review of the present plan.
+    pub(super) fn current_review(&self) -> Option<&'a review::Review> {
+        self.state.review.current().map(AsRef::as_ref)
+    }
+
+    /// What was predicted at the stop of the lesson.
+    pub(super) fn predictions(&self) -> &'a Predictions {
+        self.state.lesson.predictions()
     }
 
     /// What the last sample of the growth did.

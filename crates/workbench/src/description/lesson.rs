@@ -7,6 +7,7 @@ use ts_rs::TS;
 
 use crate::lesson::{Answer, COURSE};
 use crate::state::AppState;
+use crate::state::lesson::Prediction;
 
 /// The lessons; `open` is `null` while the contents of the course are shown.
 #[derive(Debug, Serialize)]
@@ -46,14 +47,27 @@ pub struct OpenLesson {
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Question {
-    #[cfg_attr(test, ts(type = "\"choice\" | \"number\" | \"word\" | \"task\""))]
+    #[cfg_attr(test, ts(type = "\"choice\" | \"number\" | \"word\" | \"task\" | \"prediction\""))]
     pub kind: &'static str,
     pub text: String,
     pub choices: Vec<String>,
-    /// What was answered last.
+    /// What was answered last; of a prediction, the last one that has been shown.
     pub given: Option<String>,
     /// Whether that was right; of a task, whether it is done.
     pub is_right: Option<bool>,
+    /// What was predicted at this stop, if that is asked for.
+    pub predictions: Option<PredictionCounts>,
+}
+
+/// How often somebody predicted what came.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct PredictionCounts {
+    pub made: usize,
+    pub right: usize,
+    /// Whether nothing is left to predict.
+    pub is_over: bool,
 }
 
 /// Something wrong in a lesson.
@@ -89,6 +103,8 @@ pub(super) fn lessons(state: &AppState) -> Lessons {
 fn open(state: &AppState) -> Option<OpenLesson> {
     let (lesson, stop) = (state.lesson.open()?, state.lesson.stop()?);
     let errors = state.lesson.errors().iter();
+    let predictions = state.lesson.predictions();
+    let last = predictions.made().last();
     Some(OpenLesson {
         name: lesson.name.clone(),
         title: lesson.title.clone(),
@@ -103,14 +119,21 @@ fn open(state: &AppState) -> Option<OpenLesson> {
                 Answer::Number(..) => "number",
                 Answer::Word(_) => "word",
                 Answer::Task(_) => "task",
+                Answer::Prediction(_) => "prediction",
             },
             text: state.lesson_line(&ask.text),
             choices: match &ask.answer {
                 Answer::Choice(choices) => choices.iter().map(|it| state.lesson_line(&it.text)).collect(),
-                _ => Vec::new(),
+                Answer::Prediction(_) => state.forecasts(),
+                Answer::Number(..) | Answer::Word(_) | Answer::Task(_) => Vec::new(),
             },
-            given: state.lesson.given().map(|given| given.text.clone()),
-            is_right: state.lesson.given().map(|given| given.is_right),
+            given: last.map(|last| last.given.clone()).or_else(|| Some(state.lesson.given()?.text.clone())),
+            is_right: last.map(Prediction::is_right).or_else(|| Some(state.lesson.given()?.is_right)),
+            predictions: matches!(ask.answer, Answer::Prediction(_)).then(|| PredictionCounts {
+                made: predictions.made().len(),
+                right: predictions.right(),
+                is_over: predictions.is_over(),
+            }),
         }),
         errors: errors.map(|it| LessonMistake { line: it.line, message: it.message.clone() }).collect(),
     })

@@ -212,6 +212,7 @@ fn interface() -> String {
     declare::<lesson::Lessons>(&mut out);
     declare::<lesson::OpenLesson>(&mut out);
     declare::<lesson::Question>(&mut out);
+    declare::<lesson::PredictionCounts>(&mut out);
     declare::<lesson::LessonMistake>(&mut out);
     declare::<lesson::Manual>(&mut out);
     declare::<review::Review>(&mut out);

@@ -39,6 +39,41 @@ pub enum Answer {
     Word(Expression),
     /// Something to do; it is done when this holds.
     Task(Expression),
+    /// What comes next, again and again, before the panels show it.
+    Prediction(Forecast),
+}
+
+/// What is predicted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Forecast {
+    /// The next alternative that the search takes of a decision.
+    Decision,
+    /// The last choice of the next state that fails.
+    Failure,
+    /// The mode of this component in the most likely state after the next step.
+    Estimate(String),
+}
+
+impl Forecast {
+    /// What somebody predicts who expects no more of it.
+    pub const fn nothing(&self) -> Option<&'static str> {
+        match self {
+            Self::Decision => Some("No further decision"),
+            Self::Failure => Some("No further failure"),
+            Self::Estimate(_) => None,
+        }
+    }
+
+    fn read(text: &str) -> Option<Self> {
+        match text {
+            "decision" => Some(Self::Decision),
+            "failure" => Some(Self::Failure),
+            other => {
+                let component = other.strip_prefix("estimate of ")?.trim();
+                (!component.is_empty()).then(|| Self::Estimate(component.to_owned()))
+            }
+        }
+    }
 }
 
 /// One of several answers.
@@ -60,7 +95,7 @@ pub enum Action {
 
 impl Answer {
     /// Whether what was answered is right, and nothing while that is not known: the number of a choice from 0, a number
-    /// or a word; a task is judged by the state alone.
+    /// or a word; a task is judged by the state alone, and a prediction by what is shown next.
     pub fn is_right(&self, given: &str, known: &dyn Known) -> Option<bool> {
         match self {
             Self::Choice(choices) => choices.get(given.parse::<usize>().ok()?)?.is_right.holds(known),
@@ -76,10 +111,12 @@ impl Answer {
                 Some(words_in(&right) == words_in(given))
             }
             Self::Task(expression) => expression.holds(known),
+            Self::Prediction(_) => None,
         }
     }
 
-    /// What would be right now, as somebody would give it; nothing while that is not known, and for a task.
+    /// What would be right now, as somebody would give it; nothing while that is not known, for a task, and for a
+    /// prediction.
     pub fn right_now(&self, known: &dyn Known) -> Option<String> {
         match self {
             Self::Choice(choices) => {
@@ -88,7 +125,7 @@ impl Answer {
             }
             Self::Number(expression, _) => expression.number(known).map(|number| number.to_string()),
             Self::Word(expression) => expression.value(known).map(|value| value.to_string()),
-            Self::Task(_) => None,
+            Self::Task(_) | Self::Prediction(_) => None,
         }
     }
 }
@@ -187,6 +224,10 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
             "number" => note(expression().map(|it| Answer::Number(it, Rational::ZERO))),
             "word" => note(expression().map(Answer::Word)),
             "task" => note(expression().map(Answer::Task)),
+            "predict" => note(Forecast::read(&value).map(Answer::Prediction).ok_or_else(|| {
+                let message = "`predict` must be `decision`, `failure` or `estimate of` a component";
+                LessonError::new(line, message)
+            })),
             "within" => match value.parse() {
                 Ok(number) => within = number,
                 Err(_) => errors.push(LessonError::new(line, format!("`{value}` is not a number"))),
@@ -199,7 +240,7 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
             },
             other => {
                 let message = format!(
-                    "unknown key `{other}` in `ask`; use number, within, word, task, hint, because, solution, or choices \
+                    "unknown key `{other}` in `ask`; use number, within, word, task, predict, hint, because, solution, or choices \
                      that start with `- [ ]`, `- [x]` or `- [if …]`"
                 );
                 errors.push(LessonError::new(line, message));
@@ -221,7 +262,7 @@ pub(super) fn read(text: &str, fence: u32, errors: &mut Vec<LessonError>) -> Opt
     if answer.is_none() && errors.len() == before {
         errors.push(LessonError::new(
             fence,
-            "the answer is missing: add `number:`, `word:`, `task:` or choices",
+            "the answer is missing: add `number:`, `word:`, `task:`, `predict:` or choices",
         ));
     }
     Some(Ask { line: fence, text: question, answer: answer?, hint, because, solution })

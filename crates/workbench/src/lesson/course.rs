@@ -44,19 +44,27 @@ pub const COURSE: &[Chapter] = &[
     },
     Chapter {
         title: "Time and resources",
-        lessons: lessons!["09" "dispatching", "10" "states", "11" "resources", "12" "objectives", "13" "controllability"],
+        lessons: lessons![
+            "09" "dispatching",
+            "10" "states",
+            "11" "resources",
+            "12" "order",
+            "13" "objectives",
+            "14" "controllability",
+        ],
     },
-    Chapter { title: "Paths", lessons: lessons!["14" "rrt"] },
+    Chapter { title: "Paths", lessons: lessons!["15" "rrt"] },
     Chapter {
         title: "Control",
         lessons: lessons![
-            "15" "automata",
-            "16" "esterel-pause",
-            "17" "esterel-preempt",
-            "18" "estimation",
+            "16" "automata",
+            "17" "esterel-pause",
+            "18" "esterel-preempt",
+            "19" "estimation",
         ],
     },
-    Chapter { title: "A complete mission", lessons: lessons!["19" "whole-mission"] },
+    Chapter { title: "A complete mission", lessons: lessons!["20" "whole-mission"] },
+    Chapter { title: "Review", lessons: lessons!["21" "review", "22" "verified"] },
 ];
 
 /// The lesson of this name.

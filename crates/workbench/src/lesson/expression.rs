@@ -1,7 +1,8 @@
 //! What a lesson computes from the live state: facts by name, numbers and words, compared and counted together.
 //!
 //! ```text
-//! condition  = conjunct { "or" conjunct }          conjunct = negation { "and" negation }
+//! condition  = "if" condition "then" condition "else" condition | conjunct { "or" conjunct }
+//! conjunct = negation { "and" negation }
 //! negation   = [ "not" ] comparison                comparison = sum [ ("=" | "!=" | "<" | "<=" | ">" | ">=") sum ]
 //! sum        = product { ("+" | "-") product }     product = term { ("*" | "/") term }
 //! term       = number | "text" | fact | fact(argument) | "-" term | "(" condition ")"
@@ -42,6 +43,8 @@ pub enum Expression {
     /// The other truth.
     Not(Box<Self>),
     Both(Box<Self>, Operator, Box<Self>),
+    /// The second if the first holds, otherwise the third.
+    Either(Box<[Self; 3]>),
 }
 
 /// How two values make one.
@@ -77,6 +80,10 @@ impl Expression {
         match self {
             Self::Constant(value) => Some(value.clone()),
             Self::Fact(fact, argument) => known.value_of(fact.name, argument),
+            Self::Either(parts) => {
+                let [condition, then, otherwise] = &**parts;
+                if condition.holds(known)? { then.value(known) } else { otherwise.value(known) }
+            }
             Self::Not(expression) => Some(Value::Truth(!expression.holds(known)?)),
             Self::Both(left, Operator::And, right) => {
                 Some(Value::Truth(left.holds(known)? && right.holds(known)?))
@@ -156,11 +163,21 @@ const COMPARISONS: &[(&str, Operator)] = &[
 
 impl<'a> Reader<'a> {
     fn condition(&mut self) -> Result<Expression, String> {
+        if self.takes_word("if") {
+            let condition = self.condition()?;
+            let then = self.part("then")?;
+            let otherwise = self.part("else")?;
+            return Ok(Expression::Either(Box::new([condition, then, otherwise])));
+        }
         let mut left = self.conjunct()?;
         while self.takes_word("or") {
             left = both(left, Operator::Or, self.conjunct()?);
         }
         Ok(left)
+    }
+
+    fn part(&mut self, word: &str) -> Result<Expression, String> {
+        if self.takes_word(word) { self.condition() } else { Err(format!("expected `{word}`")) }
     }
 
     fn conjunct(&mut self) -> Result<Expression, String> {

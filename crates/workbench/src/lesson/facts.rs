@@ -80,6 +80,11 @@ const FACTS: &[Fact] = &[
     ),
     fact("orderings", Of::Nothing, "how many orders planning added between conflicting conditions"),
     fact("uses-ordered", Of::Nothing, "how many orders planning added between uses of resources"),
+    fact(
+        "ordered",
+        Of::Something("Image#1, Send#1"),
+        "whether planning put a condition or a resource use of the first activity before one of the second",
+    ),
     fact("least", Of::Something("Battery"), "the lowest level in any schedule of the plan"),
     fact(
         "greatest",
@@ -100,6 +105,16 @@ const FACTS: &[Fact] = &[
     fact("time", Of::Nothing, "the time shown"),
     fact("finished", Of::Nothing, "whether the run that is watched reaches the end of the mission"),
     fact("disturbances", Of::Nothing, "how many disturbances the run has"),
+    fact("reviewed", Of::Nothing, "whether there is a review of the present plan"),
+    fact(
+        "items",
+        Of::Something("needs attention"),
+        "how many items of the review have this status: `passed`, `needs attention`, `failed` or `information`",
+    ),
+    fact("item", Of::Something("words"), "the status of the first item of the review with these words"),
+    fact("has-item", Of::Something("words"), "whether the review has an item with these words"),
+    fact("predictions", Of::Nothing, "how many predictions were made at this step of the lesson"),
+    fact("right-predictions", Of::Nothing, "how many of them were right"),
     // The search.
     fact("steps", WHICH, "how many steps the search has"),
     fact("states", WHICH, "how many states it entered"),

@@ -131,6 +131,8 @@ fn a_mistake_is_told_with_its_line_and_what_would_be_right() {
     let Answer::Choice(choices) = &ask.answer else { panic!("{ask:?}") };
     assert_eq!((choices[0].text.as_str(), ask.hint.as_str(), errors.len()), ("one and more", "a b", 0));
     check("```ask\nWhat?\n- [x] one\n- two\n- [ ] three\n```", 10, "a choice must start with");
+    check("```ask\nWhat?\npredict: weather\n```", 9, "`estimate of` a component");
+    check("```ask\nWhat?\npredict: estimate of \n```", 9, "`estimate of` a component");
     check("```ask\nWhat?\ntask: plan\nsolution: \"a\" instead\n```", 10, "becomes");
     let two = "```ask\nA?\nnumber: 1\n```\n\n```ask\nB?\nnumber: 1\n```";
     check(two, 12, "one question");
@@ -157,10 +159,13 @@ fn expressions_count_and_compare() {
     assert_eq!(value("\"Deploy#1\" = \"deploy#1\""), Some(Value::Truth(true)));
     assert_eq!(value("1 = \"1\""), None, "a number is no word");
     assert_eq!(value("1 / 0"), None);
+    assert_eq!(value("if 1 < 2 then 3 else 4 + 5"), number(3));
+    assert_eq!(value("1 + (if 1 > 2 then 3 else if 1 = 1 then 5 else 6)"), number(6));
+    assert_eq!(value("if plan then 1 else 2"), None, "whether there is a plan is not known");
     // Nothing has been worked out in this state.
     assert_eq!(value("backtracks > 3"), None);
     assert_eq!(value("earliest(Tell(A=B)#1.start)"), None, "names have parentheses of their own");
-    for wrong in ["", "1 +", "(1", "1 2", "\"a", "plan(x)", "D1"] {
+    for wrong in ["", "1 +", "(1", "1 2", "\"a", "plan(x)", "D1", "if 1 = 1 then 2", "if 1 = 1 else 2"] {
         assert!(Expression::read(wrong).is_err(), "{wrong}");
     }
 }

@@ -34,6 +34,8 @@ pub struct Settings {
     pub epoch: String,
     /// The stops of lessons whose questions were answered rightly: `negative-cycle/2`.
     pub learned: Learned,
+    /// How many predictions were made in lessons, and how many of them were right.
+    pub predictions: [u32; 2],
 }
 
 impl Default for Settings {
@@ -47,6 +49,7 @@ impl Default for Settings {
             reviewer_role: String::new(),
             epoch: String::new(),
             learned: Learned::default(),
+            predictions: [0; 2],
         }
     }
 }

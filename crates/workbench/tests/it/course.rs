@@ -1,14 +1,18 @@
 //! The whole course, walked through: every lesson reads, its mission comes to what it says, every stop finds its step and
 //! its selection, every value in its prose is known, and every question has one right answer, which the planner gives.
 
+use kirk::{Event, TreeChoice};
 use serde_json::{Value, json};
 use test_support::{App, start};
 use workbench::command::Command;
 use workbench::description::Description;
-use workbench::lesson::{Answer, COURSE, CourseLesson, Expectation, Glossary, Lesson};
+use workbench::lesson::{Answer, COURSE, CourseLesson, Expectation, Forecast, Glossary, Lesson, Stop};
 use workbench::outside::Remote as _;
 use workbench::registry::read_lesson;
 use workbench::state::lesson::LessonCommand;
+use workbench::state::search::SearchCommand;
+use workbench::state::search::focus::is_failure;
+use workbench::state::search::wording::choice;
 
 fn lessons() -> impl Iterator<Item = (&'static CourseLesson, Lesson)> {
     COURSE.iter().flat_map(|chapter| chapter.lessons).map(|lesson| {
@@ -51,6 +55,9 @@ fn walk(app: &mut App, name: &str, lesson: &Lesson) -> Vec<String> {
             wrong.push(format!("{place}: {name} is not selected"));
         }
         let Some(ask) = &stop.ask else { continue };
+        if let Answer::Prediction(forecast) = &ask.answer {
+            wrong.extend(predict(app, name, number, forecast).into_iter().map(|it| format!("{place}: {it}")));
+        }
         for text in [&ask.text, &ask.hint] {
             if app.session.state().lesson_line(text).contains('…') && !text.contains('…') {
                 wrong.push(format!(
@@ -94,6 +101,9 @@ fn answer(app: &mut App, answer: &Answer, has_solution: bool) -> Vec<String> {
         }
         return wrong;
     }
+    if let Answer::Prediction(_) = answer {
+        return wrong;
+    }
     let Some(right) = answer.right_now(&Description::of(app.session.state())) else {
         return vec!["what is right cannot be computed".to_owned()];
     };
@@ -106,18 +116,141 @@ fn answer(app: &mut App, answer: &Answer, has_solution: bool) -> Vec<String> {
             wrong.push(format!("exactly one choice is right, not {verdicts:?}"));
         }
     }
-    let other = match answer {
-        Answer::Choice(choices) => (0..choices.len()).map(|at| at.to_string()).find(|at| *at != right),
-        Answer::Number(..) => Some("-12345".to_owned()),
-        Answer::Word(_) | Answer::Task(_) => Some("something else".to_owned()),
+    let others: Vec<String> = match answer {
+        Answer::Choice(choices) => {
+            (0..choices.len()).map(|at| at.to_string()).filter(|at| *at != right).collect()
+        }
+        Answer::Number(..) => {
+            let number: f64 = right.parse().unwrap_or(1.0);
+            vec!["-12345".to_owned(), format!("{}", number + 1.5), "many".to_owned()]
+        }
+        Answer::Word(_) | Answer::Task(_) | Answer::Prediction(_) => vec!["something else".to_owned()],
     };
-    for (given, is_right) in [(other.unwrap_or_default(), false), (right, true)] {
+    assert!(!others.is_empty(), "there is a wrong answer");
+    let wrong_ones = others.into_iter().map(|it| (it, false));
+    for (given, is_right) in wrong_ones.chain([(right, true)]) {
         app.dispatch("learn.answer", &json!({ "answer": given }));
         if at(app)["question"]["isRight"] != is_right {
             wrong.push(format!("{given:?} should be judged {is_right}"));
         }
     }
     wrong
+}
+
+/// What comes at a stop that has it predicted, read from the recorded search or from the run, and not from what the
+/// lesson computes.
+fn outcomes(app: &mut App, name: &str, stop: usize, forecast: &Forecast) -> Vec<String> {
+    open(app, name, stop);
+    let state = app.session.state();
+    let mut outcomes = Vec::new();
+    match forecast {
+        Forecast::Decision | Forecast::Failure => {
+            let recording = state.search.recordings(state.shown())[state.search.side()].clone();
+            let (network, trace) = (recording.network(), recording.trace());
+            let from = state.search.step().expect("a step is shown").step + 1;
+            for entry in &trace.events[from..] {
+                let made = match (&entry.event, forecast) {
+                    (Event::Decide { decision, alternative }, Forecast::Decision) => {
+                        Some(TreeChoice::Decision { decision: *decision, alternative: *alternative })
+                    }
+                    (event, Forecast::Failure) if is_failure(event) => {
+                        trace.tree[entry.tree_node as usize].choice
+                    }
+                    _ => continue,
+                };
+                outcomes.push(choice(network, made));
+            }
+            outcomes.extend(forecast.nothing().map(str::to_owned));
+        }
+        Forecast::Estimate(component) => {
+            for moment in state.automaton.at() + 1.. {
+                app.dispatch("program.goTo", &json!({ "moment": moment }));
+                app.settle();
+                if app.session.state().automaton.at() < moment {
+                    break;
+                }
+                let belief = &app.json()["hca"]["plant"]["belief"][0]["state"];
+                outcomes.push(belief[component].as_str().unwrap_or_default().to_owned());
+            }
+        }
+    }
+    outcomes
+}
+
+/// Predicts all that comes at a stop: rightly, wrongly, and every other one rightly. Gives what is wrong with that.
+fn predict(app: &mut App, name: &str, stop: usize, forecast: &Forecast) -> Vec<String> {
+    let outcomes = outcomes(app, name, stop, forecast);
+    let mut wrong = Vec::new();
+    if outcomes.len() < 2 {
+        wrong.push(format!("there is little to predict: {outcomes:?}"));
+    }
+    for (how, is_right) in
+        [("rightly", [true, true]), ("wrongly", [false, false]), ("by turns", [true, false])]
+    {
+        open(app, name, stop);
+        let mut right = 0;
+        for (at, outcome) in outcomes.iter().enumerate() {
+            let question = at_question(app);
+            let choices: Vec<&str> =
+                question["choices"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+            if !choices.contains(&outcome.as_str()) {
+                wrong.push(format!("{outcome} cannot be predicted, but {choices:?}"));
+                break;
+            }
+            let is_right = is_right[at % 2];
+            let given = if is_right {
+                outcome.clone()
+            } else {
+                choices.iter().find(|it| *it != outcome).expect("another one").to_string()
+            };
+            app.dispatch("learn.answer", &json!({ "answer": given }));
+            app.settle();
+            right += usize::from(is_right);
+            let question = at_question(app);
+            let counts = [&question["predictions"]["made"], &question["predictions"]["right"]];
+            if counts != [&json!(at + 1), &json!(right)] || question["isRight"] != is_right {
+                wrong.push(format!("{how}, {outcome}: {question}"));
+            }
+        }
+        let question = at_question(app);
+        if question["predictions"]["isOver"] != true || question["choices"] != json!([]) {
+            wrong.push(format!("{how}: it is not over: {question}"));
+        }
+    }
+    wrong
+}
+
+fn at_question(app: &App) -> Value {
+    at(app)["question"].clone()
+}
+
+#[test]
+fn nobody_predicts_what_was_shown() {
+    let mut app = start();
+    let (course, lesson) = lessons().find(|(course, _)| course.name == "choices").expect("a lesson");
+    let is_asked =
+        |stop: &Stop| matches!(stop.ask.as_ref().map(|it| &it.answer), Some(Answer::Prediction(_)));
+    let stop = lesson.stops.iter().position(is_asked).expect("a prediction");
+    let all = outcomes(&mut app, course.name, stop, &Forecast::Decision);
+    open(&mut app, course.name, stop);
+    // Somebody looks ahead to the next decision and back: now the one after it is to be predicted.
+    let here = app.session.state().search.step().expect("a step").step;
+    while app.json()["search"]["known"]["event"] != "decide" || app.json()["search"]["step"] == here + 1 {
+        app.run(Command::Search(SearchCommand::Step(1)));
+    }
+    app.run(Command::Search(SearchCommand::GoTo(here)));
+    app.dispatch("learn.answer", &json!({ "answer": all[1] }));
+    assert_eq!(at_question(&app)["isRight"], true, "{all:?}");
+    // Where everything is shown, nothing is left, until the stop begins again.
+    app.run(Command::Search(SearchCommand::Close));
+    assert_eq!(at_question(&app)["choices"], json!([]));
+    app.dispatch("learn.answer", &json!({ "answer": all[2] }));
+    assert_eq!(at_question(&app)["predictions"]["made"], 1);
+    app.run(Command::Lesson(LessonCommand::ShowAgain));
+    app.settle();
+    app.dispatch("learn.answer", &json!({ "answer": all[0] }));
+    assert_eq!(at_question(&app)["predictions"], json!({ "made": 1, "right": 1, "isOver": false }));
+    assert_eq!(app.session.state().settings.predictions, [2, 2]);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod path;
 mod plan;
 mod program;
+mod review;
 mod search;
 
 use exact::{Rational, Time};
@@ -22,7 +23,7 @@ impl Known for Description<'_> {
 }
 
 fn rows() -> impl Iterator<Item = &'static Row> {
-    [plan::VALUES, search::VALUES, path::VALUES, program::VALUES].into_iter().flatten()
+    [plan::VALUES, search::VALUES, path::VALUES, program::VALUES, review::VALUES].into_iter().flatten()
 }
 
 fn count(count: usize) -> Option<Value> {

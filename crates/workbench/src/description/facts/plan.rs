@@ -76,6 +76,17 @@ pub(super) const VALUES: &[Row] = &[
     }),
     ("orderings", |it, _| count(it.plan()?.1.orderings_added.len())),
     ("uses-ordered", |it, _| count(it.plan()?.1.uses_ordered.len())),
+    ("ordered", |it, names| {
+        let (first, then) = names.split_once(',')?;
+        let (network, plan) = it.plan()?;
+        let owner = |owner: Option<tpn::OccurrenceId>| network.occurrences.get(owner?.index());
+        let condition = |id: tpn::LabelId| owner(network.labels.get(id.index())?.owner);
+        let used = |id: tpn::UseId| owner(network.uses.get(id.index())?.owner);
+        let conditions = plan.orderings_added.iter().map(|it| [condition(it.first), condition(it.then)]);
+        let mut all = conditions.chain(plan.uses_ordered.iter().map(|it| [used(it.first), used(it.then)]));
+        let is = |it: Option<&tpn::Occurrence>, name: &str| it.is_some_and(|it| it.name == name.trim());
+        truth(all.any(|[one, other]| is(one, first) && is(other, then)))
+    }),
     ("least", |it, name| match levels(it, name)? {
         Levels::Range { low, .. } => Some(Value::Number(low)),
         Levels::Peak(_) => None,
@@ -115,6 +126,8 @@ pub(super) const VALUES: &[Row] = &[
     ("selected-kind", |it, _| words(it.selected_kind())),
     ("time", |it, _| measured(it.time())),
     ("finished", |it, _| truth(it.execution()?.ending == executive::Ending::Finished)),
+    ("predictions", |it, _| count(it.predictions().made().len())),
+    ("right-predictions", |it, _| count(it.predictions().right())),
     ("disturbances", |it, _| count(it.disturbances())),
 ];
 

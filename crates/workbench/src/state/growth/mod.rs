@@ -205,6 +205,8 @@ impl Growth {
             }
             return;
         };
+        // Who has seen all samples goes on to see all of them.
+        let saw_all = before.is_complete() && before.at >= before.total();
         self.shown = self.start(&input, traverse, before.leg);
         if let Some(shown) = &mut self.shown {
             for (search, known) in shown.searches.iter_mut().zip(before.searches) {
@@ -213,7 +215,7 @@ impl Growth {
                     *search = known;
                 }
             }
-            shown.at = before.at;
+            shown.at = if saw_all { u32::MAX } else { before.at };
         }
     }
 

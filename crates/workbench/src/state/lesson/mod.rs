@@ -2,6 +2,8 @@
 //!
 //! A stop is shown as soon as the core has answered for the text that is there: its step is a step of that search.
 
+mod prediction;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -10,6 +12,8 @@ use smol_str::SmolStr;
 use crate::lesson::{COURSE, Lesson, LessonError, LessonMission, Stop};
 use crate::panel_kind::PanelKind;
 use crate::state::settings::PlanSettings;
+
+pub use prediction::{Prediction, Predictions};
 
 /// What can be asked of the lessons.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,6 +58,8 @@ pub struct LessonState {
     pub(crate) panels: Vec<Vec<Vec<PanelKind>>>,
     /// What was answered last, by lesson and stop, and whether it was right.
     pub(crate) answers: BTreeMap<(String, usize), Given>,
+    /// What was predicted at the stop where the lesson is.
+    pub(crate) predictions: Predictions,
     /// Lessons that were opened as files, by name.
     pub(crate) own: BTreeMap<SmolStr, (Arc<Lesson>, Arc<[LessonError]>)>,
     /// How planning was set before the lesson, which sets it for itself.
@@ -119,6 +125,11 @@ impl LessonState {
     /// What was answered last at the stop where the lesson is.
     pub fn given(&self) -> Option<&Given> {
         self.answers.get(&(self.open.as_ref()?.name.clone(), self.stop))
+    }
+
+    /// What was predicted at the stop where the lesson is.
+    pub const fn predictions(&self) -> &Predictions {
+        &self.predictions
     }
 
     /// The lesson before the open one in the course, or after it.
