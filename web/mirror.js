@@ -105,7 +105,7 @@ function create(id) {
 
 /** Writes what an element is; nothing is touched that stays as it was. */
 function describe(element, { role, label, value, description, enabled, clickable, toggled, selected, ...rest }) {
-  const { expanded, multiline, number, level } = rest;
+  const { expanded, multiline, number, level, position } = rest;
   const pressed = role === "button";
   const checks = role === "menuitemcheckbox";
   // What only some roles can be; elsewhere a browser would not pass it on.
@@ -124,6 +124,8 @@ function describe(element, { role, label, value, description, enabled, clickable
     "aria-modal": role === "dialog" ? "true" : null,
     "aria-multiline": multiline ? "true" : null,
     "aria-level": level,
+    "aria-posinset": position?.[0],
+    "aria-setsize": position?.[1],
     "aria-valuenow": number?.[0],
     "aria-valuemin": number?.[1],
     "aria-valuemax": number?.[2],

@@ -86,7 +86,18 @@ pub fn conflicts_of(model: &Model, state: &State, observation: &Observation, mos
     found
 }
 
-/// A minimal conflict that assumes nothing of the components in `without`.
+/// A minimal conflict between the modes of `state` and `observation` that assumes nothing of the components in `without`;
+/// nothing if the other assumptions can hold together.
+pub fn conflict_without(
+    model: &Model,
+    state: &State,
+    observation: &Observation,
+    without: &[ComponentId],
+) -> Option<Conflict> {
+    model.islands.iter().find_map(|island| minimal(model, island, state, observation, without))
+}
+
+/// The same within an island.
 fn minimal(
     model: &Model,
     island: &Island,

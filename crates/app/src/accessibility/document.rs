@@ -54,6 +54,8 @@ pub struct Element {
     pub number: Option<[Option<f64>; 3]>,
     /// The depth of a heading or of an item of a tree, from 1.
     pub level: Option<usize>,
+    /// The place among those beside it, from 1, and how many these are.
+    pub position: Option<[usize; 2]>,
 }
 
 /// Whether something is checked.
@@ -103,6 +105,7 @@ impl Element {
             multiline: false,
             number: None,
             level: None,
+            position: None,
         }
     }
 }
@@ -240,6 +243,7 @@ impl Reader<'_> {
             multiline: node.role() == Role::MultilineTextInput,
             number,
             level: node.level(),
+            position: node.position_in_set().zip(node.size_of_set()).map(|(at, size)| [at + 1, size]),
         })
     }
 

@@ -508,3 +508,39 @@ fn a_closed_panel_stays_closed_in_the_next_run_until_it_is_brought_back() {
     dispatch(&mut again, "view.panel", &json!("terrain"));
     assert!(has(&again, "terrain"));
 }
+
+/// The items of the search tree as assistive technology meets them: name, level, whether each is the state of the step, and
+/// its place among those beside it.
+fn items(app: &App) -> Vec<(String, usize, bool, [usize; 2])> {
+    let nodes = app.harness.query_all_by_role(egui::Role::TreeItem);
+    let item = |node: egui_kittest::Node<'_>| {
+        let node = node.accesskit_node();
+        let place = [node.position_in_set().expect("a place"), node.size_of_set().expect("a size")];
+        (node.label().unwrap_or_default(), node.level().expect("a level"), node.is_selected() == Some(true), place)
+    };
+    nodes.map(item).collect()
+}
+
+#[test]
+fn the_search_is_a_tree_for_who_does_not_see_it() {
+    let mut app = opened("lesson=choices&stop=2", [1440.0, 900.0]);
+    // Only what the search has reached by the first failure is there.
+    let known = items(&app);
+    let names: Vec<&str> = known.iter().map(|(name, ..)| name.as_str()).collect();
+    assert_eq!(known[0].0, "Initial state, explored");
+    assert_eq!((known[0].1, known[0].3), (1, [0, 1]));
+    assert!(names.iter().any(|it| it.starts_with("D1 = 0: Long-Way#1, explored")), "{names:?}");
+    let failed = known.iter().find(|(name, ..)| name.starts_with("D2 = 0: Core#1, failed: ")).expect("it failed");
+    assert_eq!((failed.1, failed.2, failed.3), (3, true, [0, 3]));
+    assert!(names.contains(&"D2 = 1: Scoop#1, not explored"), "{names:?}");
+    // The whole search, with its plan; a click goes to the state.
+    dispatch(&mut app, "search.close", &json!({}));
+    let plan = items(&app).into_iter().find(|(name, ..)| name.ends_with(", plan")).expect("a plan").0;
+    let node = app.harness.get_by_role_and_label(egui::Role::TreeItem, &plan);
+    assert!(node.accesskit_node().is_expanded().is_none(), "nothing is below a plan");
+    node.click_accesskit();
+    app.settle();
+    let (_, _, is_selected, _) = items(&app).into_iter().find(|(name, ..)| *name == plan).expect("it is there");
+    assert!(is_selected);
+    assert!(step(&app) > 0);
+}

@@ -361,7 +361,7 @@ fn run_text(system: &System, run: &Run) -> String {
         record
             .conflicts
             .iter()
-            .for_each(|conflict| out.push_str(&format!("  diagnosis {}\n", conflict.describe(model))));
+            .for_each(|conflict| out.push_str(&format!("  conflict  {}\n", conflict.describe(model))));
     }
     if counts_rewards(&system.automaton) {
         out.push_str(&format!("Rewards: {}.\n", run.reward()));

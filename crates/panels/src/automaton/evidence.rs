@@ -8,7 +8,7 @@ use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
 use super::components::{percent, percent_between};
-use super::title;
+use super::{hitting_sets, title};
 use crate::Context;
 
 /// How wide the number of a step is at most, in points.
@@ -23,7 +23,7 @@ pub(super) fn is_surprising(plant: &PlantMoment) -> bool {
     plant.record.as_ref().is_some_and(is_surprising)
 }
 
-/// Shows belief, observations and diagnosis; `reveals` brings the diagnosis into view.
+/// Shows belief, observations, conflicts and diagnoses; `reveals` brings the conflicts into view.
 pub(super) fn show(
     ui: &mut Ui,
     context: &Context<'_>,
@@ -36,7 +36,11 @@ pub(super) fn show(
     history(ui, context, commands);
     asked(ui, context, plant);
     observations(ui, context, model, plant, commands);
-    let place = ui.scope(|ui| diagnosis(ui, context, model, plant)).response;
+    let place = ui.scope(|ui| {
+        findings(ui, context, model, plant);
+        hitting_sets::show(ui, context, model, plant, commands);
+    });
+    let place = place.response;
     ui.add_space(space::L);
     if reveals {
         place.scroll_to_me(None);
@@ -178,7 +182,7 @@ fn observations(
         ui,
         context,
         &format!("Observed in step {}", record.trace.step),
-        "change a value to update the diagnosis",
+        "change a value to update the estimate",
     );
     Grid::new("automaton-observations").num_columns(3).show(ui, |ui| {
         for (&id, &value) in &record.observation.0 {
@@ -218,10 +222,11 @@ fn observation(
     combo.response.accessible_name(format!("Observed value of {name}"));
 }
 
-fn diagnosis(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
+/// What the observations say of the estimate as a whole.
+fn findings(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
     let Some(record) = &plant.record else { return };
     let tokens = context.tokens;
-    title(ui, context, "Diagnosis", "");
+    title(ui, context, "Result", "");
     let ended = match &record.outcome {
         StepOutcome::Explained => None,
         StepOutcome::Refuted { conflict } => {
@@ -241,10 +246,7 @@ fn diagnosis(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMom
         ui.label(RichText::new(text).color(tokens.warning));
     }
     if record.conflicts.is_empty() && ended.is_none() {
-        ui.label(RichText::new("No faults diagnosed.").color(tokens.good));
-    }
-    for conflict in &record.conflicts {
-        ui.label(RichText::new(conflict.describe(model)).color(tokens.warning));
+        ui.label(RichText::new("No conflicts: the observations are as expected.").color(tokens.good));
     }
     if plant.belief.most_likely() != &plant.true_state {
         let text =

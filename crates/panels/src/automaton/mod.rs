@@ -7,6 +7,7 @@ mod chance;
 mod components;
 mod controls;
 mod evidence;
+mod hitting_sets;
 mod known;
 mod legend;
 mod log;

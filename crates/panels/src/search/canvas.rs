@@ -11,6 +11,7 @@ use workbench::ViewAction;
 use workbench::state::search::focus::concerns;
 use workbench::state::search::{Share, wording};
 
+use super::items;
 use super::merged::{self, Merged};
 use super::tree::{TreeDrawing, TreeIndex};
 use crate::Context;
@@ -71,7 +72,7 @@ impl Tree<'_> {
     }
 
     /// The state of the step: that of each search, if two are merged.
-    fn at_step(&self) -> [Option<TreeNodeId>; 2] {
+    pub(super) fn at_step(&self) -> [Option<TreeNodeId>; 2] {
         match &self.merged {
             Some(merged) => merged.steps.map(|step| step.map(|(_, state)| state)),
             None => [self.step.map(|(_, state)| state), None],
@@ -79,7 +80,7 @@ impl Tree<'_> {
     }
 
     /// Whether a state is known at the step: at that of either search, if two are merged.
-    fn is_known(&self, id: TreeNodeId) -> bool {
+    pub(super) fn is_known(&self, id: TreeNodeId) -> bool {
         match &self.merged {
             Some(merged) => merged.is_known(id),
             None => self.index.is_known(id, self.step()),
@@ -87,7 +88,7 @@ impl Tree<'_> {
     }
 
     /// What has come of a state by the step.
-    fn status(&self, id: TreeNodeId) -> TreeStatus {
+    pub(super) fn status(&self, id: TreeNodeId) -> TreeStatus {
         match &self.merged {
             Some(merged) => merged.status(id),
             None => self.index.status(self.trace, id, self.step()),
@@ -95,7 +96,7 @@ impl Tree<'_> {
     }
 
     /// The learned conflict that excludes a state by the step: in either search, if two are merged.
-    fn learned(&self, id: TreeNodeId) -> Option<&[TreeChoice]> {
+    pub(super) fn learned(&self, id: TreeNodeId) -> Option<&[TreeChoice]> {
         match &self.merged {
             Some(merged) => merged.learned(id),
             None => Some(self.index.exclusion(id, self.step())?.conflict(self.trace)),
@@ -112,6 +113,8 @@ pub struct Pointed {
     pub clicked: bool,
     /// It was clicked twice: fold or unfold it.
     pub toggled: bool,
+    /// Assistive technology goes to it, wherever the pointer is.
+    pub chosen: bool,
 }
 
 /// The designed size of a cell, and the most and least that one is made.
@@ -183,7 +186,7 @@ impl View {
         let count = tree.trace.tree.len();
         response.widget_info(|| {
             let name = format!("{}: search tree of {count} states", tree.name);
-            egui::WidgetInfo::labeled(egui::Role::Image, true, name)
+            egui::WidgetInfo::labeled(egui::Role::Tree, true, name)
         });
         self.navigate(&response, rect, tree);
         self.follow_step(rect, tree);
@@ -192,8 +195,12 @@ impl View {
         let scene = Scene { painter: &painter, rect, view: *self, context, tree, path: &path };
         scene.paint();
         let hovered = response.hover_pos().and_then(|pointer| self.state_at(rect, pointer, tree));
+        let place =
+            |id: TreeNodeId| Some(self.place(rect, tree.drawing.places.get(id as usize).copied().flatten()?));
+        let chosen = items::show(ui, &response, tree, &path, place);
         Pointed {
-            hovered,
+            hovered: chosen.or(hovered),
+            chosen: chosen.is_some(),
             clicked: response.clicked() && hovered.is_some(),
             toggled: response.double_clicked() && hovered.is_some(),
         }

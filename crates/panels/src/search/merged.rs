@@ -164,7 +164,7 @@ impl MergedSide {
             if !self.toggled.remove(&hovered) {
                 self.toggled.insert(hovered);
             }
-        } else if pointed.clicked {
+        } else if pointed.clicked || pointed.chosen {
             commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(SearchCommand::Turn(side)));
             commands.send(Command::Search(SearchCommand::GoToNode(state)));

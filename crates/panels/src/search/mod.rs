@@ -6,6 +6,7 @@
 mod canvas;
 mod controls;
 mod details;
+mod items;
 mod keys;
 mod merged;
 mod statistics;
@@ -311,7 +312,7 @@ impl Side {
             if !self.toggled.remove(&state) {
                 self.toggled.insert(state);
             }
-        } else if pointed.clicked {
+        } else if pointed.clicked || pointed.chosen {
             commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(SearchCommand::Turn(number)));
             commands.send(Command::Search(SearchCommand::GoToNode(state)));

@@ -2,6 +2,7 @@
 //! together as they fit, after Reingold and Tilford (1981). Distances are in cells; linear in the size of the search.
 
 use kirk::{Event, Trace, TreeNodeId, TreeStatus};
+use workbench::state::search::focus::is_failure;
 use workbench::state::search::{Exclusion, exclusions};
 
 /// The tree as it is drawn.
@@ -25,6 +26,8 @@ pub struct TreeIndex {
     pub first_step: Vec<Option<usize>>,
     /// The last step in it or below it.
     pub last_step: Vec<Option<usize>>,
+    /// The first step in which each state fails.
+    failure_step: Vec<Option<usize>>,
     /// The steps in which a best-first search opens each state or goes on with it.
     pub bounded: Vec<Vec<u32>>,
     /// The step from which on each state is known: when it or another alternative of its choice point is entered.
@@ -51,6 +54,7 @@ impl TreeIndex {
             child_start: vec![0; count + 1],
             first_step: vec![None; count],
             last_step: vec![None; count],
+            failure_step: vec![None; count],
             bounded: vec![Vec::new(); count],
             known_from: vec![usize::MAX; count],
             below: vec![0; count],
@@ -67,6 +71,9 @@ impl TreeIndex {
                     index.entered.push(entry.tree_node);
                 }
                 index.last_step[id] = Some(step);
+                if index.failure_step[id].is_none() && is_failure(&entry.event) {
+                    index.failure_step[id] = Some(step);
+                }
                 if matches!(entry.event, Event::Bound { .. } | Event::Visit { .. }) {
                     index.bounded[id].push(step as u32);
                 }
@@ -138,6 +145,12 @@ impl TreeIndex {
         let entered = || self.entered.iter().rev().copied();
         let is_plan = |id: &TreeNodeId| self.children(*id).is_empty() && self.has_solution[*id as usize];
         self.goal = entered().find(is_plan).or_else(|| entered().next()).unwrap_or(0);
+    }
+
+    /// How a state failed, if it did.
+    pub fn failure<'t>(&self, trace: &'t Trace, id: TreeNodeId) -> Option<&'t Event> {
+        let step = self.failure_step.get(id as usize).copied().flatten()?;
+        trace.events.get(step).map(|entry| &entry.event)
     }
 
     /// Whether a state is known at `step`: it was entered, or it is an alternative of a choice that was reached. Without

@@ -21,7 +21,7 @@ const ENGINE: &str = "(DEFCLASS Engine ()
   (FAULT Standby Failed 0.01) (FAULT Firing Failed 0.01))
 (DEFINSTANCE E Engine INIT Off)";
 
-fn model(text: &str) -> Model {
+pub(crate) fn model(text: &str) -> Model {
     let parsed = rmpl::control::parse(text);
     assert_eq!(parsed.diagnostics, [], "{text}");
     let (model, diagnostics) = compile(&parsed.file);
@@ -81,7 +81,7 @@ fn the_engine_is_believed_to_be_where_the_suite_says() {
 }
 
 /// Components in a chain or tree, some of which pass on what comes in, with observed ends and random faults.
-fn random_model(random: &mut Random) -> String {
+pub(crate) fn random_model(random: &mut Random) -> String {
     let mut text = String::from(
         "(DEFCLASS Source () (VAR out {no yes}) (COMMAND cmd {none stop go})
           (MODE On (out = yes)) (MODE Off (out = no)) (MODE Dead (out = no))
@@ -185,7 +185,7 @@ fn chance(model: &Model, before: &State, after: &State, commands: &plant::Comman
     product
 }
 
-fn assignments(counts: &[u8]) -> Vec<Vec<u8>> {
+pub(crate) fn assignments(counts: &[u8]) -> Vec<Vec<u8>> {
     counts.iter().fold(vec![Vec::new()], |all, count| {
         all.iter()
             .flat_map(|left: &Vec<u8>| {
@@ -196,7 +196,7 @@ fn assignments(counts: &[u8]) -> Vec<Vec<u8>> {
 }
 
 /// The values of the observed variables that some assignment to all variables allows.
-fn admitted_observations(
+pub(crate) fn admitted_observations(
     model: &Model,
     state: &[u8],
     observation: &plant::Observation,

@@ -3,5 +3,6 @@
 mod bounded;
 mod checks;
 mod estimation;
+mod hitting_sets;
 mod knowledge;
 mod planning;

@@ -8,6 +8,7 @@ use tpn::{Network, NodeId, Plan};
 
 use super::{Description, PlantState};
 use crate::state::automaton::{Moment, PlantMoment, Program};
+use crate::state::diagnosing::Diagnosing;
 use crate::state::lesson::Predictions;
 use crate::state::search::{Counts, Recording};
 use crate::state::{Selection, Status};
@@ -102,6 +103,16 @@ impl<'a> Description<'a> {
         let view = self.state.search.shown()?;
         let entry = view.recording.trace().events.get(view.step.step)?;
         Some((&view.recording, &entry.event))
+    }
+
+    /// The hitting-set tree of the last step, as far as it was built.
+    pub(super) fn diagnosing(&self) -> Option<&'a Diagnosing> {
+        self.state.automaton.diagnosing()
+    }
+
+    /// The root of that tree.
+    pub(super) fn new_diagnosing(&self) -> Option<Diagnosing> {
+        self.state.automaton.new_diagnosing()
     }
 
     /// The review of the present plan.

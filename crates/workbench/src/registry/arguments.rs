@@ -1,6 +1,7 @@
 //! The arguments of commands that host pages give.
 
 use hca::VariableId;
+use plant::hitting_sets::HittingMove;
 use serde_json::Value;
 
 use crate::command::Command;
@@ -20,6 +21,28 @@ pub(super) fn injection(state: &AppState, arguments: &Value) -> Result<Command, 
         (id, Some(mode))
     };
     Ok(Command::Automaton(AutomatonCommand::Inject(id, mode)))
+}
+
+/// A step of the hitting-set tree: without arguments it starts again, with `next` it does the next step or `"all"`.
+pub(super) fn hitting(_: &AppState, arguments: &Value) -> Result<Command, String> {
+    let command = if let Some(next) = arguments.get("next") {
+        AutomatonCommand::DiagnoseNext(next == "all")
+    } else if arguments.get("node").is_some() {
+        let node = number_argument(arguments, "node")?.max(0.0) as usize;
+        let step = match arguments.get("as").and_then(Value::as_str) {
+            Some("diagnosis") => HittingMove::Diagnose,
+            Some("closed") => HittingMove::Close,
+            Some("conflict") => {
+                let conflict = number_argument(arguments, "conflict")?.max(1.0) as usize;
+                HittingMove::Expand(conflict - 1)
+            }
+            _ => return Err("`as` must be \"conflict\", \"diagnosis\" or \"closed\"".to_owned()),
+        };
+        AutomatonCommand::Diagnose(node, step)
+    } else {
+        AutomatonCommand::StartDiagnosis
+    };
+    Ok(Command::Automaton(command))
 }
 
 /// What is known of a variable of a program without a plant; without a value, nothing is.

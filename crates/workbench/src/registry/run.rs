@@ -2,7 +2,7 @@
 
 use executive::Disturbance;
 
-use super::arguments::{injection, knowledge, number_argument, part, text_argument};
+use super::arguments::{hitting, injection, knowledge, number_argument, part, text_argument};
 use super::available::{with_chance, with_program, with_run};
 use super::spec::{called, plain, when};
 use crate::command::Command;
@@ -53,6 +53,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }),
         with_program,
     ),
+    when(called("program.diagnose", "Build hitting-set tree", Group::Play, hitting), with_program),
     when(called("program.show", "Show part of program", Group::Play, part), with_program),
     when(
         plain("program.reset", "Restart program", Group::Play, &[], Scope::Everywhere, |_| {

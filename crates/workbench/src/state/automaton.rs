@@ -11,11 +11,13 @@ use executive::model_based::{StepOutcome, run_seed};
 use hca::VariableId;
 use link::{ControlRun, ControlStanding};
 use plant::ComponentId;
+use plant::hitting_sets::HittingMove;
 use smol_str::SmolStr;
 use snapshot::ContentKey;
 use text_editing::Document;
 
 use crate::mission_file;
+use crate::state::diagnosing::Diagnosing;
 use crate::state::program_chance::ProgramChanceState;
 
 pub use link::ControlProgram as Program;
@@ -57,6 +59,8 @@ pub struct AutomatonState {
     pub part: ProgramPart,
     /// Why the last step could not be taken.
     pub error: Option<String>,
+    /// The hitting-set tree that was begun last.
+    diagnosing: Option<Diagnosing>,
     /// Whether steps go by themselves.
     pub is_playing: bool,
     elapsed_secs: f64,
@@ -122,6 +126,12 @@ pub enum AutomatonCommand {
     Observe(plant::VariableId, Option<u8>),
     /// In the next step, the value of a variable of a program without a plant is known to be this, or not known.
     Know(VariableId, Option<u32>),
+    /// Starts the hitting-set tree over the conflicts of the last step, again if there is one.
+    StartDiagnosis,
+    /// Lets a node of that tree become something.
+    Diagnose(usize, HittingMove),
+    /// Does the next step of that tree, level by level (`false`), or all of them.
+    DiagnoseNext(bool),
     /// From the first step on, components fail by chance, or only those that were made to.
     SetFaultSeed(Option<FaultSeed>),
 }
@@ -247,6 +257,26 @@ impl AutomatonState {
         self.at
     }
 
+    /// The hitting-set tree over the conflicts of the step before the moment that is looked at, if it was begun.
+    pub fn diagnosing(&self) -> Option<&Diagnosing> {
+        let root = self.new_diagnosing()?;
+        self.diagnosing.as_ref().filter(|known| known.is_about(&root))
+    }
+
+    /// The root of that tree; nothing if the step has no conflicts.
+    pub fn new_diagnosing(&self) -> Option<Diagnosing> {
+        let model = self.program.as_ref()?.model()?;
+        let before = self.moments.get(self.at.checked_sub(1)?)?.plant.as_ref()?;
+        Diagnosing::new(model, before, self.moment()?.plant.as_ref()?)
+    }
+
+    fn diagnose(&mut self, change: impl FnOnce(&mut Diagnosing, &plant::Model)) {
+        let Some(root) = self.new_diagnosing() else { return };
+        let Some(model) = self.program.as_ref().and_then(Program::model) else { return };
+        let kept = self.diagnosing.take().filter(|known| known.is_about(&root));
+        change(self.diagnosing.insert(kept.unwrap_or(root)), model);
+    }
+
     /// What comes from outside in the step after the moment that is looked at.
     pub fn next_input(&self) -> Input {
         let logged = self.pending.as_ref().or_else(|| self.log.get(self.target));
@@ -349,6 +379,16 @@ impl AutomatonState {
                 self.fault_seed = seed;
                 self.wants_answer = true;
             }
+            AutomatonCommand::StartDiagnosis => self.diagnosing = self.new_diagnosing(),
+            AutomatonCommand::Diagnose(node, step) => {
+                self.diagnose(|tree, model| tree.apply(model, node, step));
+            }
+            AutomatonCommand::DiagnoseNext(all) => self.diagnose(|tree, model| {
+                // A tree that is too large stays open.
+                for _ in 0..if all { plant::hitting_sets::MAX_NODES } else { 1 } {
+                    tree.apply_next(model);
+                }
+            }),
             AutomatonCommand::Inject(component, mode) => {
                 let mut input = self.next_input();
                 match mode {

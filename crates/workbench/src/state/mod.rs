@@ -8,6 +8,7 @@ pub mod chance;
 pub mod compare;
 pub mod contradict;
 pub mod derived;
+pub mod diagnosing;
 pub mod documents;
 pub(crate) mod editing;
 pub mod editor;

@@ -5,6 +5,7 @@ mod commands;
 mod counters;
 mod course;
 mod derived;
+mod diagnosing;
 mod editing;
 mod edits;
 mod effects;

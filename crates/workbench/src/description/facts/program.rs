@@ -1,6 +1,7 @@
 //! The run of a control program: what is marked, what is believed, and what is true.
 
 use super::{Row, count, truth, words};
+use crate::state::diagnosing::set_text;
 
 pub(super) const VALUES: &[Row] = &[
     ("program", |it, _| truth(it.program()?.locations > 0 && it.program()?.marked.is_some())),
@@ -35,6 +36,22 @@ pub(super) const VALUES: &[Row] = &[
     ("observed", |it, name| words(it.plant()?.observations.as_ref()?.get(name)?.as_str())),
     ("conflicts", |it, _| count(it.plant()?.conflicts.as_ref()?.len())),
     ("conflict", |it, _| words(it.plant()?.conflicts.as_ref()?.first()?.as_str())),
+    ("diagnoses", |it, _| {
+        let (model, _) = it.plant_of_moment()?;
+        count(it.new_diagnosing()?.finished(model).tree().diagnoses().count())
+    }),
+    ("likeliest-diagnosis", |it, _| {
+        let (model, moment) = it.plant_of_moment()?;
+        let whole = it.new_diagnosing()?.finished(model);
+        let probabilities = whole.agreement(model, &moment.belief).probabilities;
+        let sets = whole.tree().diagnoses().zip(&probabilities);
+        let ((_, set), _) = sets.max_by(|one, other| one.1.total_cmp(other.1))?;
+        words(set_text(model, set))
+    }),
+    ("diagnosed", |it, _| {
+        it.new_diagnosing()?;
+        truth(it.diagnosing().is_some_and(|it| it.tree().is_finished()))
+    }),
 ];
 
 /// An exact fraction in percent. Its parts may have more digits than an integer holds.
