@@ -516,7 +516,12 @@ fn items(app: &App) -> Vec<(String, usize, bool, [usize; 2])> {
     let item = |node: egui_kittest::Node<'_>| {
         let node = node.accesskit_node();
         let place = [node.position_in_set().expect("a place"), node.size_of_set().expect("a size")];
-        (node.label().unwrap_or_default(), node.level().expect("a level"), node.is_selected() == Some(true), place)
+        (
+            node.label().unwrap_or_default(),
+            node.level().expect("a level"),
+            node.is_selected() == Some(true),
+            place,
+        )
     };
     nodes.map(item).collect()
 }
@@ -530,7 +535,8 @@ fn the_search_is_a_tree_for_who_does_not_see_it() {
     assert_eq!(known[0].0, "Initial state, explored");
     assert_eq!((known[0].1, known[0].3), (1, [0, 1]));
     assert!(names.iter().any(|it| it.starts_with("D1 = 0: Long-Way#1, explored")), "{names:?}");
-    let failed = known.iter().find(|(name, ..)| name.starts_with("D2 = 0: Core#1, failed: ")).expect("it failed");
+    let failed =
+        known.iter().find(|(name, ..)| name.starts_with("D2 = 0: Core#1, failed: ")).expect("it failed");
     assert_eq!((failed.1, failed.2, failed.3), (3, true, [0, 3]));
     assert!(names.contains(&"D2 = 1: Scoop#1, not explored"), "{names:?}");
     // The whole search, with its plan; a click goes to the state.
@@ -540,7 +546,8 @@ fn the_search_is_a_tree_for_who_does_not_see_it() {
     assert!(node.accesskit_node().is_expanded().is_none(), "nothing is below a plan");
     node.click_accesskit();
     app.settle();
-    let (_, _, is_selected, _) = items(&app).into_iter().find(|(name, ..)| *name == plan).expect("it is there");
+    let (_, _, is_selected, _) =
+        items(&app).into_iter().find(|(name, ..)| *name == plan).expect("it is there");
     assert!(is_selected);
     assert!(step(&app) > 0);
 }

@@ -38,8 +38,13 @@ pub(super) fn show(
             Answer::Task(_) => show_task(ui, context, ask, is_right, commands),
             Answer::Prediction(forecast) => {
                 show_prediction(ui, context, forecast, commands);
-                if context.state.lesson.predictions().is_over() && !ask.because.is_empty() {
+                let predictions = context.state.lesson.predictions();
+                if predictions.is_over() && !ask.because.is_empty() {
                     paragraph(ui, context, &ask.because, commands);
+                } else if predictions.made().last().is_some_and(|last| !last.is_right())
+                    && !ask.hint.is_empty()
+                {
+                    paragraph(ui, context, &ask.hint, commands);
                 }
                 return;
             }

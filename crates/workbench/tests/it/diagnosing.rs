@@ -13,7 +13,8 @@ use workbench::state::lesson::LessonCommand;
 fn lesson() -> App {
     let course = course_lesson("estimation").expect("a lesson");
     let (lesson, _) = Lesson::read(course.name, course.text);
-    let stop = lesson.stops.iter().position(|stop| stop.title == "Build the hitting-set tree").expect("a stop");
+    let stop =
+        lesson.stops.iter().position(|stop| stop.title == "Build the hitting-set tree").expect("a stop");
     let mut app = start();
     app.run(Command::Lesson(LessonCommand::Open("estimation".into(), stop)));
     app.settle();
@@ -47,7 +48,10 @@ fn a_tree_is_built_by_hand_and_agrees_with_the_estimate() {
     assert_eq!(label(&mut app, 0, "conflict", 2), None);
     let refusal = label(&mut app, 2, "conflict", 1).expect("it is hit");
     let text = refusal_text(&model, diagnosing(&app).tree(), &refusal);
-    assert_eq!(text, "The path already has LampB, which this conflict contains. Choose a conflict without it.");
+    assert_eq!(
+        text,
+        "The path already has LampB, which this conflict contains. Choose a conflict without it."
+    );
     assert_eq!(label(&mut app, 2, "diagnosis", 1), None);
     assert_eq!(label(&mut app, 1, "conflict", 1), None);
     assert_eq!(label(&mut app, 3, "diagnosis", 1), None);

@@ -206,7 +206,7 @@ impl Growth {
             return;
         };
         // Who has seen all samples goes on to see all of them.
-        let saw_all = before.is_complete() && before.at >= before.total();
+        let saw_all = before.total() > 0 && before.is_complete() && before.at >= before.total();
         self.shown = self.start(&input, traverse, before.leg);
         if let Some(shown) = &mut self.shown {
             for (search, known) in shown.searches.iter_mut().zip(before.searches) {
