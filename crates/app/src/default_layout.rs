@@ -85,13 +85,14 @@ fn wide_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
             let text = tabs(tiles, &[Editor, Outline]);
             let problems = tabs(tiles, &[Problems]);
             let left = split(tiles, Vertical, &[(text, 0.78), (problems, 0.22)]);
+            let timeline = tabs(tiles, &[Timeline]);
             let network = tabs(tiles, &[Network]);
             let plan = tabs(tiles, &[Plan]);
             let terrain = tabs(tiles, &[Terrain]);
-            let lower = split(tiles, Horizontal, &[(plan, 0.5), (terrain, 0.5)]);
-            let timeline = tabs(tiles, &[Timeline]);
-            let right = split(tiles, Vertical, &[(network, 0.44), (lower, 0.30), (timeline, 0.26)]);
-            split(tiles, Horizontal, &[(left, 0.36), (right, 0.64)])
+            let beside = split(tiles, Vertical, &[(plan, 0.5), (terrain, 0.5)]);
+            let lower = split(tiles, Horizontal, &[(network, 0.58), (beside, 0.42)]);
+            let right = split(tiles, Vertical, &[(timeline, 0.54), (lower, 0.46)]);
+            split(tiles, Horizontal, &[(left, 0.33), (right, 0.67)])
         }
         Workspace::Teach => {
             let text = tabs(tiles, &[Editor, Outline]);
@@ -137,8 +138,8 @@ fn narrow_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
             let text = tabs(tiles, &[Editor, Outline, Problems]);
             let network = tabs(tiles, &[Network, Terrain]);
             let plan = tabs(tiles, &[Timeline, Plan]);
-            let right = split(tiles, Vertical, &[(network, 0.52), (plan, 0.48)]);
-            (text, right, 0.42)
+            let right = split(tiles, Vertical, &[(plan, 0.62), (network, 0.38)]);
+            (text, right, 0.36)
         }
         Workspace::Teach => {
             let network = tabs(tiles, &[Network, Distances, Timeline, Terrain]);
@@ -268,6 +269,33 @@ mod tests {
                 let has_place = layouts.iter().any(|layout| layout.tiles.find_pane(&panel).is_some());
                 assert!(has_place, "{panel:?} is in no default layout, {size:?}");
             }
+        }
+    }
+
+    /// The part of the window that each panel in front has.
+    fn areas(tree: &Tree<PanelKind>) -> Vec<(f32, PanelKind)> {
+        let mut areas = Vec::new();
+        let mut waiting: Vec<(TileId, f32)> = tree.root().map(|root| (root, 1.0)).into_iter().collect();
+        while let Some((id, area)) = waiting.pop() {
+            match tree.tiles.get(id) {
+                Some(Tile::Container(Container::Linear(linear))) => {
+                    let sum: f32 = linear.children.iter().map(|&child| linear.shares[child]).sum();
+                    waiting.extend(linear.children.iter().map(|&child| (child, area * linear.shares[child] / sum)));
+                }
+                Some(Tile::Container(container)) => waiting.extend(container.children().next().map(|&it| (it, area))),
+                Some(Tile::Pane(panel)) => areas.push((area, *panel)),
+                None => {}
+            }
+        }
+        areas
+    }
+
+    #[test]
+    fn the_timeline_is_the_largest_panel_of_the_author() {
+        for size in [SizeClass::Wide, SizeClass::Narrow] {
+            let areas = areas(&default_layout(Arrangement::Of(Workspace::Author), size));
+            let largest = areas.iter().max_by(|left, right| left.0.total_cmp(&right.0));
+            assert_eq!(largest.map(|it| it.1), Some(PanelKind::Timeline), "{size:?}: {areas:?}");
         }
     }
 

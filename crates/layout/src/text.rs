@@ -6,7 +6,7 @@ use display::{Measure, text_width_at};
 use exact::{Bound, Time};
 use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
-use tpn::{Arc, ArcId, ArcKind, BlockKind, Extent, Label, LabelId, Network, OccurrenceKind};
+use tpn::{Arc, ArcId, ArcKind, BlockKind, Extent, Label, LabelId, Network, Occurrence, OccurrenceKind};
 
 use crate::drawing::Item;
 use crate::metrics::{TextRole, WORD_GAP, whole};
@@ -205,14 +205,20 @@ fn arc_name(network: &Network, options: &Options, id: ArcId, arc: &Arc) -> Optio
         OccurrenceKind::Assertion | OccurrenceKind::Scope => None,
         OccurrenceKind::Delay => Some((SmolStr::new_static("delay"), TextRole::Muted)),
         OccurrenceKind::Primitive | OccurrenceKind::Activity | OccurrenceKind::Scenario => {
-            let arguments = options.arguments && !occurrence.arguments.is_empty();
-            let text = if arguments {
-                format_smolstr!("{}({})", occurrence.activity, occurrence.arguments.join(", "))
-            } else {
-                occurrence.activity.clone()
-            };
+            let text =
+                if options.arguments { activity_name(occurrence) } else { occurrence.activity.clone() };
             Some((text, TextRole::Name))
         }
+    }
+}
+
+/// What people call an occurrence: its activity with the arguments of the call, `Drive(RIDGE)`. It is no identifier:
+/// several may have it.
+pub fn activity_name(occurrence: &Occurrence) -> SmolStr {
+    match occurrence.kind {
+        OccurrenceKind::Delay => SmolStr::new_static("delay"),
+        _ if occurrence.arguments.is_empty() => occurrence.activity.clone(),
+        _ => format_smolstr!("{}({})", occurrence.activity, occurrence.arguments.join(", ")),
     }
 }
 

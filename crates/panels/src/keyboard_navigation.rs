@@ -97,7 +97,7 @@ fn next_thing(
     neighbour(&all, selection, direction)
 }
 
-/// The activity above or below the selected one, as the timeline lists them.
+/// The activity before or after the selected one, in the order in which they are scheduled to start.
 fn next_activity(
     network: &Network,
     plan: &Plan,
@@ -105,19 +105,17 @@ fn next_activity(
     direction: Direction,
 ) -> Option<Selection> {
     let window = |node: NodeId| plan.windows.get(node.index()).copied().flatten();
-    let all: Vec<Selection> = network
-        .occurrences
-        .iter()
-        .enumerate()
-        .filter(|(_, it)| {
-            let is_listed = matches!(
-                it.kind,
-                OccurrenceKind::Activity | OccurrenceKind::Primitive | OccurrenceKind::Assertion
-            );
-            is_listed && window(it.start).is_some() && window(it.end).is_some()
-        })
-        .map(|(id, _)| Selection::Occurrence(OccurrenceId::from_index(id)))
-        .collect();
+    let listed = network.occurrences.iter().enumerate().filter_map(|(id, it)| {
+        let is_listed = matches!(
+            it.kind,
+            OccurrenceKind::Activity | OccurrenceKind::Primitive | OccurrenceKind::Assertion
+        );
+        let (start, _) = (window(it.start)?, window(it.end)?);
+        is_listed.then_some((start.earliest, OccurrenceId::from_index(id)))
+    });
+    let mut listed: Vec<_> = listed.collect();
+    listed.sort_unstable();
+    let all: Vec<Selection> = listed.into_iter().map(|(_, id)| Selection::Occurrence(id)).collect();
     let here = selection.occurrence(network).map_or(Selection::None, Selection::Occurrence);
     neighbour(&all, &here, direction)
 }

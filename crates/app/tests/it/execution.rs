@@ -87,6 +87,24 @@ fn the_state_says_what_is_under_way_and_what_is_due() {
     );
 }
 
+/// The rovers are driving along path 1 when it closes: they end that drive early and take path 2 when it opens.
+#[test]
+fn an_activity_that_was_ended_early_stays_on_the_timeline() {
+    let mut app = executing("exploration");
+    dispatch(&mut app, "play.seek", &json!({ "time": 100 }));
+    let is_aborted = |app: &support::App| {
+        let bars = app.harness.query_all_by_label_contains("Group-Traverse-Path#1: started 10, aborted 10");
+        bars.count()
+    };
+    assert_eq!(is_aborted(&app), 0);
+    press(&mut app, "Withdraw Tell(PATH1=OK)#1");
+    assert_eq!(app.json()["plan"]["choices"]["D1"], 1);
+    dispatch(&mut app, "play.seek", &json!({ "time": 300 }));
+    assert_eq!(is_aborted(&app), 1);
+    dispatch(&mut app, "play.seek", &json!({ "time": 50 }));
+    assert_eq!(is_aborted(&app), 0, "it has not happened yet");
+}
+
 #[test]
 fn a_condition_withdrawn_on_the_way_stops_the_mission_safely_and_says_why() {
     let mut app = executing_text(SCENARIO);

@@ -145,7 +145,7 @@ fn the_manual_is_searched_and_a_panel_leads_to_its_page() {
     let mut app = opened("mission=enroute&workspace=author", [1280.0, 800.0]);
     click(&mut app, Role::Button, "Help: Timeline");
     assert_eq!(app.json()["manual"]["page"], "timeline");
-    app.harness.get_by_role_and_label(Role::Heading, "States and resources on the timeline");
+    app.harness.get_by_role_and_label(Role::Heading, "Timeline");
     app.harness.state_mut().dispatch("help.search", &json!({ "words": "negative cycle" })).expect("a search");
     app.settle();
     let found = app.json()["manual"]["found"][0].as_str().unwrap_or_default().to_owned();

@@ -405,14 +405,15 @@ fn what_is_selected_in_one_panel_is_selected_in_the_others() {
     let selected = |app: &App| app.json()["selection"]["name"].as_str().unwrap_or_default().to_owned();
     let is_selected = |app: &App, starts: &str| {
         let node = app.harness.get_by(|node| {
-            node.role() == Role::Button && node.label().is_some_and(|label| label.starts_with(starts))
+            node.role() == Role::Button
+                && node.label().is_some_and(|label| label.starts_with(starts) || label.contains(&format!(", {starts}")))
         });
         node.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
     };
     // From the timeline.
     app.harness
         .get_by(|node| {
-            node.role() == Role::Button && node.label().is_some_and(|it| it.starts_with("Group-Wait#1:"))
+            node.role() == Role::Button && node.label().is_some_and(|it| it.contains(", Group-Wait#1:"))
         })
         .click();
     app.settle();

@@ -68,7 +68,7 @@ impl Chart {
         if before.times.is_empty() {
             return;
         }
-        for (at, bar) in self.bars.iter().enumerate().filter(|(_, bar)| bar.is_whole(network)) {
+        for (at, bar) in self.bars.iter().enumerate().filter(|(_, bar)| bar.is_whole(network) && !bar.kind.is_past()) {
             let Some(occurrence) = bar.occurrence.and_then(|id| network.occurrences.get(id.index())) else {
                 continue;
             };
@@ -84,12 +84,14 @@ impl Chart {
         }
         self.gone = before.gone(network, plan);
         let end = self.bars.len();
+        let lane = self.next_lane(0);
         let row = |kind, name: SmolStr, depth| Row {
             kind,
             name,
             depth,
             key: None,
             is_closed: false,
+            lane,
             bars: end..end,
         };
         if !self.gone.is_empty() {
@@ -103,6 +105,8 @@ impl Chart {
             BarChange::Moved(times) => Some(times.concat()),
             BarChange::New => None,
         });
+        let scheduled = self.gone.iter().map(|gone| gone.times[1][0]);
+        self.end = scheduled.filter(|time| time.is_finite()).fold(self.end, f64::max);
         let all = ends.chain(moved.flatten());
         self.horizon = all.filter(|time| time.is_finite()).fold(self.horizon, f64::max);
     }

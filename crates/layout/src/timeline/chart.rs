@@ -5,13 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rmpl::program::Program;
 use smol_str::SmolStr;
-use tpn::{CausalLink, LabelId, Network, Ordering, Plan, UseOrdering};
+use tpn::{CausalLink, LabelId, Network, OccurrenceId, Ordering, Plan, UseOrdering};
 
 use super::before::{BarChange, Gone};
 use super::profile::{Profile, profiles};
+use super::category::{Category, categories};
 use super::row::{Bar, BarKind, Item, Row};
 use super::rule::RuleTrack;
-use super::{ChartOptions, group, profile, rule};
+use super::{ChartOptions, lane, rule};
 
 /// Rows of bars, and the links between them.
 #[derive(Clone, Debug, Default)]
@@ -30,8 +31,22 @@ pub struct Chart {
     pub changes: BTreeMap<usize, BarChange>,
     /// What only the other plan has, each with a row.
     pub gone: Vec<Gone>,
+    /// What the colors of bars mean.
+    pub legend: Vec<Category>,
     /// The last time that is certain to matter: every finite bound of every bar.
     pub horizon: f64,
+    /// When the last bar ends as it is scheduled, with pinned events or without.
+    pub end: f64,
+}
+
+/// An activity that had started when the plan followed was replaced by one that does not have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Past {
+    pub occurrence: OccurrenceId,
+    /// When it started and ended, in mission units.
+    pub times: [f64; 2],
+    /// Whether it was ended early.
+    pub is_aborted: bool,
 }
 
 /// A line between two bars.
@@ -57,11 +72,12 @@ pub enum LinkKind {
 }
 
 impl Chart {
-    /// The chart of a plan, with the rows below those of these keys closed. Linear in network and plan, but for sorting.
+    /// The chart of a plan, with the rows below those of these keys closed. `past` is what a run has left behind.
+    /// Near-linear in network and plan.
     pub fn new(
         program: &Program,
-        network: &Network,
-        plan: &Plan,
+        (network, plan): (&Network, &Plan),
+        past: &[Past],
         options: ChartOptions,
         closed: &BTreeSet<SmolStr>,
     ) -> Self {
@@ -71,8 +87,10 @@ impl Chart {
         if options.resources {
             chart.profiles = profiles(network, plan);
         }
-        let items = group::items(program, network, plan, options);
-        for item in items.into_iter().chain(profile::items(&chart.profiles)) {
+        let mut items = lane::items(program, (network, plan), past, options, &chart.profiles);
+        chart.legend = categories(program, network, &mut items);
+        let mut lanes = 0;
+        for item in items {
             if let Some((_, row)) = hidden_from.filter(|&(depth, _)| item.depth > depth) {
                 let is_gathered =
                     |bar: &Bar| !matches!(bar.kind, BarKind::Composite | BarKind::Value | BarKind::Need);
@@ -82,7 +100,8 @@ impl Chart {
             let is_closed = item.key.as_ref().is_some_and(|key| closed.contains(key));
             hidden_from = is_closed.then_some((item.depth, chart.rows.len()));
             let Item { kind, name, key, depth, bars } = item;
-            chart.rows.push(Row { kind, name, depth, key, is_closed, bars: 0..0 });
+            lanes += usize::from(depth == 0);
+            chart.rows.push(Row { kind, name, depth, key, is_closed, lane: lanes, bars: 0..0 });
             gathered.push(bars);
         }
         for (row, mut bars) in chart.rows.iter_mut().zip(gathered) {
@@ -92,6 +111,7 @@ impl Chart {
             row.bars = first..chart.bars.len();
         }
         chart.horizon = horizon(&chart.bars);
+        chart.end = end(&chart.bars);
         chart.links = chart.links_of(network, plan);
         chart
     }
@@ -102,7 +122,8 @@ impl Chart {
             let Item { kind, name, key, depth, .. } = item;
             let is_closed = key.as_ref().is_some_and(|key| closed.contains(key));
             let end = self.bars.len();
-            self.rows.push(Row { kind, name, depth, key, is_closed, bars: end..end });
+            let lane = self.next_lane(depth);
+            self.rows.push(Row { kind, name, depth, key, is_closed, lane, bars: end..end });
             if is_closed {
                 break;
             }
@@ -110,14 +131,32 @@ impl Chart {
         self.rules = rules;
     }
 
-    /// Puts all windows to those of `plan`, which selects the same; in time linear in the bars.
+    /// Remembers the windows of `plan`, which selects the same and has no pinned events.
+    pub fn compare_with_free(&mut self, plan: &Plan) {
+        for bar in &mut self.bars {
+            if let Some(free) = bar.times_in(plan) {
+                bar.free = free;
+            }
+        }
+        self.horizon = self.horizon.max(horizon(&self.bars));
+        self.end = self.end.max(end(&self.bars));
+    }
+
+    /// Puts all windows to those of `plan`, which selects the same, and leaves rows as they are; in time linear in the bars.
     pub fn retime(&mut self, plan: &Plan) {
         for bar in &mut self.bars {
-            bar.retime(plan);
+            if let Some([start, end]) = bar.times_in(plan) {
+                (bar.start, bar.end) = (start, end);
+            }
         }
         for profile in &mut self.profiles {
             profile.retime(plan);
         }
+    }
+
+    /// The lane of a row that is added below all others.
+    pub(super) fn next_lane(&self, depth: u32) -> usize {
+        self.rows.last().map_or(0, |row| row.lane) + usize::from(depth == 0)
     }
 
     fn links_of(&self, network: &Network, plan: &Plan) -> Vec<Link> {
@@ -172,7 +211,12 @@ impl Chart {
 fn horizon(bars: &[Bar]) -> f64 {
     bars.iter()
         .filter(|bar| bar.kind != BarKind::Value)
-        .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1]])
+        .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1], bar.free[0][1], bar.free[1][0], bar.free[1][1]])
         .filter(|time| time.is_finite())
         .fold(1.0, f64::max)
+}
+
+fn end(bars: &[Bar]) -> f64 {
+    let ends = bars.iter().flat_map(|bar| [bar.scheduled()[1], bar.free[1][0]]);
+    ends.filter(|time| time.is_finite()).fold(1.0, f64::max)
 }

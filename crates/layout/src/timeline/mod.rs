@@ -2,7 +2,10 @@
 
 pub mod before;
 mod chart;
-mod group;
+mod category;
+mod lane;
+mod owner;
+mod pack;
 pub mod profile;
 mod row;
 pub mod rule;
@@ -11,7 +14,8 @@ mod ticks;
 
 use serde::{Deserialize, Serialize};
 
-pub use chart::{Chart, Link, LinkKind};
+pub use category::Category;
+pub use chart::{Chart, Link, LinkKind, Past};
 pub use row::{Bar, BarKind, ProfilePart, Row, RowKind, times};
 pub use ticks::Ticks;
 
@@ -34,34 +38,34 @@ pub struct ChartOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Grouping {
-    /// By the activities that they are part of.
+    /// A lane for each vehicle and for each resource or state that belongs to none.
     #[default]
-    Structure,
-    /// By the parallel branches of the program.
-    Thread,
-    /// By the vehicles that they occupy.
     Vehicle,
+    /// A lane for each parallel branch of the program.
+    Thread,
+    /// A row for each activity, below the one that it is part of.
+    Structure,
 }
 
 impl Grouping {
     /// All of them, as the timeline lists them.
-    pub const ALL: [Self; 3] = [Self::Structure, Self::Thread, Self::Vehicle];
+    pub const ALL: [Self; 3] = [Self::Vehicle, Self::Thread, Self::Structure];
 
     /// Its name on screen.
     pub const fn title(self) -> &'static str {
         match self {
-            Self::Structure => "By activity",
+            Self::Vehicle => "By vehicle or resource",
             Self::Thread => "By thread",
-            Self::Vehicle => "By vehicle",
+            Self::Structure => "By activity",
         }
     }
 
     /// Its name in commands.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Structure => "structure",
-            Self::Thread => "thread",
             Self::Vehicle => "vehicle",
+            Self::Thread => "thread",
+            Self::Structure => "structure",
         }
     }
 }

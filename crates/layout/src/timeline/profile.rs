@@ -8,13 +8,15 @@ use tpn::{Levels, Network, NodeId, OccurrenceId, Plan, Resource, Supply, UseId};
 
 use super::row::{Item, ProfilePart, RowKind, times};
 
-/// How many rows a profile is high.
-pub const PROFILE_ROWS: usize = 3;
+/// How many rows a profile is high that has levels to tell apart.
+const PROFILE_ROWS: usize = 3;
 
 /// The use of one resource over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     pub name: SmolStr,
+    /// Its number among the resources of the network.
+    pub(super) resource: usize,
     /// How much of it there is.
     pub supply: Supply,
     /// How far it is used over all schedules; `None` where the plan does not say.
@@ -59,28 +61,16 @@ pub(super) fn profiles(network: &Network, plan: &Plan) -> Vec<Profile> {
     named.map(|(index, resource)| Profile::new(network, plan, index, resource)).collect()
 }
 
-/// The rows of so many profiles, below a heading; nothing without any.
-pub(super) fn items(profiles: &[Profile]) -> Vec<Item> {
-    if profiles.is_empty() {
-        return Vec::new();
-    }
-    let heading = Item {
-        kind: RowKind::Heading,
-        name: SmolStr::new_static("Resources"),
-        key: Some(SmolStr::new_static("resources")),
-        depth: 0,
+/// The rows of a profile of this number.
+pub(super) fn items(number: usize, profile: &Profile) -> Vec<Item> {
+    let row = |part| Item {
+        kind: RowKind::Profile(ProfilePart { profile: number, part }),
+        name: if part == 0 { profile.name.clone() } else { SmolStr::default() },
+        key: None,
+        depth: 1,
         bars: Vec::new(),
     };
-    let rows = profiles.iter().enumerate().flat_map(|(profile, it)| {
-        (0..PROFILE_ROWS).map(move |part| Item {
-            kind: RowKind::Profile(ProfilePart { profile, part }),
-            name: if part == 0 { it.name.clone() } else { SmolStr::default() },
-            key: None,
-            depth: 1,
-            bars: Vec::new(),
-        })
-    });
-    [heading].into_iter().chain(rows).collect()
+    (0..profile.num_rows()).map(row).collect()
 }
 
 impl Profile {
@@ -103,6 +93,7 @@ impl Profile {
         });
         let mut profile = Self {
             name: resource.name.clone(),
+            resource: index,
             supply: resource.supply,
             levels: plan.levels.get(index).copied(),
             takers: takers.collect(),
@@ -120,6 +111,14 @@ impl Profile {
             }
         }
         self.steps = self.steps();
+    }
+
+    /// How many rows it is high: one where the resource is only in use or not.
+    pub fn num_rows(&self) -> usize {
+        match self.supply {
+            Supply::Reusable { capacity } if capacity <= Rational::ONE => 1,
+            _ => PROFILE_ROWS,
+        }
     }
 
     /// What is used or left before anything happens.
@@ -259,7 +258,7 @@ mod tests {
     }
 
     fn profile(supply: Supply, levels: Option<Levels>, takers: Vec<Taker>) -> Profile {
-        let mut profile = Profile { name: "R".into(), supply, levels, takers, steps: Vec::new() };
+        let mut profile = Profile { name: "R".into(), resource: 0, supply, levels, takers, steps: Vec::new() };
         profile.steps = profile.steps();
         profile
     }

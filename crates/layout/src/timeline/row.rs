@@ -17,16 +17,20 @@ pub struct Row {
     pub key: Option<SmolStr>,
     /// Whether the rows below it are hidden; their bars are then in this row.
     pub is_closed: bool,
+    /// The number of the lane that it is part of, from the top.
+    pub lane: usize,
     pub bars: Range<usize>,
 }
 
 /// What a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
-    /// The heading of a thread, of a vehicle, or of the conditions.
+    /// The heading of conditions, states, resources, or rules.
     Heading,
     /// One activity or delay.
     Single,
+    /// Activities and delays of a lane, one after the other.
+    Packed,
     /// The assertions of a variable that is known only there, or what is required of it.
     Track,
     /// The values of a variable that keeps them.
@@ -58,8 +62,10 @@ pub struct Bar {
     pub label: Option<LabelId>,
     /// Its first and its last event.
     pub events: [NodeId; 2],
-    /// Its name: of the occurrence, or of the condition.
+    /// What people call it: an activity with its arguments, or a condition.
     pub name: SmolStr,
+    /// Its site or its value, by [`super::Chart::legend`].
+    pub category: Option<usize>,
     /// When it can start, earliest and latest, in mission units.
     pub start: [f64; 2],
     /// When it can end; the latest may be infinite.
@@ -79,6 +85,10 @@ pub enum BarKind {
     Composite,
     /// A primitive activity.
     Activity,
+    /// An activity of an earlier plan that was executed to its end.
+    Past,
+    /// What was executed of an activity of an earlier plan before it was ended early.
+    Aborted,
     Delay,
     /// An asserted condition.
     Tell,
@@ -93,6 +103,11 @@ pub enum BarKind {
 }
 
 impl BarKind {
+    /// Whether it was executed, and the plan followed now has it no longer.
+    pub const fn is_past(self) -> bool {
+        matches!(self, Self::Past | Self::Aborted)
+    }
+
     /// Whether it is part of the track of a variable that keeps its value.
     pub const fn is_of_state(self) -> bool {
         matches!(self, Self::Value | Self::Changing | Self::Need)
@@ -113,9 +128,17 @@ pub(super) struct Item {
 }
 
 impl Bar {
-    /// The part in which it is going on for certain, if there is one.
-    pub fn certain(&self) -> Option<[f64; 2]> {
-        (self.start[1] < self.end[0]).then_some([self.start[1], self.end[0]])
+    /// When it starts and ends as it is scheduled now: as early as it can, or as it is pinned or was executed.
+    pub fn scheduled(&self) -> [f64; 2] {
+        [self.start[0], self.end[0].max(self.start[0])]
+    }
+
+    /// From when to when it can end by an uncontrolled duration, once it has started as scheduled; `None` if it is known
+    /// when it ends.
+    pub fn contingent(&self) -> Option<[f64; 2]> {
+        let [minimum, maximum] = self.natures.filter(|_| self.end[0] < self.end[1])?;
+        let ends = [minimum, maximum].map(|duration| self.start[0] + duration);
+        (ends[0] < ends[1]).then_some(ends)
     }
 
     /// Whether pinned events have narrowed its windows.
@@ -129,11 +152,9 @@ impl Bar {
         self.label.is_none() || occurrence.is_some_and(|it| it.kind == OccurrenceKind::Assertion)
     }
 
-    /// Puts its windows to those of `plan`.
-    pub(super) fn retime(&mut self, plan: &Plan) {
-        if let Some([start, end]) = times(plan, self.events) {
-            (self.start, self.end) = (start, end);
-        }
+    /// Its windows in `plan`; `None` for what that does not have.
+    pub(super) fn times_in(&self, plan: &Plan) -> Option<[[f64; 2]; 2]> {
+        times(plan, self.events).filter(|_| !self.kind.is_past())
     }
 }
 

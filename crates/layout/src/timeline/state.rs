@@ -12,28 +12,17 @@ use tpn::{Extent, Label, LabelId, Network, Plan, PlanOrder, ValueSet};
 
 use super::row::{Bar, BarKind, Item, RowKind, times};
 
-/// A row for each variable of a plan that keeps its value, below a heading; nothing without any.
-pub(super) fn items(network: &Network, plan: &Plan) -> Vec<Item> {
+/// The rows of the variables of a plan that keep their values, each with the number of its variable.
+pub(super) fn items(network: &Network, plan: &Plan) -> Vec<(usize, Item)> {
     let order = PlanOrder::new(plan);
     let tracks = network.variables.iter().enumerate().filter(|(_, variable)| variable.is_lasting);
-    let rows: Vec<Item> = tracks
+    tracks
         .filter_map(|(index, variable)| {
             let bars = track(network, plan, &order, index);
             let item = Item { kind: RowKind::State, name: variable.name.clone(), key: None, depth: 1, bars };
-            (!item.bars.is_empty()).then_some(item)
+            (!item.bars.is_empty()).then_some((index, item))
         })
-        .collect();
-    if rows.is_empty() {
-        return rows;
-    }
-    let heading = Item {
-        kind: RowKind::Heading,
-        name: SmolStr::new_static("States"),
-        key: Some(SmolStr::new_static("states")),
-        depth: 0,
-        bars: Vec::new(),
-    };
-    [heading].into_iter().chain(rows).collect()
+        .collect()
 }
 
 /// The bars of one variable: its changes and values in their order, then who needs them.
@@ -79,6 +68,7 @@ fn bar(
         label: Some(label),
         events,
         name: values(network, written),
+        category: None,
         start,
         end,
         free: [start, end],

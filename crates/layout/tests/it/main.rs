@@ -8,3 +8,4 @@ mod network;
 mod overlay;
 mod recover;
 mod threads;
+mod timeline;

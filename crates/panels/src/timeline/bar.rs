@@ -1,6 +1,6 @@
 //! What a bar stands for: what a click on it selects, and its windows in words.
 
-use layout::timeline::Bar;
+use layout::timeline::{Bar, BarKind};
 use tpn::{Network, NodeId, Plan};
 use workbench::state::Selection;
 use workbench::time_text;
@@ -23,6 +23,11 @@ pub(super) fn words(bar: &Bar, plan: &Plan) -> String {
             .flatten()
             .map_or_else(String::new, |window| time_text::interval(window.earliest, window.latest))
     };
+    if bar.kind.is_past() {
+        let [from, to] = bar.scheduled().map(|time| (time * 1000.0).round() / 1000.0);
+        let end = if bar.kind == BarKind::Aborted { "aborted" } else { "ended" };
+        return format!("started {from}, {end} {to}; not in the current plan");
+    }
     let windows = format!("starts {}, ends {}", interval(bar.events[0]), interval(bar.events[1]));
     match bar.natures {
         Some([least, greatest]) => {

@@ -44,15 +44,14 @@ pub(super) fn show(
     commands: &mut CommandSender,
 ) {
     let context = painting.context;
-    let Some(arc) = bar.occurrence.and_then(|id| painting.network.occurrences.get(id.index())?.arc) else {
-        return;
-    };
+    let occurrence = bar.occurrence.and_then(|id| painting.network.occurrences.get(id.index()));
+    let Some((occurrence, arc)) = occurrence.and_then(|it| Some((it, it.arc?))) else { return };
     let arc = &painting.network.arcs[arc.index()];
     let written = arc.span.filter(|_| !context.is_stale || drag.is_some());
     let from = drag.as_ref().map_or(bar.start[0], |drag| drag.from);
     let values = [number(arc.lower), bound(arc.upper)];
     let row = painting.row(row_index);
-    let y = row.top() + 3.0;
+    let y = row.top() + 1.0;
     let tokens = context.tokens;
     let painter = painting.on_track(ui);
     let [start, lower, upper] = [from, from + values[0], from + values[1]].map(|time| painting.x(time));
@@ -84,7 +83,7 @@ pub(super) fn show(
         let response = ui.interact(area.intersect(painting.visible), id, Sense::click_and_drag());
         response.widget_info(|| {
             let side = if is_upper { "maximum" } else { "minimum" };
-            let label = format!("Change the {side} duration of {}", bar.name);
+            let label = format!("Change the {side} duration of {}", occurrence.name);
             WidgetInfo::slider(true, value.map_or(0.0, number), label)
         });
         if response.drag_started()

@@ -20,9 +20,13 @@ use workbench::workspace::Workspace;
 use super::handle;
 use crate::Context;
 
+/// Narrower timelines have their switches in a menu.
+const ROOM_FOR_SWITCHES: f32 = 1_040.0;
+
 /// Shows the row.
 pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut CommandSender) {
     let frame = Frame::new().inner_margin(Margin::symmetric(8, 3));
+    let has_room = ui.available_width() >= ROOM_FOR_SWITCHES;
     frame.show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
@@ -33,7 +37,7 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, comman
             rate(ui, context, commands);
             ui.add_space(space::M);
             grouping(ui, context, commands);
-            switches(ui, context, commands);
+            switches(ui, context, has_room, commands);
             ui.add_space(space::M);
             zoom(ui, context, commands);
             ui.add_space(space::M);
@@ -142,7 +146,7 @@ pub(crate) fn rate(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         .accessible_name("Speed");
 }
 
-fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+fn switches(ui: &mut Ui, context: &Context<'_>, has_room: bool, commands: &mut CommandSender) {
     let mut views = context.state.settings.views.clone();
     let view = &mut views.timeline;
     let mut changed = false;
@@ -156,17 +160,26 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
     }
     let all = [
-        (&mut view.delays, "Delays"),
-        (&mut view.conditions, "Conditions"),
-        (&mut view.states, "States"),
-        (&mut view.resources, "Resources"),
-        (&mut view.links, "Links"),
+        (&mut view.delays, "Delays", "Delays as bars"),
+        (&mut view.conditions, "Conditions", "Required and asserted conditions"),
+        (&mut view.states, "States", "Values of state variables"),
+        (&mut view.resources, "Resources", "Use of resources"),
+        (&mut view.links, "Links", "All causal links and orderings; otherwise those of the selection"),
     ];
-    for (value, name) in all {
-        if ui.add(Button::selectable(*value, RichText::new(name).small())).clicked() {
-            *value = !*value;
-            changed = true;
+    if has_room {
+        for (value, name, help) in all {
+            let toggle = ui.add(Button::selectable(*value, RichText::new(name).small()));
+            if toggle.on_hover_text(help).clicked() {
+                *value = !*value;
+                changed = true;
+            }
         }
+    } else {
+        ui.menu_button(RichText::new("Show").small(), |ui| {
+            for (value, name, help) in all {
+                changed |= ui.checkbox(value, name).on_hover_text(help).changed();
+            }
+        });
     }
     if changed {
         commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));

@@ -21,8 +21,8 @@ use crate::Context;
 /// The pinned events of a frame.
 pub(super) type Pinned = BTreeMap<NodeId, Time>;
 
-/// Half the width of a handle, in points; the other half of a neighbour's is its own.
-const HALF_WIDTH: f32 = 7.0;
+/// How far a handle reaches into its bar, and out of it, in points: outside there may be the next bar.
+const REACH: (f32, f32) = (7.0, 3.0);
 /// The upper part of a row belongs to the handles of bounds.
 const TOP: f32 = 8.0;
 
@@ -49,16 +49,20 @@ pub(super) fn show(
             continue;
         }
         let x = [start_x, end_x][side];
+        // Where the bar is too narrow for both handles, each reaches out as far as it cannot reach in.
+        let inside = REACH.0.min((end_x - start_x).abs() / 2.0);
+        let outside = (REACH.0 - inside).max(REACH.1);
         let (left, right) = match side {
-            0 => (x - HALF_WIDTH, (x + HALF_WIDTH).min(between)),
-            _ => ((x - HALF_WIDTH).max(between), x + HALF_WIDTH),
+            0 => (x - outside, (x + inside).min(between)),
+            _ => ((x - inside).max(between), x + outside),
         };
         let area = Rect::from_min_max(pos2(left, row.top() + TOP), pos2(right, row.bottom()));
-        let area = area.intersect(painting.visible.expand2(vec2(HALF_WIDTH, 0.0)));
+        let area = area.intersect(painting.visible.expand2(vec2(REACH.0, 0.0)));
         if !area.is_positive() {
             continue;
         }
-        let id = ui.scope_id().with(("event", node.0, row_index));
+        // The row may change, and a node may be the event of several.
+        let id = ui.scope_id().with(("event", bar.occurrence, side));
         let response = ui.interact(area, id, Sense::click_and_drag());
         let name = name_of(painting, bar, side);
         response.widget_info(|| {
@@ -192,7 +196,7 @@ fn follow(
 fn paint(ui: &Ui, painting: &Painting<'_>, x: f32, row: Rect, is_pinned: bool, is_strong: bool) {
     let tokens = painting.context.tokens;
     let painter = painting.on_track(ui);
-    let middle = row.center().y - 1.0;
+    let middle = row.center().y - 2.0;
     if is_pinned {
         // A pin: a head above a needle, so that colour is not the only sign.
         painter.vline(x, row.top() + 2.0..=row.bottom() - 1.0, Stroke::new(2.0, tokens.accent));

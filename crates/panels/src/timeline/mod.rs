@@ -1,4 +1,4 @@
-//! The timeline: activities and conditions as bars with their flexible starts and ends, and time as it plays.
+//! The timeline: activities and conditions as bars at the times for which they are scheduled, and time as it plays.
 //!
 //! Which bars there are and in which rows is prepared once for a plan; what is in view of them is a display list. `handle`
 //! drags events inside their windows, `bounds` drags bounds in the text.
@@ -10,6 +10,7 @@ mod handle;
 mod link;
 mod overview;
 mod paint;
+mod past;
 mod profile;
 mod rule;
 mod view;
@@ -20,8 +21,8 @@ use std::sync::Arc;
 use egui::{
     CursorIcon, PointerButton, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
-use layout::list::timeline::{LinkCurve, Standing, TimelineState, timeline_list};
-use layout::timeline::{Bar, Chart, Row, RowKind, state, times};
+use layout::list::timeline::{LinkCurve, Standing, TimelineState, legend_list, timeline_list};
+use layout::timeline::{Bar, Chart, RowKind, state, times};
 use review::Review;
 use smol_str::SmolStr;
 use snapshot::Snapshot;
@@ -38,7 +39,7 @@ use workbench::workspace::Workspace;
 use self::bounds::BoundDrag;
 use self::handle::Pinned;
 use self::overview::Silhouette;
-use self::paint::{Painting, ROW_HEIGHT};
+use self::paint::{LEGEND_HEIGHT, Painting, ROW_HEIGHT};
 use self::view::TimeView;
 use crate::{Context, Panel, show_empty};
 
@@ -67,7 +68,8 @@ struct Prepared {
     step: Option<Arc<Plan>>,
     view: TimelineView,
     closed: BTreeSet<SmolStr>,
-    pins: u64,
+    /// The pinned events that its rows were made for, and those that its bars show.
+    pins: [u64; 2],
     /// The review whose rules are drawn.
     review: Option<Arc<Review>>,
     /// The approval whose plan is laid over it.
@@ -79,9 +81,15 @@ struct Prepared {
 /// The height of the axis.
 const AXIS_HEIGHT: f32 = 24.0;
 /// The width of the names, at first and at least.
-const NAMES_WIDTH: (f32, f32) = (190.0, 60.0);
-/// Bars narrower than this cannot be pointed at one by one.
-const LEAST_TARGET: f32 = 4.0;
+const NAMES_WIDTH: (f32, f32) = (150.0, 60.0);
+/// How much more than all that is scheduled the timeline shows at first.
+const SHOWN_BEYOND: f64 = 1.08;
+/// A bar can be pointed at in at least this width.
+const MIN_TARGET: f32 = 6.0;
+/// A bar that is narrower than this has handles only while it stands out.
+const MIN_HANDLED: f32 = 12.0;
+/// A timeline with less height than this has no legend.
+const MIN_HEIGHT: f32 = 150.0;
 
 impl Default for TimelinePanel {
     fn default() -> Self {
@@ -140,7 +148,10 @@ impl TimelinePanel {
                 (None, None) => true,
                 _ => false,
             };
+            // While an event is dragged, rows stay as they are.
+            let same_rows = state.pins.held().is_some() || it.pins[0] == pins;
             it.snapshot.shows_same(snapshot)
+                && same_rows
                 && same_step
                 && same_review
                 && it.approved == approved
@@ -148,25 +159,28 @@ impl TimelinePanel {
                 && it.closed == self.closed
         });
         if !is_current {
-            // Pinned events only narrow windows: rows are those of the plan without them.
-            let free = if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan };
-            let mut chart = Chart::new(&snapshot.program, network, free, view.chart(), &self.closed);
+            let run = state.run_shown().filter(|_| step.is_none());
+            let past = run.map(|run| past::of_run(run, state.playback.time)).unwrap_or_default();
+            let mut chart =
+                Chart::new(&snapshot.program, (network, plan), &past, view.chart(), &self.closed);
+            // Pinned events only narrow windows.
+            chart.compare_with_free(if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan });
             let before =
                 review.as_ref().filter(|_| approved.is_some()).and_then(|_| state.review.approved_times());
             if let Some(before) = before {
-                chart.compare_with(&before, network, free);
+                chart.compare_with(&before, network, plan);
             }
             if review.is_some() {
                 chart.add_rules(state.review.rule_tracks(), &self.closed);
             }
             let silhouette = Silhouette::new(&chart);
-            chart.retime(plan);
             let (snapshot, closed, view) = (Arc::clone(snapshot), self.closed.clone(), view.clone());
+            let pins = [pins; 2];
             self.prepared =
                 Some(Prepared { snapshot, step, view, closed, pins, review, approved, chart, silhouette });
-        } else if let Some(prepared) = self.prepared.as_mut().filter(|it| it.pins != pins) {
+        } else if let Some(prepared) = self.prepared.as_mut().filter(|it| it.pins[1] != pins) {
             prepared.chart.retime(plan);
-            prepared.pins = pins;
+            prepared.pins[1] = pins;
         }
     }
 
@@ -179,7 +193,11 @@ impl TimelinePanel {
         commands: &mut CommandSender,
     ) {
         let horizon = chart.horizon.max(context.state.playback.end);
-        let whole = ui.available_rect_before_wrap();
+        // What is scheduled fills the width; how late all of it can be is often far beyond.
+        let shown_end = (chart.end.max(context.state.playback.end) * SHOWN_BEYOND).min(horizon);
+        let all = ui.available_rect_before_wrap();
+        let has_legend = all.height() >= MIN_HEIGHT;
+        let whole = if has_legend { all.with_max_y(all.bottom() - LEGEND_HEIGHT) } else { all };
         let all_rows = chart.rows.len() as f32 * ROW_HEIGHT + 8.0;
         let column = overview::place(whole, whole.top() + AXIS_HEIGHT, all_rows);
         let rect = column.map_or(whole, |column| whole.with_max_x(column.left() - 4.0));
@@ -188,8 +206,8 @@ impl TimelinePanel {
             pos2(rect.left() + names_width, rect.top()),
             pos2(rect.right() - 8.0, rect.top() + AXIS_HEIGHT),
         );
-        let mut view = self.view_for(axis, horizon);
-        self.follow_request(context, (network, plan), axis, horizon, &mut view);
+        let mut view = self.view_for(axis, shown_end);
+        self.follow_request(context, (network, plan), axis, (horizon, shown_end), &mut view);
         self.follow_axis(ui, axis, view, (context.state.playback.time, horizon), commands);
         let unit = context.snapshot.map_or("", |it| time_text::unit(it.program.options.time_unit));
         paint::axis(ui, context, axis, &view, (unit, rect.left()));
@@ -208,14 +226,16 @@ impl TimelinePanel {
             let visible = track.intersect(below);
             let place = paint::place(&view, track, visible, area.left());
             let painting = Painting { context, network, chart, view: &view, track, visible, place };
-            let links =
-                if context.state.settings.views.timeline.links { place.links(chart) } else { Vec::new() };
+            let mut links = place.links(chart);
+            if !context.state.settings.views.timeline.links {
+                links.retain(|curve| link::is_chosen(&painting, curve.link));
+            }
             let mut moved = view;
             self.navigate(ui, &painting, horizon, &links, &mut moved, commands);
             let first = (viewport.top() / ROW_HEIGHT).floor().max(0.0) as usize;
             let last = ((viewport.bottom() / ROW_HEIGHT).ceil().max(0.0) as usize).min(chart.rows.len());
             self.show_rows(ui, &painting, plan, first..last, &links, commands);
-            self.follow_selection(ui, &painting);
+            self.follow_selection(ui, &painting, &mut moved);
             view = moved;
         });
         if let Some(column) = column {
@@ -223,8 +243,12 @@ impl TimelinePanel {
             overview::paint(ui, context, column, silhouette, part, (&view, axis, chart.horizon));
         }
         self.show_divider(ui, rect, axis.left());
+        if has_legend {
+            let place = Rect::from_min_max(pos2(all.left() + 8.0, whole.bottom()), pos2(all.right() - 8.0, all.bottom()));
+            show_legend(ui, context, chart, place);
+        }
         self.view = Some(view);
-        ui.advance_cursor_after_rect(whole);
+        ui.advance_cursor_after_rect(all);
     }
 
     fn show_rows(
@@ -257,9 +281,8 @@ impl TimelinePanel {
             let mut painted_to = f32::MIN;
             for (at, bar) in bars {
                 let place = painting.bar_rect(bar, index);
-                let whole = if bar.is_narrowed() { place.expand2(vec2(1e4, 0.0)) } else { place };
                 // Bars that fall onto the same point of the screen are drawn once.
-                let is_seen = whole.intersects(painting.visible.expand2(vec2(4.0, 40.0)));
+                let is_seen = place.intersects(painting.visible.expand2(vec2(4.0, 40.0)));
                 let is_merged =
                     !bar.kind.is_of_state() && place.width() < 1.0 && place.right() < painted_to + 1.0;
                 if !is_seen || is_merged {
@@ -275,10 +298,15 @@ impl TimelinePanel {
                 };
                 of_bars.insert(at, Standing { is_selected, is_hovered });
                 // What a variable keeps begins and ends with the activities that change it, which have bars of their own.
-                if !bar.kind.is_of_state() {
-                    handles.push((index, bar, is_selected || is_hovered));
+                if bar.kind.is_of_state() || bar.kind.is_past() {
+                    continue;
                 }
-                if is_selected && chosen.is_none() && !bar.kind.is_of_state() {
+                let is_prominent = is_selected || is_hovered;
+                let is_pinned = bar.is_narrowed() && bar.events.iter().any(|event| pinned.contains_key(event));
+                if is_prominent || is_pinned || is_single || place.width() >= MIN_HANDLED {
+                    handles.push((index, bar, is_prominent));
+                }
+                if is_selected && chosen.is_none() {
                     chosen = Some((index, bar));
                 }
             }
@@ -346,11 +374,11 @@ impl TimelinePanel {
         is_hovered || response.hovered()
     }
 
-    /// The view as the user left it; before that, everything.
-    fn view_for(&mut self, axis: Rect, horizon: f64) -> TimeView {
+    /// The view as the user left it; before that, all that is scheduled.
+    fn view_for(&mut self, axis: Rect, shown_end: f64) -> TimeView {
         match self.view {
             Some(view) if !self.is_fitted => view,
-            _ => TimeView::fit(horizon, axis.width()),
+            _ => TimeView::fit(shown_end, axis.width()),
         }
     }
 
@@ -359,7 +387,7 @@ impl TimelinePanel {
         context: &Context<'_>,
         (network, plan): (&Network, &Plan),
         axis: Rect,
-        horizon: f64,
+        (horizon, shown_end): (f64, f64),
         view: &mut TimeView,
     ) {
         let Some(action) = context.view_action(PanelKind::Timeline) else { return };
@@ -370,7 +398,7 @@ impl TimelinePanel {
             ViewAction::TopView | ViewAction::Follow => {}
             ViewAction::ZoomReset | ViewAction::Fit => {
                 self.is_fitted = true;
-                *view = TimeView::fit(horizon, axis.width());
+                *view = TimeView::fit(shown_end, axis.width());
             }
             ViewAction::FitSelection => {
                 let selected = context.state.selection.occurrence(network);
@@ -485,24 +513,27 @@ impl TimelinePanel {
         }
     }
 
-    /// Scrolls to the row of a new selection.
-    fn follow_selection(&mut self, ui: &Ui, painting: &Painting<'_>) {
+    /// Scrolls to the bar of a new selection, and to its time where not everything is shown.
+    fn follow_selection(&mut self, ui: &Ui, painting: &Painting<'_>, view: &mut TimeView) {
         let selection = &*painting.context.state.selection;
         if *selection == self.followed_selection {
             return;
         }
         self.followed_selection = selection.clone();
-        let is_of = |row: &Row| {
-            let mut bars = row.bars.clone().map(|at| &painting.chart.bars[at]);
-            bars.any(|bar| is_chosen(bar, selection, painting.network))
-        };
-        let rows = &painting.chart.rows;
-        let all: Vec<usize> = (0..rows.len()).filter(|&at| is_of(&rows[at])).collect();
-        let is_seen = |&at: &usize| {
-            painting.visible.expand(1.0).contains(pos2(painting.visible.left(), painting.row(at).center().y))
-        };
-        if let Some(&first) = all.first().filter(|_| !all.iter().any(is_seen)) {
-            ui.scroll_to_rect(painting.row(first), Some(egui::Align::Center));
+        let rows = painting.chart.rows.iter().enumerate();
+        let of_row = rows.flat_map(|(row, shown)| shown.bars.clone().map(move |at| (row, at)));
+        let chosen: Vec<Rect> = of_row
+            .map(|(row, at)| (row, &painting.chart.bars[at]))
+            .filter(|(_, bar)| is_chosen(bar, selection, painting.network))
+            .map(|(row, bar)| painting.bar_rect(bar, row))
+            .collect();
+        let is_seen = |bar: &Rect| painting.visible.expand(1.0).intersects(*bar);
+        let Some(first) = chosen.first().filter(|_| !chosen.iter().any(is_seen)) else { return };
+        if !painting.visible.y_range().intersects(first.y_range()) {
+            ui.scroll_to_rect(*first, Some(egui::Align::Center));
+        }
+        if !self.is_fitted && !painting.visible.x_range().intersects(first.x_range()) {
+            view.pan(painting.visible.center().x - first.left());
         }
     }
 
@@ -523,6 +554,30 @@ impl TimelinePanel {
     }
 }
 
+/// What colors and lines mean, in one line.
+fn show_legend(ui: &Ui, context: &Context<'_>, chart: &Chart, place: Rect) {
+    paint::show(ui, context, &legend_list(chart, paint::drawn(place)));
+    if chart.legend.is_empty() {
+        return;
+    }
+    let words = |is_site: bool| {
+        let names = chart.legend.iter().filter(|it| it.is_site == is_site).map(|it| it.name.as_str());
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let lines: Vec<String> = [("Sites", words(true)), ("Values", words(false))]
+        .into_iter()
+        .filter(|(_, names)| !names.is_empty())
+        .map(|(kind, names)| format!("{kind}: {names}"))
+        .collect();
+    let response = ui.interact(place, ui.scope_id().with("legend"), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("Colors. {}", lines.join(". "))));
+    response.on_hover_ui_at_pointer(|ui| {
+        for line in &lines {
+            ui.label(line);
+        }
+    });
+}
+
 /// A bar that shares its row with others, as something to click. Returns whether it is pointed at.
 fn show_bar(
     ui: &Ui,
@@ -533,8 +588,10 @@ fn show_bar(
     commands: &mut CommandSender,
 ) -> bool {
     let bar = &painting.chart.bars[at];
-    let area = painting.bar_rect(bar, row).expand2(vec2(0.0, 3.0)).intersect(painting.visible);
-    if area.width() < LEAST_TARGET || !area.is_positive() {
+    let place = painting.bar_rect(bar, row);
+    let wider = (MIN_TARGET - place.width()).max(0.0) / 2.0;
+    let area = place.expand2(vec2(wider, 2.0)).intersect(painting.visible);
+    if !area.is_positive() {
         return false;
     }
     let response = ui.interact(area, ui.scope_id().with(("bar", at)), Sense::click());
@@ -557,6 +614,9 @@ fn respond(
         let name = match (bar.label, owner) {
             _ if bar.kind.is_of_state() => state::words(painting.network, plan, bar).join(", "),
             (Some(_), Some(owner)) if owner.name != bar.name => format!("{} of {}", bar.name, owner.name),
+            // Several may have the name that is seen; what has no arguments begins with it.
+            (None, Some(owner)) if owner.activity == bar.name => owner.name.to_string(),
+            (None, Some(owner)) => format!("{}, {}", bar.name, owner.name),
             _ => bar.name.to_string(),
         };
         WidgetInfo::selected(
@@ -576,7 +636,15 @@ fn respond(
     }
     let is_hovered = response.hovered() || is_chosen(bar, &context.state.hovered, painting.network);
     response.clone().on_hover_ui_at_pointer(|ui| {
-        ui.label(theme::strong(selection.name(Some(painting.network))));
+        if bar.label.is_none() {
+            ui.label(theme::strong(bar.name.as_str()));
+        }
+        let name = selection.name(Some(painting.network));
+        if bar.label.is_some() {
+            ui.label(theme::strong(name));
+        } else if name != bar.name {
+            ui.label(egui::RichText::new(name).small().color(context.tokens.text_muted));
+        }
         if bar.kind.is_of_state() {
             for line in state::words(painting.network, plan, bar) {
                 ui.label(line);

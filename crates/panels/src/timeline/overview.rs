@@ -34,7 +34,7 @@ impl Silhouette {
             let piece = &mut pieces[index * count / chart.rows.len()];
             for bar in &chart.bars[row.bars.clone()] {
                 let kind = match bar.kind {
-                    BarKind::Activity => 0,
+                    BarKind::Activity | BarKind::Past | BarKind::Aborted => 0,
                     BarKind::Tell | BarKind::Ask | BarKind::Changing | BarKind::Need => 1,
                     // A value lasts nearly everywhere, which says nothing from afar.
                     BarKind::Composite | BarKind::Delay | BarKind::Value => continue,

@@ -15,6 +15,9 @@ use crate::painter::{DisplayPainter, Placement};
 /// The height of a bar's row.
 pub(super) const ROW_HEIGHT: f32 = layout::list::timeline::ROW_HEIGHT as f32;
 
+/// The height of the legend.
+pub(super) const LEGEND_HEIGHT: f32 = layout::list::timeline::LEGEND_HEIGHT as f32;
+
 /// What all parts of one frame need.
 pub(super) struct Painting<'a> {
     pub(super) context: &'a Context<'a>,
@@ -84,7 +87,7 @@ impl Painting<'_> {
         ui.painter().with_clip_rect(self.visible)
     }
 
-    /// The rectangle of a bar in a row: from its earliest start to its latest end.
+    /// The rectangle of a bar in a row, as it is scheduled now.
     pub(super) fn bar_rect(&self, bar: &Bar, index: usize) -> Rect {
         Placement::SCREEN.screen_rect(self.place.bar(bar, self.place.row(index)))
     }

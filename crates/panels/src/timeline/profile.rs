@@ -10,7 +10,7 @@ use crate::painter::Placement;
 pub(super) fn show(ui: &Ui, painting: &Painting<'_>, index: usize, part: ProfilePart) {
     let Some(profile) = painting.chart.profiles.get(part.profile) else { return };
     let row = painting.row(index);
-    let plot = Placement::SCREEN.screen_rect(painting.place.plot(index, part));
+    let plot = Placement::SCREEN.screen_rect(painting.place.plot(index, part, profile.num_rows()));
     let area = Rect::from_x_y_ranges(plot.x_range(), row.y_range()).intersect(painting.visible);
     if !area.is_positive() {
         return;

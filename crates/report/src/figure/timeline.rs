@@ -44,10 +44,11 @@ pub(crate) fn timeline(snapshot: &Snapshot, review: &Review) -> Vec<Figure> {
     let (Some(network), Some(plan)) = (snapshot.network.as_deref(), snapshot.plan()) else {
         return Vec::new();
     };
-    let mut chart = Chart::new(&snapshot.program, network, plan, OPTIONS, &BTreeSet::new());
+    let mut chart = Chart::new(&snapshot.program, (network, plan), &[], OPTIONS, &BTreeSet::new());
     chart.add_rules(rule_tracks(review), &BTreeSet::new());
-    let caption = "Solid: the earliest schedule. Pale: all possible times. Green rows: conditions. Flight rules: a thin line \
-                   where the rule applies, a filled part where the plan breaks it.";
+    let caption = "Bars: the earliest schedule. Lines below a bar: from the earliest to the latest start and end. Hatched: an \
+                   uncontrolled duration. Flight rules: a thin line where the rule applies, a filled part where the plan \
+                   breaks it.";
     sheets(snapshot, &chart, (network, plan), ("Timeline of the plan", caption))
 }
 
@@ -59,7 +60,7 @@ pub(crate) fn timeline_since(snapshot: &Snapshot, approved: &Subject) -> Vec<Fig
         return Vec::new();
     };
     let options = ChartOptions { states: false, resources: false, ..OPTIONS };
-    let mut chart = Chart::new(&snapshot.program, network, plan, options, &BTreeSet::new());
+    let mut chart = Chart::new(&snapshot.program, (network, plan), &[], options, &BTreeSet::new());
     chart.compare_with(&before, network, plan);
     let caption = "Dashed: times in the approved plan. “new”: not in the approved plan. Only dashed: no longer in the plan.";
     sheets(snapshot, &chart, (network, plan), ("Timeline of the plan over the approved one", caption))

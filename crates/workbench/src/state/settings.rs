@@ -251,7 +251,7 @@ impl Default for NetworkView {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct TimelineView {
-    /// Causal links and orderings between bars.
+    /// All causal links and orderings between bars; otherwise only those of what is selected or pointed at.
     pub links: bool,
     /// Conditions as tracks, one for each variable that is known only where it is asserted.
     pub conditions: bool,
@@ -283,7 +283,7 @@ impl TimelineView {
 impl Default for TimelineView {
     fn default() -> Self {
         Self {
-            links: true,
+            links: false,
             conditions: true,
             states: true,
             resources: true,

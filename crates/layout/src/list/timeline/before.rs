@@ -3,24 +3,25 @@
 
 use display::{Anchor, ColorRole, Dash, Fit, Point, Rect, Stroke, Text, Weight};
 
-use super::{Builder, MIN_WIDTH, SIZES};
+use super::{BAR_EDGES, Builder, MIN_WIDTH, SIZES};
 use crate::timeline::before::{BarChange, Gone};
 
 impl Builder<'_> {
-    /// What differs of the bar at `at`, which is at `place`.
-    pub(super) fn change(&mut self, at: usize, place: Rect, row: Rect) {
+    /// What differs of the bar at `at`, which is at `place`, in a row that it may have alone.
+    pub(super) fn change(&mut self, at: usize, place: Rect, row: Rect, is_alone: bool) {
         match self.chart.changes.get(&at) {
             Some(BarChange::Moved(times)) => {
                 let words = format!("approved: {}", words(*times));
                 self.former(*times, row, &words);
             }
-            Some(BarChange::New) => {
+            // In a row with others, the bar's name says that it is new.
+            Some(BarChange::New) if is_alone => {
                 let left = place.max.x + 4.0;
                 let beside = Rect::new(left, row.min.y, left + 30.0, row.max.y);
                 let text = Text::new("new", SIZES[1], beside).anchored(Anchor::Start, Fit::Overflow);
-                self.list.write(Text { weight: Weight::Strong, ..text.colored(ColorRole::Accent) });
+                self.texts.push(Text { weight: Weight::Strong, ..text.colored(ColorRole::Accent) });
             }
-            None => {}
+            Some(BarChange::New) | None => {}
         }
     }
 
@@ -28,19 +29,25 @@ impl Builder<'_> {
     pub(super) fn gone(&mut self, index: usize, row: Rect) {
         let Some(Gone { name, times }) = self.chart.gone.get(index) else { return };
         self.former(*times, row, &format!("{name}: removed from the plan; approved: {}", words(*times)));
-        let middle = row.center().y;
-        let [from, to] = [times[0][0], times[1][1]].map(|time| self.track.x(time));
+        let middle = row.min.y + BAR_EDGES.iter().sum::<f64>() / 2.0;
+        let [from, to] = scheduled(*times).map(|time| self.track.x(time));
         let line = Stroke::solid(ColorRole::TextMuted, 1.0);
         self.list.line(Point::new(from, middle), Point::new(to.max(from + MIN_WIDTH), middle), line);
     }
 
     fn former(&mut self, times: [[f64; 2]; 2], row: Rect, words: &str) {
-        let [from, to] = [times[0][0], times[1][1]].map(|time| self.track.x(time));
-        let place = Rect::new(from, row.min.y + 3.0, to.max(from + MIN_WIDTH), row.max.y - 3.0);
+        let [from, to] = scheduled(times).map(|time| self.track.x(time));
+        let [top, bottom] = BAR_EDGES.map(|edge| row.min.y + edge);
+        let place = Rect::new(from, top - 1.0, to.max(from + MIN_WIDTH), bottom + 1.0);
         let dashed = Stroke::solid(ColorRole::TextMuted, 1.2).dashed(Dash::Dashed);
         self.list.rectangle(place, 3.0, None, Some(dashed));
         self.list.entitle(words.to_owned());
     }
+}
+
+/// When something was scheduled, as early as it could be.
+fn scheduled([start, end]: [[f64; 2]; 2]) -> [f64; 2] {
+    [start[0], end[0].max(start[0])]
 }
 
 /// When something could start and end.

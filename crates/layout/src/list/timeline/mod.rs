@@ -1,9 +1,12 @@
 //! A plan over time as a display list: an axis, rows with their names, bars with what is certain of them, and links.
 //!
-//! Bars are solid where they go on for certain and hatched where they may, with the earliest schedule under them. What
-//! variables keep and how far resources are used is drawn for the earliest schedule alone. The frame is that of whoever shows the chart: a [`Track`] says where times and rows lie in it.
+//! A bar is the activity as it is scheduled now; lines below it say when else it can start and end. What variables keep and
+//! how far resources are used is drawn for the same schedule. The frame is that of whoever shows the chart: a [`Track`] says
+//! where times and rows lie in it.
 
 mod before;
+mod label;
+mod legend;
 mod profile;
 mod rule;
 mod state;
@@ -12,16 +15,17 @@ use std::ops::Range;
 
 use display::{
     Anchor, Color, ColorRole, Dash, DisplayList, Fill, Fit, Group, Measure, PathEnd, Piece, Point, Rect,
-    Stroke, TargetKind, Text, Weight, approximate_text_width, text_width_at,
+    Stroke, TargetKind, Text, Weight, approximate_text_width,
 };
-use rmpl::program::LabelMode;
-use smol_str::{SmolStr, format_smolstr};
-use tpn::{Extent, Network, Plan};
+use smol_str::SmolStr;
+use tpn::{Network, Plan};
 
 use crate::timeline::{Bar, BarKind, Chart, Link, LinkKind, Row, RowKind, Ticks};
 
+pub use self::legend::{LEGEND_HEIGHT, legend_list};
+
 /// The height of a bar's row.
-pub const ROW_HEIGHT: f64 = 24.0;
+pub const ROW_HEIGHT: f64 = 22.0;
 /// From the top of the track to its first row.
 pub const TOP_MARGIN: f64 = 3.0;
 /// Indentation of a row per level.
@@ -32,14 +36,14 @@ const SIGN: (f64, f64) = (14.0, 4.0);
 const MIN_WIDTH: f64 = 3.0;
 /// Sizes of names, and of the numbers on the axis and of what is written in bars.
 const SIZES: [f64; 2] = [13.0, 11.0];
-/// Between words in a bar, and how much wider than measured they may be.
-const WORDS_GAP: f64 = 16.0;
-/// See [`WORDS_GAP`].
-const WORDS_SPARE: f64 = 1.06;
-/// The width of a number of words that are left out.
-const MORE_WIDTH: f64 = 18.0;
-/// A bar with less room than this has nothing written in it.
-const MIN_ROOM: f64 = 44.0;
+/// From the upper edge of a row to the upper and the lower edge of a bar.
+const BAR_EDGES: [f64; 2] = [2.0, 16.0];
+/// From the upper edge of a row to the lines that say when a bar can start and end.
+const WHISKERS: [f64; 2] = [18.0, 20.5];
+/// In a row with more bars than this, what may vary is drawn only of those that stand out.
+const MAX_WHISKERS: usize = 60;
+/// How strong the color of a bar's body is.
+const BODY: f32 = 0.42;
 /// From the lower edge of a row to the upper and the lower edge of what needs a value.
 const NEED_EDGES: [f64; 2] = [5.0, 2.0];
 /// With more links in view than this, they are drawn thin and faint, but for those that are chosen.
@@ -124,20 +128,15 @@ impl Track {
         Rect::new(self.frame.min.x, top, self.right, top + ROW_HEIGHT)
     }
 
-    /// The rectangle of a bar: from its earliest start to its latest end, or on the track of a variable that keeps its
-    /// value to its earliest one.
+    /// The rectangle of a bar, as it is scheduled now.
     pub fn bar(&self, bar: &Bar, row: Rect) -> Rect {
-        match bar.kind {
-            BarKind::Need => {
-                let (from, to) = (self.x(bar.start[0]), self.x(bar.end[0]));
-                let [top, bottom] = NEED_EDGES.map(|edge| row.max.y - edge);
-                Rect::new(from, top, to.max(from + MIN_WIDTH), bottom)
-            }
-            BarKind::Value | BarKind::Changing => {
-                self.slot(bar, row, bar.start[0], bar.end[0].max(bar.start[0]))
-            }
-            _ => self.slot(bar, row, bar.start[0], bar.end[1]),
+        let [from, to] = bar.scheduled();
+        if bar.kind == BarKind::Need {
+            let (from, to) = (self.x(from), self.x(to));
+            let [top, bottom] = NEED_EDGES.map(|edge| row.max.y - edge);
+            return Rect::new(from, top, to.max(from + MIN_WIDTH), bottom);
         }
+        self.slot(row, from, to)
     }
 
     /// Where the sign is that opens and closes a row.
@@ -146,16 +145,20 @@ impl Track {
         Rect::new(left, row.min.y, left + SIGN.0, row.max.y)
     }
 
-    fn slot(&self, bar: &Bar, row: Rect, from: f64, to: f64) -> Rect {
-        let (height, lift) = match bar.kind {
-            BarKind::Composite => (6.0, 0.0),
-            BarKind::Ask => (8.0, 0.0),
-            BarKind::Value | BarKind::Changing => (15.0, 2.5),
-            _ => (14.0, 1.0),
-        };
-        let middle = row.center().y - lift;
+    /// The place of a bar between two times.
+    fn slot(&self, row: Rect, from: f64, to: f64) -> Rect {
         let (from, to) = (self.x(from), self.x(to));
-        Rect::new(from, middle - height / 2.0, to.max(from), middle + height / 2.0)
+        let [top, bottom] = BAR_EDGES.map(|edge| row.min.y + edge);
+        Rect::new(from, top, to.max(from), bottom)
+    }
+
+    /// The lines below a bar that say when it can start and when it can end, of those that have a length.
+    fn whiskers(&self, bar: &Bar, row: Rect) -> [Option<[Point; 2]>; 2] {
+        let line = |[from, to]: [f64; 2], edge: f64| {
+            let [from, to] = [from, to].map(|time| Point::new(self.x(time), row.min.y + edge));
+            (to.x - from.x >= 1.0).then_some([from, to])
+        };
+        [line(bar.start, WHISKERS[0]), line(bar.end, WHISKERS[1])]
     }
 
     /// The links of a chart that are in view.
@@ -176,7 +179,8 @@ impl Track {
 
     /// From the bar that carries or comes first to the other, sideways out and in.
     fn link<'c>(&self, chart: &'c Chart, link: &'c Link) -> LinkCurve<'c> {
-        let [from, to] = [link.from, link.to].map(|(row, bar)| (self.row(row).center().y, &chart.bars[bar]));
+        let middle = |row: usize| self.row(row).min.y + BAR_EDGES.iter().sum::<f64>() / 2.0;
+        let [from, to] = [link.from, link.to].map(|(row, bar)| (middle(row), &chart.bars[bar]));
         let (from, to) = match link.kind {
             LinkKind::Causal(_) => {
                 let x = self.x(to.1.start[0]) + 3.0;
@@ -252,8 +256,13 @@ pub fn timeline_list(
     state: &TimelineState<'_>,
 ) -> DisplayList {
     let list = DisplayList::new(track.frame);
-    let mut builder = Builder { list, chart, network, plan, track, state, measure: &approximate_text_width };
+    let measure = &approximate_text_width;
+    let mut builder = Builder { list, chart, network, plan, track, state, measure, texts: Vec::new() };
     let on_track = Group { clip: Some(track.visible), ..Group::default() };
+    builder.list.begin(Group::default());
+    for index in rows.clone() {
+        builder.ground(index);
+    }
     builder.list.begin(on_track);
     builder.grid();
     builder.list.begin(Group::default());
@@ -272,14 +281,24 @@ pub fn timeline_list(
         }
     }
     builder.list.begin(on_track);
-    for index in rows {
+    for index in rows.clone() {
+        builder.below_bars(index);
+    }
+    for index in rows.clone() {
         builder.bars(index);
     }
     builder.links(on_track);
     builder.list.begin(on_track);
+    for index in rows {
+        builder.chosen_whiskers(index);
+    }
     if let Some(x) = state.now.map(|now| track.x(now)) {
         let line = Stroke::solid(ColorRole::Now, 1.5);
         builder.list.line(Point::new(x, top), Point::new(x, bottom), line);
+    }
+    // Nothing covers what is to be read.
+    for text in std::mem::take(&mut builder.texts) {
+        builder.list.write(text);
     }
     builder.list
 }
@@ -292,6 +311,8 @@ struct Builder<'a> {
     track: &'a Track,
     state: &'a TimelineState<'a>,
     measure: &'a dyn Measure,
+    /// What is written on the track, over everything else.
+    texts: Vec<Text>,
 }
 
 impl Builder<'_> {
@@ -318,10 +339,17 @@ impl Builder<'_> {
         self.list.line(ends[0], ends[1], Stroke::solid(color, 1.0));
     }
 
-    /// The ground of a row that is selected, pointed at, or a heading; and its name.
-    fn row(&mut self, index: usize) {
+    /// The ground of a row, which differs from lane to lane, and the line above a lane.
+    fn ground(&mut self, index: usize) {
         let shown = &self.chart.rows[index];
         let row = self.track.row(index);
+        if shown.lane.is_multiple_of(2) && shown.kind != RowKind::Single {
+            self.list.rectangle(row, 0.0, Some(ColorRole::Sunken.faint(0.55).into()), None);
+        }
+        if shown.depth == 0 && index > 0 && shown.kind != RowKind::Single {
+            let ends = [row.min, Point::new(row.max.x, row.min.y)];
+            self.list.line(ends[0], ends[1], Stroke::solid(ColorRole::Line, 1.0));
+        }
         let standing = (self.state.row)(index);
         let fill: Option<Color> = match (standing.is_selected, standing.is_hovered, shown.kind) {
             (true, ..) => Some(ColorRole::AccentSoft.into()),
@@ -332,6 +360,13 @@ impl Builder<'_> {
         if let Some(fill) = fill {
             self.list.rectangle(row, 3.0, Some(fill.into()), None);
         }
+    }
+
+    /// The name of a row, and what is noted beside it.
+    fn row(&mut self, index: usize) {
+        let shown = &self.chart.rows[index];
+        let row = self.track.row(index);
+        let standing = (self.state.row)(index);
         let sign = self.track.sign(shown, row);
         let first = self.chart.bars.get(shown.bars.clone()).and_then(<[Bar]>::first);
         if shown.key.is_none()
@@ -340,7 +375,7 @@ impl Builder<'_> {
         {
             let center = sign.center();
             let mark = Rect::new(center.x - 3.0, center.y - 5.0, center.x + 3.0, center.y + 5.0);
-            self.list.rectangle(mark, 1.0, Some(bar_role(bar.kind).into()), None);
+            self.list.rectangle(mark, 1.0, Some(bar_role(bar).into()), None);
         }
         if let RowKind::Profile(part) = shown.kind {
             self.profile_name(part, row, sign.max.x + 2.0);
@@ -351,7 +386,8 @@ impl Builder<'_> {
             (_, RowKind::Track | RowKind::State) => ColorRole::Tell,
             _ => ColorRole::Text,
         };
-        let weight = if shown.kind == RowKind::Heading { Weight::Strong } else { Weight::Regular };
+        let is_strong = matches!(shown.kind, RowKind::Heading | RowKind::Packed);
+        let weight = if is_strong { Weight::Strong } else { Weight::Regular };
         let place = Rect::new(sign.max.x + 2.0, row.min.y, self.track.left - SIGN.1, row.max.y);
         let text = Text::new(shown.name.clone(), SIZES[0], place).anchored(Anchor::Start, Fit::Cut);
         let item = self.list.write(Text { weight, ..text.colored(role) });
@@ -364,171 +400,160 @@ impl Builder<'_> {
         }
     }
 
+    /// The bars of a row that are drawn, with their places: those that fall onto the same point are drawn once.
+    fn drawn_bars(&self, index: usize) -> Vec<(usize, Rect)> {
+        let row = self.track.row(index);
+        let shown = &self.chart.rows[index];
+        let seen = self.track.visible.expanded(40.0);
+        let mut drawn_to = f64::MIN;
+        let places = shown.bars.clone().filter_map(|at| {
+            let bar = &self.chart.bars[at];
+            let place = self.track.bar(bar, row);
+            let is_merged =
+                !bar.kind.is_of_state() && place.width() < 1.0 && place.max.x < drawn_to + 1.0;
+            // Whatever may vary of it lies before its latest end.
+            let last = self.track.x(bar.end[1].max(bar.free[1][1])).max(place.max.x);
+            let first = self.track.x(bar.free[0][0]).min(place.min.x);
+            let reach = Rect::new(first, row.min.y, last, row.max.y);
+            if is_merged || !reach.touches(seen) {
+                return None;
+            }
+            drawn_to = drawn_to.max(place.max.x);
+            Some((at, place))
+        });
+        places.collect()
+    }
+
+    /// What lies below the bars of a row: what may vary, and where bars were in another plan or without pins.
+    fn below_bars(&mut self, index: usize) {
+        let row = self.track.row(index);
+        if self.chart.rows[index].is_closed && self.chart.rows[index].kind != RowKind::Single {
+            return;
+        }
+        let is_alone = self.chart.rows[index].kind == RowKind::Single;
+        let drawn = self.drawn_bars(index);
+        let is_crowded = drawn.len() > MAX_WHISKERS;
+        for (at, place) in drawn {
+            let bar = &self.chart.bars[at];
+            if bar.kind.is_of_state() {
+                continue;
+            }
+            self.change(at, place, row, is_alone);
+            let role = bar_role(bar);
+            if bar.is_narrowed() {
+                let free = self.track.slot(row, bar.free[0][0], bar.free[1][0].max(bar.free[0][0]));
+                let line = Stroke::solid(role.mixed(0.6), 1.0).dashed(Dash::Dashed);
+                self.list.rectangle(free.expanded(-0.5), 3.0, None, Some(line));
+            }
+            if let Some([_, maximum]) = bar.contingent() {
+                let [_, until] = bar.scheduled();
+                let part = self.track.slot(row, until, maximum);
+                self.list.rectangle(part, 0.0, Some(ColorRole::Nature.mixed(0.10).into()), None);
+                self.list.rectangle(part, 0.0, Some(Fill::Hatched(ColorRole::Nature.mixed(0.55))), None);
+            }
+            for ends in self.track.whiskers(bar, row).into_iter().flatten().filter(|_| !is_crowded) {
+                whisker(&mut self.list, ends, Stroke::solid(role.mixed(0.4), 1.0));
+            }
+        }
+    }
+
+    /// What may vary of the bars of a row that are selected or pointed at.
+    fn chosen_whiskers(&mut self, index: usize) {
+        let row = self.track.row(index);
+        for (at, _) in self.drawn_bars(index) {
+            let bar = &self.chart.bars[at];
+            let standing = (self.state.bar)(at);
+            if bar.kind.is_of_state() || !(standing.is_selected || standing.is_hovered) {
+                continue;
+            }
+            let [start, end] = self.track.whiskers(bar, row);
+            let ends = if bar.contingent().is_some() { ColorRole::Nature } else { ColorRole::Accent };
+            for (ends, role) in [(start, ColorRole::Accent), (end, ends)] {
+                if let Some(ends) = ends {
+                    whisker(&mut self.list, ends, Stroke::solid(role, 2.0));
+                }
+            }
+        }
+    }
+
     fn bars(&mut self, index: usize) {
         let row = self.track.row(index);
-        match self.chart.rows[index].kind {
+        let shown = &self.chart.rows[index];
+        match shown.kind {
             RowKind::Rule(rule) => self.rule(rule, row),
             RowKind::Gone(gone) => self.gone(gone, row),
             _ => {}
         }
-        let mut drawn_to = f64::MIN;
-        let seen = self.track.visible.expanded(40.0);
-        for at in self.chart.rows[index].bars.clone() {
+        let drawn = self.drawn_bars(index);
+        // Names lie between bars that are apart: not where the bars of many rows are gathered, nor beside their own row's.
+        let is_named = !shown.is_closed && matches!(shown.kind, RowKind::Packed | RowKind::Track);
+        for (number, &(at, place)) in drawn.iter().enumerate() {
             let bar = &self.chart.bars[at];
-            let place = self.track.bar(bar, row);
-            // Bars that fall onto the same point are drawn once.
-            let is_merged = place.width() < 1.0 && place.max.x < drawn_to + 1.0;
-            if bar.kind.is_of_state() && self.chart.rows[index].kind == RowKind::State {
-                if place.touches(seen) {
-                    self.state_bar(at, bar, row, &self.chart.rows[index].bars);
-                }
+            if bar.kind.is_of_state() && shown.kind == RowKind::State {
+                self.state_bar(at, bar, row, &shown.bars);
                 continue;
             }
-            if (place.touches(seen) || bar.is_narrowed()) && !is_merged {
-                drawn_to = drawn_to.max(place.max.x);
-                self.bar(at, bar, row);
-                self.change(at, place, row);
+            let body = self.bar(at, bar, place);
+            if is_named {
+                let next = drawn.get(number + 1).map_or(f64::INFINITY, |next| next.1.min.x);
+                self.name(at, bar, body, next);
             }
         }
     }
 
-    fn bar(&mut self, at: usize, bar: &Bar, row: Rect) {
-        let role = bar_role(bar.kind);
-        let whole = self.track.bar(bar, row);
-        let corner = if bar.kind == BarKind::Ask { 4.0 } else { 3.0 };
-        if bar.is_narrowed() {
-            let ghost = self.track.slot(bar, row, bar.free[0][0], bar.free[1][1]);
-            let line = Stroke::solid(role.mixed(0.35), 1.0);
-            let fill = Some(role.mixed(0.07).into());
-            self.list.rectangle(ghost.expanded(-0.5), corner, fill, Some(line));
-        }
+    /// The body of a bar, and where it is.
+    fn bar(&mut self, at: usize, bar: &Bar, place: Rect) -> Rect {
+        let role = bar_role(bar);
         let (kind, id) = match (bar.label, bar.occurrence) {
             (Some(label), _) => (TargetKind::Label, label.0),
             (None, occurrence) => (TargetKind::Occurrence, occurrence.map_or(u32::MAX, |it| it.0)),
         };
-        if whole.width() < MIN_WIDTH {
-            let middle = whole.center().x;
-            let stroke =
-                Rect::new(middle - MIN_WIDTH / 2.0, whole.min.y, middle + MIN_WIDTH / 2.0, whole.max.y);
-            self.list.rectangle(stroke, 1.0, Some(role.mixed(0.75).into()), None).stands_for(kind, id);
-            return;
-        }
-        self.list.rectangle(whole, corner, Some(role.mixed(0.16).into()), None);
-        let hatched = Some(Fill::Hatched(role.mixed(0.5)));
-        if let Some([from, to]) = bar.certain() {
-            // When it ends nature says.
-            let ends = if bar.natures.is_some() { ColorRole::Nature } else { role };
-            for (from, to, role) in [(bar.start[0], from, role), (to, bar.end[1], ends)] {
-                let slot = self.track.slot(bar, row, from, to);
-                if slot.width() > 0.0 {
-                    self.list.rectangle(slot, 0.0, Some(Fill::Hatched(role.mixed(0.5))), None);
-                }
-            }
-            let slot = self.track.slot(bar, row, from, to);
-            self.list.rectangle(slot, 2.0, Some(role.mixed(0.85).into()), None);
-        } else {
-            self.list.rectangle(whole, 0.0, hatched, None);
-        }
         let (color, width) = self.outline(at, bar, role);
-        self.list
-            .rectangle(whole.expanded(-width / 2.0), corner, None, Some(Stroke::solid(color, width)))
-            .stands_for(kind, id);
-        if bar.kind != BarKind::Ask {
-            self.earliest(bar, row, role);
+        let body = if place.width() < MIN_WIDTH {
+            let middle = place.center().x;
+            Rect::new(middle - MIN_WIDTH / 2.0, place.min.y, middle + MIN_WIDTH / 2.0, place.max.y)
+        } else {
+            place
+        };
+        if place.width() < MIN_WIDTH {
+            self.list.rectangle(body, 1.0, Some(color.into()), None).stands_for(kind, id);
+        } else {
+            let fill: Option<Fill> = match bar.kind {
+                BarKind::Ask => None,
+                BarKind::Composite | BarKind::Delay => Some(role.mixed(0.14).into()),
+                _ => Some(role.mixed(BODY).into()),
+            };
+            let line = Some(Stroke::solid(color, width));
+            if bar.kind == BarKind::Aborted {
+                self.list.rectangle(body, 0.0, Some(ColorRole::Surface.into()), None);
+                self.list.rectangle(body, 0.0, Some(Fill::Hatched(role.mixed(0.5))), None);
+            } else if fill.is_some() {
+                self.list.rectangle(body, 3.0, fill, None);
+            }
+            self.list.rectangle(body.expanded(-width / 2.0), 3.0, None, line).stands_for(kind, id);
         }
-        self.words(bar, whole);
+        let identifier = bar.occurrence.filter(|_| bar.label.is_none());
+        if let Some(occurrence) = identifier.and_then(|it| self.network.occurrences.get(it.index())) {
+            self.list.entitle(occurrence.name.clone());
+        }
+        body
     }
 
     fn outline(&self, at: usize, bar: &Bar, role: ColorRole) -> (Color, f64) {
         let standing = (self.state.bar)(at);
-        let last = if bar.kind.is_of_state() { bar.end[0] } else { bar.end[1] };
         // What runs at the time shown: its start has happened, its end has not.
+        let last = if bar.kind.is_of_state() { bar.end[0] } else { bar.end[1] };
         let is_running = self.state.is_executing
             && !matches!(bar.kind, BarKind::Ask | BarKind::Need)
+            && !bar.kind.is_past()
             && bar.start[0] >= bar.start[1]
             && self.state.now.is_some_and(|now| (bar.start[0]..last).contains(&now));
         match (standing.is_selected, standing.is_hovered) {
             (false, _) if is_running => (ColorRole::Now.into(), 1.5),
-            (true, _) => (ColorRole::Accent.into(), 1.5),
-            (_, true) => (ColorRole::TextMuted.into(), 1.0),
-            _ => (role.mixed(0.6), 1.0),
-        }
-    }
-
-    /// The earliest schedule, which playing follows, and how much longer nature may take then.
-    fn earliest(&mut self, bar: &Bar, row: Rect, role: ColorRole) {
-        let earliest = self.track.slot(bar, row, bar.start[0], bar.end[0].max(bar.start[0]));
-        let y = earliest.max.y + 2.0;
-        let ends = [earliest.min.x, earliest.max.x];
-        self.list.line(Point::new(ends[0], y), Point::new(ends[1], y), Stroke::solid(role, 2.0));
-        for x in ends {
-            self.list.line(Point::new(x, y - 2.0), Point::new(x, y + 2.0), Stroke::solid(role, 1.0));
-        }
-        if let Some([least, greatest]) = bar.natures {
-            let range = self.track.slot(bar, row, bar.start[0] + least, bar.start[0] + greatest);
-            let stroke = Stroke::solid(ColorRole::Nature, 2.0);
-            self.list.line(
-                Point::new(range.min.x, y),
-                Point::new(range.max.x, y),
-                stroke.dashed(Dash::Dashed),
-            );
-            for x in [range.min.x, range.max.x] {
-                self.list.line(Point::new(x, y - 3.0), Point::new(x, y + 3.0), stroke);
-            }
-        }
-    }
-
-    /// What a bar requires and asserts, or which condition it is, where there is room.
-    fn words(&mut self, bar: &Bar, whole: Rect) {
-        let seen = self.track.visible;
-        let (left, right) = (whole.min.x.max(seen.min.x), whole.max.x.min(seen.max.x));
-        if right - left < MIN_ROOM || bar.kind == BarKind::Composite {
-            return;
-        }
-        let own = bar.label.map(|_| match bar.kind {
-            BarKind::Ask => (format_smolstr!("requires {}", bar.name), ColorRole::Ask),
-            _ => (bar.name.clone(), ColorRole::Tell),
-        });
-        let labels = bar.labels.iter().filter_map(|label| self.network.labels.get(label.index()));
-        let labels = labels.map(|label| match label.mode {
-            LabelMode::Ask if label.extent == Extent::Start => {
-                (format_smolstr!("requires {} at start", label.text), ColorRole::Ask)
-            }
-            LabelMode::Ask => (format_smolstr!("requires {}", label.text), ColorRole::Ask),
-            LabelMode::Tell => (format_smolstr!("sets {}", label.text), ColorRole::Tell),
-        });
-        let size = SIZES[1];
-        let middle = whole.center().y;
-        let width_of = |words: &SmolStr| (text_width_at(words, size, self.measure) * WORDS_SPARE).ceil();
-        let words: Vec<_> =
-            own.into_iter().chain(labels).map(|(words, role)| (width_of(&words), words, role)).collect();
-        let fitting = |from: f64| {
-            let ends = words.iter().scan(from, |x, (width, ..)| {
-                *x += width + WORDS_GAP;
-                Some(*x)
-            });
-            ends.take_while(|&end| end <= right).count()
-        };
-        // Behind the earliest end, where the bar is only hatched and no handle is, or from the latest start on, so that
-        // the hatching before it is seen; at the beginning where those have room for fewer.
-        let places = [bar.end[0], bar.start[1]].map(|time| self.track.x(time).max(left));
-        let from = places.into_iter().find(|&from| fitting(from) == fitting(left)).unwrap_or(left);
-        let shown = fitting(from);
-        let mut x = from + WORDS_GAP / 2.0;
-        let mut write = |words: SmolStr, width: f64, role: ColorRole| {
-            let place = Rect::new(x, middle - size / 2.0, x + width, middle + size / 2.0);
-            let text = Text::new(words, size, place).anchored(Anchor::Start, Fit::Overflow);
-            self.list.write(Text { plate: Some(ColorRole::Surface.into()), ..text.colored(role) });
-            x += width + WORDS_GAP;
-            x
-        };
-        let rest = words.len() - shown;
-        let mut end = from;
-        for (width, words, role) in words.into_iter().take(shown) {
-            end = write(words, width, role);
-        }
-        if shown > 0 && rest > 0 && end + MORE_WIDTH <= right {
-            write(format_smolstr!("+{rest}"), MORE_WIDTH, ColorRole::TextMuted);
+            (true, _) => (ColorRole::Accent.into(), 2.0),
+            (_, true) => (ColorRole::Text.into(), 1.2),
+            _ if bar.kind == BarKind::Composite => (role.mixed(0.5), 1.0),
+            _ => (role.mixed(0.85), 1.0),
         }
     }
 
@@ -550,14 +575,31 @@ impl Builder<'_> {
     }
 }
 
-/// The colour of a kind of bar.
-pub const fn bar_role(kind: BarKind) -> ColorRole {
-    match kind {
+/// The color of a bar: of its site or value, or of what it is.
+fn bar_role(bar: &Bar) -> ColorRole {
+    match bar.kind {
+        BarKind::Aborted => ColorRole::Error,
+        BarKind::Need => ColorRole::Ask,
+        _ if bar.category.is_some() => category_role(bar.category.unwrap_or_default()),
         BarKind::Composite => ColorRole::TextMuted,
-        BarKind::Activity => ColorRole::Slack,
+        BarKind::Activity | BarKind::Past => ColorRole::Slack,
         BarKind::Tell | BarKind::Value | BarKind::Changing => ColorRole::Tell,
-        BarKind::Ask | BarKind::Need => ColorRole::Ask,
+        BarKind::Ask => ColorRole::Ask,
         BarKind::Delay => ColorRole::TextFaint,
+    }
+}
+
+/// The color of the site or value of this number in the legend.
+fn category_role(category: usize) -> ColorRole {
+    // The first is that of activities without a site.
+    ColorRole::Series((1 + category % 7) as u8)
+}
+
+/// A line with a mark at each end.
+fn whisker(list: &mut DisplayList, [from, to]: [Point; 2], stroke: Stroke) {
+    list.line(from, to, stroke);
+    for end in [from, to] {
+        list.line(end.shifted(0.0, -2.0), end.shifted(0.0, 2.0), stroke);
     }
 }
 

@@ -1,28 +1,31 @@
 //! The profile of a resource: what is used or left in the earliest schedule as an area under a line of steps, what is
 //! possible as lines that it must not cross, and how far it goes in any schedule as dashed lines with their numbers.
 
-use display::{Anchor, ColorRole, Dash, Fit, Group, PathEnd, Piece, Point, Rect, Stroke, Text, Weight};
+use display::{
+    Anchor, ColorRole, Dash, Fit, Group, PathEnd, Piece, Point, Rect, Stroke, Text, Weight, text_width_at,
+};
 use exact::Rational;
 use smol_str::{SmolStr, format_smolstr};
 use tpn::{Levels, Supply};
 
 use super::{Builder, SIGN, SIZES, Track};
 use crate::timeline::ProfilePart;
-use crate::timeline::profile::{PROFILE_ROWS, Profile};
+use crate::timeline::profile::Profile;
 
 /// From the edges of the rows to the plot, above and below, where the number of the lowest line stands.
 const MARGINS: (f64, f64) = (9.0, 14.0);
 /// The height of a line's number.
 const NUMBER_HEIGHT: f64 = 12.0;
-/// How far from the right end the numbers of what is reached end, left of those of what is possible.
-const LIMITS_WIDTH: f64 = 104.0;
+/// Between the numbers of lines that are close together.
+const NUMBER_GAP: f64 = 14.0;
 
 impl Track {
-    /// Where the plot of a profile is, one of whose rows has this number.
-    pub fn plot(&self, row: usize, part: ProfilePart) -> Rect {
+    /// Where the plot of a profile of `rows` rows is, one of whose rows has this number.
+    pub fn plot(&self, row: usize, part: ProfilePart, rows: usize) -> Rect {
         let first = row.saturating_sub(part.part);
-        let (top, bottom) = (self.row(first).min.y, self.row(first + PROFILE_ROWS - 1).max.y);
-        Rect::new(self.left, top + MARGINS.0, self.right, bottom - MARGINS.1)
+        let (top, bottom) = (self.row(first).min.y, self.row(first + rows - 1).max.y);
+        let margins = if rows == 1 { (3.0, 2.0) } else { MARGINS };
+        Rect::new(self.left, top + margins.0, self.right, bottom - margins.1)
     }
 }
 
@@ -45,10 +48,14 @@ impl Builder<'_> {
     /// The plot of a profile, one of whose rows has this number.
     pub(super) fn plot(&mut self, row: usize, part: ProfilePart, on_track: Group) {
         let Some(profile) = self.chart.profiles.get(part.profile) else { return };
-        let plot = Plot::new(profile, self.track.plot(row, part));
+        let rows = if self.chart.rows[row].is_closed { 1 } else { profile.num_rows() };
+        let plot = Plot::new(profile, self.track.plot(row, part, rows));
         self.list.begin(on_track);
         self.area(profile, &plot);
-        self.lines(profile, &plot);
+        // In one row, what is used of all there is shows itself.
+        if rows > 1 {
+            self.lines(profile, &plot);
+        }
     }
 
     /// The steps, filled down to what is nothing.
@@ -91,24 +98,32 @@ impl Builder<'_> {
             Some(Levels::Range { low, high }) => vec![(high, "high"), (low, "low")],
             None => Vec::new(),
         };
+        let mut numbers = Vec::new();
+        for &(level, word) in &limits {
+            let is_reached = reached.iter().any(|it| it.0 == level);
+            let reached = if is_reached { ", reached" } else { "" };
+            let words = format_smolstr!("{word} {}{reached}", level.readable());
+            self.level(plot, level, Stroke::solid(ColorRole::Threat, 1.0), words, &mut numbers);
+        }
         // Where the plan uses all there is, both lines are one, and the limit's name says what it is.
         let is_apart =
             |level: Rational| limits.iter().all(|limit| (plot.y(limit.0) - plot.y(level)).abs() >= 1.0);
         for &(level, word) in reached.iter().filter(|it| is_apart(it.0)) {
             let stroke = Stroke::solid(ColorRole::Accent, 1.2).dashed(Dash::Dashed);
             let words = format_smolstr!("{word} {}", level.readable());
-            self.level(plot, level, stroke, words, LIMITS_WIDTH);
-        }
-        for &(level, word) in &limits {
-            let is_reached = reached.iter().any(|it| it.0 == level);
-            let reached = if is_reached { ", reached" } else { "" };
-            let words = format_smolstr!("{word} {}{reached}", level.readable());
-            self.level(plot, level, Stroke::solid(ColorRole::Threat, 1.0), words, 4.0);
+            self.level(plot, level, stroke, words, &mut numbers);
         }
     }
 
-    /// A line across, with its number so far from its right end.
-    fn level(&mut self, plot: &Plot, level: Rational, stroke: Stroke, words: SmolStr, from_end: f64) {
+    /// A line across, with its number near the right end, left of the `numbers` of other lines that are too close.
+    fn level(
+        &mut self,
+        plot: &Plot,
+        level: Rational,
+        stroke: Stroke,
+        words: SmolStr,
+        numbers: &mut Vec<Rect>,
+    ) {
         let seen = self.track.visible;
         let (left, right) = (plot.rect.min.x.max(seen.min.x), plot.rect.max.x.min(seen.max.x));
         let y = plot.y(level);
@@ -116,11 +131,17 @@ impl Builder<'_> {
         // Numbers stand on their lines; those of lines at the top and at the bottom hang from them.
         let hangs = y - NUMBER_HEIGHT < plot.rect.min.y || y >= plot.rect.max.y - 1.0;
         let top = if hangs { y + 1.0 } else { y - NUMBER_HEIGHT - 1.0 };
-        let place = Rect::new(left + 4.0, top, right - from_end, top + NUMBER_HEIGHT);
-        if place.width() > 60.0 {
+        let width = (text_width_at(&words, SIZES[1], self.measure) * 1.06).ceil();
+        let at = |right: f64| Rect::new(right - width, top, right, top + NUMBER_HEIGHT);
+        let mut place = at(right - 4.0);
+        while let Some(other) = numbers.iter().find(|other| other.overlaps(place.expanded(1.0))) {
+            place = at(other.min.x - NUMBER_GAP);
+        }
+        if place.min.x > left {
+            numbers.push(place);
             let text = Text::new(words, SIZES[1], place).anchored(Anchor::End, Fit::Overflow);
             let plate = Some(ColorRole::Surface.faint(0.75));
-            self.list.write(Text { plate, ..text.colored(stroke.color.role) });
+            self.texts.push(Text { plate, ..text.colored(stroke.color.role) });
         }
     }
 }

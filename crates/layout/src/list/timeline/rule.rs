@@ -39,7 +39,7 @@ impl Builder<'_> {
             if standing == RuleStanding::Broken && right - left >= MIN_WORD {
                 let inside = Rect::new(left, place.min.y, right, place.max.y);
                 let text = Text::new("broken", SIZES[1], inside).anchored(Anchor::Start, Fit::Cut);
-                self.list.write(Text { weight: Weight::Strong, ..text.colored(ColorRole::Text) });
+                self.texts.push(Text { weight: Weight::Strong, ..text.colored(ColorRole::Text) });
             }
         }
     }

@@ -3,20 +3,17 @@
 
 use std::ops::Range;
 
-use display::{Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text, text_width_at};
+use display::{Anchor, ColorRole, Fill, Fit, Rect, Stroke, TargetKind, Text};
 
 use super::{Builder, MIN_WIDTH, SIZES};
 use crate::timeline::{Bar, BarKind, state};
-
-/// A value with less room than this has nothing written in it.
-const MIN_VALUE: f64 = 16.0;
 
 impl Builder<'_> {
     /// A bar of a state track.
     pub(super) fn state_bar(&mut self, at: usize, bar: &Bar, row: Rect, bars: &Range<usize>) {
         let Some(label) = bar.label else { return };
         let place = self.track.bar(bar, row);
-        let role = super::bar_role(bar.kind);
+        let role = super::bar_role(bar);
         let (color, width) = self.outline(at, bar, role);
         let outline = Some(Stroke::solid(color, width));
         match bar.kind {
@@ -33,28 +30,21 @@ impl Builder<'_> {
                 self.list.rectangle(place.expanded(-width / 2.0), 2.0, None, outline)
             }
             _ => {
-                let fill = Some(role.mixed(0.18).into());
+                let fill = Some(role.mixed(0.24).into());
                 self.list.rectangle(place.expanded(-width / 2.0), 3.0, fill, outline)
             }
         }
         .stands_for(TargetKind::Label, label.0);
         self.list.entitle(state::words(self.network, self.plan, bar).join("; "));
-        let seen = self.track.visible;
-        let (left, right) = (place.min.x.max(seen.min.x) + 5.0, place.max.x.min(seen.max.x) - 3.0);
-        if bar.kind == BarKind::Value && right - left >= MIN_VALUE {
-            let width = text_width_at(&bar.name, SIZES[1], self.measure).ceil();
-            // A name that is longer than its value lasts goes on beside it, as far as nothing follows.
-            let right = if right - left < width {
-                let mut after = self.chart.bars[at + 1..bars.end].iter();
-                let next = after.find(|next| next.kind != BarKind::Need);
-                let free = next.map_or(seen.max.x, |next| self.track.bar(next, row).min.x) - 3.0;
-                right.max(free.min(left + width))
-            } else {
-                right
-            };
-            let place = Rect::new(left, place.min.y, right, place.max.y);
-            let text = Text::new(bar.name.clone(), SIZES[1], place).anchored(Anchor::Start, Fit::Cut);
-            self.list.write(text.colored(ColorRole::Text));
+        if bar.kind == BarKind::Value {
+            let mut after = self.chart.bars[at + 1..bars.end].iter();
+            let next = after.find(|next| next.kind != BarKind::Need);
+            let next = next.map_or(f64::INFINITY, |next| self.track.bar(next, row).min.x);
+            if let Some(it) = self.place_of_name(&bar.name, place, next) {
+                let place = Rect::new(it.left, place.min.y, it.right, place.max.y);
+                let text = Text::new(bar.name.clone(), SIZES[1], place).anchored(Anchor::Start, Fit::Cut);
+                self.texts.push(text.colored(ColorRole::Text));
+            }
         }
     }
 }
