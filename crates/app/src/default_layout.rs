@@ -280,9 +280,13 @@ mod tests {
             match tree.tiles.get(id) {
                 Some(Tile::Container(Container::Linear(linear))) => {
                     let sum: f32 = linear.children.iter().map(|&child| linear.shares[child]).sum();
-                    waiting.extend(linear.children.iter().map(|&child| (child, area * linear.shares[child] / sum)));
+                    waiting.extend(
+                        linear.children.iter().map(|&child| (child, area * linear.shares[child] / sum)),
+                    );
                 }
-                Some(Tile::Container(container)) => waiting.extend(container.children().next().map(|&it| (it, area))),
+                Some(Tile::Container(container)) => {
+                    waiting.extend(container.children().next().map(|&it| (it, area)));
+                }
                 Some(Tile::Pane(panel)) => areas.push((area, *panel)),
                 None => {}
             }

@@ -106,7 +106,7 @@ fn that_there_is_no_plan_is_listed_counted_and_mended_like_any_problem() {
     let fix = no_plan["fixes"][0].as_str().expect("a fix").to_owned();
     let name = format!("Fix: {fix}");
     // The Plan panel offers the same, farther down than its room.
-    app.harness.query_all_by_label(&name).last().expect("a fix to press").click();
+    app.harness.query_all_by_label(&name).next().expect("a fix to press").click();
     app.settle();
     assert_eq!(app.json()["status"], "plan");
     app.harness.get_by_label_contains("0 errors, ");

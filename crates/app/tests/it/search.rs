@@ -401,12 +401,14 @@ fn panels_take_the_keyboard_in_turn() {
 
 #[test]
 fn what_is_selected_in_one_panel_is_selected_in_the_others() {
-    let mut app = opened("mission=enroute&workspace=author", [1600.0, 2800.0]);
+    let mut app = opened("mission=enroute&workspace=author", [1600.0, 5200.0]);
     let selected = |app: &App| app.json()["selection"]["name"].as_str().unwrap_or_default().to_owned();
     let is_selected = |app: &App, starts: &str| {
         let node = app.harness.get_by(|node| {
             node.role() == Role::Button
-                && node.label().is_some_and(|label| label.starts_with(starts) || label.contains(&format!(", {starts}")))
+                && node
+                    .label()
+                    .is_some_and(|label| label.starts_with(starts) || label.contains(&format!(", {starts}")))
         });
         node.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
     };

@@ -166,7 +166,9 @@ fn bars_are_in_lanes_by_vehicle_or_by_thread_and_lanes_close() {
     let mut app = reviewing();
     let drives = |app: &support::App| {
         let is_drive = |it: &egui_kittest::Node<'_>| {
-            it.accesskit_node().label().is_some_and(|it| it.contains("Group-Traverse-Path#1: starts") && !it.contains(" of "))
+            it.accesskit_node()
+                .label()
+                .is_some_and(|it| it.contains("Group-Traverse-Path#1: starts") && !it.contains(" of "))
         };
         app.harness.query_all_by_role(Role::Button).filter(is_drive).count()
     };

@@ -68,7 +68,9 @@ impl Chart {
         if before.times.is_empty() {
             return;
         }
-        for (at, bar) in self.bars.iter().enumerate().filter(|(_, bar)| bar.is_whole(network) && !bar.kind.is_past()) {
+        for (at, bar) in
+            self.bars.iter().enumerate().filter(|(_, bar)| bar.is_whole(network) && !bar.kind.is_past())
+        {
             let Some(occurrence) = bar.occurrence.and_then(|id| network.occurrences.get(id.index())) else {
                 continue;
             };

@@ -8,8 +8,8 @@ use smol_str::SmolStr;
 use tpn::{CausalLink, LabelId, Network, OccurrenceId, Ordering, Plan, UseOrdering};
 
 use super::before::{BarChange, Gone};
-use super::profile::{Profile, profiles};
 use super::category::{Category, categories};
+use super::profile::{Profile, profiles};
 use super::row::{Bar, BarKind, Item, Row};
 use super::rule::RuleTrack;
 use super::{ChartOptions, lane, rule};
@@ -211,7 +211,9 @@ impl Chart {
 fn horizon(bars: &[Bar]) -> f64 {
     bars.iter()
         .filter(|bar| bar.kind != BarKind::Value)
-        .flat_map(|bar| [bar.start[1], bar.end[0], bar.end[1], bar.free[0][1], bar.free[1][0], bar.free[1][1]])
+        .flat_map(|bar| {
+            [bar.start[1], bar.end[0], bar.end[1], bar.free[0][1], bar.free[1][0], bar.free[1][1]]
+        })
         .filter(|time| time.is_finite())
         .fold(1.0, f64::max)
 }

@@ -1,8 +1,8 @@
 //! A plan over time as data: rows, the bars in them, when they can be, and where an axis has its marks.
 
 pub mod before;
-mod chart;
 mod category;
+mod chart;
 mod lane;
 mod owner;
 mod pack;

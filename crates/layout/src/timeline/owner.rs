@@ -140,9 +140,10 @@ impl<'a> Vehicles<'a> {
     }
 
     fn variables(&self, network: &Network, found: &[Option<Owner>]) -> Vec<Owner> {
-        let setters = network.labels.iter().filter(|label| label.mode == LabelMode::Tell).filter_map(|label| {
-            Some((label.literal.variable.index(), found[label.owner?.index()].as_ref()?))
-        });
+        let setters =
+            network.labels.iter().filter(|label| label.mode == LabelMode::Tell).filter_map(|label| {
+                Some((label.literal.variable.index(), found[label.owner?.index()].as_ref()?))
+            });
         let mut owners = only_owners(setters, network.variables.len(), Owner::State);
         for (owner, place) in owners.iter_mut().zip(&self.places) {
             if let Some(vehicle) = *place {
@@ -192,7 +193,8 @@ fn inherited(
             found[at] = Some(Owner::Mission);
         }
         let is_inside = counts || occurrence.kind != OccurrenceKind::Primitive;
-        let Some(parent) = occurrence.parent.map(OccurrenceId::index).filter(|&it| it < at && is_inside) else {
+        let Some(parent) = occurrence.parent.map(OccurrenceId::index).filter(|&it| it < at && is_inside)
+        else {
             continue;
         };
         let (above, below) = found.split_at_mut(at);

@@ -95,7 +95,11 @@ mod tests {
     fn the_first_free_row_is_taken_in_the_order_of_starts() {
         assert_eq!(first_fit(&[[0.0, 4.0], [4.0, 6.0], [1.0, 3.0], [3.0, 9.0]]), [0, 0, 1, 1]);
         assert_eq!(first_fit(&[[0.0, 2.0], [0.0, 9.0]]), [1, 0], "what lasts longer is above");
-        assert_eq!(first_fit(&[[5.0, 5.0], [5.0, 5.0], [0.0, 5.0]]), [0, 1, 0], "instants do not cover another");
+        assert_eq!(
+            first_fit(&[[5.0, 5.0], [5.0, 5.0], [0.0, 5.0]]),
+            [0, 1, 0],
+            "instants do not cover another"
+        );
         assert_eq!(first_fit(&[[0.0, f64::INFINITY], [3.0, 4.0]]), [0, 1]);
         assert!(first_fit(&[]).is_empty());
     }

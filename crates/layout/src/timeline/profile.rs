@@ -258,7 +258,8 @@ mod tests {
     }
 
     fn profile(supply: Supply, levels: Option<Levels>, takers: Vec<Taker>) -> Profile {
-        let mut profile = Profile { name: "R".into(), resource: 0, supply, levels, takers, steps: Vec::new() };
+        let mut profile =
+            Profile { name: "R".into(), resource: 0, supply, levels, takers, steps: Vec::new() };
         profile.steps = profile.steps();
         profile
     }

@@ -78,7 +78,9 @@ fn lanes(chart: &Chart) -> BTreeMap<String, BTreeSet<String>> {
         }
         let lane: &mut BTreeSet<String> = lanes.entry(name.clone()).or_default();
         match row.kind {
-            RowKind::Packed => lane.extend(chart.bars[row.bars.clone()].iter().map(|bar| bar.name.to_string())),
+            RowKind::Packed => {
+                lane.extend(chart.bars[row.bars.clone()].iter().map(|bar| bar.name.to_string()));
+            }
             RowKind::State | RowKind::Profile(_) if !row.name.is_empty() => {
                 lane.insert(format!("= {}", row.name));
             }
@@ -100,10 +102,7 @@ fn an_activity_is_in_the_lane_of_its_vehicle_then_of_its_resource_then_of_its_st
         ["= Radio", "= Scout.at", "Drive(Scout, RIDGE)", "Look(Scout, RIDGE)", "Survey(Scout)", "Talk"]
     );
     // Only the laboratory uses the arm, so digging is its work, and the sample its state.
-    assert_eq!(
-        of("Lab"),
-        ["= Arm", "= Lab.at", "= SAMPLE", "Clean", "Dig", "Drive(Lab, RIDGE)", "Reach"]
-    );
+    assert_eq!(of("Lab"), ["= Arm", "= Lab.at", "= SAMPLE", "Clean", "Dig", "Drive(Lab, RIDGE)", "Reach"]);
     assert_eq!(of("Scout, Lab"), ["Convoy(CAMP)"]);
     assert_eq!(of("Battery"), ["= Battery"], "both vehicles drain it");
 }
@@ -114,8 +113,9 @@ fn every_activity_is_in_one_row_with_no_other_at_its_time_and_rows_go_by_time() 
         for grouping in Grouping::ALL {
             let (network, _, chart) = chart(text, grouping);
             let is_activity = |kind| matches!(kind, OccurrenceKind::Primitive | OccurrenceKind::Activity);
-            let wanted: BTreeSet<usize> =
-                (0..network.occurrences.len()).filter(|&at| is_activity(network.occurrences[at].kind)).collect();
+            let wanted: BTreeSet<usize> = (0..network.occurrences.len())
+                .filter(|&at| is_activity(network.occurrences[at].kind))
+                .collect();
             let shown: Vec<usize> = chart
                 .bars
                 .iter()
@@ -260,7 +260,8 @@ fn sites_and_values_have_colors_that_the_legend_explains() {
     assert_eq!(category("Reach"), Some("RIDGE"), "where it must be");
     assert_eq!(category("Convoy(CAMP)"), Some("CAMP"));
     assert_eq!(category("Talk"), None);
-    let value = chart.bars.iter().find(|bar| bar.kind == BarKind::Value && bar.name == "RIDGE").expect("a value");
+    let value =
+        chart.bars.iter().find(|bar| bar.kind == BarKind::Value && bar.name == "RIDGE").expect("a value");
     assert_eq!(value.category, Some(1), "a place has one color, wherever it is");
     for width in [60.0, 200.0, 400.0, 900.0] {
         let list = legend_list(&chart, Rect::new(0.0, 0.0, width, 18.0));
@@ -293,5 +294,8 @@ fn what_a_run_has_left_behind_stays_in_its_lane() {
     assert_eq!(bars.len(), 1);
     assert_eq!((bars[0].kind, bars[0].scheduled()), (BarKind::Aborted, [16.0, 17.5]));
     let list = drawn(&chart, (&network, &plan), &track(&chart, 1_900.0, 1.0));
-    assert!(list.texts().iter().any(|text| text.text.starts_with("Dig · abort")), "a word, not a color alone");
+    assert!(
+        list.texts().iter().any(|text| text.text.starts_with("Dig · abort")),
+        "a word, not a color alone"
+    );
 }

@@ -14,6 +14,7 @@ use workbench::state::pins::event_name;
 use workbench::state::playback::{bound, number};
 use workbench::time_text;
 
+use super::bar;
 use super::paint::{Painting, note};
 use super::view::TimeView;
 use crate::Context;
@@ -70,6 +71,10 @@ pub(super) fn show(
             WidgetInfo::slider(true, windows[side][0], label)
         });
         follow(ui, &response, painting, node, windows[side][0], commands);
+        // The handles of a narrow bar cover all of it.
+        if response.clicked() {
+            commands.send(Command::Select(bar::selection(bar, painting.network)));
+        }
         let is_held = painting.context.state.pins.held().is_some_and(|(held, _)| held == node);
         if is_pinned || is_prominent || is_held || response.hovered() || response.has_focus() {
             paint(ui, painting, x, row, is_pinned, is_held || response.hovered() || response.has_focus());

@@ -86,8 +86,10 @@ const NAMES_WIDTH: (f32, f32) = (150.0, 60.0);
 const SHOWN_BEYOND: f64 = 1.08;
 /// A bar can be pointed at in at least this width.
 const MIN_TARGET: f32 = 6.0;
-/// A bar that is narrower than this has handles only while it stands out.
+/// A bar that is narrower than this has handles only while it stands out, or while few bars are in view.
 const MIN_HANDLED: f32 = 12.0;
+/// With more bars in view than this, they are not few.
+const MAX_FEW_BARS: usize = 150;
 /// A timeline with less height than this has no legend.
 const MIN_HEIGHT: f32 = 150.0;
 
@@ -161,8 +163,7 @@ impl TimelinePanel {
         if !is_current {
             let run = state.run_shown().filter(|_| step.is_none());
             let past = run.map(|run| past::of_run(run, state.playback.time)).unwrap_or_default();
-            let mut chart =
-                Chart::new(&snapshot.program, (network, plan), &past, view.chart(), &self.closed);
+            let mut chart = Chart::new(&snapshot.program, (network, plan), &past, view.chart(), &self.closed);
             // Pinned events only narrow windows.
             chart.compare_with_free(if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan });
             let before =
@@ -244,7 +245,10 @@ impl TimelinePanel {
         }
         self.show_divider(ui, rect, axis.left());
         if has_legend {
-            let place = Rect::from_min_max(pos2(all.left() + 8.0, whole.bottom()), pos2(all.right() - 8.0, all.bottom()));
+            let place = Rect::from_min_max(
+                pos2(all.left() + 8.0, whole.bottom()),
+                pos2(all.right() - 8.0, all.bottom()),
+            );
             show_legend(ui, context, chart, place);
         }
         self.view = Some(view);
@@ -302,10 +306,9 @@ impl TimelinePanel {
                     continue;
                 }
                 let is_prominent = is_selected || is_hovered;
-                let is_pinned = bar.is_narrowed() && bar.events.iter().any(|event| pinned.contains_key(event));
-                if is_prominent || is_pinned || is_single || place.width() >= MIN_HANDLED {
-                    handles.push((index, bar, is_prominent));
-                }
+                let is_pinned = bar.events.iter().any(|event| pinned.contains_key(event));
+                let is_wide = is_single || place.width() >= MIN_HANDLED;
+                handles.push((index, bar, is_prominent, is_prominent || is_pinned || is_wide));
                 if is_selected && chosen.is_none() {
                     chosen = Some((index, bar));
                 }
@@ -328,7 +331,8 @@ impl TimelinePanel {
         paint::show(ui, painting.context, &list);
         rows.for_each(|index| painting.sign(ui, index));
         // Handles come last, so that they are over the bars that they belong to.
-        for (index, bar, is_prominent) in handles {
+        let are_few = handles.len() <= MAX_FEW_BARS;
+        for (index, bar, is_prominent, _) in handles.into_iter().filter(|it| are_few || it.3) {
             handle::show(ui, painting, &pinned, (index, bar), is_prominent, commands);
         }
         match chosen {
@@ -570,7 +574,9 @@ fn show_legend(ui: &Ui, context: &Context<'_>, chart: &Chart, place: Rect) {
         .map(|(kind, names)| format!("{kind}: {names}"))
         .collect();
     let response = ui.interact(place, ui.scope_id().with("legend"), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("Colors. {}", lines.join(". "))));
+    response.widget_info(|| {
+        WidgetInfo::labeled(egui::Role::Label, true, format!("Colors. {}", lines.join(". ")))
+    });
     response.on_hover_ui_at_pointer(|ui| {
         for line in &lines {
             ui.label(line);

@@ -31,10 +31,12 @@ pub(super) fn of_run(run: &Execution, time: f64) -> Vec<Past> {
             }
             // Ending it early may take a while.
             let is_its_end = |entry: &&executive::Entry| {
-                let is_its = matches!(&entry.happening, Happening::Progress { name, .. } if *name == occurrence.name);
+                let is_its =
+                    matches!(&entry.happening, Happening::Progress { name, .. } if *name == occurrence.name);
                 is_its && entry.time >= next.from
             };
-            let stopped = || run.log.iter().filter(is_its_end).map(|entry| entry.time).max().unwrap_or(next.from);
+            let stopped =
+                || run.log.iter().filter(is_its_end).map(|entry| entry.time).max().unwrap_or(next.from);
             let end = at(occurrence.end);
             let times = [start, end.unwrap_or_else(stopped)].map(exact::Time::to_f64);
             found.insert(id, Past { occurrence: id, times, is_aborted: end.is_none() });

@@ -142,7 +142,7 @@ impl Track {
     /// Where the sign is that opens and closes a row.
     pub fn sign(&self, shown: &Row, row: Rect) -> Rect {
         let left = row.min.x + SIGN.1 + f64::from(shown.depth) * INDENT;
-        Rect::new(left, row.min.y, left + SIGN.0, row.max.y)
+        Rect::new(left, row.min.y, left + SIGN.0, row.min.y + BAR_EDGES.iter().sum::<f64>())
     }
 
     /// The place of a bar between two times.
@@ -388,7 +388,8 @@ impl Builder<'_> {
         };
         let is_strong = matches!(shown.kind, RowKind::Heading | RowKind::Packed);
         let weight = if is_strong { Weight::Strong } else { Weight::Regular };
-        let place = Rect::new(sign.max.x + 2.0, row.min.y, self.track.left - SIGN.1, row.max.y);
+        let bottom = row.min.y + BAR_EDGES.iter().sum::<f64>();
+        let place = Rect::new(sign.max.x + 2.0, row.min.y, self.track.left - SIGN.1, bottom);
         let text = Text::new(shown.name.clone(), SIZES[0], place).anchored(Anchor::Start, Fit::Cut);
         let item = self.list.write(Text { weight, ..text.colored(role) });
         if let Some(occurrence) = first.and_then(|bar| bar.occurrence) {
@@ -409,8 +410,7 @@ impl Builder<'_> {
         let places = shown.bars.clone().filter_map(|at| {
             let bar = &self.chart.bars[at];
             let place = self.track.bar(bar, row);
-            let is_merged =
-                !bar.kind.is_of_state() && place.width() < 1.0 && place.max.x < drawn_to + 1.0;
+            let is_merged = !bar.kind.is_of_state() && place.width() < 1.0 && place.max.x < drawn_to + 1.0;
             // Whatever may vary of it lies before its latest end.
             let last = self.track.x(bar.end[1].max(bar.free[1][1])).max(place.max.x);
             let first = self.track.x(bar.free[0][0]).min(place.min.x);
