@@ -31,7 +31,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                     entry(ui, context, number, lesson, commands);
                 }
             }
-            if let [made @ 1.., right] = context.state.settings.predictions {
+            if let [made @ 1..=u32::MAX, right] = context.state.settings.predictions {
                 ui.add_space(space::L);
                 let text = format!("Predictions: {right} of {made} correct");
                 ui.label(RichText::new(text).color(tokens.text_muted));
