@@ -546,7 +546,7 @@ fn the_search_is_a_tree_for_who_does_not_see_it() {
     dispatch(&mut app, "search.close", &json!({}));
     let plan = items(&app).into_iter().find(|(name, ..)| name.ends_with(", plan")).expect("a plan").0;
     let node = app.harness.get_by_role_and_label(egui::Role::TreeItem, &plan);
-    assert!(node.accesskit_node().is_expanded().is_none(), "nothing is below a plan");
+    assert!(node.accesskit_node().data().is_expanded().is_none(), "nothing is below a plan");
     node.click_accesskit();
     app.settle();
     let (_, _, is_selected, _) =
