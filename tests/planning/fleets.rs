@@ -1,4 +1,4 @@
-//! Missions of fleets (SPEC 23) against the same missions with every vehicle written out: the networks are equal but for names,
+//! Missions of fleets (SPEC 17) against the same missions with every vehicle written out: the networks are equal but for names,
 //! and so are the plans. The generator writes both texts from one mission and expands nothing with the program's own code.
 
 use acceptance::mission::{first_plan, network};

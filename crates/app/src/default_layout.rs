@@ -83,16 +83,14 @@ fn wide_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
     match workspace {
         Workspace::Author => {
             let text = tabs(tiles, &[Editor, Outline]);
-            let problems = tabs(tiles, &[Problems]);
-            let left = split(tiles, Vertical, &[(text, 0.78), (problems, 0.22)]);
+            let plan = tabs(tiles, &[Plan, Problems]);
+            let left = split(tiles, Vertical, &[(text, 0.66), (plan, 0.34)]);
             let timeline = tabs(tiles, &[Timeline]);
             let network = tabs(tiles, &[Network]);
-            let plan = tabs(tiles, &[Plan]);
             let terrain = tabs(tiles, &[Terrain]);
-            let beside = split(tiles, Vertical, &[(plan, 0.5), (terrain, 0.5)]);
-            let lower = split(tiles, Horizontal, &[(network, 0.58), (beside, 0.42)]);
-            let right = split(tiles, Vertical, &[(timeline, 0.54), (lower, 0.46)]);
-            split(tiles, Horizontal, &[(left, 0.33), (right, 0.67)])
+            let lower = split(tiles, Horizontal, &[(network, 0.6), (terrain, 0.4)]);
+            let right = split(tiles, Vertical, &[(timeline, 0.46), (lower, 0.54)]);
+            split(tiles, Horizontal, &[(left, 0.31), (right, 0.69)])
         }
         Workspace::Teach => {
             let text = tabs(tiles, &[Editor, Outline]);

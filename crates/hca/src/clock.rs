@@ -1,4 +1,4 @@
-//! Time in an automaton: the clocks of composites and locations, and conditions that have to have lasted (SPEC 18).
+//! Time in an automaton: the clocks of composites and locations, and conditions that have to have lasted (SPEC 8.5).
 //!
 //! A clock holds the steps at whose ends it is up, not a count: a step in which nothing is up costs nothing, however long
 //! the clock runs.
@@ -59,7 +59,7 @@ pub(crate) struct Ends {
 }
 
 impl Ends {
-    /// The earliest.
+    /// The first step at whose end something is up.
     pub(crate) fn first(&self) -> Option<u64> {
         self.ranges.front().map(|(first, _)| *first)
     }
@@ -110,7 +110,7 @@ pub(crate) struct Times {
     pub(crate) ends: Vec<Ends>,
     /// For each condition that has to have lasted, the last step that did not satisfy it.
     pub(crate) unsatisfied: Vec<u64>,
-    /// Of each lock.
+    /// What each lock of the program does, by its number.
     pub(crate) locks: Vec<LockState>,
     /// The choices that are still to be made, in textual order.
     pub(crate) open: Vec<CompositeId>,

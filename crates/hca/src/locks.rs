@@ -1,4 +1,4 @@
-//! Locks of programs that run together (SPEC 18): who is granted what, whose goals are set aside, and who waits for whom.
+//! Locks of programs that run together (SPEC 8.5): who is granted what, whose goals are set aside, and who waits for whom.
 //!
 //! Whether constraints can hold together is decided by the values of their variables alone.
 

@@ -190,7 +190,7 @@ fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) 
         (Controllability::Dynamic, status) => (
             status,
             format!(
-                "{DYNAMIC}the executive can keep all bounds for all values of these contingent durations, as they are observed: {ranges}"
+                "{DYNAMIC}the executive can keep all time bounds for all values of these contingent durations, as they are observed: {ranges}"
             ),
         ),
     };

@@ -175,7 +175,7 @@ pub struct PrimitiveDecl {
     pub name: Name,
     /// Its formal parameters.
     pub formals: Vec<Name>,
-    /// What each parameter stands for, where that is written (SPEC 23).
+    /// What each parameter stands for, where that is written (SPEC 17).
     pub kinds: Vec<Option<Name>>,
     /// Its default duration; `[0,inf]` when absent.
     pub bounds: Option<Bounds>,
@@ -208,7 +208,7 @@ pub struct Runs {
     pub arguments: Vec<Name>,
 }
 
-/// `model NAME extends PARENT { … }`: what vehicles of it can do, and the equipment that each of them has (SPEC 23).
+/// `model NAME extends PARENT { … }`: what vehicles of it can do, and the equipment that each of them has (SPEC 17).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelDecl {
     pub name: Name,
@@ -274,7 +274,7 @@ pub struct FleetDecl {
     pub first: u32,
     /// The number of the last member; an empty or too large range is reported, and has none.
     pub last: u32,
-    /// The brackets.
+    /// Where its range stands in the text, with the brackets.
     pub range_span: Span,
 }
 
@@ -411,7 +411,7 @@ pub struct ActivityDecl {
     pub name: Name,
     /// Its formal parameters.
     pub formals: Vec<Name>,
-    /// What each parameter stands for, where that is written (SPEC 23).
+    /// What each parameter stands for, where that is written (SPEC 17).
     pub kinds: Vec<Option<Name>>,
     pub bounds: HeaderBounds,
     pub body: Statement,
@@ -644,7 +644,7 @@ pub enum StatementKind {
     Using(Box<Statement>, Name, Option<Expr>),
     /// `body as NAME` (SPEC 14).
     Named(Box<Statement>, Name),
-    /// `any x in G body` or `each x in G body` (SPEC 23).
+    /// `any x in G body` or `each x in G body` (SPEC 17).
     Members(Members),
     /// `Name(args)`, or a bare name that is a declared activity or primitive.
     Call(Name, Vec<Argument>),
@@ -808,7 +808,7 @@ pub struct World {
     pub obstacles: Vec<ObstacleDecl>,
     /// Those of fleets included.
     pub vehicles: Vec<VehicleDecl>,
-    /// The vehicle models that the mission declares (SPEC 23).
+    /// The vehicle models that the mission declares (SPEC 17).
     pub models: Vec<ModelDecl>,
 }
 

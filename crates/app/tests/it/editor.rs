@@ -233,12 +233,13 @@ fn find_goes_from_match_to_match_and_replaces_all() {
     app.harness.get_by_role_and_label(Role::TextInput, "Find");
     app.harness.event(Event::Text("delay".to_owned()));
     app.settle();
-    app.harness.get_by_label("3 matches");
+    app.harness.get_by_label("1 of 3");
+    assert_eq!(app.json()["caret"], json!({ "anchor": 0, "head": 5 }), "shown while it is typed");
     app.press(NONE, Key::Enter);
-    assert_eq!(app.json()["caret"], json!({ "anchor": 0, "head": 5 }));
+    assert_eq!(app.json()["caret"], json!({ "anchor": 7, "head": 12 }));
     app.harness.get_by_label("Match case").click();
     app.settle();
-    app.harness.get_by_label("1 of 2");
+    app.harness.get_by_label("2 of 2");
     app.harness.get_by_label("Toggle replace").click();
     app.settle();
     app.harness.get_by_role_and_label(Role::TextInput, "Replace with").focus();

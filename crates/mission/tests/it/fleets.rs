@@ -1,4 +1,4 @@
-//! Vehicles of models that the mission declares (SPEC 23): paths, speeds and sight follow the properties of the models, and
+//! Vehicles of models that the mission declares (SPEC 17): paths, speeds and sight follow the properties of the models, and
 //! each vehicle has its own equipment.
 
 use link::{Response, Update};

@@ -318,7 +318,7 @@ fn the_growth_of_a_tree_goes_on_and_is_the_search_itself() {
     let mut hurried = Collected { patience: Some(10), ..Collected::default() };
     core.handle(Request::GrowPath(wanted.clone()), &mut hurried);
     assert!(hurried.growths.is_empty());
-    let mut slow = Collected { pace: 20.0, ..Collected::default() };
+    let mut slow = Collected { pace: 60.0, ..Collected::default() };
     core.handle(Request::GrowPath(wanted.clone()), &mut slow);
     let mut steps = Vec::new();
     for growth in &slow.growths {

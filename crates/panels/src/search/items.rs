@@ -2,7 +2,7 @@
 //!
 //! They are no stops of the Tab key: arrow keys walk the tree (`keys`), and a click by assistive technology goes to the state.
 
-use egui::accesskit::{Action, Role};
+use egui::accesskit::{self, Action, Role};
 use egui::{Rect, Response, Sense, Ui, UiBuilder, vec2};
 use kirk::{TreeNodeId, TreeStatus};
 use workbench::state::search::wording;
@@ -38,6 +38,9 @@ pub(super) fn show(
         let widget = inside.interact(rect, inside.scope_id().with(id), Sense::hover());
         inside.ctx().accesskit_node_builder(widget.id, |node| {
             node.set_role(Role::TreeItem);
+            // What only hears the pointer gets none by itself.
+            let [x0, y0, x1, y1] = [rect.min.x, rect.min.y, rect.max.x, rect.max.y].map(f64::from);
+            node.set_bounds(accesskit::Rect { x0, y0, x1, y1 });
             node.set_label(name(tree, id));
             node.set_level(item.level);
             node.set_position_in_set(item.position);

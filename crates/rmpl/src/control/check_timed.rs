@@ -1,4 +1,4 @@
-//! The numbers of forms in time: durations, factors, probabilities and rewards (SPEC 18).
+//! The numbers of forms in time: durations, factors, probabilities and rewards (SPEC 8.5).
 
 use exact::Rational;
 

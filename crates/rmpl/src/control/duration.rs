@@ -1,4 +1,4 @@
-//! Durations of the forms in time: a number with a unit, or a plain number of steps (SPEC 18).
+//! Durations of the forms in time: a number with a unit, or a plain number of steps (SPEC 8.5).
 
 use std::fmt;
 

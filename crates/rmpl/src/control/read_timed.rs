@@ -1,4 +1,4 @@
-//! Reading the forms in time: durations, clocks, locks, and choices with weights (SPEC 18).
+//! Reading the forms in time: durations, clocks, locks, and choices with weights (SPEC 8.5).
 
 use smol_str::format_smolstr;
 

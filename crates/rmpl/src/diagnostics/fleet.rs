@@ -1,4 +1,4 @@
-//! How mistakes in fleets and groups are worded: they are kinds of `E-BOUNDS` and `E-UNDEF` (SPEC 23).
+//! How mistakes in fleets and groups are worded: they are kinds of `E-BOUNDS` and `E-UNDEF` (SPEC 17).
 
 use super::{bounds, undefined};
 use crate::diagnostic::Diagnostic;

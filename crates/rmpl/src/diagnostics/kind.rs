@@ -1,4 +1,4 @@
-//! `E-KIND`: something of one kind where another kind is needed (SPEC 23). Compilation reports it.
+//! `E-KIND`: something of one kind where another kind is needed (SPEC 17). Compilation reports it.
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;

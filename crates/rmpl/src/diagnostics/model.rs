@@ -1,4 +1,4 @@
-//! `E-MODEL`: a vehicle model that no vehicle can be, or a demand that a model cannot meet (SPEC 23).
+//! `E-MODEL`: a vehicle model that no vehicle can be, or a demand that a model cannot meet (SPEC 17).
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;

@@ -1,4 +1,4 @@
-//! Groups with their members (SPEC 23): vehicles, locations or values, each once, at its first place.
+//! Groups with their members (SPEC 17): vehicles, locations or values, each once, at its first place.
 
 use std::collections::{BTreeMap, BTreeSet};
 

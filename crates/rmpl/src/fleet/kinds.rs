@@ -1,4 +1,4 @@
-//! What parameters stand for (SPEC 23): what is written, otherwise what their uses require; and whether uses and
+//! What parameters stand for (SPEC 17): what is written, otherwise what their uses require; and whether uses and
 //! arguments agree with it.
 //!
 //! Only vehicles, locations, numbers and resources are inferred. A name may well be a value and a location, or an atom
@@ -20,7 +20,7 @@ use crate::span::Span;
 /// What a parameter stands for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Kind {
-    /// Of any model.
+    /// A vehicle, whatever its model.
     Vehicle,
     /// Of this model, or of one that extends it.
     VehicleOf(SmolStr),

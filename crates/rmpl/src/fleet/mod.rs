@@ -1,4 +1,4 @@
-//! Vehicles with their own equipment, written once (SPEC 23): what models give to each of their vehicles, what groups
+//! Vehicles with their own equipment, written once (SPEC 17): what models give to each of their vehicles, what groups
 //! hold, and what parameters stand for.
 //!
 //! A vehicle's own resources and states become ordinary ones with the vehicle's name before a dot, so that nothing

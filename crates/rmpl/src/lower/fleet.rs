@@ -1,4 +1,4 @@
-//! Vehicles and their models, groups, and statements for their members (SPEC 23).
+//! Vehicles and their models, groups, and statements for their members (SPEC 17).
 
 use exact::Rational;
 

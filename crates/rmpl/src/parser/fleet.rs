@@ -1,4 +1,4 @@
-//! Vehicle models, fleets, groups, and statements for their members (SPEC 23).
+//! Vehicle models, fleets, groups, and statements for their members (SPEC 17).
 //!
 //! `model`, `group`, `any` and `each` are words of the language only where their forms begin.
 

@@ -1,4 +1,4 @@
-//! What the editor knows of vehicle models, fleets, groups and kinds of parameters (SPEC 23).
+//! What the editor knows of vehicle models, fleets, groups and kinds of parameters (SPEC 17).
 
 use crate::fixture::{apply, fixture};
 use rmpl::editor::{self, Evaluation, HighlightKind, OutlineKind, RenameProblem};

@@ -100,7 +100,7 @@ impl Expander<'_> {
         effects
     }
 
-    /// Reports vehicles whose declared models do not reach the speed that the traverse is to have (SPEC 23). What the built-in
+    /// Reports vehicles whose declared models do not reach the speed that the traverse is to have (SPEC 17). What the built-in
     /// models reach is no limit: their speeds are measured on flat ground.
     fn check_speed(&mut self, activity: &Activity<'_>) {
         let Some(moves) = &activity.declared.moves else { return };

@@ -170,7 +170,7 @@ impl<'program> Expander<'program> {
         }
     }
 
-    /// A statement for one member of a group, or for each (SPEC 23).
+    /// A statement for one member of a group, or for each (SPEC 17).
     fn members(&mut self, members: &'program Members, span: Span, entry: Entry, scope: &Scope) -> Piece {
         let groups = Rc::clone(&self.groups);
         let group = scope.name(&members.group.text);

@@ -1,4 +1,4 @@
-//! Vehicles with their own equipment, groups, and what parameters stand for (SPEC 23): each compiles to the network of the
+//! Vehicles with their own equipment, groups, and what parameters stand for (SPEC 17): each compiles to the network of the
 //! mission that is written out, and each mistake is told at its place.
 
 use rmpl::Severity;

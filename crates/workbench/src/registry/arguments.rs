@@ -36,7 +36,9 @@ pub(super) fn hitting(_: &AppState, arguments: &Value) -> Result<Command, String
                 let conflict = number_argument(arguments, "conflict")?.max(1.0) as usize;
                 HittingMove::Expand(conflict - 1)
             }
-            _ => return Err("`as` must be \"conflict\", \"diagnosis\" or \"closed\"".to_owned()),
+            _ => {
+                return Err("The argument \"as\" must be \"conflict\", \"diagnosis\" or \"closed\"".to_owned());
+            }
         };
         AutomatonCommand::Diagnose(node, step)
     } else {

@@ -45,6 +45,7 @@ impl Diagnosing {
         self.expected == other.expected && self.observation == other.observation
     }
 
+    /// The tree as far as it has been built.
     pub fn tree(&self) -> &HittingTree {
         &self.tree
     }

@@ -19,12 +19,13 @@ const EXCEPTIONS: &[(&str, usize, &str)] = &[
     ("panels", 11, "the parts of a panel share what its first file holds"),
     (
         "rmpl",
-        29,
+        37,
         "productions of the grammar refer to each other, and so do diagnostics and the checks that give them",
     ),
+    ("hca", 5, "an automaton has clocks and locks, which refer to its parts, and is stepped by them"),
     ("terrain", 12, "to be parted"),
     ("text_editing", 6, "to be parted"),
-    ("workbench", 5, "to be parted"),
+    ("workbench", 6, "to be parted"),
 ];
 
 /// A module, as the names that lead to it from the root of its crate.

@@ -24,6 +24,7 @@ pub struct Prediction {
 }
 
 impl Prediction {
+    /// Whether what was shown is what the student had predicted.
     pub fn is_right(&self) -> bool {
         self.given == self.shown
     }
