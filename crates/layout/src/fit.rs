@@ -31,6 +31,9 @@ const TRIES: usize = 4;
 const SHORTEST_ROW: f64 = 240.0;
 /// A drawing in little room is made so small.
 const MIN_ZOOM: f64 = 0.8;
+/// Networks with so many events at most are small, and made so much smaller before anything is put behind a box.
+const SMALL: usize = 60;
+const SMALL_ZOOMS: [f64; 3] = [MIN_ZOOM, 0.65, 0.5];
 /// And its texts are at least so large then, in points of the screen.
 pub const MIN_TEXT: f64 = 11.0;
 
@@ -70,6 +73,15 @@ pub fn fitted(
         && let Some(found) = fitter.tried(&Detail::default())
     {
         return fitter.drawn(&found);
+    }
+    // Of a small network nothing is behind boxes as long as what is written can be read.
+    let is_small = focus.is_none() && network.nodes.len() <= SMALL;
+    for zoom in SMALL_ZOOMS.into_iter().filter(|_| is_small) {
+        let brief = options.brief(MIN_TEXT / zoom);
+        let fitter = Fitter::new(network, &contents, &brief, room, measure, zoom);
+        if let Some(found) = fitter.tried(&Detail::default()) {
+            return fitter.drawn(&found);
+        }
     }
     let brief = options.brief(MIN_TEXT / MIN_ZOOM);
     let fitter = Fitter::new(network, &contents, &brief, room, measure, MIN_ZOOM);

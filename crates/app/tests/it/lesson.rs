@@ -286,6 +286,13 @@ fn cut_off(app: &App) -> Vec<(String, egui::Rect)> {
     found
 }
 
+/// The names of the bars of the timeline, by what it says of each: `Drive(RIDGE), Drive1#2: starts …`.
+fn bar_names(labels: &[(String, egui::Rect)]) -> Vec<String> {
+    let whole = labels.iter().filter_map(|(label, _)| Some(label.split_once(": starts")?.0));
+    let name = |whole: &str| whole.rsplit_once(", ").map_or(whole, |(name, _)| name).to_owned();
+    whole.flat_map(|whole| [name(whole), whole.split('#').next().unwrap_or(whole).to_owned()]).collect()
+}
+
 #[test]
 fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read_or_makes_it_small() {
     let mut app = opened("", [1280.0, 800.0]);
@@ -306,7 +313,10 @@ fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read_or_makes_it_small() {
             // Of a network that is larger than its panel, what the stop is about has to be there.
             let json = app.json();
             let selected = json["selection"]["name"].as_str().unwrap_or("nothing");
-            cut.extend(illegible(&app).into_iter().map(|text| format!("{place}: {text}")));
+            // A bar of the timeline may be too short for its name, which is beside its times when one points at it.
+            let bars: Vec<String> = bar_names(&labels);
+            let small = illegible(&app).into_iter().filter(|text| !bars.contains(text));
+            cut.extend(small.map(|text| format!("{place}: {text}")));
             let selected = selected.split('#').next().unwrap_or(selected);
             let bar_bottom =
                 app.harness.get_by_role_and_label(Role::TextInput, "Mission name").rect().bottom();

@@ -15,6 +15,14 @@ fn started() -> support::App {
     app
 }
 
+/// The same in a window where all of the first mission is drawn.
+fn roomy() -> support::App {
+    let world = std::rc::Rc::<support::World>::default();
+    let mut app = support::start_in(world, |builder| builder.with_size([1920.0, 1200.0]));
+    app.settle();
+    app
+}
+
 fn has(app: &support::App, label: &str) -> bool {
     app.harness.query_all_by_label(label).next().is_some()
 }
@@ -37,7 +45,7 @@ fn the_network_says_what_it_shows() {
 
 #[test]
 fn clicking_an_activity_selects_it_everywhere() {
-    let mut app = started();
+    let mut app = roomy();
     app.harness.get_by_role_and_label(egui::Role::Button, "Group-Wait#1 in the network").click();
     app.settle();
     assert_eq!(app.json()["selection"]["name"], json!("Group-Wait#1"));
@@ -48,7 +56,7 @@ fn clicking_an_activity_selects_it_everywhere() {
 
 #[test]
 fn searching_selects_one_match_after_the_other() {
-    let mut app = started();
+    let mut app = roomy();
     let field = app.harness.get_by_role_and_label(egui::Role::TextInput, "Search the network");
     field.focus();
     app.settle();
@@ -64,7 +72,7 @@ fn searching_selects_one_match_after_the_other() {
 
 #[test]
 fn a_text_with_errors_keeps_the_last_network_and_says_so() {
-    let mut app = started();
+    let mut app = roomy();
     let source = app.harness.state().source();
     app.harness.state_mut().set_source(&format!("{source}\nscenario {{"));
     app.settle();
@@ -79,7 +87,7 @@ fn a_text_with_errors_keeps_the_last_network_and_says_so() {
 
 #[test]
 fn a_double_click_closes_an_activity_and_another_opens_it() {
-    let mut app = started();
+    let mut app = roomy();
     let double_click = |app: &mut support::App, label: &str| {
         for _ in 0..2 {
             app.harness.get_by_role_and_label(egui::Role::Button, label).click();
@@ -149,7 +157,7 @@ fn a_picture_is_saved_as_often_as_it_is_asked_for() {
 
 #[test]
 fn an_error_is_marked_at_the_activity_that_it_is_in() {
-    let mut app = started();
+    let mut app = roomy();
     let source = app.harness.state().source();
     app.harness.state_mut().set_source(
         &source.replace("Group-Transmit(MCC,ARRIVED_TAI)[0,2]", "Group-Transmit(MCC,ARRIVED_TAI)[3,2]"),

@@ -73,6 +73,8 @@ fn a_problem_leads_to_its_place_and_can_be_explained() {
     let source = "primitive Drive(to);\nscenario S = { Driv(A) }";
     app.harness.state_mut().run(Command::OpenSource { name: "test".into(), source: source.to_owned() });
     app.settle();
+    app.harness.state_mut().run(Command::Window(WindowCommand::ShowPanel(PanelKind::Problems)));
+    app.settle();
     let problem = app.json()["diagnostics"][0].clone();
     let code = problem["code"].as_str().expect("a code").to_owned();
     let place = format!("Line {}: {code}", problem["span"]["line"]);

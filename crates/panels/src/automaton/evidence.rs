@@ -94,9 +94,13 @@ fn difference(model: &Model, most_likely: &State, state: &State) -> String {
 
 fn bar(ui: &mut Ui, context: &Context<'_>, probability: &Interval, text: &str, is_true: bool, state: &str) {
     let tokens = context.tokens;
-    let (rect, response) =
-        ui.allocate_exact_size(vec2(ui.available_width(), space::ROW - 2.0), Sense::hover());
     let share = percent_between(probability, 2);
+    let sign = if is_true { "● " } else { "" };
+    let (width, font) = (ui.available_width(), FontId::proportional(size::SMALL));
+    let words = format!("{share}  {sign}{text}");
+    let galley = ui.painter().layout(words, font, tokens.text, width - 12.0);
+    let height = (galley.size().y + 5.0).max(space::ROW - 2.0);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let name = format!("{share} {text}");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &name));
     let painter = ui.painter_at(rect);
@@ -104,10 +108,8 @@ fn bar(ui: &mut Ui, context: &Context<'_>, probability: &Interval, text: &str, i
     let part =
         Rect::from_min_size(rect.min, vec2(rect.width() * probability.to_f64().0 as f32, rect.height()));
     painter.rect_filled(part, 3.0, tokens.selection);
-    let font = FontId::proportional(size::SMALL);
-    let at = rect.left_center() + vec2(6.0, 0.0);
-    let sign = if is_true { "● " } else { "" };
-    painter.text(at, Align2::LEFT_CENTER, format!("{share}  {sign}{text}"), font, tokens.text);
+    let at = rect.left_center() + vec2(6.0, -0.5 * galley.size().y);
+    painter.galley(at, galley, tokens.text);
     response.on_hover_text(state);
 }
 

@@ -37,7 +37,9 @@ pub(super) fn hitting(_: &AppState, arguments: &Value) -> Result<Command, String
                 HittingMove::Expand(conflict - 1)
             }
             _ => {
-                return Err("The argument \"as\" must be \"conflict\", \"diagnosis\" or \"closed\"".to_owned());
+                return Err(
+                    "The argument \"as\" must be \"conflict\", \"diagnosis\" or \"closed\"".to_owned()
+                );
             }
         };
         AutomatonCommand::Diagnose(node, step)
