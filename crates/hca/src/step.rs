@@ -355,7 +355,7 @@ impl Stepper {
     }
 
     /// Takes one step where the caller says which of the [asked](Self::asked) conditions are entailed, whatever bar is over
-    /// them. Granting [locks](crate::locks) and making [choices](Self::open_choice) is left to the caller.
+    /// them. Granting [locks] and making [choices](Self::open_choice) is left to the caller.
     pub fn step_told(&mut self, is_entailed: &dyn Fn(TestId) -> bool, observer: &mut impl StepObserver) {
         self.advance(is_entailed, observer);
     }

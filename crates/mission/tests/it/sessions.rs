@@ -318,14 +318,14 @@ fn the_growth_of_a_tree_goes_on_and_is_the_search_itself() {
     let mut hurried = Collected { patience: Some(10), ..Collected::default() };
     core.handle(Request::GrowPath(wanted.clone()), &mut hurried);
     assert!(hurried.growths.is_empty());
-    let mut slow = Collected { pace: 60.0, ..Collected::default() };
+    let mut slow = Collected { pace: 70.0, ..Collected::default() };
     core.handle(Request::GrowPath(wanted.clone()), &mut slow);
     let mut steps = Vec::new();
     for growth in &slow.growths {
         assert_eq!((growth.first as usize, growth.search), (steps.len(), slow.growths[0].search));
         steps.extend(growth.steps.clone());
     }
-    assert!(slow.growths.len() > 2);
+    assert!(slow.growths.len() > 1, "it is told in parts");
     assert_eq!(steps, whole.steps);
     // Who holds all gets nothing new.
     let held =
