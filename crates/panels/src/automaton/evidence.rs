@@ -228,7 +228,6 @@ fn observation(
 fn findings(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment) {
     let Some(record) = &plant.record else { return };
     let tokens = context.tokens;
-    title(ui, context, "Result", "");
     let ended = match &record.outcome {
         StepOutcome::Explained => None,
         StepOutcome::Refuted { conflict } => {
@@ -240,6 +239,11 @@ fn findings(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMome
             Some("The observation doesn't match any tracked state; it was ignored.".to_owned())
         }
     };
+    let is_as_expected = record.conflicts.is_empty() && ended.is_none();
+    let is_mistaken = plant.belief.most_likely() != &plant.true_state;
+    if ended.is_some() || record.is_uncertain || is_as_expected || is_mistaken {
+        title(ui, context, "Result", "");
+    }
     if let Some(text) = &ended {
         ui.label(RichText::new(text).color(tokens.error));
     }
@@ -247,10 +251,10 @@ fn findings(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMome
         let text = "Uncertain: the estimator tracks only some of the possible states.";
         ui.label(RichText::new(text).color(tokens.warning));
     }
-    if record.conflicts.is_empty() && ended.is_none() {
+    if is_as_expected {
         ui.label(RichText::new("No conflicts: the observations are as expected.").color(tokens.good));
     }
-    if plant.belief.most_likely() != &plant.true_state {
+    if is_mistaken {
         let text =
             format!("True state: {}", difference(model, plant.belief.most_likely(), &plant.true_state));
         ui.label(RichText::new(text).small().color(tokens.text_muted));

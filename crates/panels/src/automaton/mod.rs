@@ -37,10 +37,13 @@ pub struct AutomatonPanel {
     logged: usize,
     /// The step whose diagnosis was scrolled to.
     diagnosed: Option<u32>,
+    /// For so many frames more the conflicts are brought into view: where they are is known once all above them was laid out.
+    revealing: u8,
 }
 
 /// With less room than this, one part is shown at a time.
 const LEAST_ROOM: Vec2 = vec2(760.0, 320.0);
+const REVEALING_FRAMES: u8 = 3;
 
 /// The drawing of the automaton that was laid out last.
 struct Drawn {
@@ -208,6 +211,14 @@ impl AutomatonPanel {
         }
         let is_new = found.is_some() && found != self.diagnosed;
         self.diagnosed = found;
+        if is_new {
+            self.revealing = REVEALING_FRAMES;
+        }
+        let reveals = self.revealing > 0;
+        if reveals {
+            self.revealing -= 1;
+            ui.ctx().request_repaint();
+        }
         area.show(ui, |ui| {
             if is_sampled {
                 chance::show(ui, context, commands);
@@ -217,7 +228,7 @@ impl AutomatonPanel {
             match plant {
                 Some((model, plant)) => {
                     self.machines(ui, model).show(ui, context, plant, commands);
-                    evidence::show(ui, context, model, plant, is_new, commands);
+                    evidence::show(ui, context, model, plant, reveals, commands);
                 }
                 None => known::show(ui, context, shown.automaton, commands),
             }
