@@ -33,7 +33,7 @@ const SHORTEST_ROW: f64 = 240.0;
 const MIN_ZOOM: f64 = 0.8;
 /// Networks with so many events at most are small, and made so much smaller before anything is put behind a box.
 const SMALL: usize = 60;
-const SMALL_ZOOMS: [f64; 3] = [MIN_ZOOM, 0.65, 0.5];
+const SMALL_ZOOMS: [f64; 5] = [MIN_ZOOM, 0.65, 0.5, 0.42, 0.35];
 /// And its texts are at least so large then, in points of the screen.
 pub const MIN_TEXT: f64 = 11.0;
 

@@ -29,7 +29,7 @@ fn fit(network: &Network, focus: Option<(BlockId, BlockId)>) -> NetworkDrawing {
 fn assert_fits(drawing: &NetworkDrawing, what: &str) {
     let bounds = drawing.bounds;
     // Small networks are made smaller before anything is behind a box.
-    let zoom = if drawing.nodes.len() <= 60 && boxes(drawing).is_empty() { 0.5 } else { 0.8 };
+    let zoom = if drawing.nodes.len() <= 60 && boxes(drawing).is_empty() { 0.35 } else { 0.8 };
     assert!(
         bounds.width() * zoom <= ROOM.width && bounds.height() * zoom <= ROOM.height,
         "{what}: {} by {}",
