@@ -172,7 +172,7 @@ struct Violation {
 }
 
 impl Violation {
-    /// One that another plan may mend.
+    /// A violation that replanning may fix.
     const fn new(name: SmolStr, reason: String, news: News) -> Self {
         Self { name, reason, news, is_final: false, is_contact: false }
     }

@@ -212,8 +212,8 @@ fn arc_name(network: &Network, options: &Options, id: ArcId, arc: &Arc) -> Optio
     }
 }
 
-/// What people call an occurrence: its activity with the arguments of the call, `Drive(RIDGE)`. It is no identifier:
-/// several may have it.
+/// The display name of an occurrence: its activity with the arguments of the call, `Drive(RIDGE)`. Several occurrences may
+/// share it.
 pub fn activity_name(occurrence: &Occurrence) -> SmolStr {
     match occurrence.kind {
         OccurrenceKind::Delay => SmolStr::new_static("delay"),

@@ -1,7 +1,7 @@
 //! The hitting-set tree, built node by node: diagnoses are the minimal sets of components that have an assumption in every
 //! conflict (Reiter 1987; Greiner, Smith and Wilkerson 1989).
 //!
-//! Whoever builds the tree chooses the next node and what it becomes. What is wrong is refused, with the reason.
+//! The caller chooses the next node and what it becomes. A wrong choice is refused, with the reason.
 
 use crate::belief::State;
 use crate::diagnosis::{Conflict, conflict_without};

@@ -1,4 +1,4 @@
-//! The states of a search tree for assistive technology: items with their level, place, and what came of them.
+//! The states of a search tree for assistive technology: items with their level, place, and result.
 //!
 //! They are no stops of the Tab key: arrow keys walk the tree (`keys`), and a click by assistive technology goes to the state.
 
@@ -112,7 +112,7 @@ fn listed(tree: &Tree<'_>, path: Option<&[TreeNodeId]>) -> Vec<Item> {
     found
 }
 
-/// What was chosen in a state, and what came of it: `D1 = 0: Survey#1, failed: …`.
+/// The choice that leads to a state, and the result: `D1 = 0: Survey#1, failed: …`.
 fn name(tree: &Tree<'_>, id: TreeNodeId) -> String {
     let trace = tree.trace;
     let chosen = wording::choice(tree.network, trace.tree.get(id as usize).and_then(|node| node.choice));

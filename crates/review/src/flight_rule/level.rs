@@ -61,7 +61,7 @@ impl Change {
         Edge::past(self.node, !(is_instant && self.is_start))
     }
 
-    /// How much more there is from then on, where the level is looked for above or below an amount.
+    /// The change of the level: the greatest possible one if `is_above`, otherwise the least.
     fn toward(&self, is_above: bool) -> Option<Rational> {
         let [above, below] = self.spread;
         if is_above { self.more.checked_add(above) } else { self.more.checked_sub(below) }

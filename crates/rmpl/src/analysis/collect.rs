@@ -497,7 +497,7 @@ impl Collector<'_> {
     }
 }
 
-/// The vehicle or component whose state a variable of this name is; the place of a vehicle is no equipment.
+/// The vehicle or component that owns the state of this name; `None` for the place of a vehicle.
 fn owner_of_equipment(variable: &str) -> Option<&str> {
     variable.split_once('.').filter(|(_, part)| *part != "at").map(|(owner, _)| owner)
 }

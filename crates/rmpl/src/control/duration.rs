@@ -16,7 +16,7 @@ pub struct Duration {
     unit: Option<(&'static str, Rational)>,
 }
 
-/// Why a text is no duration.
+/// Why a text cannot be read as a duration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DurationError {
     /// It is none at all.

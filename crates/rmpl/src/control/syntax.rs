@@ -38,7 +38,7 @@ impl ControlFile {
         self.definitions.iter().rev().find(|definition| definition.parameters.is_empty())
     }
 
-    /// How many seconds a step takes, if the text says so.
+    /// The length of a step in seconds, if the text declares it.
     pub fn own_step_secs(&self) -> Option<Rational> {
         Duration::read(&self.steps.first()?.text).ok()?.seconds()
     }

@@ -1,7 +1,7 @@
 //! A plan over time as a display list: an axis, rows with their names, bars with what is certain of them, and links.
 //!
 //! A bar is the activity as it is scheduled now; lines below it say when else it can start and end. What variables keep and
-//! how far resources are used is drawn for the same schedule. The frame is that of whoever shows the chart: a [`Track`] says
+//! how far resources are used is drawn for the same schedule. The caller decides on the frame: a [`Track`] says
 //! where times and rows lie in it.
 
 mod before;
