@@ -116,6 +116,7 @@ pub struct Stepper {
     acts_after_step: bool,
 }
 
+// What only forms in time do is marked cold: the guards of plain programs are then evaluated where they are asked.
 impl Stepper {
     /// Starts in the automaton's start marking; choices are made by what is likeliest.
     pub fn new(automaton: &Arc<Automaton>) -> Self {
@@ -436,6 +437,7 @@ impl Stepper {
     }
 
     /// Drops what is done under locks whose constraints were entailed and are not any more.
+    #[cold]
     fn drop_under_locks(&mut self, known: impl Knowledge, observer: &mut impl StepObserver) {
         for (lock, state) in self.automaton.locks.iter().zip(&mut self.times.locks) {
             let is_entailed = holds(&self.automaton, lock.test, known, &self.is_held);
@@ -459,6 +461,7 @@ impl Stepper {
     }
 
     /// Releases the locks under which nothing is left, and forgets those that are not waited for any more.
+    #[cold]
     fn release_locks(&mut self) {
         let automaton = Arc::clone(&self.automaton);
         for (at, lock) in automaton.locks.iter().enumerate() {
@@ -478,13 +481,12 @@ impl Stepper {
 
     /// Whether anything in a range of locations will be marked.
     fn is_left(&self, range: &std::ops::Range<u32>) -> bool {
-        self.next.intersects(range) || {
-            let first = |choice: &CompositeId| self.automaton.composite(*choice).map(|it| it.locations.start);
-            self.times.open.iter().filter_map(first).any(|first| range.contains(&first))
-        }
+        self.next.intersects(range)
+            || self.times.open.iter().any(|&choice| is_inside(&self.automaton, choice, range))
     }
 
     /// Whether a condition has been satisfied for long enough, this step included.
+    #[cold]
     fn look_at_held(&mut self, at: usize, known: impl Knowledge) {
         let (Some(held), Some(unsatisfied)) =
             (self.automaton.held.get(at), self.times.unsatisfied.get_mut(at))
@@ -556,6 +558,7 @@ impl Stepper {
     }
 
     /// A location that waits for a time: what it starts and whether it stays.
+    #[cold]
     fn wait(&mut self, id: LocationId, clock: ClockId, observer: &mut impl StepObserver) {
         let automaton = &*self.automaton;
         let (Some(location), Some(data)) = (automaton.location(id), automaton.clock(clock)) else { return };
@@ -636,6 +639,7 @@ impl Stepper {
     }
 
     /// Drops what is left of the first child of a composite whose time is up; returns whether the composite completes.
+    #[cold]
     fn time_out(&mut self, id: CompositeId, observer: &mut impl StepObserver) -> bool {
         let automaton = Arc::clone(&self.automaton);
         let Some(composite) = automaton.composite(id) else { return false };
@@ -648,8 +652,7 @@ impl Stepper {
             return completes;
         }
         self.next.remove_range(&range);
-        let first_location = |choice: &CompositeId| automaton.composite(*choice).map(|it| it.locations.start);
-        self.times.open.retain(|choice| first_location(choice).is_none_or(|first| !range.contains(&first)));
+        self.times.open.retain(|&choice| !is_inside(&automaton, choice, &range));
         forget_waits(&automaton, &range, &mut self.times);
         observer.elapsed(clock);
         if self.completes(*first) {
@@ -728,6 +731,7 @@ fn start(automaton: &Automaton, element: Element, next: &mut Marking, times: &mu
     }
 }
 
+#[cold]
 fn start_timed(automaton: &Automaton, begun: &Start, next: &mut Marking, times: &mut Times) {
     for &choice in &begun.choices {
         times.leave_open(choice);
@@ -754,13 +758,17 @@ fn start_timed(automaton: &Automaton, begun: &Start, next: &mut Marking, times: 
     }
 }
 
-/// What is done under a lock that is held starts anew; otherwise the lock is waited for.
+/// Whether a composite is in a range of locations.
+fn is_inside(automaton: &Automaton, composite: CompositeId, range: &std::ops::Range<u32>) -> bool {
+    automaton.composite(composite).is_some_and(|it| range.contains(&it.locations.start))
+}
+
+/// Restarts the body of a lock that is held; otherwise the program waits for the lock.
 fn start_lock(automaton: &Automaton, id: LockId, next: &mut Marking, times: &mut Times) {
     let Some(lock) = automaton.locks.get(id.0 as usize) else { return };
     let range = automaton.locations_of(lock.body);
-    let first = |choice: &CompositeId| automaton.composite(*choice).map(|choice| choice.locations.start);
     let is_left =
-        next.intersects(&range) || times.open.iter().filter_map(first).any(|first| range.contains(&first));
+        next.intersects(&range) || times.open.iter().any(|&choice| is_inside(automaton, choice, &range));
     let step = times.step;
     let Some(state) = times.locks.get_mut(id.0 as usize) else { return };
     if matches!(state, LockState::Held { .. }) && is_left {
@@ -779,6 +787,7 @@ const fn is_timed(automaton: &Automaton) -> bool {
 }
 
 /// Forgets the starts of what waits in a range of locations that is dropped.
+#[cold]
 fn forget_waits(automaton: &Automaton, range: &std::ops::Range<u32>, times: &mut Times) {
     for (clock, ends) in automaton.clocks.iter().zip(&mut times.ends) {
         if clock.kind == ClockKind::Wait
