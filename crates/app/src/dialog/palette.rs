@@ -126,11 +126,8 @@ fn entries(ui: &Ui, context: &Context<'_>, query: &str) -> Vec<Entry> {
     entries
 }
 
-/// How well an entry is found: by its title, by its group and title, or by another word.
 fn score(entry: &Entry, query: &str) -> Option<i32> {
-    let title = registry::score(&entry.title, query);
-    let full = registry::score(&format!("{} {}", entry.group, entry.title), query);
-    title.max(full.map(|score| score - 1)).max(registry::score_of_synonyms(entry.named, query))
+    registry::score_of_entry(entry.named, [entry.group, &entry.title], query)
 }
 
 fn show_entry(ui: &mut Ui, context: &Context<'_>, entry: &Entry, is_chosen: bool) -> egui::Response {

@@ -26,7 +26,8 @@ use crate::state::AppState;
 
 pub use lesson::read_lesson;
 pub use spec::{Availability, Build, CommandSpec, Group, Scope};
-pub use synonyms::score_of_synonyms;
+
+use self::synonyms::score_of_synonyms;
 
 /// Every command, in the order of the menus.
 pub fn all_commands() -> impl Iterator<Item = &'static CommandSpec> {
@@ -71,14 +72,18 @@ pub fn matching(query: &str) -> Vec<&'static CommandSpec> {
         .enumerate()
         .filter(|(_, spec)| spec.is_plain())
         .filter_map(|(order, spec)| {
-            let title = score(spec.title, query);
-            let with_group = score(&format!("{} {}", spec.group.title(), spec.title), query);
-            let named = title.max(with_group.map(|score| score - 1));
-            Some((named.max(score_of_synonyms(spec.id, query))?, order, spec))
+            Some((score_of_entry(spec.id, [spec.group.title(), spec.title], query)?, order, spec))
         })
         .collect();
     found.sort_by_key(|&(score, order, _)| (-score, order));
     found.into_iter().map(|(_, _, spec)| spec).collect()
+}
+
+/// How well an entry of the palette is found: by its title, by its group and title, or by another word for the command or
+/// panel that is called `id`.
+pub fn score_of_entry(id: &str, [group, title]: [&str; 2], query: &str) -> Option<i32> {
+    let with_group = score(&format!("{group} {title}"), query).map(|score| score - 1);
+    score(title, query).max(with_group).max(score_of_synonyms(id, query))
 }
 
 /// How well the letters of `query` are found in `text`, in order and ignoring case; `None` if they are not.

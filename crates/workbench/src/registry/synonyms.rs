@@ -87,7 +87,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
 const LEAST_LETTERS: usize = 3;
 
 /// How well another word for a command or a panel begins with `query`; `None` if none does.
-pub fn score_of_synonyms(named: &str, query: &str) -> Option<i32> {
+pub(super) fn score_of_synonyms(named: &str, query: &str) -> Option<i32> {
     let wanted = query.trim().to_lowercase();
     if wanted.chars().count() < LEAST_LETTERS {
         return None;
