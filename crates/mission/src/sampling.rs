@@ -39,8 +39,8 @@ pub struct Sampler {
     faults: Faults,
     /// The traverses that are driven; none if their durations are drawn.
     courses: Option<Courses>,
-    /// The plan with its paths.
-    planned: Planned,
+    /// The plan with the paths that vehicles keep an even pace on, where they are not driven.
+    planned: Option<Planned>,
     rocks: Rocks,
     nature: Nature,
     /// What is said of the durations that nature chooses.
@@ -85,8 +85,8 @@ impl Sampler {
             withdrawn,
             programs,
             faults: uncertainty.faults,
+            planned: courses.is_none().then(|| planned.clone()),
             courses,
-            planned: planned.clone(),
             rocks: uncertainty.rocks,
             nature: if uncertainty.adversary { Nature::Adversary } else { Nature::Chance },
             natures,
@@ -133,20 +133,8 @@ impl Sampler {
             (grounds, paths),
             courses.as_ref(),
         )?;
-        let contact = courses.is_none().then(|| self.contact(problem.program, &ran)).flatten();
+        let contact = self.planned.as_ref().and_then(|planned| contact(problem.program, planned, &ran));
         self.count(&ran, contact, number, tally)
-    }
-
-    /// The first contact of vehicles in a run without driving, if some schedule of a plan brings them too close. The run is
-    /// over then: the executive cannot see it coming.
-    fn contact(&self, program: &Program, ran: &Ran) -> Option<Contact> {
-        let replanned = ran.replanned.iter().map(|(_, planned)| planned);
-        if std::iter::once(&self.planned).chain(replanned).all(|planned| planned.meetings.is_empty()) {
-            return None;
-        }
-        let plans = execution::as_run(program, &self.planned, &ran.outcome.plans, &ran.replanned);
-        let end = ran.outcome.log.last().map_or(Time::ZERO, |entry| entry.time);
-        simulation::first_on_paths(program, &plans).filter(|contact| contact.at <= end)
     }
 
     /// What nature chooses in the run of a seed.
@@ -231,6 +219,18 @@ const FAULTS: u64 = 0x6661_756c_7473;
 /// The seed of one run.
 const fn run_seed(seed: u64, number: u64) -> u64 {
     Random::new(seed).next_bits() ^ Random::new(number).next_bits()
+}
+
+/// The first contact of vehicles in a run without driving, if some schedule of a plan brings them too close. The run is over
+/// then: the executive cannot foresee it.
+fn contact(program: &Program, planned: &Planned, ran: &Ran) -> Option<Contact> {
+    let replanned = ran.replanned.iter().map(|(_, planned)| planned);
+    if std::iter::once(planned).chain(replanned).all(|planned| planned.meetings.is_empty()) {
+        return None;
+    }
+    let plans = execution::as_run(program, planned, &ran.outcome.plans, &ran.replanned);
+    let end = ran.outcome.log.last().map_or(Time::ZERO, |entry| entry.time);
+    simulation::first_on_paths(program, &plans).filter(|contact| contact.at <= end)
 }
 
 /// Counts the violations in (the beginning of) the log of a run.

@@ -248,19 +248,7 @@ impl<'input> PlanLines<'input> {
     /// The activities of which the plan can use only a part of what is declared.
     pub(super) fn durations(&mut self) -> Vec<Line> {
         let network = self.network;
-        let declared: Vec<(&tpn::Occurrence, Time, Bound)> = network
-            .occurrences
-            .iter()
-            .filter(|occurrence| occurrence.kind == OccurrenceKind::Primitive)
-            .filter_map(|occurrence| {
-                let id = occurrence.arc?;
-                let arc = &network.arcs[id.index()];
-                let is_selected = self.plan.selected_arcs.get(id.index()) == Some(&true);
-                // Of what nature chooses a plan has to leave everything.
-                let is_own = is_selected && !network.is_uncertain(id);
-                is_own.then_some((occurrence, arc.lower, arc.upper))
-            })
-            .collect();
+        let declared = declared_durations(network, self.plan);
         let pairs: Vec<(NodeId, NodeId)> = declared.iter().map(|(it, ..)| (it.start, it.end)).collect();
         let used = self.distances.between(&pairs);
         let line =
@@ -535,4 +523,20 @@ fn interval_text(name: &str) -> String {
         return format!("the change to {} by {owner}", inside.unwrap_or(condition));
     }
     format!("{} during {owner}", inside.unwrap_or(condition))
+}
+
+/// The activities that a plan selects and whose durations nature does not choose, each with its declared bounds: a plan has to
+/// leave nature everything.
+pub(super) fn declared_durations<'network>(
+    network: &'network Network,
+    plan: &Plan,
+) -> Vec<(&'network tpn::Occurrence, Time, Bound)> {
+    let primitives = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
+    let declared = primitives.filter_map(|occurrence| {
+        let id = occurrence.arc?;
+        let arc = network.arcs.get(id.index())?;
+        let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
+        (is_selected && !network.is_uncertain(id)).then_some((occurrence, arc.lower, arc.upper))
+    });
+    declared.collect()
 }

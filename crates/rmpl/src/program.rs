@@ -393,6 +393,16 @@ impl Per {
     }
 }
 
+impl PrimitiveDecl {
+    /// The vehicles that a call with these arguments moves, by name; the first leads.
+    pub fn moved<'a>(&'a self, arguments: &'a [SmolStr]) -> impl Iterator<Item = &'a SmolStr> {
+        self.moves.iter().flat_map(|moves| &moves.vehicles).map(|vehicle| {
+            let formal = self.formals.iter().position(|formal| formal.text == vehicle.text);
+            formal.and_then(|at| arguments.get(at)).unwrap_or(&vehicle.text)
+        })
+    }
+}
+
 /// `moves V1, V2 speed (least, greatest) kinodynamic`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moves {

@@ -1,7 +1,7 @@
 //! Vehicles of a mission's world: how wide they are, whether they fly, and which activities move them.
 
 use motion::VehicleModel;
-use rmpl::program::{Moves, Name, Program, Property, World};
+use rmpl::program::{Moves, Program, Property, World};
 use smol_str::SmolStr;
 use tpn::{Occurrence, Resource};
 
@@ -69,11 +69,7 @@ pub struct Moving<'program> {
 pub fn moving<'program>(program: &'program Program, occurrence: &Occurrence) -> Option<Moving<'program>> {
     let primitive = program.primitives.iter().find(|it| it.name.text == occurrence.activity)?;
     let moves = primitive.moves.as_ref()?;
-    let named = |vehicle: &Name| {
-        let formal = primitive.formals.iter().position(|formal| formal.text == vehicle.text);
-        formal.and_then(|at| occurrence.arguments.get(at)).unwrap_or(&vehicle.text).clone()
-    };
-    Some(Moving { moves, vehicles: moves.vehicles.iter().map(named).collect() })
+    Some(Moving { moves, vehicles: primitive.moved(&occurrence.arguments).cloned().collect() })
 }
 
 #[cfg(test)]

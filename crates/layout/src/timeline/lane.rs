@@ -125,6 +125,15 @@ impl Lane {
     }
 }
 
+/// For each occurrence whether it has a bar.
+fn shown(network: &Network, bars: &[Bar]) -> Vec<bool> {
+    let mut is_shown = vec![false; network.occurrences.len()];
+    for occurrence in bars.iter().filter_map(|bar| bar.occurrence) {
+        is_shown[occurrence.index()] = true;
+    }
+    is_shown
+}
+
 /// A lane for each owner: its activities, its states, and its resources.
 fn by_owner(
     program: &Program,
@@ -133,10 +142,7 @@ fn by_owner(
     states: Vec<(usize, Item)>,
     profiles: &[Profile],
 ) -> Vec<Item> {
-    let mut is_shown = vec![false; network.occurrences.len()];
-    for occurrence in bars.iter().filter_map(|bar| bar.occurrence) {
-        is_shown[occurrence.index()] = true;
-    }
+    let is_shown = shown(network, &bars);
     let owners = Owners::new(program, network, &|occurrence| is_shown[occurrence.index()]);
     let mut lanes: BTreeMap<Owner, Lane> = BTreeMap::new();
     for bar in bars {
@@ -162,10 +168,7 @@ fn by_owner(
 fn by_thread(network: &Network, bars: Vec<Bar>) -> Vec<Item> {
     let mut threads = threads(network);
     let mut lane_of = vec![0; network.occurrences.len()];
-    let mut is_shown = vec![false; network.occurrences.len()];
-    for occurrence in bars.iter().filter_map(|bar| bar.occurrence) {
-        is_shown[occurrence.index()] = true;
-    }
+    let is_shown = shown(network, &bars);
     for (at, thread) in threads.iter_mut().enumerate() {
         thread.occurrences.retain(|it| is_shown[it.index()]);
         thread.occurrences.iter().for_each(|it| lane_of[it.index()] = at);

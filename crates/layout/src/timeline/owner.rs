@@ -128,11 +128,8 @@ impl<'a> Vehicles<'a> {
     /// The vehicles that an occurrence moves.
     fn moved(&self, occurrence: &Occurrence) -> Option<Vec<usize>> {
         let primitive = self.movers.get(occurrence.activity.as_str())?;
-        let named = primitive.moves.iter().flat_map(|moves| &moves.vehicles).filter_map(|name| {
-            let formal = primitive.formals.iter().position(|formal| formal.text == name.text);
-            let argument = formal.and_then(|at| occurrence.arguments.get(at));
-            self.by_name.get(argument.map_or(name.text.as_str(), SmolStr::as_str)).copied()
-        });
+        let moved = primitive.moved(&occurrence.arguments);
+        let named = moved.filter_map(|name| self.by_name.get(name.as_str()).copied());
         let mut vehicles: Vec<usize> = named.collect();
         vehicles.sort_unstable();
         vehicles.dedup();

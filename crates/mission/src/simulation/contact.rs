@@ -30,9 +30,7 @@ pub(super) fn first_contact(
 /// The first contact of any two vehicles in a run whose traverses are not driven: vehicles keep an even pace along the
 /// paths of the plan that is executed at the time.
 pub(crate) fn first_on_paths(program: &Program, plans: &[Executed]) -> Option<Contact> {
-    let start = |place: Option<Point2<f64>>| place.map(|position_m| TimedPoint { time_s: 0.0, position_m });
-    let starts = standing::own_starts_m(program).into_iter().map(start);
-    let mut tracks: Vec<Vec<TimedPoint>> = starts.map(|start| start.into_iter().collect()).collect();
+    let mut tracks = starts(program);
     for (index, executed) in plans.iter().enumerate() {
         let from = executed.from.to_f64();
         let until = plans.get(index + 1).map_or(f64::INFINITY, |next| next.from.to_f64());
@@ -50,31 +48,31 @@ pub(crate) fn first_on_paths(program: &Program, plans: &[Executed]) -> Option<Co
     let (touch, pair) = first_touch(program, &until_the_last(tracks))?;
     let executed = plans.iter().rev().find(|executed| executed.from.to_f64() <= touch.time_s)?;
     let routes = traverse::routes(&executed.network, program, &executed.plan, &[]).into_iter();
-    let starts = routes.filter_map(|route| {
+    let started = routes.filter_map(|route| {
         let is_in_it = route.vehicles.iter().any(|&vehicle| pair.contains(&(vehicle as u32)));
         let occurrence = executed.network.occurrences.get(route.occurrence.index())?;
         let start = executed.times.get(occurrence.start.index()).copied().flatten()?.to_f64();
         (is_in_it && start <= touch.time_s).then_some((start, route.occurrence))
     });
-    let (_, under_way) = starts.max_by(|(one, _), (other, _)| one.total_cmp(other))?;
+    let (_, under_way) = started.max_by(|(one, _), (other, _)| one.total_cmp(other))?;
     contact(program, &executed.network, under_way, (touch, pair))
 }
 
 /// When the first two vehicles touch.
 fn first_touch(program: &Program, tracks: &[Vec<TimedPoint>]) -> Option<(motion::Separation, [u32; 2])> {
     let world = &program.world;
+    let body = |vehicle: u32| (flies(world, vehicle), radius_m(world, vehicle));
+    let tracks: Vec<_> = (0..).zip(tracks).map(|(vehicle, track)| (vehicle, track, body(vehicle))).collect();
     let mut first: Option<(motion::Separation, [u32; 2])> = None;
-    for (index, one) in tracks.iter().enumerate() {
-        for (other_index, other) in tracks.iter().enumerate().skip(index + 1) {
-            let pair = [index as u32, other_index as u32];
-            if flies(world, pair[0]) != flies(world, pair[1]) {
+    for (index, (one, track, (flies, radius_m))) in tracks.iter().enumerate() {
+        for (other, other_track, (other_flies, other_radius_m)) in &tracks[index + 1..] {
+            if flies != other_flies {
                 continue;
             }
-            let reach_m = radius_m(world, pair[0]) + radius_m(world, pair[1]);
-            let touch = motion::closest_approach(one, other, reach_m).and_then(|approach| approach.violation);
-            let Some(touch) = touch else { continue };
+            let approach = motion::closest_approach(track, other_track, radius_m + other_radius_m);
+            let Some(touch) = approach.and_then(|approach| approach.violation) else { continue };
             if first.is_none_or(|(first, _)| touch.time_s < first.time_s) {
-                first = Some((touch, pair));
+                first = Some((touch, [*one, *other]));
             }
         }
     }
@@ -103,11 +101,16 @@ fn contact(
     Some(Contact { at, name: network.occurrences.get(under_way.index())?.name.clone(), reason })
 }
 
-/// Where each vehicle is over time, in mission units.
-fn tracks(program: &Program, drives: &[SimulatedDrive]) -> Vec<Vec<TimedPoint>> {
+/// The tracks of vehicles that have not moved yet.
+fn starts(program: &Program) -> Vec<Vec<TimedPoint>> {
     let start = |place: Option<Point2<f64>>| place.map(|position_m| TimedPoint { time_s: 0.0, position_m });
     let starts = standing::own_starts_m(program).into_iter().map(start);
-    let mut tracks: Vec<Vec<TimedPoint>> = starts.map(|start| start.into_iter().collect()).collect();
+    starts.map(|start| start.into_iter().collect()).collect()
+}
+
+/// Where each vehicle is over time, in mission units.
+fn tracks(program: &Program, drives: &[SimulatedDrive]) -> Vec<Vec<TimedPoint>> {
+    let mut tracks = starts(program);
     for drive in drives {
         for vehicle in &drive.vehicles {
             let Some(track) = tracks.get_mut(vehicle.vehicle as usize) else { continue };

@@ -10,7 +10,9 @@ use executive::plan_network::{ADDED, PlanNetwork};
 use plant::Random;
 use smol_str::SmolStr;
 use stn::{INFINITE, PointId};
-use tpn::{Network, OccurrenceKind, Plan};
+use tpn::{Network, Plan};
+
+use crate::plan_lines::declared_durations;
 
 /// Makes one schedule after the other.
 pub(super) struct Schedules {
@@ -50,10 +52,10 @@ impl Schedules {
     /// `None` where times do not fit.
     pub(super) fn new(network: &Network, plan: &Plan, seed: u64) -> Option<Self> {
         let num_nodes = network.nodes.len();
-        let extremes = extremes(network, plan, &PlanNetwork::new(network, plan).ok()?);
-        let network = PlanNetwork::new(network, plan).ok()?;
+        let points = PlanNetwork::new(network, plan).ok()?;
+        let extremes = extremes(network, plan, &points);
         let (chance, known) = (Random::new(seed), BTreeSet::new());
-        Some(Self { network, num_nodes, chance, made: 0, extremes, known })
+        Some(Self { network: points, num_nodes, chance, made: 0, extremes, known })
     }
 
     /// Makes the next one.
@@ -131,24 +133,17 @@ impl Schedules {
     }
 }
 
-/// The least and greatest declared durations of the activities that the plan selects and nature does not decide, the first
-/// one of the text last.
+/// The least and greatest declared durations of activities, those of the first one in the text last.
 fn extremes(network: &Network, plan: &Plan, points: &PlanNetwork) -> Vec<Extreme> {
-    let primitives = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
-    let own = primitives.filter_map(|occurrence| {
-        let id = occurrence.arc?;
-        let is_selected = plan.selected_arcs.get(id.index()) == Some(&true);
-        let arc = network.arcs.get(id.index()).filter(|_| is_selected && !network.is_uncertain(id))?;
+    let own = declared_durations(network, plan).into_iter().rev().filter_map(|(occurrence, lower, upper)| {
         let ends = [points.point(occurrence.start)?, points.point(occurrence.end)?];
-        let greatest = match arc.upper {
-            Bound::Finite(upper) if upper > arc.lower => Some(upper),
+        let greatest = match upper {
+            Bound::Finite(upper) if upper > lower => Some(upper),
             _ => None,
         };
-        let durations = std::iter::once(arc.lower).chain(greatest);
+        let durations = greatest.into_iter().chain([lower]);
         let ticks = durations.filter_map(move |it| points.scale().ticks(it).ok());
         Some(ticks.map(move |ticks| Extreme { activity: occurrence.name.clone(), ends, ticks }))
     });
-    let mut extremes: Vec<Extreme> = own.flatten().collect();
-    extremes.reverse();
-    extremes
+    own.flatten().collect()
 }
