@@ -4,8 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::drawings::{draw, enroute, network_of, overlapping};
+use crate::plans::earliest_plan;
 use display::{ColorRole, DisplayList, Fill, Rect, Shape, Target, TargetKind, Theme, approximate_text_width};
-use exact::{Bound, Time};
 use layout::list::map::{MapFrame, MapPath, extent_m, map_list, path_stroke};
 use layout::list::timeline::{ROW_HEIGHT, Standing, TimelineState, Track, axis_list, timeline_list};
 use layout::timeline::before::{BarChange, Before};
@@ -13,33 +13,11 @@ use layout::timeline::rule::{RuleBand, RuleStanding, RuleTrack};
 use layout::timeline::{Bar, BarKind, Chart, ChartOptions, Grouping, RowKind};
 use layout::{Item, NetworkDrawing, NetworkState, network_list};
 use tpn::generate::{Recipe, Tightness, mission};
-use tpn::{Levels, Network, Plan, Quality, Window};
+use tpn::{Levels, Network, Plan};
 
 /// A plan that selects everything, with windows by the longest ways from the start.
 fn plan_of(network: &Network) -> Plan {
-    let mut earliest = vec![Time::ZERO; network.nodes.len()];
-    for _ in &network.nodes {
-        for arc in &network.arcs {
-            let reached = earliest[arc.from.index()].checked_add(arc.lower).expect("a small time");
-            earliest[arc.to.index()] = earliest[arc.to.index()].max(reached);
-        }
-    }
-    let late = |earliest: Time| Bound::Finite(earliest.checked_add(30.into()).expect("a small time"));
-    let window = |earliest| Some(Window { earliest, latest: late(earliest) });
-    Plan {
-        choices: Vec::new(),
-        selected_nodes: vec![true; network.nodes.len()],
-        selected_arcs: vec![true; network.arcs.len()],
-        causal_links: Vec::new(),
-        conflict_order: Vec::new(),
-        conflict_order_omitted: 0,
-        state_order: Vec::new(),
-        orderings_added: Vec::new(),
-        uses_ordered: Vec::new(),
-        levels: Vec::new(),
-        quality: Quality::default(),
-        windows: earliest.into_iter().map(window).collect(),
-    }
+    earliest_plan(network, Some(30))
 }
 
 fn targets(list: &DisplayList) -> BTreeMap<Target, usize> {

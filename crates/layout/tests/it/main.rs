@@ -6,6 +6,7 @@ mod fit;
 mod lists;
 mod network;
 mod overlay;
+mod plans;
 mod recover;
 mod threads;
 mod timeline;

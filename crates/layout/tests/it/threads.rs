@@ -1,9 +1,10 @@
 //! The parallel branches of a program, and what has happened of a plan.
 
-use exact::{Bound, Time};
 use layout::Progress;
 use layout::threads::{thread_name, threads};
-use tpn::{Network, Plan, Top, Window};
+use tpn::{Network, Top};
+
+use crate::plans::earliest_plan;
 
 const MISSION: &str = "primitive A(); primitive B(); primitive C(); primitive D();
 scenario S = { A()[1,2]; { B()[3,4], { C()[5,6]; { D()[1,1], A()[2,2] } } }; B()[1,1] }";
@@ -30,36 +31,10 @@ fn threads_are_numbered_as_they_are_nested_and_named_for_what_comes_first_in_the
     assert_eq!(seen.len(), all, "nothing is in two threads");
 }
 
-/// A plan of a network without choices, by the longest ways from its start.
-fn as_early_as_can_be(network: &Network) -> Plan {
-    let mut earliest = vec![Time::ZERO; network.nodes.len()];
-    for _ in &network.nodes {
-        for arc in &network.arcs {
-            let reached = earliest[arc.from.index()].checked_add(arc.lower).expect("a small time");
-            earliest[arc.to.index()] = earliest[arc.to.index()].max(reached);
-        }
-    }
-    let window = |earliest| Some(Window { earliest, latest: Bound::Infinite });
-    Plan {
-        choices: Vec::new(),
-        selected_nodes: vec![true; network.nodes.len()],
-        selected_arcs: vec![true; network.arcs.len()],
-        causal_links: Vec::new(),
-        conflict_order: Vec::new(),
-        conflict_order_omitted: 0,
-        state_order: Vec::new(),
-        orderings_added: Vec::new(),
-        uses_ordered: Vec::new(),
-        levels: Vec::new(),
-        quality: tpn::Quality::default(),
-        windows: earliest.into_iter().map(window).collect(),
-    }
-}
-
 #[test]
 fn at_a_moment_some_events_have_happened_and_some_arcs_are_under_way() {
     let network = compiled();
-    let plan = &as_early_as_can_be(&network);
+    let plan = &earliest_plan(&network, None);
     let name = |arc: tpn::ArcId| {
         let occurrence = network.arcs[arc.index()].occurrence?;
         Some(network.occurrences[occurrence.index()].name.to_string())

@@ -4,41 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use display::{DisplayList, Rect, approximate_text_width, text_width_at};
-use exact::{Bound, Time};
 use layout::list::timeline::{ROW_HEIGHT, Standing, TimelineState, Track, legend_list, timeline_list};
 use layout::timeline::{BarKind, Chart, ChartOptions, Grouping, Past, RowKind};
-use tpn::{Network, OccurrenceId, OccurrenceKind, Plan, Quality, Window};
+use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::drawings::{network_of, overlapping};
+use crate::plans::earliest_plan;
 
 /// A plan that selects everything, as early as the lower bounds allow, with much slack.
 fn plan_of(network: &Network) -> Plan {
-    let mut earliest = vec![Time::ZERO; network.nodes.len()];
-    let mut has_changed = true;
-    while std::mem::take(&mut has_changed) {
-        for arc in &network.arcs {
-            let reached = earliest[arc.from.index()].checked_add(arc.lower).expect("a small time");
-            if reached > earliest[arc.to.index()] {
-                earliest[arc.to.index()] = reached;
-                has_changed = true;
-            }
-        }
-    }
-    let late = |earliest: Time| Bound::Finite(earliest.checked_add(500.into()).expect("a small time"));
-    Plan {
-        choices: Vec::new(),
-        selected_nodes: vec![true; network.nodes.len()],
-        selected_arcs: vec![true; network.arcs.len()],
-        causal_links: Vec::new(),
-        conflict_order: Vec::new(),
-        conflict_order_omitted: 0,
-        state_order: Vec::new(),
-        orderings_added: Vec::new(),
-        uses_ordered: Vec::new(),
-        levels: Vec::new(),
-        quality: Quality::default(),
-        windows: earliest.iter().map(|&it| Some(Window { earliest: it, latest: late(it) })).collect(),
-    }
+    earliest_plan(network, Some(500))
 }
 
 fn chart(text: &str, grouping: Grouping) -> (Network, Plan, Chart) {

@@ -1,34 +1,10 @@
 //! Vehicles of models that the mission declares (SPEC 17): paths, speeds and sight follow the properties of the models, and
 //! each vehicle has its own equipment.
 
-use link::{Response, Update};
-use mission::{Core, CoreHost, Evaluated, Manner};
+use link::Update;
+use mission::{Core, Evaluated, Manner};
 
-struct Quiet;
-
-impl CoreHost for Quiet {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, _response: Response) {}
-}
-
-/// 60 m by 20 m with a ridge from north to south that leaves a gap of 10 m in the south.
-fn ridge() -> Vec<u8> {
-    let mut text = "ncols 60\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\n".to_owned();
-    for row in 0..20 {
-        let is_high = |column: u32| row < 9 && (28..32).contains(&column);
-        let heights: Vec<&str> = (0..60).map(|column| if is_high(column) { "6" } else { "0" }).collect();
-        text.push_str(&heights.join(" "));
-        text.push('\n');
-    }
-    text.into_bytes()
-}
+use crate::ridge::{Quiet, ridge};
 
 /// A mission on the ridge, planned.
 #[track_caller]

@@ -17,6 +17,7 @@ mod networks;
 mod paths;
 mod programs;
 mod repairs;
+mod ridge;
 mod robustness;
 mod sessions;
 mod sight;

@@ -203,29 +203,31 @@ fn uncertainty_is_read_from_json() {
 
 const DETOUR: &str = include_str!("../../../../assets/missions/detour.rmpl");
 
-/// Runs of the detour mission in which the rover drives.
-fn driven(rocks: Rocks, numbers: std::ops::Range<u64>) -> Tally {
-    let mission = Mission::read(DETOUR);
+/// Runs of a mission with paths over its ground.
+fn on_ground(source: &str, settings: &RobustnessSettings, numbers: std::ops::Range<u64>) -> Tally {
+    let mission = Mission::read(source);
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
     let (ground, _) = grounds.resolve(&mission.program.world);
     let problem = Problem { ground: ground.as_ref().map(|(key, map)| (key, map)), ..mission.problem() };
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
+    let sampler = Sampler::new(&problem, &planned, &settings.uncertainty);
+    let sampler = sampler.expect("there is a plan").expect("its times fit");
+    let mut tally = Tally::default();
+    for number in numbers {
+        sampler.run(&problem, settings, number, &mut grounds, &mut paths, &mut tally).expect("its times fit");
+    }
+    tally
+}
+
+/// Runs of the detour mission in which the rover drives.
+fn driven(rocks: Rocks, numbers: std::ops::Range<u64>) -> Tally {
     let uncertainty = Uncertainty {
         others: Others::Planned,
         traverses: Traverses::Driven,
         rocks,
         ..Uncertainty::default()
     };
-    let settings = settings(numbers.end, uncertainty);
-    let sampler = Sampler::new(&mission.problem(), &planned, &settings.uncertainty);
-    let sampler = sampler.expect("there is a plan").expect("its times fit");
-    let mut tally = Tally::default();
-    for number in numbers {
-        sampler
-            .run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)
-            .expect("its times fit");
-    }
-    tally
+    on_ground(DETOUR, &settings(numbers.end, uncertainty), numbers)
 }
 
 /// The path at full speed and the hand-over take 19.4385 minutes; a vehicle that really drives may take longer.
@@ -253,35 +255,13 @@ scenario S[0,100] = { { Drive(Alpha, B) }, { delay[1.3,1.3]; Drive(Delta, D) } }
 
 #[test]
 fn vehicles_that_touch_on_their_paths_end_a_run_without_driving() {
-    let mission = Mission::read(CROSSING);
-    let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
-    let (ground, _) = grounds.resolve(&mission.program.world);
-    let problem = Problem { ground: ground.as_ref().map(|(key, map)| (key, map)), ..mission.problem() };
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
-    let settings = settings(100, Uncertainty::default());
-    let sampler = Sampler::new(&problem, &planned, &settings.uncertainty);
-    let sampler = sampler.expect("there is a plan").expect("its times fit");
-    let mut tally = Tally::default();
-    for number in 0..100 {
-        sampler
-            .run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)
-            .expect("its times fit");
-    }
-    let stops: u64 = tally.breaks.values().map(|breaks| breaks.stops).sum();
+    let meeting = on_ground(CROSSING, &settings(100, Uncertainty::default()), 0..100);
+    let stops: u64 = meeting.breaks.values().map(|breaks| breaks.stops).sum();
     assert!(0 < stops && stops < 100, "{stops} runs stopped");
-    assert_eq!(tally.succeeded + stops, 100);
-    assert!(tally.breaks.values().all(|breaks| breaks.example.contains("touch")), "{:?}", tally.breaks);
+    assert_eq!(meeting.succeeded + stops, 100);
+    assert!(meeting.breaks.values().all(|breaks| breaks.example.contains("touch")), "{:?}", meeting.breaks);
     // The same durations of a plan that reaches the crossing in turn never fail.
-    let apart = Mission::read(&CROSSING.replace("delay[1.3,1.3]", "delay[40,40]"));
-    let problem = Problem { ground: problem.ground, ..apart.problem() };
-    let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
-    let sampler = Sampler::new(&problem, &planned, &settings.uncertainty);
-    let sampler = sampler.expect("there is a plan").expect("its times fit");
-    let mut tally = Tally::default();
-    for number in 0..100 {
-        sampler
-            .run(&problem, &settings, number, &mut grounds, &mut paths, &mut tally)
-            .expect("its times fit");
-    }
-    assert_eq!(tally.succeeded, 100, "{:?}", tally.breaks);
+    let apart = CROSSING.replace("delay[1.3,1.3]", "delay[40,40]");
+    let apart = on_ground(&apart, &settings(100, Uncertainty::default()), 0..100);
+    assert_eq!(apart.succeeded, 100, "{:?}", apart.breaks);
 }

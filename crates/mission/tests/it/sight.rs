@@ -1,35 +1,11 @@
 //! Conditions on what vehicles see: the set of places follows from the ground, planning and checking keep it, and a
 //! failure says what blocks the line (SPEC 10.5).
 
-use link::{Response, Update};
-use mission::{Core, CoreHost, Evaluated, Manner};
+use link::Update;
+use mission::{Core, Evaluated, Manner};
 use snapshot::Goal;
 
-struct Quiet;
-
-impl CoreHost for Quiet {
-    fn now_millis(&self) -> f64 {
-        0.0
-    }
-
-    fn is_superseded(&mut self) -> bool {
-        false
-    }
-
-    fn answer(&mut self, _response: Response) {}
-}
-
-/// 60 m by 20 m with a ridge from north to south that leaves a gap of 10 m in the south.
-fn ridge() -> Vec<u8> {
-    let mut text = "ncols 60\nnrows 20\nxllcorner 0\nyllcorner 0\ncellsize 1\n".to_owned();
-    for row in 0..20 {
-        let is_high = |column: u32| row < 9 && (28..32).contains(&column);
-        let heights: Vec<&str> = (0..60).map(|column| if is_high(column) { "6" } else { "0" }).collect();
-        text.push_str(&heights.join(" "));
-        text.push('\n');
-    }
-    text.into_bytes()
-}
+use crate::ridge::{Quiet, ridge};
 
 const WORLD: &str = "terrain \"ridge.asc\";
 location BASE (10, 14); location CRATER (50, 14); location OPEN (50, 3);

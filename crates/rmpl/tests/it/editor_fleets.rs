@@ -1,7 +1,7 @@
 //! What the editor knows of vehicle models, fleets, groups and kinds of parameters (SPEC 17).
 
-use crate::fixture::{apply, fixture};
-use rmpl::editor::{self, Evaluation, HighlightKind, OutlineKind, RenameProblem};
+use crate::fixture::{self, fixture, renames};
+use rmpl::editor::{self, HighlightKind, OutlineKind, RenameProblem};
 use rmpl::{Span, parse};
 
 const HEAD: &str = "\
@@ -17,15 +17,7 @@ group Team = R1, S;
 /// All of `wanted` are offered at the cursor, and none of `unwanted`.
 #[track_caller]
 fn completes(line: &str, wanted: &[&str], unwanted: &[&str]) {
-    let fixture = fixture(&format!("{HEAD}{line}\n"));
-    let completion = editor::complete(&parse(&fixture.text), fixture.cursor);
-    let labels: Vec<&str> = completion.items.iter().map(|item| item.label.as_str()).collect();
-    for label in wanted {
-        assert!(labels.contains(label), "{label} is missing from {labels:?} in {line}");
-    }
-    for label in unwanted {
-        assert!(!labels.contains(label), "{label} is offered in {labels:?} in {line}");
-    }
+    fixture::completes(HEAD, line, wanted, unwanted);
 }
 
 #[test]
@@ -53,12 +45,7 @@ fn models_fleets_and_their_statements_are_completed() {
 
 #[track_caller]
 fn hovers(line: &str, wanted: &[&str]) {
-    let fixture = fixture(&format!("{HEAD}{line}\n"));
-    let hover =
-        editor::hover(&parse(&fixture.text), fixture.cursor, &Evaluation::default()).expect("a hover");
-    for part in wanted {
-        assert!(hover.markdown.contains(part), "{part}: {}", hover.markdown);
-    }
+    fixture::hovers(HEAD, line, wanted);
 }
 
 #[test]
@@ -70,13 +57,6 @@ fn hovering_shows_declarations_and_what_words_mean() {
     hovers("scenario X = { an$0y r in Team { delay } }", &["one member"]);
     hovers("scenario X = { ea$0ch r in Team { delay } }", &["every member"]);
     hovers("model M { tur$0ning 3; }", &["tightest turn"]);
-}
-
-#[track_caller]
-fn renames(before: &str, new_name: &str, after: &str) {
-    let before = fixture(before);
-    let edits = editor::rename(&parse(&before.text), before.cursor, new_name).unwrap();
-    assert_eq!(apply(&before.text, &edits), fixture(after).text);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What the editor knows of states, resources, objectives and the places of vehicles.
 
-use crate::fixture::{apply, fixture};
-use rmpl::editor::{self, Evaluation, FoldKind, HighlightKind, OutlineKind};
+use crate::fixture::{self, fixture, renames};
+use rmpl::editor::{self, FoldKind, HighlightKind, OutlineKind};
 use rmpl::{Span, parse};
 
 const HEAD: &str = "\
@@ -18,15 +18,7 @@ primitive Deploy()[1,2] requires at start ARM=STOWED sets ARM=OUT uses Power 2;
 /// All of `wanted` are offered at the cursor, and none of `unwanted`.
 #[track_caller]
 fn completes(line: &str, wanted: &[&str], unwanted: &[&str]) {
-    let fixture = fixture(&format!("{HEAD}{line}\n"));
-    let completion = editor::complete(&parse(&fixture.text), fixture.cursor);
-    let labels: Vec<&str> = completion.items.iter().map(|item| item.label.as_str()).collect();
-    for label in wanted {
-        assert!(labels.contains(label), "{label} is missing from {labels:?} in {line}");
-    }
-    for label in unwanted {
-        assert!(!labels.contains(label), "{label} is offered in {labels:?} in {line}");
-    }
+    fixture::completes(HEAD, line, wanted, unwanted);
 }
 
 #[test]
@@ -96,14 +88,11 @@ fn statements_offer_what_is_optional_unordered_and_used() {
 
 #[track_caller]
 fn hovers(line: &str, wanted: &[&str]) {
-    let fixture = fixture(&format!(
-        "{HEAD}primitive Dig(s)[1,2] requires ARM=OUT, Scout.at=s consumes Battery 2;\n{line}"
-    ));
-    let hover =
-        editor::hover(&parse(&fixture.text), fixture.cursor, &Evaluation::default()).expect("a hover");
-    for part in wanted {
-        assert!(hover.markdown.contains(part), "{part}: {}", hover.markdown);
-    }
+    fixture::hovers(
+        &format!("{HEAD}primitive Dig(s)[1,2] requires ARM=OUT, Scout.at=s consumes Battery 2;\n"),
+        line,
+        wanted,
+    );
 }
 
 #[test]
@@ -226,13 +215,6 @@ M() = { do P() using Po$0wer Power; do P() maintaining Power }
 //                   ^^^^^
 ",
     );
-}
-
-#[track_caller]
-fn renames(before: &str, new_name: &str, after: &str) {
-    let before = fixture(before);
-    let edits = editor::rename(&parse(&before.text), before.cursor, new_name).unwrap();
-    assert_eq!(apply(&before.text, &edits), fixture(after).text);
 }
 
 #[test]
