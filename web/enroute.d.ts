@@ -165,7 +165,7 @@ export type Verdict = {
 /** Why there is no plan. */
 export type Failure = {
   reasons: Array<Reason>;
-  /** The labelled intervals that take part. */
+  /** The labeled intervals that take part. */
   conditions: Array<string>;
   /** What would make a plan possible. */
   relaxations: Array<string>;

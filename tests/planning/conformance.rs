@@ -176,7 +176,7 @@ fn interval_json(scale: Scale, matrix: &Matrix, from: NodeId, to: NodeId) -> Val
     ])
 }
 
-/// A labelled interval between the first names of its ends, among events that always happen at the same time.
+/// A labeled interval between the first names of its ends, among events that always happen at the same time.
 fn label_json(network: &Network, scale: Scale, matrix: &Matrix, nodes: &[bool], label: usize) -> Value {
     let label = &network.labels[LabelId::from_index(label).index()];
     let arc = &network.arcs[label.arc.index()];

@@ -81,9 +81,9 @@ fn plain_bounds_of_a_call_and_of_a_block_around_it_are_requirements() {
     // What is required while it goes on is a label of nature's arc.
     let network =
         network(&format!("{DRIVE} scenario S = {{ do Drive()[30,35] maintaining L=A, L=A[1,50] }}"));
-    let labelled: Vec<_> = network.labels.iter().map(|label| &network.arcs[label.arc.index()]).collect();
-    assert!(labelled.iter().any(|arc| arc.is_contingent && arc.kind == ArcKind::Activity));
-    assert!(labelled.iter().all(|arc| arc.kind != ArcKind::Span));
+    let labeled: Vec<_> = network.labels.iter().map(|label| &network.arcs[label.arc.index()]).collect();
+    assert!(labeled.iter().any(|arc| arc.is_contingent && arc.kind == ArcKind::Activity));
+    assert!(labeled.iter().all(|arc| arc.kind != ArcKind::Span));
 }
 
 #[test]

@@ -168,8 +168,8 @@ fn narrow_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
 pub fn show_panel(tree: &mut Tree<PanelKind>, panel: PanelKind) {
     if tree.tiles.find_pane(&panel).is_none() {
         let pane = tree.tiles.insert_pane(panel);
-        let neighbours = largest_tabs(tree);
-        match (neighbours, tree.root()) {
+        let neighbors = largest_tabs(tree);
+        match (neighbors, tree.root()) {
             (Some(container), _) => tree.move_tile_to_container(pane, container, usize::MAX, false),
             (None, Some(root)) => {
                 let both = split(&mut tree.tiles, LinearDir::Horizontal, &[(root, 0.7), (pane, 0.3)]);

@@ -1,6 +1,6 @@
 //! Diagnostics for people: what is wrong and where, with the line that it is about.
 //!
-//! Texts come from files that anybody may have written: what would move a terminal's cursor, colour it or turn its
+//! Texts come from files that anybody may have written: what would move a terminal's cursor, color it or turn its
 //! direction is shown as a sign, and of a line as long as a book only what is around the place is shown.
 
 use std::io::{IsTerminal as _, Write as _};
@@ -22,7 +22,7 @@ const MAX_MARKED_CHARS: usize = DEFAULT_TERM_WIDTH / 2;
 /// Diagnostics that are printed at most; what else there is is counted.
 const MAX_PRINTED: usize = 50;
 
-/// Prints diagnostics on standard error with the lines they are about, coloured only on a terminal: errors before
+/// Prints diagnostics on standard error with the lines they are about, colored only on a terminal: errors before
 /// warnings where there is not room for all, and how many more there are.
 pub fn print_problems(name: &str, source: &str, problems: &[Problem]) -> anyhow::Result<()> {
     let is_terminal = std::io::stderr().is_terminal();
@@ -114,7 +114,7 @@ fn excerpt(source: &str, lines: &LineIndex, problem: &Problem) -> (String, std::
 }
 
 /// The control characters that the renderer leaves as they are: the second set, in which terminals know commands too,
-/// and the marks that turn the direction of neighbours.
+/// and the marks that turn the direction of neighbors.
 fn harmless(text: &str) -> String {
     let is_harmful = |c: char| matches!(c, '\u{80}'..='\u{9f}' | '\u{61c}' | '\u{200e}' | '\u{200f}');
     text.chars().map(|c| if is_harmful(c) { char::REPLACEMENT_CHARACTER } else { c }).collect()

@@ -1,10 +1,10 @@
-//! Colours by their meaning, and what they are in the two themes, after Okabe and Ito.
+//! Colors by their meaning, and what they are in the two themes, after Okabe and Ito.
 #![expect(clippy::unreadable_literal, reason = "a color has six hexadecimal digits")]
 
-/// A colour as red, green and blue.
+/// A color as red, green and blue.
 pub type Rgb = [u8; 3];
 
-/// A colour by its meaning; themes bring the colours.
+/// A color by its meaning; themes bring the colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ColorRole {
     /// What is drawn upon.
@@ -55,13 +55,13 @@ pub enum ColorRole {
     Slack,
     /// The present time.
     Now,
-    /// A category such as a vehicle, starting over after the eighth; always with another sign beside the colour.
+    /// A category such as a vehicle, starting over after the eighth; always with another sign beside the color.
     Series(u8),
     /// Ground in the light, from 0 for the darkest to 255.
     Relief(u8),
 }
 
-/// A colour as it is used: by its role, and how much of it there is.
+/// A color as it is used: by its role, and how much of it there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color {
     pub role: ColorRole,
@@ -71,7 +71,7 @@ pub struct Color {
     pub ground: Ground,
 }
 
-/// What is left where a colour is weak.
+/// What is left where a color is weak.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// Whatever lies below shines through.
@@ -81,12 +81,12 @@ pub enum Ground {
 }
 
 impl ColorRole {
-    /// The colour, as much of it as `strength` says, with what lies below shining through.
+    /// The color, as much of it as `strength` says, with what lies below shining through.
     pub const fn faint(self, strength: f32) -> Color {
         Color { role: self, strength, ground: Ground::Below }
     }
 
-    /// The colour mixed into the surface: `part` 0 is the surface, 1 the colour.
+    /// The color mixed into the surface: `part` 0 is the surface, 1 the color.
     pub const fn mixed(self, part: f32) -> Color {
         Color { role: self, strength: part, ground: Ground::Surface }
     }
@@ -98,7 +98,7 @@ impl From<ColorRole> for Color {
     }
 }
 
-/// Which colours the roles have.
+/// Which colors the roles have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Theme {
     /// Dark on light.
@@ -108,7 +108,7 @@ pub enum Theme {
 }
 
 impl Theme {
-    /// The colour of a role.
+    /// The color of a role.
     pub const fn rgb(self, role: ColorRole) -> Rgb {
         let (light, dark) = match role {
             ColorRole::Surface => (0xFBFCFD, 0x13171D),
@@ -152,7 +152,7 @@ impl Theme {
         [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]
     }
 
-    /// The opaque part of a colour as it is used; what is not there of it is up to [`Color::strength`] where what lies
+    /// The opaque part of a color as it is used; what is not there of it is up to [`Color::strength`] where what lies
     /// below shines through.
     pub fn resolved(self, color: Color) -> Rgb {
         let full = self.rgb(color.role);
@@ -167,7 +167,7 @@ impl Theme {
     }
 }
 
-/// The colours of categories, light and dark.
+/// The colors of categories, light and dark.
 const SERIES: [(u32, u32); 8] = [
     (0x0072B2, 0x56B4E9),
     (0x9A6200, 0xE69F00),
@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mixed_colour_lies_between_the_surface_and_the_colour() {
+    fn a_mixed_color_lies_between_the_surface_and_the_color() {
         for theme in [Theme::Light, Theme::Dark] {
             let [surface, full] = [ColorRole::Surface, ColorRole::Threat].map(|role| theme.rgb(role));
             assert_eq!(theme.resolved(ColorRole::Threat.mixed(0.0)), surface);

@@ -57,7 +57,7 @@ impl Point {
         Self::new(self.x + (other.x - self.x) * fraction, self.y + (other.y - self.y) * fraction)
     }
 
-    /// The unit vector from here towards `other`; to the right where they coincide.
+    /// The unit vector from here toward `other`; to the right where they coincide.
     pub fn direction_to(self, other: Self) -> Self {
         let length = self.distance(other);
         if length == 0.0 {

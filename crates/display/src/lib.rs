@@ -1,8 +1,8 @@
 //! Display lists: what a drawing consists of, before anyone draws it.
 //!
 //! A drawing is built once, from its layout and its state, into a [`DisplayList`]: paths, rectangles, circles and texts in
-//! drawing coordinates, coloured by role. The screen, SVG files, pictures and reports are all made from that list. It
-//! knows nothing of what it shows, of themes, or of a window; whoever draws it resolves colours and chooses the part in
+//! drawing coordinates, colored by role. The screen, SVG files, pictures and reports are all made from that list. It
+//! knows nothing of what it shows, of themes, or of a window; whoever draws it resolves colors and chooses the part in
 //! view.
 //!
 //! The frame: x grows to the right, y grows downwards, and a unit is a point of the screen at zoom 1 and a user unit of

@@ -87,7 +87,7 @@ pub struct Run {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
     Open,
-    /// With an arrow head in the colour of the line.
+    /// With an arrow head in the color of the line.
     Head,
     /// Where it began: a polygon.
     Closed,

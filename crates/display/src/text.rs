@@ -11,7 +11,7 @@ pub struct Text {
     pub text: SmolStr,
     /// Its size in drawing units.
     pub size: f64,
-    /// Where it stands: centred in the height, and in the width as [`Text::anchor`] says.
+    /// Where it stands: centered in the height, and in the width as [`Text::anchor`] says.
     pub rect: Rect,
     /// Where in the width.
     pub anchor: Anchor,
@@ -82,7 +82,7 @@ pub struct Slide {
 }
 
 impl Text {
-    /// A text that fills `rect`, in its usual colour.
+    /// A text that fills `rect`, in its usual color.
     pub fn new(text: impl Into<SmolStr>, size: f64, rect: Rect) -> Self {
         Self {
             text: text.into(),
@@ -100,7 +100,7 @@ impl Text {
         }
     }
 
-    /// The same text in another colour.
+    /// The same text in another color.
     pub fn colored(self, color: impl Into<Color>) -> Self {
         Self { color: color.into(), ..self }
     }

@@ -1,4 +1,4 @@
-//! One row of text as a galley, with its colours and with what an input method is composing in it.
+//! One row of text as a galley, with its colors and with what an input method is composing in it.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -83,7 +83,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// The sign and the colour of a severity; the sign alone tells them apart.
+    /// The sign and the color of a severity; the sign alone tells them apart.
     pub const fn sign(self, tokens: &Tokens) -> (Icon, Color32) {
         match self {
             Self::Error => (Icon::Error, tokens.error),
@@ -103,7 +103,7 @@ pub struct Mark {
     pub underline: Option<Color32>,
 }
 
-/// A piece of text with a colour of its own.
+/// A piece of text with a color of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Highlight {
     pub bytes: Range<usize>,
@@ -139,7 +139,7 @@ pub struct PopupItem<'a> {
     pub label: &'a str,
     /// More about it.
     pub detail: &'a str,
-    /// A letter for what kind of thing it is, and its colour.
+    /// A letter for what kind of thing it is, and its color.
     pub sign: Option<(&'static str, Color32)>,
 }
 
@@ -155,7 +155,7 @@ pub struct Signature {
 
 /// What the editor asks of those who know the language of the text. Offsets and ranges are bytes of the document.
 pub trait LanguageService {
-    /// The coloured pieces in a part of the text, in textual order; what is between them is plain.
+    /// The colored pieces in a part of the text, in textual order; what is between them is plain.
     fn highlights(&mut self, bytes: Range<usize>) -> Vec<Highlight>;
 
     /// What is known about the text at a place, in Markdown.

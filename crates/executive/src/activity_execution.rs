@@ -15,10 +15,10 @@ pub struct ActivityExecution {
     pub entries: Vec<Entry>,
     /// After how long a traverse passes the vertices of its path, in order; one that is not listed is passed as planned.
     pub passes: Vec<(EventRef, Time)>,
-    /// After how long a traverse has driven how many metres more than its path has, or fewer, in order of time: as soon as
+    /// After how long a traverse has driven how many meters more than its path has, or fewer, in order of time: as soon as
     /// it has driven more, and when it is there.
-    pub extra_metres: Vec<(Time, Rational)>,
-    /// How many metres the plan counts for a traverse, more than its path has, where they are taken from something, and how
+    pub extra_meters: Vec<(Time, Rational)>,
+    /// How many meters the plan counts for a traverse, more than its path has, where they are taken from something, and how
     /// many fewer where they give something.
     pub counted_margins: [Rational; 2],
 }
@@ -79,7 +79,7 @@ pub trait ActivityExecutor {
         start: Time,
     ) -> Result<ActivityExecution, Overflow>;
 
-    /// Where the vehicles of activities that were started are at `now`, or where they stand, in metres.
+    /// Where the vehicles of activities that were started are at `now`, or where they stand, in meters.
     fn whereabouts(&self, _: &Network, _: &[OccurrenceId], _: Time) -> Vec<(u32, [f64; 2])> {
         Vec::new()
     }

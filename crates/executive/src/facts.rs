@@ -48,7 +48,7 @@ pub struct TakenBack {
 pub struct StandingPlace {
     /// Index into the program's world.
     pub vehicle: u32,
-    /// Metres east and north.
+    /// Meters east and north.
     pub place_m: [f64; 2],
     pub since: Time,
 }
@@ -273,7 +273,7 @@ fn add_level(network: &mut Network, resource: ResourceId, by: Rational, at: Time
         resource,
         change,
         amount,
-        per_metre: Rational::ZERO,
+        per_meter: Rational::ZERO,
         spread: Rational::ZERO,
         detour: Rational::ZERO,
         arc,

@@ -129,9 +129,9 @@ struct Run<'a> {
     state: WorldState,
     /// How far the traverses under way will have driven, in order of time.
     odometers: VecDeque<Odometer>,
-    /// How many metres more than their paths have traverses have driven so far.
+    /// How many meters more than their paths have traverses have driven so far.
     extra_m: BTreeMap<OccurrenceId, Rational>,
-    /// How many metres more, or fewer, than their paths have the plan has counted for traverses.
+    /// How many meters more, or fewer, than their paths have the plan has counted for traverses.
     counted_margins: BTreeMap<OccurrenceId, [Rational; 2]>,
     /// How many of the world's changes have happened.
     num_changes: usize,
@@ -198,9 +198,9 @@ enum Decider {
 enum ByWorld {
     /// Whenever the plan says.
     Free,
-    /// Just then, and what is learnt if the plan did not allow for it.
+    /// Just then, and what is learned if the plan did not allow for it.
     At(Time, News),
-    /// Not at all, which is known from this time on; why, and what is learnt.
+    /// Not at all, which is known from this time on; why, and what is learned.
     Gone(Time, String, News),
     /// Not at all, which is known only when its time is over; why.
     Never(String),
@@ -508,7 +508,7 @@ impl Run<'_> {
         Ok(Some(started.checked_add(after).ok_or(Overflow)?))
     }
 
-    /// A point happens at a time that may be outside its window; what is learnt then.
+    /// A point happens at a time that may be outside its window; what is learned then.
     fn at(&self, point: PointId, time: Time, news: News) -> Next {
         let node = self.stage.made.node(point);
         let (earliest, latest) = self.stage.window(point);
@@ -679,7 +679,7 @@ impl Run<'_> {
         }
         let execution =
             self.executor.start(&self.stage.network, event.occurrence, self.now).map_err(too_late)?;
-        self.expect_metres(event.occurrence, &execution).map_err(too_late)?;
+        self.expect_meters(event.occurrence, &execution).map_err(too_late)?;
         self.revise();
         self.expect(event.occurrence, execution);
         Ok(())

@@ -68,11 +68,11 @@ pub enum Disturbance {
     /// Something stands in the world from a time on that is not on the map. Vehicles see it when it is in their range.
     Obstacle {
         at: Time,
-        /// Metres east.
+        /// Meters east.
         x: f64,
-        /// Metres north.
+        /// Meters north.
         y: f64,
-        /// Metres.
+        /// Meters.
         radius: f64,
         /// Whether it lies below the plane of range finders, so that only sonars hear it.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -87,11 +87,11 @@ impl Source {
         Ok(Self::PlanSchema(Box::new(Document::parse(text)?)))
     }
 
-    /// What the file says and planning does not honour, in words.
-    pub fn not_honoured(&self) -> Vec<String> {
+    /// What the file says and planning does not honor, in words.
+    pub fn not_honored(&self) -> Vec<String> {
         match self {
             Self::Enroute(_) => Vec::new(),
-            Self::PlanSchema(document) => document.not_honoured(),
+            Self::PlanSchema(document) => document.not_honored(),
         }
     }
 

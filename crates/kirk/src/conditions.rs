@@ -1,4 +1,4 @@
-//! Labelled intervals by variable, so that conflicts and supports are found without looking at every pair.
+//! Labeled intervals by variable, so that conflicts and supports are found without looking at every pair.
 
 use std::collections::HashMap;
 

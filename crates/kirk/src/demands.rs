@@ -80,14 +80,14 @@ pub(crate) struct ModelDeparture {
 pub(crate) struct ModelGoal {
     /// What each selected arc adds, in the goal's unit.
     pub(crate) by_arc: Vec<(ArcId, i64)>,
-    /// What each movement adds that starts at a place: metres, and what each of them costs as long as no path has told.
+    /// What each movement adds that starts at a place: meters, and what each of them costs as long as no path has told.
     pub(crate) by_departure: BTreeMap<(LabelId, ValueId), i64>,
     /// What each tick of the scenario's end adds.
     pub(crate) per_tick: i64,
     /// How many of the goal's units one of the mission's is.
     unit: i64,
     is_maximized: bool,
-    /// Whether the sum is all that the goal measures, so that no plan is better where none has a smaller one: metres are
+    /// Whether the sum is all that the goal measures, so that no plan is better where none has a smaller one: meters are
     /// bounded from below, where they are known at all, and the end is the earliest one.
     pub(crate) is_whole: bool,
 }
@@ -280,11 +280,11 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
                 by_arc.push((worth.arc, weight.checked_mul(sign)?));
             }
             let mut by_departure: BTreeMap<(LabelId, ValueId), Rational> = BTreeMap::new();
-            let per_metre = factor(Measure::Length)?;
+            let per_meter = factor(Measure::Length)?;
             for distance in &network.distances {
                 let weight =
-                    per_metre.checked_add(cost.checked_mul(cost_per_metre(network, distance.arrival)?)?)?;
-                let weight = weight.checked_mul(sign)?.checked_mul(distance.metres)?;
+                    per_meter.checked_add(cost.checked_mul(cost_per_meter(network, distance.arrival)?)?)?;
+                let weight = weight.checked_mul(sign)?.checked_mul(distance.meters)?;
                 by_departure.insert((distance.arrival, distance.from), weight);
             }
             // Of what is better the longer it is, the least length tells nothing.
@@ -295,7 +295,7 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
             let unit = common_unit(weights.chain([per_tick]))?;
             let by_arc = by_arc.into_iter().map(|(arc, weight)| Some((arc, units(weight, unit)?)));
             let is_driven = !factor(Measure::Length)?.is_zero()
-                || (!cost.is_zero() && network.worths.iter().any(|worth| !worth.cost_per_metre.is_zero()));
+                || (!cost.is_zero() && network.worths.iter().any(|worth| !worth.cost_per_meter.is_zero()));
             Some(ModelGoal {
                 is_whole: (!is_driven || is_bounded) && !per_tick.is_negative(),
                 by_departure: (by_departure.into_iter())
@@ -310,14 +310,14 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
         .collect()
 }
 
-/// What each metre of a movement costs that is not counted in its worth yet, as it is once its path is known.
-fn cost_per_metre(network: &Network, arrival: LabelId) -> Option<Rational> {
+/// What each meter of a movement costs that is not counted in its worth yet, as it is once its path is known.
+fn cost_per_meter(network: &Network, arrival: LabelId) -> Option<Rational> {
     let movement = network.labels[arrival.index()].arc;
     if network.arcs[movement.index()].kind == ArcKind::Span {
         return Some(Rational::ZERO);
     }
     let own = network.worths.iter().filter(|worth| worth.arc == movement);
-    own.map(|worth| worth.cost_per_metre).try_fold(Rational::ZERO, Rational::checked_add)
+    own.map(|worth| worth.cost_per_meter).try_fold(Rational::ZERO, Rational::checked_add)
 }
 
 /// The least number that makes all amounts whole, when they are multiplied by it.

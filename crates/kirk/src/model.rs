@@ -47,7 +47,7 @@ pub(crate) struct Model {
     pub(crate) demands: Demands,
     /// Present if the network has a program's structure.
     pub(crate) nesting: Option<Nesting>,
-    /// How far the end of each labelled interval must be from the start of another to count as before it (SPEC 5.3):
+    /// How far the end of each labeled interval must be from the start of another to count as before it (SPEC 5.3):
     /// the threat gap for instants, otherwise nothing.
     pub(crate) gap_after: TiVec<LabelId, i64>,
     /// Whether nature chooses the duration of some arc (SPEC 13.1).
@@ -203,7 +203,7 @@ impl Model {
         self.scale.time(units)
     }
 
-    /// The start and end node of a labelled interval.
+    /// The start and end node of a labeled interval.
     pub(crate) fn interval(&self, label: LabelId) -> (PointId, PointId) {
         let label = &self.conditions.labels[label];
         let arc = &self.arcs[label.arc];

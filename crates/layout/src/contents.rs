@@ -95,7 +95,7 @@ impl Contents {
         BlockId(self.first.get(block.index()).copied().unwrap_or(block.0))
     }
 
-    /// The first and the last outermost activity in neighbours, or what is asserted there if there is none. What an
+    /// The first and the last outermost activity in neighbors, or what is asserted there if there is none. What an
     /// activity does inside is its own.
     pub(crate) fn named(&self, members: &[BlockId]) -> Ends {
         let among = |named: &Vec<Ends>| {

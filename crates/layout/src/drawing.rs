@@ -1,6 +1,6 @@
 //! The layout of a network: what is where, and the way back from a place to what is there.
 //!
-//! It knows nothing of lines and colours: [`crate::list`] makes the display list of it.
+//! It knows nothing of lines and colors: [`crate::list`] makes the display list of it.
 
 use display::geometry::distance_point_curve;
 use display::{Piece, Point, Rect, SpatialIndex};
@@ -84,7 +84,7 @@ pub struct TextShape {
     pub role: TextRole,
     /// Text size, at most that of the role.
     pub size: f64,
-    /// The text fills its width; it is centred in its height.
+    /// The text fills its width; it is centered in its height.
     pub rect: Rect,
     /// What it belongs to.
     pub owner: Item,
@@ -122,7 +122,7 @@ impl TextShape {
 pub struct BlockShape {
     /// Which one; `None` for structure that was recovered from the graph.
     pub block: Option<BlockId>,
-    /// The last one, if it is a box for several neighbours; otherwise the same.
+    /// The last one, if it is a box for several neighbors; otherwise the same.
     pub last: Option<BlockId>,
     pub form: BlockForm,
     pub rect: Rect,

@@ -218,8 +218,8 @@ impl Placer<'_> {
 /// and around the corner onto the level run.
 fn rise_of_arch(node: Point, x: f64, top: f64, radius: f64, side: f64) -> (Point, [Piece; 3]) {
     let foot = node.y - ARCH_FOOT;
-    let towards = node.direction_to(Point::new(x, foot + ARCH_CORNER / 2.0));
-    let from = node.shifted(towards.x * radius, towards.y * radius);
+    let toward = node.direction_to(Point::new(x, foot + ARCH_CORNER / 2.0));
+    let from = node.shifted(toward.x * radius, toward.y * radius);
     let upright = Point::new(x, f64::midpoint(foot, from.y));
     let corner = ARCH_CORNER * side;
     let pieces = [

@@ -42,7 +42,7 @@ const REFINEMENTS: usize = 100;
 /// A box is opened into boxes of its steps divided by these, the finest that fits.
 const PARTS: [u32; 5] = [12, 8, 5, 3, 2];
 
-/// Neighbours, from the first to the last.
+/// Neighbors, from the first to the last.
 pub type Range = (BlockId, BlockId);
 
 /// Something is looked for in boxes inside of boxes so often before everything around it is opened.
@@ -123,7 +123,7 @@ pub fn openings(
         if openings.len() >= MAX_OPENINGS {
             opened = contents.home(node).map_or(opened, |home| (home, home));
         } else if focus == Some(opened) {
-            // These neighbours are behind one box even where there is more detail: the one of them that holds the node.
+            // These neighbors are behind one box even where there is more detail: the one of them that holds the node.
             let holder = tree.folding.shown.iter().copied().find(|&block| contents.holds(block, node));
             opened = holder.map_or(opened, |holder| (holder, holder));
         }

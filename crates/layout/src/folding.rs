@@ -8,7 +8,7 @@ use crate::contents::{Contents, Ends};
 use crate::options::Options;
 use crate::tree::{block_children, path_chain};
 
-/// One block, or neighbours in a sequence or among branches, behind one box.
+/// One block, or neighbors in a sequence or among branches, behind one box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Fold {
     pub(crate) first: BlockId,
@@ -29,7 +29,7 @@ pub(crate) struct Folding {
     pub(crate) folds: Vec<Fold>,
     /// The blocks that are drawn, if only as part of a box; what a block holds comes before it.
     pub(crate) shown: Vec<BlockId>,
-    /// Of each block that is drawn behind a box together with its neighbours or alone, which one.
+    /// Of each block that is drawn behind a box together with its neighbors or alone, which one.
     pub(crate) fold_of: Vec<Option<u32>>,
 }
 
@@ -73,7 +73,7 @@ impl Folding {
         folding
     }
 
-    /// Puts neighbours behind one box, between the ends of `parent` if they are branches of it.
+    /// Puts neighbors behind one box, between the ends of `parent` if they are branches of it.
     fn fold(&mut self, folder: &Folder<'_>, members: &[BlockId], parent: Option<BlockId>) {
         let (Some(&first), Some(&last)) = (members.first(), members.last()) else { return };
         let blocks = &folder.network.blocks;

@@ -1,7 +1,7 @@
 //! Irregular graphs: nodes in columns, arcs through slots of their own, after Sugiyama, Tagawa and Toda (1981).
 //!
 //! Only what is left of an imported network after everything in series or side by side has been taken out comes here.
-//! Columns by longest path, order by a few barycentre sweeps, heights by least squares (pool adjacent violators).
+//! Columns by longest path, order by a few barycenter sweeps, heights by least squares (pool adjacent violators).
 
 use display::geometry::{Piece, Point};
 
@@ -26,7 +26,7 @@ pub(crate) struct EdgeLayout {
     pub(crate) way_out: Vec<Piece>,
 }
 
-/// Barycentre sweeps to and fro.
+/// Barycenter sweeps to and fro.
 const SWEEPS: usize = 16;
 /// Edges pass through this many places per node or edge at most; beyond, long edges go straight.
 const PLACES_PER_EDGE: usize = 8;
@@ -131,8 +131,8 @@ impl Columns {
         self.before[to as usize].push(from);
     }
 
-    /// Orders each column by the mean position of the neighbours in the column before, then after, and so on; keeps the
-    /// order with the fewest crossings. Neighbours with the same mean change places in every second round, so that
+    /// Orders each column by the mean position of the neighbors in the column before, then after, and so on; keeps the
+    /// order with the fewest crossings. Neighbors with the same mean change places in every second round, so that
     /// a tie is tried both ways.
     fn order(&mut self) {
         let mut position = vec![0.0; self.vertices.len()];
@@ -153,11 +153,11 @@ impl Columns {
     }
 
     fn order_column(&mut self, column: usize, forwards: bool, variation: u32, position: &mut [f64]) {
-        let neighbours = if forwards { &self.before } else { &self.after };
+        let neighbors = if forwards { &self.before } else { &self.after };
         let members = self.members[column].iter().enumerate();
         let mut keyed: Vec<(f64, u32)> = members
             .map(|(at, &vertex)| {
-                let near = &neighbours[vertex as usize];
+                let near = &neighbors[vertex as usize];
                 let sum: f64 = near.iter().map(|&other| position[other as usize]).sum();
                 (if near.is_empty() { at as f64 } else { sum / near.len() as f64 }, vertex)
             })
@@ -173,7 +173,7 @@ impl Columns {
         self.members[column] = keyed.into_iter().map(|(_, vertex)| vertex).collect();
     }
 
-    /// How many pairs of lines between neighbouring columns cross, counted by a tree of partial sums (Barth, Mutzel
+    /// How many pairs of lines between neighboring columns cross, counted by a tree of partial sums (Barth, Mutzel
     /// and Jünger 2004).
     fn crossings(&self) -> usize {
         let mut place = vec![0_usize; self.vertices.len()];
@@ -215,7 +215,7 @@ impl Columns {
         count
     }
 
-    /// Gives each vertex a height near the mean of its neighbours', in the order of its column.
+    /// Gives each vertex a height near the mean of its neighbors', in the order of its column.
     fn spread(&mut self) {
         for column in 0..self.members.len() {
             let desired = vec![0.0; self.members[column].len()];

@@ -38,7 +38,7 @@ pub struct MachineArcShape {
 
 /// The height of a mode's box.
 pub const MODE_HEIGHT: f64 = 28.0;
-/// Between neighbours in a row.
+/// Between neighbors in a row.
 const GAP: f64 = 30.0;
 /// Between the rows.
 const ROW_GAP: f64 = 26.0;
@@ -126,7 +126,7 @@ fn permute(order: &mut [usize]) -> bool {
     true
 }
 
-/// Puts each mode of the lower row under the modes that lead to it, as far as its neighbours leave room.
+/// Puts each mode of the lower row under the modes that lead to it, as far as its neighbors leave room.
 fn place_below(below: &[usize], widths: &[f64], arcs: &[MachineArc], placed: &mut [Rect]) {
     let top = MODE_HEIGHT + ROW_GAP;
     let mut wanted: Vec<(usize, f64)> = below
@@ -142,7 +142,7 @@ fn place_below(below: &[usize], widths: &[f64], arcs: &[MachineArc], placed: &mu
         })
         .collect();
     wanted.sort_by(|left, right| left.1.total_cmp(&right.1).then(left.0.cmp(&right.0)));
-    // Neighbours that want the same place share it: a group stands around the middle of what its members want.
+    // Neighbors that want the same place share it: a group stands around the middle of what its members want.
     let total = |group: &[(usize, f64)]| {
         group.iter().map(|(mode, _)| widths[*mode]).sum::<f64>() + GAP * (group.len() as f64 - 1.0)
     };
@@ -189,12 +189,12 @@ impl Drawn<'_> {
         if is_below(arc.from) != is_below(arc.to) {
             return self.between_rows(arc);
         }
-        let is_neighbour = self.place_in_row[arc.from].abs_diff(self.place_in_row[arc.to]) == 1;
+        let is_neighbor = self.place_in_row[arc.from].abs_diff(self.place_in_row[arc.to]) == 1;
         let has_twin = |is_fault: bool| {
             let twin = MachineArc { from: arc.from, to: arc.to, is_fault };
             self.arcs.contains(&twin)
         };
-        if is_neighbour && (!arc.is_fault || !has_twin(false)) {
+        if is_neighbor && (!arc.is_fault || !has_twin(false)) {
             let is_back = self.arcs.iter().any(|other| (other.from, other.to) == (arc.to, arc.from));
             let shift = match (is_back, from.center().x < to.center().x) {
                 (false, _) => 0.0,
@@ -213,8 +213,8 @@ impl Drawn<'_> {
         let passed = self.place_in_row[arc.from].abs_diff(self.place_in_row[arc.to]) as f64;
         let is_up = is_below(arc.from) == arc.is_fault;
         let (rise, side) = if is_up { (-RISE * passed, Side::Top) } else { (RISE * passed, Side::Bottom) };
-        let towards = if from.center().x < to.center().x { APART / 2.0 } else { -APART / 2.0 };
-        let (start, end) = (side.of(from).shifted(towards, 0.0), side.of(to).shifted(-towards, 0.0));
+        let toward = if from.center().x < to.center().x { APART / 2.0 } else { -APART / 2.0 };
+        let (start, end) = (side.of(from).shifted(toward, 0.0), side.of(to).shifted(-toward, 0.0));
         let bend = rise * 4.0 / 3.0;
         MachineArcShape {
             start,

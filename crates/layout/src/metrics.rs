@@ -55,7 +55,7 @@ pub(crate) const BEAD_STEP: f64 = 12.0;
 /// Around the whole drawing.
 pub(crate) const MARGIN: f64 = 12.0;
 
-/// What a text is for; decides its size, and its colour when painted.
+/// What a text is for; decides its size, and its color when painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum TextRole {
     /// The name of an activity.

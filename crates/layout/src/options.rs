@@ -32,7 +32,7 @@ pub struct Options {
     pub window_width: f64,
 }
 
-/// A level of detail: blocks and neighbours that hold no more steps of the program than this are one box.
+/// A level of detail: blocks and neighbors that hold no more steps of the program than this are one box.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Detail {
     /// How many steps a box may hold; with 0 there are none.
@@ -41,7 +41,7 @@ pub struct Detail {
     pub finer: Vec<Finer>,
 }
 
-/// Neighbours in a sequence or among branches that are open, and drawn in more detail than what is around them.
+/// Neighbors in a sequence or among branches that are open, and drawn in more detail than what is around them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Finer {
     pub first: BlockId,

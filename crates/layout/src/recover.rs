@@ -15,7 +15,7 @@ struct Item {
     from: u32,
     to: u32,
     what: What,
-    /// The first arc in it, which decides its place among its neighbours.
+    /// The first arc in it, which decides its place among its neighbors.
     first_arc: u32,
 }
 

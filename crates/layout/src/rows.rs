@@ -112,12 +112,12 @@ impl Placer<'_> {
         for pair in way.windows(2) {
             let (corner, next) = (pair[0], pair[1]);
             let short = (from.distance(corner) / 2.0).min(corner.distance(next) / 2.0).min(ROW_CORNER);
-            let before = towards(corner, from, short);
-            let after = towards(corner, next, short);
+            let before = toward(corner, from, short);
+            let after = toward(corner, next, short);
             pieces.push(Piece::Line(before));
             pieces.push(Piece::Cubic(
-                towards(before, corner, short * 0.55),
-                towards(after, corner, short * 0.55),
+                toward(before, corner, short * 0.55),
+                toward(after, corner, short * 0.55),
                 after,
             ));
             from = after;
@@ -128,7 +128,7 @@ impl Placer<'_> {
 }
 
 /// The point that lies `length` from `from` on the way to `to`.
-fn towards(from: Point, to: Point, length: f64) -> Point {
+fn toward(from: Point, to: Point, length: f64) -> Point {
     let whole = from.distance(to);
     if whole == 0.0 { from } else { from.lerp(to, length / whole) }
 }

@@ -1,4 +1,4 @@
-//! Which lines and colours the parts of a network have: by what they are, and by what the plan says of them.
+//! Which lines and colors the parts of a network have: by what they are, and by what the plan says of them.
 
 use display::{ColorRole, Dash, Stroke};
 use serde::{Deserialize, Serialize};
@@ -132,7 +132,7 @@ pub(crate) fn node_fill(role: Role, radius: f64, standing: Standing) -> ColorRol
     }
 }
 
-/// The colour of a text.
+/// The color of a text.
 pub(crate) fn text_color(role: TextRole, standing: Standing) -> ColorRole {
     if standing == Standing::Unselected {
         return ColorRole::TextFaint;

@@ -163,7 +163,7 @@ pub fn label_text(network: &Network, label: LabelId) -> (SmolStr, TextRole) {
     (format_smolstr!("{}({})", label.verb(), label.text), role)
 }
 
-/// What a labelled interval means for whoever has it, in words: `requires ARM=OUT throughout`.
+/// What a labeled interval means for whoever has it, in words: `requires ARM=OUT throughout`.
 pub fn label_words(label: &Label) -> String {
     let text = &label.text;
     match (label.mode, label.extent) {

@@ -50,7 +50,7 @@ pub(crate) enum PartKind {
     Arc(ArcId),
     /// A node by itself, or nothing between two nodes.
     Nothing,
-    /// One after the other, neighbours sharing a node.
+    /// One after the other, neighbors sharing a node.
     Series(Range<u32>),
     Fan {
         branches: Range<u32>,

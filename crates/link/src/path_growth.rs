@@ -41,7 +41,7 @@ pub struct GrowthStanding {
     pub leg: u32,
     pub planner: PlannerKind,
     pub search: ContentKey,
-    /// Where its trees begin, in metres.
+    /// Where its trees begin, in meters.
     pub roots_m: Vec<Point2<f64>>,
     /// The number of the first of these samples, from 0; the asker holds those before.
     pub first: u32,

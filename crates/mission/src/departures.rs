@@ -1,5 +1,5 @@
 //! Movements whose order planning finds (SPEC 10.3): how long each takes at least from wherever its vehicle may be, and how
-//! many metres it drives. Before a path is known that is the straight line, at the greatest speed; what a path says holds
+//! many meters it drives. Before a path is known that is the straight line, at the greatest speed; what a path says holds
 //! for every plan with that leg.
 
 use snapshot::vehicle;
@@ -27,13 +27,13 @@ pub(crate) struct Departures {
 #[derive(Clone, Copy)]
 struct Known {
     least: Option<Time>,
-    metres: Option<Rational>,
+    meters: Option<Rational>,
 }
 
 struct Movement {
     occurrence: OccurrenceId,
     arrival: LabelId,
-    /// Each place, with the time that the straight line takes and its metres.
+    /// Each place, with the time that the straight line takes and its meters.
     places: Vec<(ValueId, SmolStr, Option<Time>, Option<Rational>)>,
 }
 
@@ -55,16 +55,16 @@ impl Departures {
         route.from.is_none() || self.asked.iter().any(is_it)
     }
 
-    /// Learns how long a route takes at least, `None` if it cannot be driven, and its metres. Of several paths of one leg
+    /// Learns how long a route takes at least, `None` if it cannot be driven, and its meters. Of several paths of one leg
     /// the longest counts.
-    pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>, metres: Option<Rational>) {
+    pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>, meters: Option<Rational>) {
         if let Some(from) = &route.from {
             // The exact time comes with the path; a rounder one that is a little less keeps the planner's numbers small.
             let least = least.map(|least| round_down(least.to_f64()).unwrap_or_default());
             let key = (route.occurrence, from.clone());
             let earlier = self.known.get(&key).copied();
-            let longest = earlier.and_then(|earlier| earlier.metres).max(metres);
-            self.known.insert(key, Known { least, metres: longest });
+            let longest = earlier.and_then(|earlier| earlier.meters).max(meters);
+            self.known.insert(key, Known { least, meters: longest });
             self.asked.push(route.clone());
         }
     }
@@ -74,7 +74,7 @@ impl Departures {
         let open = self.movements.iter().flat_map(|movement| {
             let is_known = |place: &SmolStr| self.known.contains_key(&(movement.occurrence, place.clone()));
             let places = movement.places.iter().filter(move |(_, place, _, _)| !is_known(place));
-            places.filter_map(|(_, place, _, metres)| Some(((*metres)?, movement.occurrence, place)))
+            places.filter_map(|(_, place, _, meters)| Some(((*meters)?, movement.occurrence, place)))
         });
         let mut open: Vec<(Rational, OccurrenceId, &SmolStr)> = open.collect();
         open.sort_unstable();
@@ -97,13 +97,13 @@ impl Departures {
         })
     }
 
-    /// How many metres each movement drives at least from each place.
+    /// How many meters each movement drives at least from each place.
     pub(crate) fn distances(&self) -> Vec<Distance> {
         let all = self.movements.iter().flat_map(|movement| {
             movement.places.iter().filter_map(move |(from, place, _, straight)| {
                 let known = self.known.get(&(movement.occurrence, place.clone()));
-                let metres = known.and_then(|known| known.metres).or(*straight)?;
-                Some(Distance { arrival: movement.arrival, from: *from, metres })
+                let meters = known.and_then(|known| known.meters).or(*straight)?;
+                Some(Distance { arrival: movement.arrival, from: *from, meters })
             })
         });
         all.collect()
@@ -127,26 +127,26 @@ impl Departures {
     }
 }
 
-/// How many metres of a route were counted when its plan was chosen: the most that any planned path of it has.
+/// How many meters of a route were counted when its plan was chosen: the most that any planned path of it has.
 pub(crate) fn counted_m(network: &Network, route: &Route) -> f64 {
     let is_its = |distance: &&tpn::Distance| {
         let arrival = &network.labels[distance.arrival.index()];
         let place = network.variables[arrival.literal.variable.index()].values.get(distance.from.index());
         arrival.owner == Some(route.occurrence) && place == route.from.as_ref()
     };
-    network.distances.iter().find(is_its).map_or(0.0, |distance| distance.metres.to_f64())
+    network.distances.iter().find(is_its).map_or(0.0, |distance| distance.meters.to_f64())
 }
 
-/// Writes down how many metres a route drives that was planned.
+/// Writes down how many meters a route drives that was planned.
 pub(crate) fn record(network: &mut Network, route: &Route, length_m: f64) {
-    let Some((from, metres)) = route.from.as_ref().zip(rounded_up(length_m)) else { return };
+    let Some((from, meters)) = route.from.as_ref().zip(rounded_up(length_m)) else { return };
     let Network { labels, variables, distances, .. } = network;
     for distance in distances {
         let arrival = &labels[distance.arrival.index()];
         let variable = &variables[arrival.literal.variable.index()];
         let place = variable.values.get(distance.from.index());
         if arrival.owner == Some(route.occurrence) && place == Some(from) {
-            distance.metres = metres;
+            distance.meters = meters;
         }
     }
 }
@@ -164,24 +164,24 @@ fn movement(network: &Network, program: &Program, occurrence: OccurrenceId) -> O
     let unit_seconds = program.options.time_unit.seconds();
     let places = variable.values.iter().enumerate().map(|(index, place)| {
         let route = traverse::route_from(network, program, occurrence, place);
-        let metres = route.as_ref().map(straight_metres);
+        let meters = route.as_ref().map(straight_meters);
         let least =
-            route.as_ref().zip(metres).and_then(|(route, metres)| straight(route, metres, unit_seconds));
-        (ValueId::from_index(index), place.clone(), least, metres.and_then(parts_rounded_down))
+            route.as_ref().zip(meters).and_then(|(route, meters)| straight(route, meters, unit_seconds));
+        (ValueId::from_index(index), place.clone(), least, meters.and_then(parts_rounded_down))
     });
     Some(Movement { occurrence, arrival: LabelId::from_index(position), places: places.collect() })
 }
 
 /// The length of a route along straight lines.
-fn straight_metres(route: &Route) -> f64 {
+fn straight_meters(route: &Route) -> f64 {
     let pairs = route.waypoints.windows(2);
     pairs.map(|pair| nalgebra::distance(&pair[0].position_m, &pair[1].position_m)).sum()
 }
 
 /// The time of a route along straight lines at the greatest speed.
-fn straight(route: &Route, metres: f64, unit_seconds: i64) -> Option<Time> {
+fn straight(route: &Route, meters: f64, unit_seconds: i64) -> Option<Time> {
     let speed_mps = route.speed_mps.1.to_f64();
-    round_down(metres / speed_mps / Rational::from_integer(unit_seconds).to_f64())
+    round_down(meters / speed_mps / Rational::from_integer(unit_seconds).to_f64())
 }
 
 /// A time that is no greater, in thousandths of the mission's unit.

@@ -18,7 +18,7 @@ pub struct Drive {
     pub occurrence: OccurrenceId,
     /// The vehicles, as indices into the program's world; the first leads.
     pub vehicles: Vec<u32>,
-    /// Metres between the centres of two of them, at least.
+    /// Meters between the centers of two of them, at least.
     pub spacing_m: f64,
     /// Where they can be.
     pub space: Arc<ConfigurationSpace>,
@@ -32,9 +32,9 @@ pub struct Drive {
 
 /// Times are rounded to this fraction of a unit: positions between keyframes are interpolated anyway.
 const PARTS_PER_UNIT: u32 = 1000;
-/// Followers are placed this often along the leader's path, in metres.
+/// Followers are placed this often along the leader's path, in meters.
 const FOLLOWER_STEP_M: f64 = 0.4;
-/// A place is left out where driving evenly past it comes this near to it, in metres.
+/// A place is left out where driving evenly past it comes this near to it, in meters.
 pub(crate) const EVEN_M: f64 = 0.02;
 
 /// The ways of the vehicles of each drive, the leader's first: a formation goes on from where the drive before it stopped.
@@ -115,7 +115,7 @@ fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
     tracks
 }
 
-/// The path with what the same vehicles drove directly before it, and how long that was in metres: the formation
+/// The path with what the same vehicles drove directly before it, and how long that was in meters: the formation
 /// goes on from where it stopped.
 fn prolonged_back(drive: &Drive, before: &[Drive]) -> (Path, f64) {
     let mut points: Vec<Point2<f64>> = drive.path.points_m.clone();
@@ -137,7 +137,7 @@ fn prolonged_back(drive: &Drive, before: &[Drive]) -> (Path, f64) {
     (Path::new(points), driven_m)
 }
 
-/// The same way with fewer places: none that an even drive between its neighbours passes.
+/// The same way with fewer places: none that an even drive between its neighbors passes.
 fn even_stretches(track: &[Place]) -> Vec<Place> {
     const LONGEST: usize = 64;
     let mut kept: Vec<Place> = track.first().copied().into_iter().collect();

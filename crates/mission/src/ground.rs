@@ -35,7 +35,7 @@ pub struct FreeSpace {
     pub roomy: Vec<Arc<ConfigurationSpace>>,
 }
 
-/// Metres of room beyond the margin that a path keeps where that makes it little longer.
+/// Meters of room beyond the margin that a path keeps where that makes it little longer.
 const ROOM_M: [f64; 2] = [1.5, 0.5];
 
 struct Imported {
@@ -75,11 +75,11 @@ impl Grounds {
         let cell_m = declared.cell_m.or(of_file.map(|frame| frame.cell_size_m));
         let cell_m = cell_m.unwrap_or(terrain::format::DEFAULT_CELL_SIZE_M);
         let origin_m = declared.origin_m.or(of_file.map(|frame| frame.origin_m.into())).unwrap_or_default();
-        let millimetres = |metres: f64| (metres * 1000.0).round();
+        let millimeters = |meters: f64| (meters * 1000.0).round();
         let key = MapKey {
             asset: declared.asset.clone(),
-            cell_mm: millimetres(cell_m) as u32,
-            origin_mm: origin_m.map(|metres| millimetres(metres) as i64),
+            cell_mm: millimeters(cell_m) as u32,
+            origin_mm: origin_m.map(|meters| millimeters(meters) as i64),
             version,
         };
         if let Some(map) = self.maps.get(&key) {
@@ -132,14 +132,14 @@ impl Grounds {
         let key = MapKey {
             asset: SmolStr::default(),
             cell_mm: (cell_m * 1000.0).ceil() as u32,
-            origin_mm: origin_m.map(|metres| (metres * 1000.0).floor() as i64).into(),
+            origin_mm: origin_m.map(|meters| (meters * 1000.0).floor() as i64).into(),
             version: 0,
         };
         let frame = GridFrame {
             width: FLAT_CELLS,
             height: FLAT_CELLS,
             cell_size_m: f64::from(key.cell_mm) / 1000.0,
-            origin_m: key.origin_mm.map(|millimetres| millimetres as f64 / 1000.0).into(),
+            origin_m: key.origin_mm.map(|millimeters| millimeters as f64 / 1000.0).into(),
         };
         let map = self.maps.entry(key.clone()).or_insert_with(|| Arc::new(Terrain::flat(frame)));
         Some((key, Arc::clone(map)))

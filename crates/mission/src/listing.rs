@@ -52,7 +52,7 @@ pub(crate) fn add_plans(
     let mut network = problem.network.as_ref().clone();
     let departures = Departures::new(problem.network, problem.program);
     network.departures = departures.all();
-    if problem.network.counts_metres() {
+    if problem.network.counts_meters() {
         network.distances = departures.distances();
     }
     let network = Arc::new(network);

@@ -25,7 +25,7 @@ const MAX_IN_VAIN: usize = 12;
 const MAX_IN_VAIN_FOR_OTHERS: usize = 4;
 /// Ways around of the same traverse, at most: on the way around it may meet others, or the same vehicle elsewhere.
 const MAX_WAYS_OF_TRAVERSE: usize = 4;
-/// Metres that a way around keeps beyond what is needed.
+/// Meters that a way around keeps beyond what is needed.
 const SPARE_M: f64 = 0.3;
 
 /// Where the paths of traverses may not go, because other vehicles are there then.
@@ -64,7 +64,7 @@ pub(crate) fn kept_apart(
     planned
 }
 
-/// The first plan, with the metres that are counted for it.
+/// The first plan, with the meters that are counted for it.
 fn best_plan(planned: &Planned) -> Option<(&Plan, f64)> {
     Some((planned.planning.outcome.plans.first()?, planned.counted_m))
 }
@@ -91,7 +91,7 @@ fn is_better(network: &Network, planned: &Planned, other: &Planned) -> bool {
 }
 
 /// What the first goal of the objective in which two plans differ had with the first of them, if the second is worse in it.
-/// Both come with the metres that are counted for them.
+/// Both come with the meters that are counted for them.
 fn lost(
     network: &Network,
     (first, first_m): (&Plan, f64),
@@ -155,7 +155,7 @@ struct WayAround {
     occurrence: OccurrenceId,
     /// Who can be there.
     stays: u32,
-    /// Where that one can be while the other one is near, in metres.
+    /// Where that one can be while the other one is near, in meters.
     places_m: Vec<Point2<f64>>,
 }
 
@@ -202,7 +202,7 @@ fn with_order(network: &Network, first: OccurrenceId, then: OccurrenceId) -> Net
             resource,
             change,
             amount: Rational::ONE,
-            per_metre: Rational::ZERO,
+            per_meter: Rational::ZERO,
             spread: Rational::ZERO,
             detour: Rational::ZERO,
             arc,

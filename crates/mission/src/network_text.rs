@@ -22,8 +22,8 @@ impl NetworkText {
     pub(crate) fn read(text: &str) -> Self {
         let (network, found) = match Source::read(text) {
             Ok(source) => {
-                let not_honoured = source.not_honoured();
-                let told = (!not_honoured.is_empty()).then(|| network::not_honoured(&not_honoured));
+                let not_honored = source.not_honored();
+                let told = (!not_honored.is_empty()).then(|| network::not_honored(&not_honored));
                 (Some(Arc::new(source.into_network())), told.into_iter().collect())
             }
             Err(reason) => (None, vec![unreadable_network::unreadable(&reason.to_string())]),

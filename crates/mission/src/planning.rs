@@ -121,7 +121,7 @@ pub struct Planned {
     pub others: Vec<Listed>,
     /// The plan's traverses.
     pub traverses: Vec<Traverse>,
-    /// The metres that were counted when the plan was chosen, where the objective counts them.
+    /// The meters that were counted when the plan was chosen, where the objective counts them.
     pub counted_m: f64,
     /// Where the vehicles of each traverse can be.
     pub spaces: Vec<(OccurrenceId, Arc<ConfigurationSpace>)>,
@@ -193,7 +193,7 @@ fn plan_paths(
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     let ordered;
     let mut departures = None;
-    let is_by_departure = kirk::has_open_order(problem.network) || problem.network.counts_metres();
+    let is_by_departure = kirk::has_open_order(problem.network) || problem.network.counts_meters();
     let mut unproven = None;
     let problem = if problem.ground.is_some() && is_by_departure {
         match order_movements(problem, grounds, paths, stop) {
@@ -251,7 +251,7 @@ fn plan_paths(
     conclude(problem, grounds, network, outcome, inserted)
 }
 
-/// The network with reservoirs that never run over, where that may be due to metres that are not known yet: what a path takes
+/// The network with reservoirs that never run over, where that may be due to meters that are not known yet: what a path takes
 /// of a reservoir also makes room in it. `None` where all that matters is known.
 pub(crate) fn without_upper_limits(
     network: &Arc<Network>,
@@ -259,7 +259,7 @@ pub(crate) fn without_upper_limits(
 ) -> Option<Arc<Network>> {
     let is_open = |used: &tpn::Use| {
         used.change == Change::Consumes
-            && used.per_metre.is_positive()
+            && used.per_meter.is_positive()
             && used.owner.is_some_and(|owner| !inserted.contains_key(&owner))
     };
     let mut relaxed: Option<Network> = None;
@@ -352,7 +352,7 @@ fn order_movements(
         }
         let is_optimal = plan.quality.is_optimal;
         // With straight lines for what is not known no plan is worse than it is.
-        if is_optimal == Some(true) && !asked.counts_metres() {
+        if is_optimal == Some(true) && !asked.counts_meters() {
             let values = worth::goal_values(&asked, plan, 0.0);
             promised = values.and_then(|values| values.first().copied()).or(promised);
         }
@@ -379,9 +379,9 @@ fn order_movements(
     }
 }
 
-/// The metres that movements drive at least, where the objective counts them.
+/// The meters that movements drive at least, where the objective counts them.
 fn distances(problem: &Problem<'_>, departures: &Departures) -> Vec<tpn::Distance> {
-    if problem.network.counts_metres() { departures.distances() } else { Vec::new() }
+    if problem.network.counts_meters() { departures.distances() } else { Vec::new() }
 }
 
 /// Where vehicles stand that have stopped on their way.
@@ -505,7 +505,7 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
                 let followers = traverse.route.vehicles.len().saturating_sub(1);
                 let has_map = problem.program.world.terrain.is_some();
                 let length_m = snapshot::joined(legs).length_m();
-                count_metres(&mut network, occurrence, length_m, followers, has_map);
+                count_meters(&mut network, occurrence, length_m, followers, has_map);
             }
             Err(_) => block(&mut network, occurrence),
         }
@@ -516,34 +516,34 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
     }
 }
 
-/// Adds what a traverse takes, gives and costs for each metre (SPEC 11, 12), rounded up. What a driver takes is counted for
+/// Adds what a traverse takes, gives and costs for each meter (SPEC 11, 12), rounded up. What a driver takes is counted for
 /// as far as it drives at most along the path, what it gives for as far as it drives at least, and costs for the path itself.
-fn count_metres(
+fn count_meters(
     network: &mut Network,
     occurrence: OccurrenceId,
     length_m: f64,
     followers: usize,
     leaves_out_rocks: bool,
 ) {
-    let Some(metres) = rounded_up(length_m) else { return };
+    let Some(meters) = rounded_up(length_m) else { return };
     let Some(at_most) = rounded_up(motion::driven_at_most_m(length_m, followers)) else { return };
     let at_least = rounded_up(motion::driven_at_least_m(length_m, followers)).unwrap_or_default();
-    let with = |amount: Rational, per_metre: Rational, metres: Rational| {
-        per_metre.checked_mul(metres).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
+    let with = |amount: Rational, per_meter: Rational, meters: Rational| {
+        per_meter.checked_mul(meters).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
     };
     for used in network.uses.iter_mut().filter(|used| used.owner == Some(occurrence)) {
-        let metres = if used.change == Change::Produces { at_least } else { at_most };
-        used.amount = with(used.amount, used.per_metre, metres);
+        let meters = if used.change == Change::Produces { at_least } else { at_most };
+        used.amount = with(used.amount, used.per_meter, meters);
         let spread_m = at_most.checked_sub(at_least).unwrap_or_default();
-        used.spread = with(Rational::ZERO, used.per_metre, spread_m);
+        used.spread = with(Rational::ZERO, used.per_meter, spread_m);
         if leaves_out_rocks && used.change == Change::Consumes && length_m > 0.0 {
             let detours_m = rounded_up(motion::detours_at_most_m(followers)).unwrap_or_default();
-            used.detour = with(Rational::ZERO, used.per_metre, detours_m);
+            used.detour = with(Rational::ZERO, used.per_meter, detours_m);
         }
     }
     let arc = network.occurrences[occurrence.index()].arc;
     for worth in network.worths.iter_mut().filter(|worth| Some(worth.arc) == arc) {
-        worth.cost = with(worth.cost, worth.cost_per_metre, metres);
+        worth.cost = with(worth.cost, worth.cost_per_meter, meters);
     }
 }
 
@@ -784,7 +784,7 @@ pub fn motions_of(
     driving::motions(&drives, &driving::all_tracks(&drives))
 }
 
-/// Room between the centres of vehicles that drive together, in metres.
+/// Room between the centers of vehicles that drive together, in meters.
 fn spacing_m(world: &World, vehicles: &[usize]) -> f64 {
     let radii = |vehicle: &usize| vehicle::radius_m(world, *vehicle as u32);
     let mut widest: Vec<f64> = vehicles.iter().map(radii).collect();

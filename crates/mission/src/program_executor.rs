@@ -1,7 +1,7 @@
 //! Runs control programs when the executive starts their activities (SPEC 15).
 //!
 //! All programs of a mission control one plant, which stays as they leave it, and so does what is believed of it. Programs
-//! that command different components run at once: each step commands the plant towards the goals of all of them. One that
+//! that command different components run at once: each step commands the plant toward the goals of all of them. One that
 //! commands what another one does waits until that has ended. The plant steps as long as some program runs; one that is
 //! started between two steps takes its first one with the next.
 //!

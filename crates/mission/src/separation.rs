@@ -22,20 +22,20 @@ pub struct Meeting {
     pub vehicles: [u32; 2],
     /// What each of them drives then; nothing for one that stands.
     pub movements: [Option<OccurrenceId>; 2],
-    /// Where each of them can be while the other one is near, in metres.
+    /// Where each of them can be while the other one is near, in meters.
     pub places_m: [Vec<Point2<f64>>; 2],
     /// Orders of two traverses that may keep them apart, the likeliest first.
     pub orders: Vec<(OccurrenceId, OccurrenceId)>,
     pub violation: SeparationViolation,
 }
 
-/// Pieces of paths that are looked at are at most this long, in metres.
+/// Pieces of paths that are looked at are at most this long, in meters.
 const PIECE_M: f64 = 0.5;
-/// A driver may be this far ahead of or behind an even pace, in metres: it turns before it sets out.
+/// A driver may be this far ahead of or behind an even pace, in meters: it turns before it sets out.
 const PACE_M: f64 = 1.0;
-/// Formations keep their spacing but for rounding. Vehicles that are nearer by less than this are not too near, in metres.
+/// Formations keep their spacing but for rounding. Vehicles that are nearer by less than this are not too near, in meters.
 const ROUNDING_M: f64 = 0.05;
-/// Places that a vehicle passes are told apart from this distance on, in metres.
+/// Places that a vehicle passes are told apart from this distance on, in meters.
 const APART_M: f64 = 0.25;
 
 /// What a vehicle does between two events of the plan: it drives, or stands.

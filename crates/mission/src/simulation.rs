@@ -38,7 +38,7 @@ pub(crate) use self::way::nearest_free;
 struct Course {
     drive: Drive,
     route: Route,
-    /// How far along the path each leg ends, in metres.
+    /// How far along the path each leg ends, in meters.
     leg_ends_m: Vec<f64>,
 }
 
@@ -76,7 +76,7 @@ impl Courses {
         self.known.contains_key(&occurrence)
     }
 
-    /// The ways that are driven, each with how far along it the places that it leads to are, in metres.
+    /// The ways that are driven, each with how far along it the places that it leads to are, in meters.
     pub(crate) fn ways(&self) -> impl Iterator<Item = (&motion::Path, &[f64])> {
         self.known.values().map(|course| (&course.drive.path, course.leg_ends_m.as_slice()))
     }
@@ -115,16 +115,16 @@ pub(crate) struct Driving<'run> {
     chosen: BTreeMap<SmolStr, Time>,
 }
 
-/// Rocks that a range sensor sees are at least this large, in metres: smaller ones are below its plane.
+/// Rocks that a range sensor sees are at least this large, in meters: smaller ones are below its plane.
 const MIN_ROCK_M: f64 = 0.4;
 /// Durations are whole multiples of this fraction of a second.
 const TICKS_PER_SECOND: u32 = 10;
-/// Within this distance of a location a vehicle is at it, in metres: it may stop a little before its path ends.
+/// Within this distance of a location a vehicle is at it, in meters: it may stop a little before its path ends.
 const AT_GOAL_M: f64 = 0.5;
-/// Where a vehicle stands first, no rock comes nearer to its body than this, in metres.
+/// Where a vehicle stands first, no rock comes nearer to its body than this, in meters.
 const STARTING_ROOM_M: f64 = 0.1;
-/// Metres driven are whole multiples of this fraction of a metre.
-const PARTS_PER_METRE: u32 = 1000;
+/// Meters driven are whole multiples of this fraction of a meter.
+const PARTS_PER_METER: u32 = 1000;
 impl<'run> Driving<'run> {
     /// For one run of `problem` on `map`.
     pub(crate) fn new(
@@ -239,7 +239,7 @@ impl ActivityExecutor for Driving<'_> {
             trip.entries.push((trip.convoy.time_s(), note));
         }
         let driven_m = trip.driven_m();
-        let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, extra_metres, seen, .. } =
+        let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, extra_meters, seen, .. } =
             trip;
         self.seen.extend(seen);
         let time_s = convoy.time_s();
@@ -270,19 +270,19 @@ impl ActivityExecutor for Driving<'_> {
         };
         let pass = |(event, seconds): (EventRef, f64)| Ok((event, units(seconds)?));
         let length_m = course.drive.path.length_m();
-        let margin = |metres: f64| Rational::from_f64_up(metres, PARTS_PER_METRE).ok_or(Overflow);
+        let margin = |meters: f64| Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow);
         let followers = course.drive.vehicles.len().saturating_sub(1);
         let taken_m = margin(motion::driven_at_most_m(length_m, followers) - length_m)?;
         let given_m = margin(length_m - motion::driven_at_least_m(length_m, followers))?;
-        let extra = |(seconds, metres): (f64, f64)| {
-            let metres = Rational::from_f64_up(metres, PARTS_PER_METRE).ok_or(Overflow)?;
-            Ok((units(seconds)?, metres))
+        let extra = |(seconds, meters): (f64, f64)| {
+            let meters = Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow)?;
+            Ok((units(seconds)?, meters))
         };
         Ok(ActivityExecution {
             ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(duration)),
             entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
             passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,
-            extra_metres: extra_metres.into_iter().map(extra).collect::<Result<_, _>>()?,
+            extra_meters: extra_meters.into_iter().map(extra).collect::<Result<_, _>>()?,
             counted_margins: [taken_m, given_m],
         })
     }

@@ -29,7 +29,7 @@ pub struct Route {
     pub vehicles: Vec<usize>,
     /// The model whose ground the path must be: of the vehicles that drive, or of all if none drives, the widest.
     pub model: VehicleModel,
-    /// Least and greatest speed in metres per second. At a least speed of 0 the vehicle may stop on its way.
+    /// Least and greatest speed in meters per second. At a least speed of 0 the vehicle may stop on its way.
     pub speed_mps: (Rational, Rational),
     /// What its vehicles may not enter.
     pub obstacles: Vec<ObstacleShape>,
@@ -46,7 +46,7 @@ pub struct Route {
 pub struct Waypoint {
     /// The location's name.
     pub name: SmolStr,
-    /// In metres.
+    /// In meters.
     pub position_m: Point2<f64>,
     /// Which place of the location that is, where several vehicles stand there: 0 for the location itself.
     pub slot: usize,
@@ -246,7 +246,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
         for primitive in &program.primitives {
             let amounts =
                 primitive.uses.iter().filter_map(|used| used.amount.as_ref()).chain(&primitive.costs);
-            for amount in amounts.filter(|amount| amount.per == Some(Per::Metre)) {
+            for amount in amounts.filter(|amount| amount.per == Some(Per::Meter)) {
                 let message =
                     "amounts per metre count as 0, because the mission has no terrain and so no paths";
                 found.push(rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), amount.span, message));
@@ -360,9 +360,9 @@ impl Paths {
     }
 }
 
-/// Metres that a path may be longer for each corner that it does without: corners become events of the plan.
+/// Meters that a path may be longer for each corner that it does without: corners become events of the plan.
 const CORNER_EXTRA_M: f64 = 0.3;
-/// How much longer a path may be for keeping away from obstacles: this share and so many metres.
+/// How much longer a path may be for keeping away from obstacles: this share and so many meters.
 const ROOMY_SHARE: f64 = 1.06;
 const ROOMY_EXTRA_M: f64 = 2.0;
 /// Searches for each leg: obstacles leave several ways around, and one search may miss the shortest.
@@ -434,7 +434,7 @@ fn find_leg(
     })
 }
 
-/// The least distance from the vehicle's rim to an obstacle along a path, in metres.
+/// The least distance from the vehicle's rim to an obstacle along a path, in meters.
 pub fn clearance_m(space: &ConfigurationSpace, points_m: &[Point2<f64>]) -> f64 {
     points_m
         .windows(2)

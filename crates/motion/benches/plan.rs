@@ -90,7 +90,7 @@ fn load(map: &str, radius: f64) -> Option<ConfigurationSpace> {
     Some(ConfigurationSpace::new(Occupancy::from_obstacles(GridFrame::new(512, 512, 1.0), &occupied), radius))
 }
 
-/// Theta* (Nash, Daniel, Koenig and Felner 2007) over cell centres, between the query's ends.
+/// Theta* (Nash, Daniel, Koenig and Felner 2007) over cell centers, between the query's ends.
 fn theta_star(space: &ConfigurationSpace, query: Query) -> Option<Path> {
     let frame = space.frame();
     let start = frame.index(frame.cell_at(query.start_m)?);

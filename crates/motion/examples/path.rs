@@ -4,7 +4,7 @@
 use terrain::{CellState, ConfigurationSpace, GridFrame, Obstacle, Occupancy};
 
 fn main() -> Result<(), String> {
-    // 40 × 40 metres with something round in the middle.
+    // 40 × 40 meters with something round in the middle.
     let mut ground = Occupancy::free(GridFrame::new(40, 40, 1.0));
     ground.mark(&Obstacle::Circle { center_m: point(20.0, 20.0), radius_m: 8.0 }, CellState::Obstacle);
     // The vehicle becomes a point and the obstacle grows by its radius.
@@ -20,7 +20,7 @@ fn main() -> Result<(), String> {
     Ok(())
 }
 
-/// A place in metres east and north.
+/// A place in meters east and north.
 fn point<P: From<[f64; 2]>>(east_m: f64, north_m: f64) -> P {
     P::from([east_m, north_m])
 }

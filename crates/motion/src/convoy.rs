@@ -25,9 +25,9 @@ pub struct Convoy {
 /// How far the convoy could have come since it last came farther.
 #[derive(Clone, Debug)]
 struct Stall {
-    /// What all its vehicles together still had to go then, in metres.
+    /// What all its vehicles together still had to go then, in meters.
     remaining_m: f64,
-    /// What its pace would have been since, in metres.
+    /// What its pace would have been since, in meters.
     commanded_m: f64,
     /// How often it stalled there.
     count: usize,
@@ -36,17 +36,17 @@ struct Stall {
 #[derive(Clone, Debug)]
 struct Member {
     driver: Driver,
-    /// The length of the path that it set out with, in metres: what the others expect it to drive.
+    /// The length of the path that it set out with, in meters: what the others expect it to drive.
     planned_m: f64,
     has_arrived: bool,
-    /// Until it is this far along its path, in metres, it goes around the others rather than wait for them.
+    /// Until it is this far along its path, in meters, it goes around the others rather than wait for them.
     passes_until_m: f64,
     /// What of the world is near, and where it was looked for.
     near: Option<(FineWorld, Point2<f64>)>,
 }
 
 impl Member {
-    /// Metres that it still has to go.
+    /// Meters that it still has to go.
     fn remaining_m(&self) -> f64 {
         if self.has_arrived { 0.0 } else { self.driver.length_m() - self.driver.progress_m() }
     }
@@ -56,9 +56,9 @@ impl Member {
         self.driver.progress_m() < self.passes_until_m
     }
 
-    /// From now on it goes around the others, for so many metres.
-    fn pass_for(&mut self, metres: f64) {
-        self.passes_until_m = self.driver.progress_m() + metres;
+    /// From now on it goes around the others, for so many meters.
+    fn pass_for(&mut self, meters: f64) {
+        self.passes_until_m = self.driver.progress_m() + meters;
     }
 
     /// Whether it is this near to the end of its path.
@@ -97,16 +97,16 @@ pub struct Surroundings<'a> {
 pub struct OtherVehicle {
     /// Where it is now, and where it will be soon.
     pub places_m: Vec<Point2<f64>>,
-    /// Of the disc around its body, in metres.
+    /// Of the disc around its body, in meters.
     pub radius_m: f64,
 }
 
-/// A vehicle keeps so far from where another one will be, in metres.
+/// A vehicle keeps so far from where another one will be, in meters.
 const CROSSING_M: f64 = 0.1;
 
-/// A part of the world this far around a vehicle is kept at hand, in metres.
+/// A part of the world this far around a vehicle is kept at hand, in meters.
 const AT_HAND_M: f64 = 14.0;
-/// It is looked for again after so many metres.
+/// It is looked for again after so many meters.
 const AT_HAND_STEP_M: f64 = 4.0;
 /// The leader waits when a follower is this many spacings behind its place.
 const WAITING_SPACINGS: f64 = 3.0;
@@ -114,14 +114,14 @@ const WAITING_SPACINGS: f64 = 3.0;
 /// A follower that drives at less than this share of the leader's pace waits for it. It is not zero: the leader may wait for
 /// one that is beside it, and each then drives more slowly as the other does, without ever standing.
 const WAITING_SHARE: f64 = 0.5;
-/// Who has come no farther together, though the leader's pace was so many metres meanwhile, has stalled.
+/// Who has come no farther together, though the leader's pace was so many meters meanwhile, has stalled.
 const STALL_M: f64 = 4.0;
-/// A vehicle waits while another one within so many metres drives around it.
+/// A vehicle waits while another one within so many meters drives around it.
 const PASSING_M: f64 = 0.6;
-/// Coming farther means so many metres less to go for all together.
+/// Coming farther means so many meters less to go for all together.
 const STALL_WAY_M: f64 = 0.5;
 
-/// The share of the leader's pace at which a follower keeps up that is so many metres behind its place; none, and it
+/// The share of the leader's pace at which a follower keeps up that is so many meters behind its place; none, and it
 /// waits for the leader, where it is far ahead of it.
 fn follower_share(lag_m: f64) -> f64 {
     (1.0 + 0.5 * lag_m).max(0.0)
@@ -165,7 +165,7 @@ impl Convoy {
         self.members.iter().all(|member| member.has_arrived)
     }
 
-    /// Metres that the leader still has to go.
+    /// Meters that the leader still has to go.
     pub fn remaining_m(&self) -> f64 {
         self.members.first().map_or(0.0, Member::remaining_m)
     }
@@ -351,7 +351,7 @@ impl Convoy {
         })
     }
 
-    /// The vehicles of the convoy that one goes around, as place and radius in metres.
+    /// The vehicles of the convoy that one goes around, as place and radius in meters.
     fn to_pass(&self, vehicle: usize) -> Vec<(Point2<f64>, f64)> {
         let others = self.members.iter().enumerate().filter(|(other, _)| *other != vehicle);
         let passed = others.filter(|(other, _)| !self.waits_behind(vehicle, *other));
@@ -384,7 +384,7 @@ impl Convoy {
         })
     }
 
-    /// Whether the next step brings a vehicle nearer to a place, and nearer than a reach in metres.
+    /// Whether the next step brings a vehicle nearer to a place, and nearer than a reach in meters.
     fn drives_to(&self, vehicle: usize, place: Point2<f64>, reach_m: f64) -> bool {
         let state = self.members[vehicle].driver.state();
         let step_m = self.stopping_m(vehicle).max(CROSSING_M);
@@ -393,14 +393,14 @@ impl Convoy {
         then_m < reach_m && then_m < distance(&state.position_m, &place)
     }
 
-    /// How far a vehicle drives before it stands, in metres.
+    /// How far a vehicle drives before it stands, in meters.
     fn stopping_m(&self, vehicle: usize) -> f64 {
         let own = &self.members[vehicle].driver;
         let speed_mps = own.state().speed_mps;
         speed_mps * speed_mps / (2.0 * own.settings().limits.acceleration_mps2) + speed_mps * self.step_s
     }
 
-    /// Whether a place is in front of a vehicle, and nearer than it can stop and a reach in metres.
+    /// Whether a place is in front of a vehicle, and nearer than it can stop and a reach in meters.
     fn is_ahead(&self, vehicle: usize, place: Point2<f64>, reach_m: f64) -> bool {
         let state = self.members[vehicle].driver.state();
         let stopping_m = self.stopping_m(vehicle);

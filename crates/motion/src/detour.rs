@@ -12,11 +12,11 @@ use crate::range_sensor::RangeScan;
 use crate::sonar::{Echo, Echoes, SonarArray};
 use crate::way_around::way_around;
 
-/// Seen points farther away than this are forgotten, in metres.
+/// Seen points farther away than this are forgotten, in meters.
 const MEMORY_RADIUS_M: f64 = 6.0;
-/// Points that share a square of this side, in metres, are kept as their mean, which evens out the sensor's noise.
+/// Points that share a square of this side, in meters, are kept as their mean, which evens out the sensor's noise.
 const SQUARE_M: f64 = 0.05;
-/// Side of a cell of the grid on which detours are looked for, in metres.
+/// Side of a cell of the grid on which detours are looked for, in meters.
 const CELL_M: f64 = 0.1;
 
 /// Points that were seen in one square.
@@ -62,7 +62,7 @@ impl SeenPoints {
         self.echoes.add(array, echoes, scan, MEMORY_RADIUS_M);
     }
 
-    /// Replaces the vehicles to go around, given as place and radius in metres.
+    /// Replaces the vehicles to go around, given as place and radius in meters.
     pub(crate) fn set_vehicles(&mut self, vehicles: &[(Point2<f64>, f64)]) {
         const CORNERS: u32 = 16;
         let corner = |corner: u32| std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS);
@@ -93,7 +93,7 @@ impl SeenPoints {
             })
     }
 
-    /// The free places around a vehicle whose centre keeps `reach` metres from everything, with seen points and what is
+    /// The free places around a vehicle whose center keeps `reach` meters from everything, with seen points and what is
     /// occupied on the map in the way.
     pub(crate) fn surroundings(
         &self,
@@ -180,7 +180,7 @@ fn nearest_free(surroundings: &ConfigurationSpace, here: Point2<f64>) -> Option<
     )
 }
 
-/// The nearest place on a stretch of a path: how far along the path, and how far away, in metres.
+/// The nearest place on a stretch of a path: how far along the path, and how far away, in meters.
 pub(crate) fn nearest_along(path: &Path, place: Point2<f64>, from_m: f64, stretch_m: f64) -> (f64, f64) {
     const STEP_M: f64 = 0.1;
     let length = path.length_m();

@@ -1,6 +1,6 @@
 //! A vehicle in simulation: it follows its path and avoids what it meets (SPEC 7.4).
 //!
-//! Every tenth of a second, or every tenth of a metre when its pace is slow, it sweeps its range sensor and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
+//! Every tenth of a second, or every tenth of a meter when its pace is slow, it sweeps its range sensor and aims at a point ahead on the path (pure pursuit, Coulter 1992), or, when
 //! something stands between, along a detour around what it has seen (`detour`). It picks the speed and turning rate that
 //! serve this best among those it can reach and from which it can still stop in front of everything it has seen (dynamic
 //! window, Fox, Burgard and Thrun 1997).
@@ -21,21 +21,21 @@ use crate::trajectory::{DriveLimits, MotionState, Trajectory, heading_difference
 pub struct DriverSettings {
     /// What the vehicle can do.
     pub limits: DriveLimits,
-    /// The speed it aims at, in metres per second.
+    /// The speed it aims at, in meters per second.
     pub cruise_mps: f64,
-    /// The disc that must not touch anything, in metres: the circumradius.
+    /// The disc that must not touch anything, in meters: the circumradius.
     pub radius_m: f64,
-    /// What it keeps free around that disc for errors of its range sensor, in metres.
+    /// What it keeps free around that disc for errors of its range sensor, in meters.
     pub margin_m: f64,
-    /// How far ahead on the path it aims, in metres.
+    /// How far ahead on the path it aims, in meters.
     pub lookahead_m: f64,
-    /// How far it may stray from the path before it reports, in metres.
+    /// How far it may stray from the path before it reports, in meters.
     pub corridor_m: f64,
     /// How long it may make no way at least before it reports, in seconds.
     pub blocked_timeout_s: f64,
-    /// How far it must have been told to drive meanwhile, in metres: a vehicle with a slow pace has more patience.
+    /// How far it must have been told to drive meanwhile, in meters: a vehicle with a slow pace has more patience.
     pub blocked_way_m: f64,
-    /// Within this distance of the path's end it has arrived, in metres.
+    /// Within this distance of the path's end it has arrived, in meters.
     pub arrival_m: f64,
     /// The time between two decisions, in seconds.
     pub step_s: f64,
@@ -63,7 +63,7 @@ impl DriverSettings {
         }
     }
 
-    /// The same for a vehicle that drives at most this fast: a slow one decides less often, at every tenth of a metre.
+    /// The same for a vehicle that drives at most this fast: a slow one decides less often, at every tenth of a meter.
     pub fn at_most(self, speed_mps: f64) -> Self {
         Self { cruise_mps: speed_mps.min(self.limits.speed_mps), step_s: step_s(speed_mps), ..self }
     }
@@ -82,7 +82,7 @@ pub enum DriveEvent {
     },
     /// It had to go too far from its path. Replan from here.
     OffCorridor {
-        /// Metres from the path.
+        /// Meters from the path.
         deviation_m: f64,
     },
 }
@@ -99,7 +99,7 @@ pub struct Driver {
     progress_m: f64,
     /// When it last made way, and how far it was.
     last_way: (f64, f64),
-    /// How far it has been told to drive since, in metres.
+    /// How far it has been told to drive since, in meters.
     commanded_m: f64,
     seen: SeenPoints,
     /// The way around what stands in front, while something does.
@@ -112,21 +112,21 @@ pub struct Driver {
 }
 
 const STEP_S: f64 = Trajectory::STEP_S;
-/// How far along a detour it looks for a place to aim at, in metres, farthest first.
+/// How far along a detour it looks for a place to aim at, in meters, farthest first.
 const DETOUR_SIGHTS_M: [f64; 6] = [1.1, 0.9, 0.7, 0.5, 0.4, 0.3];
 /// Steps for which no detour is looked for after none was found.
 const DETOUR_PAUSE_STEPS: f64 = 8.0;
-/// The way of a creeping vehicle between two decisions, in metres.
+/// The way of a creeping vehicle between two decisions, in meters.
 const STEP_M: f64 = 0.08;
 /// The longest time between two decisions, in seconds.
 const MAX_STEP_S: f64 = 20.0;
-/// What a driver drives more and less than its path, as a share of it and in metres.
+/// What a driver drives more and less than its path, as a share of it and in meters.
 const MORE_SHARE: f64 = 0.04;
 const MORE_M: f64 = 1.5;
 const MORE_FOR_FOLLOWER_M: f64 = 2.0;
 const DETOUR_M: f64 = 10.0;
 const DETOUR_FOR_FOLLOWER_M: f64 = 5.0;
-/// What it needs more time than its path, as a share of it, in seconds, and in metres that it could have driven meanwhile.
+/// What it needs more time than its path, as a share of it, in seconds, and in meters that it could have driven meanwhile.
 const LONGER_SHARE: f64 = 0.06;
 const LONGER_S: f64 = 15.0;
 const LONGER_FOR_FOLLOWER_M: f64 = 10.0;
@@ -139,7 +139,7 @@ const CLOSE_SHARE: f64 = 0.25;
 /// The greatest turn between two decisions, in radians.
 const STEP_TURN_RAD: f64 = 0.2;
 
-/// How far the leader of some followers drives at most along a path of some metres where nothing disturbs it and the map shows
+/// How far the leader of some followers drives at most along a path of some meters where nothing disturbs it and the map shows
 /// everything that stands in its way: where it turns back, it goes around its followers. Measured: see
 /// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
 pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
@@ -150,7 +150,7 @@ pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
     }
 }
 
-/// How much more than that it drives at most to go around rocks that the map does not show, in metres. Measured in the same way,
+/// How much more than that it drives at most to go around rocks that the map does not show, in meters. Measured in the same way,
 /// on maps with rocks of all sizes.
 pub fn detours_at_most_m(followers: usize) -> f64 {
     DETOUR_M + DETOUR_FOR_FOLLOWER_M * followers as f64
@@ -211,12 +211,12 @@ impl Driver {
         self.time_s
     }
 
-    /// Metres along the path that it has come.
+    /// Meters along the path that it has come.
     pub const fn progress_m(&self) -> f64 {
         self.progress_m
     }
 
-    /// The length of the path in metres.
+    /// The length of the path in meters.
     pub const fn length_m(&self) -> f64 {
         self.length_m
     }
@@ -231,17 +231,17 @@ impl Driver {
         &self.settings
     }
 
-    /// What it has seen around it and still remembers, in metres.
+    /// What it has seen around it and still remembers, in meters.
     pub fn seen_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.seen.points_m()
     }
 
-    /// What its sonars have heard that its range finder cannot see, in metres.
+    /// What its sonars have heard that its range finder cannot see, in meters.
     pub fn heard_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.seen.heard_m()
     }
 
-    /// Where it means to drive next, in metres: along a detour while something stands in the way, otherwise along its
+    /// Where it means to drive next, in meters: along a detour while something stands in the way, otherwise along its
     /// path, for at most `length_m`.
     pub fn plan_m(&self, length_m: f64) -> Vec<Point2<f64>> {
         let (path, from_m) = match &self.detour {
@@ -267,7 +267,7 @@ impl Driver {
         points
     }
 
-    /// Changes the speed that it aims at, in metres per second. Standing on command is not being blocked.
+    /// Changes the speed that it aims at, in meters per second. Standing on command is not being blocked.
     pub const fn set_cruise(&mut self, speed_mps: f64) {
         self.settings.cruise_mps = speed_mps;
         if speed_mps <= 0.0 {
@@ -281,7 +281,7 @@ impl Driver {
         self.settings.step_s = step_s;
     }
 
-    /// Tells it of vehicles that it goes around, as place and radius in metres; those told before are forgotten.
+    /// Tells it of vehicles that it goes around, as place and radius in meters; those told before are forgotten.
     pub fn set_vehicles(&mut self, vehicles: &[(Point2<f64>, f64)]) {
         self.seen.set_vehicles(vehicles);
     }
@@ -438,7 +438,7 @@ impl Driver {
         1.5 * (1.0 - error) + approach + 0.1 * room_m
     }
 
-    /// The length of the way along an arc, in metres, before the vehicle would touch something, up to `most`.
+    /// The length of the way along an arc, in meters, before the vehicle would touch something, up to `most`.
     fn free_way(
         &self,
         speed: f64,

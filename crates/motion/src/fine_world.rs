@@ -7,7 +7,7 @@ use parry2d_f64::query::{PointQuery as _, Ray, RayCast as _};
 use parry2d_f64::shape::{Ball, Segment};
 use terrain::{Obstacle, Terrain};
 
-/// The things that vehicles can touch and range sensors see: discs and straight faces, in metres.
+/// The things that vehicles can touch and range sensors see: discs and straight faces, in meters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FineWorld {
     discs: Vec<Disc>,
@@ -24,7 +24,7 @@ struct Disc {
 }
 
 impl FineWorld {
-    /// The rocks of a map from a diameter in metres on, also those too small for the map, and declared obstacles.
+    /// The rocks of a map from a diameter in meters on, also those too small for the map, and declared obstacles.
     pub fn new(terrain: &Terrain, obstacles: &[Obstacle], min_rock_m: f64) -> Self {
         let mut world = Self::default();
         for rock in terrain.rocks().iter().filter(|rock| rock.diameter_m >= min_rock_m) {
@@ -70,7 +70,7 @@ impl FineWorld {
         !self.low.is_empty()
     }
 
-    /// Metres from a point to the nearest surface, 0 inside a disc; infinite in an empty world.
+    /// Meters from a point to the nearest surface, 0 inside a disc; infinite in an empty world.
     pub fn distance_m(&self, point_m: Point2<f64>) -> f64 {
         let discs = self.discs.iter().chain(&self.low).map(|disc| disc.distance_m(point_m));
         let faces = self.faces.iter().map(|face| face.distance_to_local_point(&point_m, true));

@@ -9,12 +9,12 @@ use crate::path::{Path, between};
 /// is narrow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Formation {
-    /// Metres between the centres of two vehicles, at least: more than the sum of their circumradii.
+    /// Meters between the centers of two vehicles, at least: more than the sum of their circumradii.
     pub spacing_m: f64,
 }
 
 impl Formation {
-    /// Where the leader and `followers` vehicles behind it are when the leader has come `travelled_m` along its path.
+    /// Where the leader and `followers` vehicles behind it are when the leader has come `traveled_m` along its path.
     ///
     /// Follower `k` (from 1) is `k` spacings behind along the path and half a spacing, or as much of it as is free, to
     /// the left when `k` is odd and to the right when it is even. One that would come nearer than the spacing to a
@@ -24,19 +24,19 @@ impl Formation {
         self,
         space: &ConfigurationSpace,
         path: &Path,
-        travelled_m: f64,
+        traveled_m: f64,
         followers: u32,
     ) -> Vec<Point2<f64>> {
-        let Some((leader, _)) = path.point_at(travelled_m) else { return Vec::new() };
+        let Some((leader, _)) = path.point_at(traveled_m) else { return Vec::new() };
         let mut positions = vec![leader];
-        let travelled = travelled_m.min(path.length_m());
+        let traveled = traveled_m.min(path.length_m());
         for follower in 1..=followers {
             let side = if follower % 2 == 1 { 0.5 } else { -0.5 };
             let step = 0.125 * self.spacing_m;
             // A turn may bring the leader back past its followers: hanging back further than this does not help.
             let mut hanging = 0;
             let place = loop {
-                let along = travelled - f64::from(follower) * self.spacing_m - f64::from(hanging) * step;
+                let along = traveled - f64::from(follower) * self.spacing_m - f64::from(hanging) * step;
                 let place = self.place_beside(space, path, along, side);
                 if self.keeps_apart(place, &positions) || hanging == 64 {
                     break place;
@@ -116,16 +116,16 @@ mod tests {
     fn assert_apart_and_free(space: &ConfigurationSpace, path: &Path, followers: u32, formation: Formation) {
         let length = path.length_m();
         for step in 0..=400 {
-            let travelled = length * f64::from(step) / 400.0;
-            let places = formation.positions_m(space, path, travelled, followers);
+            let traveled = length * f64::from(step) / 400.0;
+            let places = formation.positions_m(space, path, traveled, followers);
             assert_eq!(places.len() as u32, followers + 1);
             for (index, &place) in places.iter().enumerate() {
-                assert!(space.is_free(place), "vehicle {index} at {place:?} after {travelled} m");
+                assert!(space.is_free(place), "vehicle {index} at {place:?} after {traveled} m");
                 for &other in &places[..index] {
                     let apart = distance(&place, &other);
                     assert!(
                         apart >= formation.spacing_m * (1.0 - 1e-6),
-                        "{apart} m apart after {travelled} m"
+                        "{apart} m apart after {traveled} m"
                     );
                 }
             }

@@ -26,7 +26,7 @@ pub(crate) struct Kinodynamic {
 const SPEEDS: [f64; 3] = [1.0, 0.5, 0.0];
 /// Target turning rates as shares of the greatest.
 const TURN_RATES: [f64; 5] = [0.0, -0.5, 0.5, -1.0, 1.0];
-/// How far, in metres, a radian of heading counts.
+/// How far, in meters, a radian of heading counts.
 const HEADING_WEIGHT_M: f64 = 1.5;
 
 impl Kinodynamic {

@@ -28,7 +28,7 @@ const TRIES: u32 = 2;
 /// ```
 /// use terrain::{CellState, ConfigurationSpace, GridFrame, Obstacle, Occupancy};
 ///
-/// // 40 × 40 metres with a round obstacle in the middle, for a vehicle of half a metre.
+/// // 40 × 40 meters with a round obstacle in the middle, for a vehicle of half a meter.
 /// let mut ground = Occupancy::free(GridFrame::new(40, 40, 1.0));
 /// ground.mark(&Obstacle::Circle { center_m: [20.0, 20.0].into(), radius_m: 8.0 }, CellState::Obstacle);
 /// let space = ConfigurationSpace::new(ground, 0.5);

@@ -1,4 +1,4 @@
-//! Nearest neighbours among points that are added one by one: a k-d tree whose leaves are small buckets.
+//! Nearest neighbors among points that are added one by one: a k-d tree whose leaves are small buckets.
 //!
 //! A full bucket is split at the median of its longer side, so adding costs the depth of the tree, and points that
 //! come in any order but a hostile one keep the depth logarithmic. All answers are exact; of points at the same

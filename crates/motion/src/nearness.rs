@@ -11,9 +11,9 @@ pub struct NearPieces {
     pub segments: [usize; 2],
     /// Where along its segment each piece starts and ends, from 0 to 1.
     pub shares: [[f64; 2]; 2],
-    /// The places of both that are nearest to each other, in metres.
+    /// The places of both that are nearest to each other, in meters.
     pub places_m: [Point2<f64>; 2],
-    /// How far apart these are, in metres.
+    /// How far apart these are, in meters.
     pub distance_m: f64,
 }
 

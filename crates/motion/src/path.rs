@@ -4,7 +4,7 @@ use nalgebra::{Point2, distance};
 use serde::{Deserialize, Serialize};
 use terrain::ConfigurationSpace;
 
-/// A polyline in metres east and north, from its first point to its last.
+/// A polyline in meters east and north, from its first point to its last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Path {
     /// The corners, with both ends.
@@ -22,12 +22,12 @@ impl Path {
         self.points_m.windows(2).map(|pair| (pair[0], pair[1]))
     }
 
-    /// The length in the plane in metres.
+    /// The length in the plane in meters.
     pub fn length_m(&self) -> f64 {
         length_m(&self.points_m)
     }
 
-    /// The least clearance along the path in metres ([`ConfigurationSpace::segment_clearance_m`]); `None` when the path
+    /// The least clearance along the path in meters ([`ConfigurationSpace::segment_clearance_m`]); `None` when the path
     /// is empty or leaves the map.
     pub fn clearance_m(&self, space: &ConfigurationSpace) -> Option<f64> {
         let mut least = space.clearance_m(*self.points_m.first()?)?;
@@ -43,7 +43,7 @@ impl Path {
             && self.segments().all(|(a, b)| space.is_segment_free(a, b))
     }
 
-    /// The point at a distance from the start along the path, in metres, and the segment it lies on; the ends beyond
+    /// The point at a distance from the start along the path, in meters, and the segment it lies on; the ends beyond
     /// them. `None` on an empty path.
     pub fn point_at(&self, distance_m: f64) -> Option<(Point2<f64>, usize)> {
         let mut rest = distance_m.max(0.0);
@@ -58,7 +58,7 @@ impl Path {
     }
 }
 
-/// The length of a polyline in metres.
+/// The length of a polyline in meters.
 pub fn length_m(points_m: &[Point2<f64>]) -> f64 {
     points_m.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
 }

@@ -25,7 +25,7 @@ impl PlannerKind {
     pub const ALL: [Self; 4] = [Self::Rrt, Self::RrtConnect, Self::RrtStar, Self::Kinodynamic];
 }
 
-/// Where from and where to, in metres.
+/// Where from and where to, in meters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Query {
     /// Where the path starts, exactly.
@@ -38,7 +38,7 @@ pub struct Query {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     pub planner: PlannerKind,
-    /// The longest edge in metres (ε).
+    /// The longest edge in meters (ε).
     pub step_m: f64,
     /// The probability with which the goal is the sample (p).
     pub goal_bias: f64,
@@ -66,10 +66,10 @@ impl Settings {
         }
     }
 
-    /// The length of edges that suits a map: a 25th of its longer side, in metres.
+    /// The length of edges that suits a map: a 25th of its longer side, in meters.
     ///
     /// RRT* only compares paths through vertices within one edge of each other. With edges far below the radius that makes
-    /// it asymptotically optimal (Karaman and Frazzoli 2011), a tree has too few such neighbours to shorten anything.
+    /// it asymptotically optimal (Karaman and Frazzoli 2011), a tree has too few such neighbors to shorten anything.
     pub fn step_across_m(frame: &GridFrame) -> f64 {
         f64::from(frame.width.max(frame.height)) * frame.cell_size_m / 25.0
     }
@@ -163,7 +163,7 @@ pub enum Growth {
     Found {
         /// The new vertex.
         vertex: u32,
-        /// The length of the path in metres.
+        /// The length of the path in meters.
         length_m: f64,
     },
 }

@@ -10,13 +10,13 @@ use crate::fine_world::FineWorld;
 /// What a range sensor can do.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RangeSensor {
-    /// The angle that it sweeps, centred ahead, in radians.
+    /// The angle that it sweeps, centered ahead, in radians.
     pub field_of_view_rad: f64,
     /// The angle between two rays in radians.
     pub resolution_rad: f64,
-    /// How far it sees in metres.
+    /// How far it sees in meters.
     pub range_m: f64,
-    /// Standard deviation of a measured range in metres.
+    /// Standard deviation of a measured range in meters.
     pub noise_m: f64,
 }
 
@@ -33,18 +33,18 @@ impl RangeSensor {
 /// What a range sensor measures in one sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RangeScan {
-    /// Where it was taken, in metres.
+    /// Where it was taken, in meters.
     pub origin_m: Point2<f64>,
     /// The direction of the first ray, the rightmost, in radians.
     pub first_ray_rad: f64,
     /// The angle between two rays in radians.
     pub resolution_rad: f64,
-    /// The measured range of each ray in metres; `None` when it met nothing.
+    /// The measured range of each ray in meters; `None` when it met nothing.
     pub ranges_m: Vec<Option<f64>>,
 }
 
 impl RangeScan {
-    /// The measured points in metres.
+    /// The measured points in meters.
     pub fn points_m(&self) -> impl Iterator<Item = Point2<f64>> + '_ {
         self.ranges_m.iter().enumerate().filter_map(|(ray, range)| {
             let range = (*range)?;

@@ -7,18 +7,18 @@ use crate::query::{Context, Event, Growth, Query};
 use crate::tree::{Root, Tree};
 use nalgebra::{Point2, Vector2, distance};
 
-/// One tree from the start whose vertices keep the shortest way back that their neighbours offer.
+/// One tree from the start whose vertices keep the shortest way back that their neighbors offer.
 #[derive(Clone, Debug)]
 pub(crate) struct RrtStar {
     tree: Tree,
     points: PointTree,
-    /// Length of the way from the start to each vertex, in metres.
+    /// Length of the way from the start to each vertex, in meters.
     costs_m: Vec<f64>,
     children: Vec<Vec<u32>>,
     /// Vertices at the goal, one for each edge to it.
     goals: Vec<u32>,
     best: Option<Best>,
-    /// Kept between steps for its storage: neighbours with their distances.
+    /// Kept between steps for its storage: neighbors with their distances.
     near: Vec<(u32, f64)>,
 }
 
@@ -97,7 +97,7 @@ impl RrtStar {
         });
     }
 
-    /// Adds a vertex under the neighbour that offers the shortest free way; `nearest` is known to be free.
+    /// Adds a vertex under the neighbor that offers the shortest free way; `nearest` is known to be free.
     fn add(&mut self, point: Point2<f64>, nearest: u32, length: f64, context: &mut Context) -> u32 {
         let mut parent = (nearest, self.costs_m[nearest as usize] + length);
         let costs = &self.costs_m;
@@ -126,7 +126,7 @@ impl RrtStar {
         vertex
     }
 
-    /// Moves neighbours under the new vertex where that shortens their way.
+    /// Moves neighbors under the new vertex where that shortens their way.
     fn rewire(&mut self, vertex: u32, context: &mut Context) {
         let point = self.tree.point(vertex);
         let cost = self.costs_m[vertex as usize];

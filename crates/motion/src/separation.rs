@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct TimedPoint {
     /// Seconds.
     pub time_s: f64,
-    /// Metres east and north.
+    /// Meters east and north.
     pub position_m: Point2<f64>,
 }
 
@@ -25,9 +25,9 @@ pub struct TimedPoint {
 pub struct Separation {
     /// When, in seconds.
     pub time_s: f64,
-    /// Where both are then, in metres.
+    /// Where both are then, in meters.
     pub positions_m: [Point2<f64>; 2],
-    /// How far apart, in metres.
+    /// How far apart, in meters.
     pub distance_m: f64,
 }
 

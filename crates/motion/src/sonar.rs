@@ -21,9 +21,9 @@ pub struct SonarArray {
     pub count: u32,
     /// The angle of each cone in radians.
     pub beam_width_rad: f64,
-    /// How far they hear in metres.
+    /// How far they hear in meters.
     pub range_m: f64,
-    /// Standard deviation of a measured range in metres.
+    /// Standard deviation of a measured range in meters.
     pub noise_m: f64,
 }
 
@@ -64,11 +64,11 @@ impl SonarArray {
 
 /// Rays that a cone is looked through by, but one.
 const RAYS: u32 = 12;
-/// The range finder explains an echo by what is at most this much farther, in metres.
+/// The range finder explains an echo by what is at most this much farther, in meters.
 const EXPLAINED_M: f64 = 0.3;
-/// An echo takes away what was heard nearer than its range, but for this much, in metres.
+/// An echo takes away what was heard nearer than its range, but for this much, in meters.
 const CARVED_M: f64 = 0.15;
-/// The places of an arc are so far apart, in metres.
+/// The places of an arc are so far apart, in meters.
 const ARC_STEP_M: f64 = 0.1;
 
 /// What one sonar hears.
@@ -76,7 +76,7 @@ const ARC_STEP_M: f64 = 0.1;
 pub struct Echo {
     /// Where its cone looks, in radians counter-clockwise from east.
     pub bearing_rad: f64,
-    /// How far the nearest thing in it is, in metres; `None` where it hears nothing.
+    /// How far the nearest thing in it is, in meters; `None` where it hears nothing.
     pub range_m: Option<f64>,
 }
 

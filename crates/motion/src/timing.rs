@@ -8,7 +8,7 @@ use crate::path::Path;
 use crate::trajectory::{DriveLimits, heading_difference};
 use crate::vehicle::{Drive, VehicleModel};
 
-/// The least and the greatest speed of a traverse in metres per second.
+/// The least and the greatest speed of a traverse in meters per second.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedLimits {
     /// 0 when the vehicle may stop: a segment then has no greatest duration.
@@ -20,13 +20,13 @@ pub struct SpeedLimits {
 /// What one segment of a path takes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SegmentTiming {
-    /// Length in the plane in metres.
+    /// Length in the plane in meters.
     pub plan_length_m: f64,
-    /// Length over the ground in metres, or through the air for a vehicle that flies.
+    /// Length over the ground in meters, or through the air for a vehicle that flies.
     pub ground_length_m: f64,
-    /// Metres up for each metre forward from the segment's start to its end.
+    /// Meters up for each meter forward from the segment's start to its end.
     pub grade: f64,
-    /// The mean speed in metres per second at which the vehicle is there soonest, where slopes or its own limits keep it
+    /// The mean speed in meters per second at which the vehicle is there soonest, where slopes or its own limits keep it
     /// below the greatest speed; none where they do not.
     pub slope_speed_mps: Option<f64>,
     /// Least duration in milliseconds, rounded up.

@@ -12,7 +12,7 @@ use crate::search::Search;
 /// All steps of a search. The same arguments give the same trace.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GrowthTrace {
-    /// The root of each tree in metres: the start, and for a planner with two trees the goal.
+    /// The root of each tree in meters: the start, and for a planner with two trees the goal.
     pub roots_m: Vec<Point2<f64>>,
     /// What each sample did, in order.
     pub steps: Vec<GrowthStep>,
@@ -21,11 +21,11 @@ pub struct GrowthTrace {
 /// What one sample did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GrowthStep {
-    /// The sample in metres.
+    /// The sample in meters.
     pub sample_m: Point2<f64>,
     /// The tree that was grown toward it, an index into [`GrowthTrace::roots_m`].
     pub tree: u32,
-    /// Where the vertex of that tree is that was nearest to the sample, in metres.
+    /// Where the vertex of that tree is that was nearest to the sample, in meters.
     pub nearest_m: Point2<f64>,
     /// The vertices that were added, in order; none where an obstacle was in the way.
     pub added: Vec<GrownVertex>,
@@ -33,7 +33,7 @@ pub struct GrowthStep {
     pub rewired: Vec<[u32; 3]>,
     /// How many straight pieces of ground were checked for obstacles ([`Statistics::collision_checks`]).
     pub checks: u32,
-    /// The first path, or a shorter one, that this sample led to, in metres.
+    /// The first path, or a shorter one, that this sample led to, in meters.
     pub path_m: Option<Vec<Point2<f64>>>,
 }
 
@@ -44,16 +44,16 @@ pub struct GrownVertex {
     pub tree: u32,
     /// Its parent's number in the same tree.
     pub parent: u32,
-    /// Where its parent is, in metres.
+    /// Where its parent is, in meters.
     pub from_m: Point2<f64>,
-    /// Where it is, in metres.
+    /// Where it is, in meters.
     pub point_m: Point2<f64>,
     /// The points on the way from its parent, without it, to the vertex; empty if the way is straight.
     pub curve_m: Vec<Point2<f64>>,
 }
 
 impl GrowthStep {
-    /// Where the tree grew to from its nearest vertex, if nothing was in the way: one step towards the sample, in metres.
+    /// Where the tree grew to from its nearest vertex, if nothing was in the way: one step toward the sample, in meters.
     pub fn steered_m(&self) -> Option<Point2<f64>> {
         self.added.iter().find(|grown| grown.tree == self.tree).map(|grown| grown.point_m)
     }

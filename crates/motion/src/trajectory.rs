@@ -9,15 +9,15 @@ use crate::vehicle::{Drive, VehicleModel};
 /// What a skid-steer vehicle can do (SPEC 7.2): a unicycle with limits on speeds, accelerations and wheels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DriveLimits {
-    /// Greatest speed of the vehicle and of its wheels over the ground, in metres per second.
+    /// Greatest speed of the vehicle and of its wheels over the ground, in meters per second.
     pub speed_mps: f64,
     /// Greatest turning rate in radians per second.
     pub turn_rate_rps: f64,
-    /// Greatest acceleration and deceleration in metres per second squared.
+    /// Greatest acceleration and deceleration in meters per second squared.
     pub acceleration_mps2: f64,
     /// Greatest change of the turning rate in radians per second squared.
     pub turn_acceleration_rps2: f64,
-    /// Half the effective track in metres: the wheels run at v ± ω times this.
+    /// Half the effective track in meters: the wheels run at v ± ω times this.
     pub half_track_m: f64,
 }
 
@@ -72,11 +72,11 @@ impl DriveLimits {
 /// Where a vehicle is and how it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionState {
-    /// Metres east and north.
+    /// Meters east and north.
     pub position_m: Point2<f64>,
     /// Radians counter-clockwise from east.
     pub heading_rad: f64,
-    /// Metres per second forward; negative in reverse.
+    /// Meters per second forward; negative in reverse.
     pub speed_mps: f64,
     /// Radians per second counter-clockwise.
     pub turn_rate_rps: f64,

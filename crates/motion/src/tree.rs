@@ -15,7 +15,7 @@ pub enum Root {
 /// A point of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vertex {
-    /// Metres east and north.
+    /// Meters east and north.
     pub point_m: Point2<f64>,
     /// The vertex that it was grown from; only the first vertex, the root, has none.
     pub parent: Option<u32>,

@@ -8,25 +8,25 @@ use terrain::{ConfigurationSpace, Obstacle, Occupancy, Terrain, Traversability};
 pub struct VehicleModel {
     /// The name in a `vehicle` declaration; of a model that a mission declares, that of the one which it is made from.
     pub name: &'static str,
-    /// From front to back in metres.
+    /// From front to back in meters.
     pub length_m: f64,
-    /// From side to side in metres.
+    /// From side to side in meters.
     pub width_m: f64,
-    /// From the ground to the top, or for a blimp of its hull, in metres.
+    /// From the ground to the top, or for a blimp of its hull, in meters.
     pub height_m: f64,
-    /// Height of the antenna over the ground in metres, or for a blimp over its hull (SPEC 10.5).
+    /// Height of the antenna over the ground in meters, or for a blimp over its hull (SPEC 10.5).
     pub mast_m: f64,
-    /// Radius in metres of the least disc around the vehicle's centre that holds it in every heading.
+    /// Radius in meters of the least disc around the vehicle's center that holds it in every heading.
     pub circumradius_m: f64,
-    /// What is kept free around that disc, in metres.
+    /// What is kept free around that disc, in meters.
     pub margin_m: f64,
-    /// Least speed in metres per second; at 0 the vehicle may stop on its way.
+    /// Least speed in meters per second; at 0 the vehicle may stop on its way.
     pub least_speed_mps: f64,
-    /// Greatest speed in metres per second.
+    /// Greatest speed in meters per second.
     pub speed_mps: f64,
     /// Greatest turning rate in radians per second.
     pub turn_rate_rps: f64,
-    /// Greatest acceleration and deceleration in metres per second squared.
+    /// Greatest acceleration and deceleration in meters per second squared.
     pub acceleration_mps2: f64,
     /// Greatest change of the turning rate in radians per second squared.
     pub turn_acceleration_rps2: f64,
@@ -38,24 +38,24 @@ pub struct VehicleModel {
 pub enum Drive {
     /// Wheels that turn the vehicle by running at different speeds.
     SkidSteer {
-        /// Between the left and right wheels in metres.
+        /// Between the left and right wheels in meters.
         track_m: f64,
         /// Effective track over geometric track: wheels slip sideways in a turn (SPEC 7.2).
         slip: f64,
-        /// Wheel radius in metres.
+        /// Wheel radius in meters.
         wheel_radius_m: f64,
-        /// Greatest climb, in metres up for each metre forward.
+        /// Greatest climb, in meters up for each meter forward.
         max_grade: f64,
-        /// Least diameter of a rock that it can't pass over, in metres.
+        /// Least diameter of a rock that it can't pass over, in meters.
         rock_diameter_m: f64,
     },
     /// Flight in a band of altitudes over the lowest ground of the map.
     Flight {
-        /// Least and greatest altitude over the map's lowest ground, in metres.
+        /// Least and greatest altitude over the map's lowest ground, in meters.
         altitude_band_m: [f64; 2],
-        /// Least height over the ground below, in metres.
+        /// Least height over the ground below, in meters.
         ground_clearance_m: f64,
-        /// Greatest speed up or down in metres per second.
+        /// Greatest speed up or down in meters per second.
         climb_mps: f64,
     },
 }
@@ -166,19 +166,19 @@ impl VehicleModel {
         self
     }
 
-    /// The same with another radius of the tightest turn at the greatest speed, in metres.
+    /// The same with another radius of the tightest turn at the greatest speed, in meters.
     #[must_use]
     pub const fn with_turning_radius(mut self, radius_m: f64) -> Self {
         self.turn_rate_rps = self.speed_mps / radius_m;
         self
     }
 
-    /// The radius by which obstacles are grown: circumradius and margin, in metres.
+    /// The radius by which obstacles are grown: circumradius and margin, in meters.
     pub fn radius_m(&self) -> f64 {
         self.circumradius_m + self.margin_m
     }
 
-    /// How high the antenna is over the ground where that is `ground_m` high, in metres: a blimp cruises in the middle of
+    /// How high the antenna is over the ground where that is `ground_m` high, in meters: a blimp cruises in the middle of
     /// its band.
     pub fn antenna_m(&self, terrain: &Terrain, ground_m: f64) -> f64 {
         match self.drive {
@@ -210,7 +210,7 @@ impl VehicleModel {
         ConfigurationSpace::new(occupancy, self.radius_m())
     }
 
-    /// The greatest speed in metres per second on ground that rises `grade` metres for each metre along the way. It
+    /// The greatest speed in meters per second on ground that rises `grade` meters for each meter along the way. It
     /// falls to half at the greatest grade, and a descent is driven as slowly as the climb.
     pub fn speed_on_grade_mps(&self, grade: f64) -> f64 {
         match self.drive {

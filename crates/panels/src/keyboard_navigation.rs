@@ -1,4 +1,4 @@
-//! Keyboard navigation by the arrow keys: from what is selected to its neighbour in the panel that the user is in.
+//! Keyboard navigation by the arrow keys: from what is selected to its neighbor in the panel that the user is in.
 //!
 //! Lists go through their rows, the network along its arcs, the timeline through its activities, and the terrain through
 //! what stands on it. The search tree has keys of its own.
@@ -94,7 +94,7 @@ fn next_thing(
     let locations = world.locations.iter().map(|it| Selection::Location(it.name.text.clone()));
     let obstacles = world.obstacles.iter().map(|it| Selection::Obstacle(it.name.text.clone()));
     let all: Vec<Selection> = vehicles.chain(locations).chain(obstacles).collect();
-    neighbour(&all, selection, direction)
+    neighbor(&all, selection, direction)
 }
 
 /// The activity before or after the selected one, in the order in which they are scheduled to start.
@@ -117,10 +117,10 @@ fn next_activity(
     listed.sort_unstable();
     let all: Vec<Selection> = listed.into_iter().map(|(_, id)| Selection::Occurrence(id)).collect();
     let here = selection.occurrence(network).map_or(Selection::None, Selection::Occurrence);
-    neighbour(&all, &here, direction)
+    neighbor(&all, &here, direction)
 }
 
-fn neighbour(all: &[Selection], selection: &Selection, direction: Direction) -> Option<Selection> {
+fn neighbor(all: &[Selection], selection: &Selection, direction: Direction) -> Option<Selection> {
     let here = all.iter().position(|it| it == selection);
     let next = match (here, direction) {
         (None, _) => 0,

@@ -171,7 +171,7 @@ impl Planner {
         }
     }
 
-    /// The first step of a component towards any of `goal`, over steps whose conditions can be brought about.
+    /// The first step of a component toward any of `goal`, over steps whose conditions can be brought about.
     pub(crate) fn toward(
         &self,
         component: ComponentId,

@@ -88,7 +88,7 @@ enum Failure {
 }
 
 impl Planner {
-    /// The first command set towards `goals` from `state`: goals with nothing in common upstream are pursued at once.
+    /// The first command set toward `goals` from `state`: goals with nothing in common upstream are pursued at once.
     pub fn next_commands(&self, state: &State, goals: &[Goal]) -> NextCommands {
         let (goals, mut unreachable) = self.consistent(goals);
         let mut commands = self.model.idle();

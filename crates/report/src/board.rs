@@ -15,7 +15,7 @@ use crate::figure;
 use crate::html::readable_time;
 use crate::tables::{status, table, word};
 
-/// The word for how a plan stands, with its sign and in its colour.
+/// The word for how a plan stands, with its sign and in its color.
 pub(crate) fn status_word(status: PlanStatus) -> String {
     let look = match status {
         PlanStatus::Draft | PlanStatus::InReview => "information",
@@ -82,7 +82,7 @@ fn open_comments(standing: &Standing<'_>) -> String {
 }
 
 /// Who acknowledged a line and why, if somebody has.
-pub(crate) fn acknowledgement(acknowledged: &BTreeMap<&LineKey, &Entry>, key: &LineKey) -> String {
+pub(crate) fn acknowledgment(acknowledged: &BTreeMap<&LineKey, &Entry>, key: &LineKey) -> String {
     let Some(entry) = acknowledged.get(key) else { return String::new() };
     let until = match &entry.act {
         Act::Waive { until, .. } => format!(" (waived until {})", escaped(until)),

@@ -274,7 +274,7 @@ const fn kind_name(kind: OccurrenceKind) -> &'static str {
     }
 }
 
-/// The group of an occurrence, its colour and that of the text on it.
+/// The group of an occurrence, its color and that of the text on it.
 const fn open_mct_group(occurrence: &Occurrence) -> (&'static str, &'static str, &'static str) {
     match occurrence.kind {
         OccurrenceKind::Primitive => ("Activities", "#0068a8", "#ffffff"),

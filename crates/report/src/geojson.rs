@@ -14,10 +14,10 @@ const CIRCLE_CORNERS: u32 = 64;
 pub fn geojson(snapshot: &Snapshot, projection: &Projection) -> Value {
     let world = &snapshot.program.world;
     let position = |point: Point2<f64>| {
-        let [east, north] = projection.from_metres(point);
+        let [east, north] = projection.from_meters(point);
         match projection {
-            Projection::Metres => json!([east, north]),
-            // A nanodegree is a tenth of a millimetre.
+            Projection::Meters => json!([east, north]),
+            // A nanodegree is a tenth of a millimeter.
             Projection::Degrees { .. } => {
                 json!([nano((east + 180.0).rem_euclid(360.0) - 180.0), nano(north)])
             }

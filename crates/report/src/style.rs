@@ -1,6 +1,6 @@
 //! The report's look, on screen and on A4 and Letter paper.
 
-/// The style sheet. Sizes are relative or in points, so that both paper formats hold the same content; colours are
+/// The style sheet. Sizes are relative or in points, so that both paper formats hold the same content; colors are
 /// those of the light theme.
 ///
 /// Firefox and Safari put nothing into the margins of pages. There the hash stands at the foot of each page (`.foot`), and

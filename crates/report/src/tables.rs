@@ -60,7 +60,7 @@ pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
                 section.title().to_owned(),
                 escaped(&line.text),
                 criterion(line),
-                board::acknowledgement(acknowledged, &LineKey::new(section, line)),
+                board::acknowledgment(acknowledged, &LineKey::new(section, line)),
                 place(line),
             ]
         })
@@ -75,7 +75,7 @@ pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
     out
 }
 
-/// The word for a status, with its sign and in its colour.
+/// The word for a status, with its sign and in its color.
 pub(crate) fn status(status: Status) -> String {
     word(status.name(), status.name())
 }

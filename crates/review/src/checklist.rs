@@ -213,11 +213,11 @@ pub struct TraverseReview {
     pub vehicles: Vec<String>,
     /// The places it leads to, in order.
     pub places: Vec<String>,
-    /// Along the map, in metres.
+    /// Along the map, in meters.
     pub length_m: f64,
     /// How long it may take, in mission units.
     pub duration: TimeRange,
-    /// The least distance from the vehicle's rim to an obstacle, in metres; `None` without any obstacle.
+    /// The least distance from the vehicle's rim to an obstacle, in meters; `None` without any obstacle.
     pub clearance_m: Option<f64>,
     /// The steepest slope along the path, in radians.
     pub slope_max_rad: f64,

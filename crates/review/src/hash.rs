@@ -45,7 +45,7 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, goal: &Goal, seed: u64) 
 }
 
 /// The SHA-256 of the plan in hexadecimal: its choices, links, orders, windows and figures by name, and how long its
-/// ways are, to the millimetre. Empty without a plan. One content has another plan with another search, and may have one
+/// ways are, to the millimeter. Empty without a plan. One content has another plan with another search, and may have one
 /// in another version of this program.
 pub fn plan_hash(snapshot: &Snapshot) -> String {
     let Some((network, plan)) = snapshot.network.as_deref().zip(snapshot.plan()) else {

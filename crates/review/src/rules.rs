@@ -20,7 +20,7 @@ pub struct FlightRules {
     /// How long a condition outlasts what needs it, and how far apart is what must not overlap, in every schedule; in
     /// mission units. At 0 anything above 0 will do.
     pub margin: Option<Time>,
-    /// How far the rim of a vehicle stays from obstacles, in metres.
+    /// How far the rim of a vehicle stays from obstacles, in meters.
     pub clearance_m: Option<f64>,
     /// The steepest slope on a way, in degrees.
     pub slope_deg: Option<f64>,

@@ -153,7 +153,7 @@ pub enum Measure {
     Reward,
     /// The earliest time of the scenario's end.
     End,
-    /// Metres driven.
+    /// Meters driven.
     Length,
 }
 
@@ -375,7 +375,7 @@ pub enum Per {
     /// `per second`, `per minute`, `per hour`: of the activity's duration.
     Time(DurationUnit),
     /// `per metre`: of the planned path.
-    Metre,
+    Meter,
 }
 
 impl Per {
@@ -384,7 +384,7 @@ impl Per {
         ("second", Self::Time(DurationUnit::Second)),
         ("minute", Self::Time(DurationUnit::Minute)),
         ("hour", Self::Time(DurationUnit::Hour)),
-        ("metre", Self::Metre),
+        ("metre", Self::Meter),
     ];
 
     /// The unit that this word stands for.
@@ -408,7 +408,7 @@ impl PrimitiveDecl {
 pub struct Moves {
     /// The vehicles that move; the first leads.
     pub vehicles: Vec<Name>,
-    /// Least and greatest speed in metres per second; the vehicle's own when absent.
+    /// Least and greatest speed in meters per second; the vehicle's own when absent.
     pub speed_mps: Option<(Rational, Rational)>,
     /// Whether what the vehicles can do with their wheels bounds how long their ways take (SPEC 7.2).
     pub is_kinodynamic: bool,
@@ -809,7 +809,7 @@ impl TimeUnit {
     }
 }
 
-/// The world of a mission (SPEC 1.8): metres east and metres north of the map's origin.
+/// The world of a mission (SPEC 1.8): meters east and meters north of the map's origin.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct World {
     /// The terrain, if declared.
@@ -836,9 +836,9 @@ pub struct TerrainDecl {
     pub asset: SmolStr,
     /// Where the asset is named, with its quotes.
     pub asset_span: Span,
-    /// Metres per cell; without it those that the map's file says, or 0.6.
+    /// Meters per cell; without it those that the map's file says, or 0.6.
     pub cell_m: Option<f64>,
-    /// Mission coordinates of the map's south-west corner, in metres; without it those that the map's file says, or 0.
+    /// Mission coordinates of the map's south-west corner, in meters; without it those that the map's file says, or 0.
     pub origin_m: Option<[f64; 2]>,
     /// The whole declaration.
     pub span: Span,
@@ -848,7 +848,7 @@ pub struct TerrainDecl {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocationDecl {
     pub name: Name,
-    /// Metres east and north.
+    /// Meters east and north.
     pub position_m: [f64; 2],
     /// The numbers inside the parentheses, for edits.
     pub numbers_span: Span,
@@ -880,7 +880,7 @@ pub enum ObstacleKind {
     },
 }
 
-/// The shape of an obstacle, in metres.
+/// The shape of an obstacle, in meters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ObstacleShape {
     Circle {

@@ -15,11 +15,11 @@ pub struct SimulatedDrive {
     pub duration: Option<Time>,
     /// The vehicles, the leader first.
     pub vehicles: Vec<SimulatedVehicle>,
-    /// How far the leader drove, in metres.
+    /// How far the leader drove, in meters.
     pub driven_m: f64,
     /// How often another way was looked for.
     pub reroutes: u32,
-    /// The least distance of a vehicle's rim from anything it could touch, in metres; infinite in an empty world.
+    /// The least distance of a vehicle's rim from anything it could touch, in meters; infinite in an empty world.
     pub least_clearance_m: f64,
 }
 
@@ -37,13 +37,13 @@ pub struct SimulatedVehicle {
 pub struct DriveFrame {
     /// In mission units from the start of the mission.
     pub time: f64,
-    /// Metres east and north.
+    /// Meters east and north.
     pub position_m: Point2<f64>,
     /// Radians counter-clockwise from east.
     pub heading_rad: f64,
-    /// Metres per second.
+    /// Meters per second.
     pub speed_mps: f64,
-    /// Where the rays of its range sensor met something, in metres.
+    /// Where the rays of its range sensor met something, in meters.
     pub rays_m: Vec<Point2<f32>>,
     /// Where it meant to drive next, from where it was: along its path, or around what it had seen.
     pub plan_m: Vec<Point2<f32>>,

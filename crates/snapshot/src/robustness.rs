@@ -65,9 +65,9 @@ pub enum Traverses {
 pub struct Rocks {
     /// At most so many for each traverse; any number up to it is equally likely.
     pub most: u32,
-    /// The least and the greatest radius in metres, all between them equally likely.
+    /// The least and the greatest radius in meters, all between them equally likely.
     pub radius: [f64; 2],
-    /// At most so far from the path to its sides, in metres.
+    /// At most so far from the path to its sides, in meters.
     pub aside: f64,
 }
 

@@ -94,9 +94,9 @@ pub struct LeftOut {
 pub struct MapKey {
     /// The asset or the imported file.
     pub asset: SmolStr,
-    /// Metres per cell in millimetres.
+    /// Meters per cell in millimeters.
     pub cell_mm: u32,
-    /// Mission coordinates of the south-west corner in millimetres.
+    /// Mission coordinates of the south-west corner in millimeters.
     pub origin_mm: [i64; 2],
     /// Tells files apart that were imported under the same name; 0 for what comes with the program.
     pub version: u32,
@@ -110,9 +110,9 @@ pub struct Traverse {
     pub vehicles: Vec<u32>,
     /// The legs between waypoints.
     pub legs: Vec<Leg>,
-    /// The whole length in metres.
+    /// The whole length in meters.
     pub length_m: f64,
-    /// The least distance from the path of any of its vehicles to an obstacle, in metres, beyond the radius of the widest.
+    /// The least distance from the path of any of its vehicles to an obstacle, in meters, beyond the radius of the widest.
     pub clearance_m: f64,
     /// The steepest slope along the path of any of its vehicles, in radians.
     pub slope_max_rad: f64,
@@ -123,9 +123,9 @@ pub struct Traverse {
 /// What a path comes to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathFigures {
-    /// Length over the ground in metres, or through the air.
+    /// Length over the ground in meters, or through the air.
     pub length_m: f64,
-    /// The least distance from the leader's rim and margin to an obstacle, in metres; infinite without obstacles.
+    /// The least distance from the leader's rim and margin to an obstacle, in meters; infinite without obstacles.
     pub min_clearance_m: f64,
     /// The steepest slope in degrees.
     pub max_slope_deg: f64,
@@ -140,7 +140,7 @@ pub struct PathFigures {
 pub struct Leg {
     /// The name of the location it leads to.
     pub to: SmolStr,
-    /// The path, waypoints included, in metres.
+    /// The path, waypoints included, in meters.
     pub points_m: Vec<Point2<f64>>,
     /// The search tree that found it, as segments, for display.
     pub tree_m: Arc<Vec<[Point2<f64>; 2]>>,
@@ -174,7 +174,7 @@ pub fn joined(legs: &[Leg]) -> Path {
 pub struct VehicleMotion {
     /// Index into the program's world.
     pub vehicle: u32,
-    /// Times in mission units from the start, ascending, and positions in metres.
+    /// Times in mission units from the start, ascending, and positions in meters.
     pub keyframes: Vec<Keyframe>,
 }
 
@@ -183,7 +183,7 @@ pub struct VehicleMotion {
 pub struct Keyframe {
     /// In mission time units from the start.
     pub time: Time,
-    /// In metres.
+    /// In meters.
     pub position_m: Point2<f64>,
     /// Direction of travel in radians, counter-clockwise from east.
     pub heading_rad: f64,
@@ -206,11 +206,11 @@ pub struct SeparationViolation {
     pub since: f64,
     /// When they are nearest.
     pub time: f64,
-    /// Half way between them, in metres.
+    /// Half way between them, in meters.
     pub position_m: Point2<f64>,
-    /// How near they come, in metres, from centre to centre.
+    /// How near they come, in meters, from center to center.
     pub distance_m: f64,
-    /// How near they may come, in metres.
+    /// How near they may come, in meters.
     pub least_m: f64,
     /// The schedule in which they do: when what they drive starts and ends. Empty for the earliest schedule.
     pub schedule: Vec<MovementTimes>,

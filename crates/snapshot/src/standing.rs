@@ -13,7 +13,7 @@ use crate::vehicle;
 
 /// Places on the first ring around a location; each further ring has so many more.
 const ON_FIRST_RING: usize = 6;
-/// Metres more than vehicles need to keep apart.
+/// Meters more than vehicles need to keep apart.
 const ROOM_M: f64 = 0.1;
 
 /// The place that each vehicle has where it starts: 0 for the location itself.
@@ -40,7 +40,7 @@ pub fn start_slots(program: &Program) -> Vec<usize> {
     slots
 }
 
-/// Metres between places at one location, of the vehicles that fly or of those that do not: twice the room that any two of
+/// Meters between places at one location, of the vehicles that fly or of those that do not: twice the room that any two of
 /// them need, so that one can drive between two others, and room for what follows them in formation.
 pub fn spacing_m(program: &Program, fly: bool) -> f64 {
     let world = &program.world;
@@ -72,7 +72,7 @@ pub fn place_m(location_m: Point2<f64>, slot: usize, spacing_m: f64) -> Point2<f
     location_m + (from + (to - from) * part) * (spacing_m * ring as f64)
 }
 
-/// Where a vehicle stands before it first moves, in metres; `None` if its start is not declared.
+/// Where a vehicle stands before it first moves, in meters; `None` if its start is not declared.
 pub fn start_m(program: &Program, vehicle: usize) -> Option<Point2<f64>> {
     let start = &program.world.vehicles.get(vehicle)?.start.text;
     let location = program.world.locations.iter().find(|location| location.name.text == *start)?;
@@ -81,7 +81,7 @@ pub fn start_m(program: &Program, vehicle: usize) -> Option<Point2<f64>> {
     Some(place_m(location.position_m.into(), slot, spacing_m))
 }
 
-/// Where each vehicle stands before it first moves that has a place of its own there, in metres; nothing for one that
+/// Where each vehicle stands before it first moves that has a place of its own there, in meters; nothing for one that
 /// starts in a formation with another.
 pub fn own_starts_m(program: &Program) -> Vec<Option<Point2<f64>>> {
     let world = &program.world;
@@ -107,7 +107,7 @@ pub fn own_starts_m(program: &Program) -> Vec<Option<Point2<f64>>> {
     own.collect()
 }
 
-/// The vehicle that is nearest to a place and nearer than so many metres, of those with `places` that are none of `vehicles` and,
+/// The vehicle that is nearest to a place and nearer than so many meters, of those with `places` that are none of `vehicles` and,
 /// as the first of these does, drive or fly.
 pub fn nearest_other(
     world: &World,

@@ -5,7 +5,7 @@ use rmpl::program::{Moves, Program, Property, World};
 use smol_str::SmolStr;
 use tpn::{Occurrence, Resource};
 
-/// Room between vehicles beyond their radii, in metres: what a formation keeps and what others have to.
+/// Room between vehicles beyond their radii, in meters: what a formation keeps and what others have to.
 pub const GAP_M: f64 = 1.0;
 
 /// The model of this name: a built-in one, or one that the mission declares, with what the models that it extends say. Its
@@ -42,7 +42,7 @@ pub fn flies(world: &World, vehicle: u32) -> bool {
     model.is_some_and(|model| matches!(model.drive, motion::Drive::Flight { .. }))
 }
 
-/// A vehicle's circumradius in metres.
+/// A vehicle's circumradius in meters.
 pub fn radius_m(world: &World, vehicle: u32) -> f64 {
     let model = model_of(world, vehicle as usize);
     model.map_or(0.5, |model| model.circumradius_m)

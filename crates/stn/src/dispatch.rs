@@ -23,7 +23,7 @@ pub struct DispatchEdge {
     pub weight: i64,
 }
 
-/// A network in which propagating an executed time to direct neighbours never leads into a dead end.
+/// A network in which propagating an executed time to direct neighbors never leads into a dead end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Dispatchable {
     /// The components, by leader.

@@ -34,7 +34,7 @@ impl PairDistances {
     }
 
     /// The least upper bound of `to − from`, [`crate::INFINITE`] where there is none. `None` where the way may lead through points
-    /// with so many neighbours that the tree leaves them out: then a search has to find it.
+    /// with so many neighbors that the tree leaves them out: then a search has to find it.
     pub fn between(&self, from: PointId, to: PointId) -> Result<Option<i64>, Overflow> {
         let there = self.upwards(from.0, |edge| edge.up)?;
         let back = self.upwards(to.0, |edge| edge.down)?;

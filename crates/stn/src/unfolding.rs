@@ -2,7 +2,7 @@
 //! where the network's tree width is bounded.
 //!
 //! A point that happened tells those above it in the elimination tree what it leaves them, and the window of any point
-//! follows from those above it. In the core, whose points have many neighbours, what an event changes is propagated.
+//! follows from those above it. In the core, whose points have many neighbors, what an event changes is propagated.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};

@@ -1,5 +1,5 @@
 //! The dispatchable form (Morris, 2014): constraints and waits that a dispatcher needs only look at from one executed
-//! event to its neighbours, and never comes to a dead end.
+//! event to its neighbors, and never comes to a dead end.
 //!
 //! Each link is split where its end becomes uncertain: a point a fixed `lower` after the activation, and from there an
 //! uncertain part. From each point that must come after another, back along edges that are not negative, every pair of

@@ -255,7 +255,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
         }
     }
 
-    /// A point happens now: its neighbours' bounds follow.
+    /// A point happens now: its neighbors' bounds follow.
     fn happen(&mut self, point: PointId) -> Result<(), DispatchError> {
         let edges = &self.form.edges;
         for &edge in &self.into[point.index()] {

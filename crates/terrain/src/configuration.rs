@@ -1,7 +1,7 @@
 //! The places where a disc-shaped vehicle can be, answered exactly.
 //!
 //! A vehicle is a point and obstacles are grown by its radius, so its heading doesn't matter (SPEC 7.1). Obstacles are
-//! whole square cells. The clearance map of cell centres only decides what is far from every border; near one, the
+//! whole square cells. The clearance map of cell centers only decides what is far from every border; near one, the
 //! query measures the distance to the squares themselves. Nothing is sampled.
 
 use nalgebra::{Point2, distance};
@@ -29,24 +29,24 @@ pub enum Collision {
 /// Where a vehicle of some radius can be on a map.
 ///
 /// A point is free when it lies on the map, not in an occupied cell, and no nearer to one than the radius. The border
-/// of the map is no obstacle: the vehicle's centre has to stay on the map. A cell holds its west and south border, as
+/// of the map is no obstacle: the vehicle's center has to stay on the map. A cell holds its west and south border, as
 /// in [`GridFrame::cell_at`]; a vehicle of radius 0 can't slip between two occupied cells that share a corner.
 #[derive(Clone, Debug)]
 pub struct ConfigurationSpace {
     occupancy: Occupancy,
     radius_m: f64,
-    /// In cells, from cell centres to the nearest occupied square; minus the distance to the nearest free one inside.
+    /// In cells, from cell centers to the nearest occupied square; minus the distance to the nearest free one inside.
     clearance: Vec<f32>,
     flags: Vec<u8>,
     regions: Regions,
-    /// The corners of the least box of cells around every cell that isn't occupied, in metres.
+    /// The corners of the least box of cells around every cell that isn't occupied, in meters.
     free_box_m: [Point2<f64>; 2],
     /// The vehicle's radius in cells.
     pub(crate) radius: f64,
 }
 
 const OCCUPIED: u8 = 1;
-/// An occupied cell with a free neighbour: the nearest occupied cell of a free point is one of these.
+/// An occupied cell with a free neighbor: the nearest occupied cell of a free point is one of these.
 const BORDER: u8 = 2;
 
 /// Distances below this many cells are rounding, not geometry.
@@ -97,24 +97,24 @@ impl ConfigurationSpace {
         &self.occupancy
     }
 
-    /// The vehicle's radius with its margin, in metres.
+    /// The vehicle's radius with its margin, in meters.
     pub const fn radius_m(&self) -> f64 {
         self.radius_m
     }
 
-    /// The south-west and north-east corners of the least box around the free places, in metres: where to sample.
+    /// The south-west and north-east corners of the least box around the free places, in meters: where to sample.
     pub const fn free_box_m(&self) -> [Point2<f64>; 2] {
         self.free_box_m
     }
 
-    /// For display: metres from each cell's centre to the nearest obstacle less the radius, row by row from the south;
+    /// For display: meters from each cell's center to the nearest obstacle less the radius, row by row from the south;
     /// negative where the vehicle can't be, infinite on a map without obstacles.
     pub fn clearance_map_m(&self) -> Vec<f32> {
         let size = self.frame().cell_size_m;
         self.clearance.iter().map(|&cells| (f64::from(cells) * size - self.radius_m) as f32).collect()
     }
 
-    /// The cell with the most room among those from `low` to before `end` whose centre is surely free; the first of
+    /// The cell with the most room among those from `low` to before `end` whose center is surely free; the first of
     /// several. Linear in their number.
     pub fn most_open_cell(&self, low: Cell, end: Cell) -> Option<Cell> {
         let frame = self.frame();
@@ -133,9 +133,9 @@ impl ConfigurationSpace {
         best.map(|(_, cell)| cell)
     }
 
-    /// Metres from the vehicle's rim to the nearest obstacle when its centre is at a point; negative in collision
+    /// Meters from the vehicle's rim to the nearest obstacle when its center is at a point; negative in collision
     /// and infinite on a map without obstacles. `None` outside the map. Exact outside obstacles; inside one, the depth
-    /// is that of the cell's centre.
+    /// is that of the cell's center.
     pub fn clearance_m(&self, point_m: Point2<f64>) -> Option<f64> {
         let cell = self.frame().cell_at(point_m)?;
         let point = self.frame().to_cells(point_m);
@@ -147,7 +147,7 @@ impl ConfigurationSpace {
         Some(distance * self.frame().cell_size_m - self.radius_m)
     }
 
-    /// Whether the vehicle's centre can be at a point.
+    /// Whether the vehicle's center can be at a point.
     pub fn is_free(&self, point_m: Point2<f64>) -> bool {
         let Some(cell) = self.frame().cell_at(point_m) else { return false };
         self.is_free_in_cell(self.frame().to_cells(point_m), cell)
@@ -168,7 +168,7 @@ impl ConfigurationSpace {
         Some(Collision::Cell { cell, state: self.occupancy.state(cell) })
     }
 
-    /// Whether the vehicle's centre can move straight from one point to another: every point between is free, to
+    /// Whether the vehicle's center can move straight from one point to another: every point between is free, to
     /// within a billionth of a cell. Time is proportional to the number of cells passed near obstacles.
     pub fn is_segment_free(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> bool {
         let (Some(first), Some(_)) = (self.frame().cell_at(from_m), self.frame().cell_at(to_m)) else {
@@ -184,7 +184,7 @@ impl ConfigurationSpace {
         self.walk_is_free(&walk) && self.is_free(to_m)
     }
 
-    /// The least clearance in metres along a straight segment, to within a hundredth of a cell and never more than it
+    /// The least clearance in meters along a straight segment, to within a hundredth of a cell and never more than it
     /// really is by that: for display and reports. `None` when an end is outside the map.
     pub fn segment_clearance_m(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> Option<f64> {
         let tolerance = 0.01 * self.frame().cell_size_m;
@@ -222,7 +222,7 @@ impl ConfigurationSpace {
         self.flags[self.frame().index(cell)] & OCCUPIED != 0
     }
 
-    /// Cells from the centre of a cell to the nearest occupied square.
+    /// Cells from the center of a cell to the nearest occupied square.
     pub(crate) fn center_clearance(&self, cell: Cell) -> f64 {
         f64::from(self.clearance[self.frame().index(cell)])
     }
@@ -372,7 +372,7 @@ fn free_box_m(frame: &GridFrame, free: &[bool]) -> [Point2<f64>; 2] {
     if low[0] > high[0] {
         return [frame.origin_m, frame.origin_m];
     }
-    [low, high].map(|corner| frame.to_metres(Point2::from(corner.map(f64::from))))
+    [low, high].map(|corner| frame.to_meters(Point2::from(corner.map(f64::from))))
 }
 
 fn border_flags(width: usize, height: usize, occupied: &[bool]) -> Vec<u8> {

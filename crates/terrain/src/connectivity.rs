@@ -30,9 +30,9 @@ impl Regions {
                     continue;
                 }
                 let mut label = NONE;
-                let mut join = |neighbour: u32| {
-                    if neighbour != NONE {
-                        label = if label == NONE { neighbour } else { unite(&mut parents, label, neighbour) };
+                let mut join = |neighbor: u32| {
+                    if neighbor != NONE {
+                        label = if label == NONE { neighbor } else { unite(&mut parents, label, neighbor) };
                     }
                 };
                 if column > 0 {
@@ -97,7 +97,7 @@ pub(crate) fn are_separated_finely(space: &ConfigurationSpace, a_m: Point2<f64>,
             return false;
         }
         let clearance = space.center_clearance(cell);
-        // Well inside or well outside, the cell's centre decides for all its pieces.
+        // Well inside or well outside, the cell's center decides for all its pieces.
         if (clearance - space.radius).abs() > HALF_DIAGONAL + 0.01 {
             return clearance > space.radius;
         }

@@ -17,11 +17,11 @@ pub(crate) struct Crater {
     pub(crate) freshness: f64,
 }
 
-/// How far from the centre a crater changes the ground, in radii.
+/// How far from the center a crater changes the ground, in radii.
 const REACH_RADII: f64 = 3.0;
 
 impl Crater {
-    /// How much higher the ground lies because of the crater, in metres, at a distance from its centre.
+    /// How much higher the ground lies because of the crater, in meters, at a distance from its center.
     pub(crate) fn height_m(&self, distance_m: f64) -> f64 {
         let rim = 0.04 * self.diameter_m * self.freshness;
         let depth = 0.2 * self.diameter_m * self.freshness;
@@ -54,7 +54,7 @@ impl Crater {
 }
 
 /// Craters whose cumulative number falls with the square of their diameter, largest first so that small ones lie on
-/// top, with centres also beyond the border of the grid.
+/// top, with centers also beyond the border of the grid.
 pub(crate) fn crater_population(
     frame: &GridFrame,
     count: u32,

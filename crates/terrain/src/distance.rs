@@ -1,16 +1,16 @@
-//! The exact Euclidean distance from cell centres to a set of square cells.
+//! The exact Euclidean distance from cell centers to a set of square cells.
 //!
 //! Felzenszwalb and Huttenlocher (2012), "Distance transforms of sampled functions", adapted so that an occupied cell
-//! is its whole square and not its centre. Time is linear in the number of cells.
+//! is its whole square and not its center. Time is linear in the number of cells.
 
-/// Half the diagonal of a cell: no point of a cell is farther from its centre.
+/// Half the diagonal of a cell: no point of a cell is farther from its center.
 pub(crate) const HALF_DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// For each cell, the distance in cells from its centre to the nearest occupied square: 0 in occupied cells and
+/// For each cell, the distance in cells from its center to the nearest occupied square: 0 in occupied cells and
 /// infinity when nothing is occupied. `occupied` is row-major and has `width` × `height` entries.
 pub fn distance_to_occupied(width: usize, height: usize, occupied: &[bool]) -> Vec<f32> {
     assert_eq!(occupied.len(), width * height, "one entry for each cell");
-    // Lengths are counted in half cells, in which cell centres and cell borders are whole numbers.
+    // Lengths are counted in half cells, in which cell centers and cell borders are whole numbers.
     let gaps = vertical_gaps(width, height, occupied);
     let mut distances = vec![0.0_f32; width * height];
     let mut envelope = Envelope::with_capacity(width + 1);
@@ -40,7 +40,7 @@ pub fn distance_to_occupied(width: usize, height: usize, occupied: &[bool]) -> V
 /// No occupied cell in the column.
 const NO_GAP: u32 = u32::MAX;
 
-/// For each cell, half cells from its centre to the nearest occupied square of its own column.
+/// For each cell, half cells from its center to the nearest occupied square of its own column.
 fn vertical_gaps(width: usize, height: usize, occupied: &[bool]) -> Vec<u32> {
     let mut gaps = vec![NO_GAP; width * height];
     let grow = |gap: u32| match gap {

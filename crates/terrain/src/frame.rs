@@ -1,4 +1,4 @@
-//! Where a grid lies in the world: its cells, its corner, and the way between metres and cells.
+//! Where a grid lies in the world: its cells, its corner, and the way between meters and cells.
 
 use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -12,16 +12,16 @@ pub struct Cell {
     pub row: u32,
 }
 
-/// The extent of a grid of square cells. A value of a cell belongs to the cell's centre.
+/// The extent of a grid of square cells. A value of a cell belongs to the cell's center.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GridFrame {
     /// Cells from west to east.
     pub width: u32,
     /// Cells from south to north.
     pub height: u32,
-    /// The side of a cell in metres.
+    /// The side of a cell in meters.
     pub cell_size_m: f64,
-    /// The south-west corner of the grid in metres east and north.
+    /// The south-west corner of the grid in meters east and north.
     pub origin_m: Point2<f64>,
 }
 
@@ -36,12 +36,12 @@ impl GridFrame {
         self.width as usize * self.height as usize
     }
 
-    /// Metres from west to east and from south to north.
+    /// Meters from west to east and from south to north.
     pub fn extent_m(&self) -> Vector2<f64> {
         Vector2::new(f64::from(self.width), f64::from(self.height)) * self.cell_size_m
     }
 
-    /// The north-east corner in metres.
+    /// The north-east corner in meters.
     pub fn far_corner_m(&self) -> Point2<f64> {
         self.origin_m + self.extent_m()
     }
@@ -61,8 +61,8 @@ impl GridFrame {
         ((point_m - self.origin_m) / self.cell_size_m).into()
     }
 
-    /// A point given in units of cells from the south-west corner, in metres.
-    pub fn to_metres(&self, point_cells: Point2<f64>) -> Point2<f64> {
+    /// A point given in units of cells from the south-west corner, in meters.
+    pub fn to_meters(&self, point_cells: Point2<f64>) -> Point2<f64> {
         self.origin_m + point_cells.coords * self.cell_size_m
     }
 
@@ -85,8 +85,8 @@ impl GridFrame {
         })
     }
 
-    /// The centre of a cell in metres.
+    /// The center of a cell in meters.
     pub fn center_m(&self, cell: Cell) -> Point2<f64> {
-        self.to_metres(Point2::new(f64::from(cell.column) + 0.5, f64::from(cell.row) + 0.5))
+        self.to_meters(Point2::new(f64::from(cell.column) + 0.5, f64::from(cell.row) + 0.5))
     }
 }

@@ -7,11 +7,11 @@ use crate::frame::{Cell, GridFrame};
 use crate::rock::Rock;
 use crate::walk::Walk;
 
-/// Heights at the centres of the cells of a grid. Row 0 is the southernmost.
+/// Heights at the centers of the cells of a grid. Row 0 is the southernmost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Terrain {
     frame: GridFrame,
-    /// Metres above the map's datum; 0 where there is no data.
+    /// Meters above the map's datum; 0 where there is no data.
     heights_m: Vec<f32>,
     /// Whether each cell is a hole; empty when none is.
     no_data: Vec<bool>,
@@ -21,7 +21,7 @@ pub struct Terrain {
 }
 
 impl Terrain {
-    /// A map from heights in metres, row by row from the south. A height that is not finite is a cell without data.
+    /// A map from heights in meters, row by row from the south. A height that is not finite is a cell without data.
     ///
     /// # Panics
     /// When there is not one height for each cell, or a grid without cells.
@@ -42,7 +42,7 @@ impl Terrain {
     }
 
     /// The map with obstacles, row by row from the south. Their heights are theirs alone: the ground around them does not
-    /// rise towards them.
+    /// rise toward them.
     ///
     /// # Panics
     /// When there is not one entry for each cell.
@@ -63,7 +63,7 @@ impl Terrain {
     pub fn placed(mut self, cell_size_m: f64, origin_m: Point2<f64>) -> Self {
         let frame = GridFrame { cell_size_m, origin_m, ..self.frame };
         for rock in &mut self.rocks {
-            rock.center_m = frame.to_metres(self.frame.to_cells(rock.center_m));
+            rock.center_m = frame.to_meters(self.frame.to_cells(rock.center_m));
         }
         self.frame = frame;
         self
@@ -74,7 +74,7 @@ impl Terrain {
         &self.frame
     }
 
-    /// Heights in metres, row by row from the south; 0 in cells without data.
+    /// Heights in meters, row by row from the south; 0 in cells without data.
     pub fn heights_m(&self) -> &[f32] {
         &self.heights_m
     }
@@ -110,18 +110,18 @@ impl Terrain {
         self.height_of(cell).filter(|_| !self.is_obstacle(cell))
     }
 
-    /// The height at a cell's centre in metres; in an obstacle, that of the obstacle.
+    /// The height at a cell's center in meters; in an obstacle, that of the obstacle.
     pub fn height_of(&self, cell: Cell) -> Option<f64> {
         (!self.is_no_data(cell)).then(|| f64::from(self.heights_m[self.frame.index(cell)]))
     }
 
-    /// The height at a point in metres, interpolated between the four nearest cell centres. `None` outside the map and
-    /// in a cell without data; a neighbour without data takes the height of the point's own cell.
+    /// The height at a point in meters, interpolated between the four nearest cell centers. `None` outside the map and
+    /// in a cell without data; a neighbor without data takes the height of the point's own cell.
     pub fn height_at(&self, point_m: Point2<f64>) -> Option<f64> {
         self.bilinear(point_m).map(|patch| patch.height())
     }
 
-    /// Metres up for each metre east and for each metre north at a point, of the interpolated surface.
+    /// Meters up for each meter east and for each meter north at a point, of the interpolated surface.
     pub fn gradient_at(&self, point_m: Point2<f64>) -> Option<Vector2<f64>> {
         self.bilinear(point_m).map(|patch| patch.gradient(self.frame.cell_size_m))
     }
@@ -162,7 +162,7 @@ impl Terrain {
         range
     }
 
-    /// Metres up for each metre east and north at a cell, over its eight neighbours (Horn 1981). 0 without data.
+    /// Meters up for each meter east and north at a cell, over its eight neighbors (Horn 1981). 0 without data.
     pub fn cell_gradient(&self, cell: Cell) -> Vector2<f64> {
         let (column, row) = (i64::from(cell.column), i64::from(cell.row));
         let Some(center) = self.height_of(cell) else { return Vector2::zeros() };
@@ -174,7 +174,7 @@ impl Terrain {
         Vector2::new(east, north) * scale
     }
 
-    /// The length of the ground under a straight segment, in metres: at least its plan length. Where the map has no
+    /// The length of the ground under a straight segment, in meters: at least its plan length. Where the map has no
     /// height the ground counts as level.
     pub fn draped_length_m(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> f64 {
         self.drape(from_m, to_m).windows(2).map(|pair| nalgebra::distance(&pair[0], &pair[1])).sum()
@@ -215,13 +215,13 @@ fn normal_of_gradient(gradient: Vector2<f64>) -> UnitVector3<f64> {
     UnitVector3::new_unchecked(Vector3::new(-gradient.x, -gradient.y, 1.0) * scale)
 }
 
-/// The surface between four cell centres.
+/// The surface between four cell centers.
 pub(crate) struct Patch {
     /// Heights in the south-west, south-east, north-west and north-east.
     pub(crate) corners: [f64; 4],
-    /// The south-west centre, in cells.
+    /// The south-west center, in cells.
     pub(crate) corner: Point2<f64>,
-    /// From the south-west centre, in cells.
+    /// From the south-west center, in cells.
     fraction: Vector2<f64>,
 }
 
@@ -254,7 +254,7 @@ fn along(from: Point2<f64>, to: Point2<f64>, piece: u32, pieces: u32) -> Point2<
 mod tests {
     use super::*;
 
-    /// A plane that rises 0.3 m for each metre east and falls 0.1 m for each metre north.
+    /// A plane that rises 0.3 m for each meter east and falls 0.1 m for each meter north.
     fn plane() -> Terrain {
         let frame = GridFrame { width: 9, height: 7, cell_size_m: 0.5, origin_m: Point2::new(10.0, -4.0) };
         let heights = (0..frame.cell_count())
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_reproduced_between_cell_centres() {
+    fn a_plane_is_reproduced_between_cell_centers() {
         let terrain = plane();
         for point in [[10.6, -3.1], [12.0, -2.0], [14.2, -0.8]].map(Point2::from) {
             let expected = 0.3 * point[0] - 0.1 * point[1];
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_has_no_height_and_does_not_disturb_its_neighbours() {
+    fn a_hole_has_no_height_and_does_not_disturb_its_neighbors() {
         let frame = GridFrame::new(3, 1, 1.0);
         let terrain = Terrain::new(frame, vec![5.0, f32::NAN, 5.0]);
         assert_eq!(terrain.no_data_count(), 1);

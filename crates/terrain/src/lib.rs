@@ -5,7 +5,7 @@
 //! * [`ConfigurationSpace`] answers exactly whether a vehicle of some radius can be at a point or drive along a
 //!   segment, and proves when a place can't be reached.
 //!
-//! Coordinates are metres east and north. Row 0 of a grid is its southernmost row, and its origin is its south-west
+//! Coordinates are meters east and north. Row 0 of a grid is its southernmost row, and its origin is its south-west
 //! corner. Everything here is a pure function of its arguments and gives the same bits natively and in wasm.
 
 pub mod format;

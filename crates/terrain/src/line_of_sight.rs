@@ -44,7 +44,7 @@ impl Terrain {
         let mut at = 0.0;
         while at < 1.0 {
             let next = quarters.next_border().min(1.0);
-            let middle = self.frame().to_metres(line.point(f64::midpoint(at, next)));
+            let middle = self.frame().to_meters(line.point(f64::midpoint(at, next)));
             let patch = if next > at { self.bilinear(middle) } else { None };
             if let Some(share) = patch.and_then(|patch| line.first_over(&patch, [at, next])) {
                 let place = from_m + (to_m - from_m) * share;

@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_is_centred_and_bounded() {
+    fn noise_is_centered_and_bounded() {
         let samples: Vec<f64> = (0..10_000)
             .map(|index| gradient_noise(5, f64::from(index % 100) * 0.37, f64::from(index / 100) * 0.41))
             .collect();

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::frame::{Cell, GridFrame};
 
-/// The shape of an obstacle, in metres east and north.
+/// The shape of an obstacle, in meters east and north.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Obstacle {
     Circle {
@@ -74,8 +74,8 @@ impl Obstacle {
     }
 
     fn touches_cell(&self, frame: &GridFrame, cell: Cell) -> bool {
-        let low = frame.to_metres(Point2::new(f64::from(cell.column), f64::from(cell.row)));
-        let high = frame.to_metres(Point2::new(f64::from(cell.column) + 1.0, f64::from(cell.row) + 1.0));
+        let low = frame.to_meters(Point2::new(f64::from(cell.column), f64::from(cell.row)));
+        let high = frame.to_meters(Point2::new(f64::from(cell.column) + 1.0, f64::from(cell.row) + 1.0));
         match self {
             Self::Circle { center_m, radius_m } => {
                 let nearest = center_m.sup(&low).inf(&high);
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thin_polygon_takes_the_cells_it_passes_without_holding_a_centre() {
+    fn a_thin_polygon_takes_the_cells_it_passes_without_holding_a_center() {
         let frame = GridFrame::new(4, 3, 1.0);
         let sliver =
             Obstacle::Polygon { corners_m: [[0.1, 1.1], [3.9, 1.2], [3.9, 1.15]].map(Point2::from).to_vec() };

@@ -11,15 +11,15 @@ use crate::obstacle::Obstacle;
 pub enum Traversability {
     /// It drives: obstacles, rocks, steep cells and cells without data are in its way.
     Ground {
-        /// Metres up for each metre forward that it climbs at most.
+        /// Meters up for each meter forward that it climbs at most.
         max_grade: f64,
-        /// The least diameter in metres of a rock that it can't pass over.
+        /// The least diameter in meters of a rock that it can't pass over.
         rock_diameter_m: f64,
     },
     /// It flies over obstacles: only ground that reaches above its lowest altitude is in its way, and cells without
     /// data, where the ground could be anywhere.
     Air {
-        /// The greatest height of ground, in metres above the map's datum, that it flies over.
+        /// The greatest height of ground, in meters above the map's datum, that it flies over.
         max_ground_m: f64,
     },
 }

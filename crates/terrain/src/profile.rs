@@ -8,13 +8,13 @@ use crate::heightfield::Terrain;
 /// The ground under a straight line between two places.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundProfile {
-    /// Metres in the plan from the first place, and the height of the ground there, in order; both ends included.
+    /// Meters in the plan from the first place, and the height of the ground there, in order; both ends included.
     pub points_m: Vec<Point2<f64>>,
-    /// The length of the ground in metres, up and down its slopes.
+    /// The length of the ground in meters, up and down its slopes.
     pub ground_m: f64,
-    /// The straight distance in space between the two places, in metres.
+    /// The straight distance in space between the two places, in meters.
     pub straight_m: f64,
-    /// Metres up and metres down on the way from the first place to the second.
+    /// Meters up and meters down on the way from the first place to the second.
     pub climb_m: [f64; 2],
     /// The steepest slope along the line, in radians.
     pub slope_max_rad: f64,

@@ -34,9 +34,9 @@ pub struct Recipe {
 /// Fractal hills.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Relief {
-    /// Height of the widest octave in metres.
+    /// Height of the widest octave in meters.
     pub height_m: f64,
-    /// Wavelength of the widest octave in metres.
+    /// Wavelength of the widest octave in meters.
     pub wavelength_m: f64,
     /// Number of octaves, each of half the wavelength.
     pub octaves: u32,
@@ -50,7 +50,7 @@ pub struct Relief {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Craters {
     pub count: u32,
-    /// The least and the greatest diameter in metres.
+    /// The least and the greatest diameter in meters.
     pub diameters_m: [f64; 2],
     /// The least and the greatest freshness: 1 is 0.2 diameters deep, 0 has vanished.
     pub freshness: [f64; 2],
@@ -59,9 +59,9 @@ pub struct Craters {
 /// Transverse dunes in patches.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Dunes {
-    /// Height of the crests in metres.
+    /// Height of the crests in meters.
     pub height_m: f64,
-    /// From crest to crest in metres.
+    /// From crest to crest in meters.
     pub wavelength_m: f64,
     /// Where the wind blows to, in radians counter-clockwise from east.
     pub wind_rad: f64,
@@ -74,11 +74,11 @@ pub struct Dunes {
 pub struct Fan {
     /// Where the river enters, as shares of the map's extent.
     pub apex: Point2<f64>,
-    /// Length from the apex to the scarp in metres.
+    /// Length from the apex to the scarp in meters.
     pub length_m: f64,
-    /// Height of the scarp in metres.
+    /// Height of the scarp in meters.
     pub height_m: f64,
-    /// Depth of the channels in metres.
+    /// Depth of the channels in meters.
     pub channel_depth_m: f64,
 }
 
@@ -183,7 +183,7 @@ pub fn generate(recipe: &Recipe) -> Terrain {
     Terrain::new(frame, heights_m).with_rocks(rocks)
 }
 
-/// Hills and delta at a point, in metres.
+/// Hills and delta at a point, in meters.
 fn surface_height(recipe: &Recipe, point_m: Point2<f64>) -> f64 {
     let relief = recipe.relief;
     let seed = recipe.seed as u32;
@@ -193,7 +193,7 @@ fn surface_height(recipe: &Recipe, point_m: Point2<f64>) -> f64 {
     hills + recipe.fan.map_or(0.0, |fan| fan_height(&fan, &recipe.frame, seed, point_m))
 }
 
-/// How far a delta raises a point, in metres.
+/// How far a delta raises a point, in meters.
 fn fan_height(fan: &Fan, frame: &GridFrame, seed: u32, point_m: Point2<f64>) -> f64 {
     let (x, y) = (point_m.x, point_m.y);
     let offset = point_m.coords - fan.apex.coords.component_mul(&frame.extent_m());
@@ -213,7 +213,7 @@ fn fan_height(fan: &Fan, frame: &GridFrame, seed: u32, point_m: Point2<f64>) -> 
     plateau * (fan.height_m * (1.0 - 0.3 * distance / fan.length_m) - fan.channel_depth_m * channel * fade_in)
 }
 
-/// How far sand raises a point, in metres: crests across the wind, steeper in their lee.
+/// How far sand raises a point, in meters: crests across the wind, steeper in their lee.
 fn dune_height(dunes: &Dunes, seed: u32, point_m: Point2<f64>) -> f64 {
     let (x, y) = (point_m.x, point_m.y);
     let patch = fractal_noise(seed ^ 0xd0, x / 90.0, y / 90.0, 3, 0.5);

@@ -10,9 +10,9 @@ use crate::random::Random;
 /// A rock, taken as the upper half of a ball: half as high as it is wide.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rock {
-    /// Metres east and north.
+    /// Meters east and north.
     pub center_m: Point2<f64>,
-    /// Metres across.
+    /// Meters across.
     pub diameter_m: f64,
 }
 
@@ -26,7 +26,7 @@ impl Rock {
     }
 }
 
-/// The fraction of the ground covered by rocks of at least this diameter in metres, when rocks cover `abundance` of it
+/// The fraction of the ground covered by rocks of at least this diameter in meters, when rocks cover `abundance` of it
 /// altogether: `k exp(-(1.79 + 0.152 / k) D)`.
 pub fn cumulative_rock_area(abundance: f64, diameter_m: f64) -> f64 {
     if abundance <= 0.0 {

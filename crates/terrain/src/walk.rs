@@ -47,7 +47,7 @@ impl Walk {
     /// The cell of the grid so far along the segment.
     pub(crate) fn cursor(&self, at: f64, frame: &GridFrame) -> Cursor {
         let point = self.point(at);
-        // Both ends are on the map, so rounding down and rounding towards zero come to the same.
+        // Both ends are on the map, so rounding down and rounding toward zero come to the same.
         let clamp = |value: f64, size: u32| (value as i64).clamp(0, i64::from(size) - 1);
         let cell = [clamp(point[0], frame.width), clamp(point[1], frame.height)];
         Cursor { cell, at, crossings: [self.crossing_of(0, cell[0]), self.crossing_of(1, cell[1])] }

@@ -1,4 +1,4 @@
-//! The camera over the ground: an orbit around a target, in metres east, north and up.
+//! The camera over the ground: an orbit around a target, in meters east, north and up.
 
 use glam::camera::rh::proj::directx;
 use glam::camera::rh::view;
@@ -126,12 +126,12 @@ impl Camera {
 
     /// Moves the target so that the ground follows a drag of so many points in an image of this height.
     pub fn pan(&mut self, drag: Vec2, image_height: f32) {
-        let metres_per_point =
+        let meters_per_point =
             2.0 * self.distance_m * (FIELD_OF_VIEW_RAD / 2.0).tan() / image_height.max(1.0);
         let ahead = Vec3::new(self.yaw_rad.cos(), self.yaw_rad.sin(), 0.0);
         let slant = self.pitch_rad.sin().max(0.25);
-        self.target_m -= self.right() * drag.x * metres_per_point;
-        self.target_m += ahead * drag.y * metres_per_point / slant;
+        self.target_m -= self.right() * drag.x * meters_per_point;
+        self.target_m += ahead * drag.y * meters_per_point / slant;
     }
 
     /// Comes nearer (`factor` below 1) or goes away.

@@ -1,4 +1,4 @@
-//! Lines of dashes: what tells paths apart without their colours.
+//! Lines of dashes: what tells paths apart without their colors.
 
 use glam::Vec2;
 

@@ -19,7 +19,7 @@ pub struct Decal {
     pub pixels: Vec<[u8; 4]>,
 }
 
-/// The room that a vehicle has: metres from its rim to the nearest obstacle for each cell of the ground.
+/// The room that a vehicle has: meters from its rim to the nearest obstacle for each cell of the ground.
 #[derive(Clone, Copy, Debug)]
 pub struct ClearanceMap<'a> {
     /// One number per cell of the ground, rows from the south; negative where the vehicle cannot be.

@@ -8,9 +8,9 @@ use snapshot::{DriveFrame, Execution};
 use crate::scene::{self, SceneInput, cased_line, faded, place};
 use crate::shapes::Shapes;
 
-/// How high over the ground a range sensor looks, in metres.
+/// How high over the ground a range sensor looks, in meters.
 const SENSOR_M: f32 = 0.5;
-/// The height of marks where a ray meets something, in metres.
+/// The height of marks where a ray meets something, in meters.
 const MARK_M: f32 = 0.3;
 
 /// Draws what belongs to the time shown.
@@ -36,7 +36,7 @@ pub fn under_way(run: &Execution, time: f64) -> impl Iterator<Item = (u32, &Driv
     })
 }
 
-/// The distance from a vehicle to the nearest thing that its range sensor sees, in metres.
+/// The distance from a vehicle to the nearest thing that its range sensor sees, in meters.
 pub fn nearest_seen_m(frame: &DriveFrame) -> Option<f32> {
     let from = place(frame.position_m);
     let away = frame.rays_m.iter().map(|&point| from.distance(single(point)));

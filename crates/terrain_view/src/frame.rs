@@ -23,7 +23,7 @@ use crate::scene::{self, SceneInput, SceneOptions, ScenePalette, Sketch};
 #[derive(Clone, Copy)]
 pub struct Input<'a> {
     pub state: &'a AppState,
-    /// The colours around the ground.
+    /// The colors around the ground.
     pub tokens: &'a Tokens,
     pub snapshot: &'a Snapshot,
     /// Its map, once it is there.
@@ -36,7 +36,7 @@ pub struct Input<'a> {
     pub sketch: &'a Sketch,
 }
 
-/// Metres of height between contour lines, by the relief of the map.
+/// Meters of height between contour lines, by the relief of the map.
 const CONTOUR_STEPS_M: [f32; 12] = [0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0];
 /// Patches are split until they are this many side lengths away.
 const REFINEMENT: f32 = 1.3;
@@ -125,7 +125,7 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
     }
 }
 
-/// The colours of the scene: those of the dark theme, because the ground is as dark in both.
+/// The colors of the scene: those of the dark theme, because the ground is as dark in both.
 fn palette() -> ScenePalette {
     let tokens = &theme::DARK;
     let color = |color, opacity| {
@@ -143,7 +143,7 @@ fn palette() -> ScenePalette {
     }
 }
 
-/// A colour as the shaders want it.
+/// A color as the shaders want it.
 fn rgba(color: Color32) -> [f32; 4] {
     color.to_array().map(|channel| f32::from(channel) / 255.0)
 }

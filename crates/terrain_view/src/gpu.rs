@@ -20,17 +20,17 @@ const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub struct ViewUniform {
     /// Column by column.
     pub clip_from_world: [[f32; 4]; 4],
-    /// The eye in metres, and the distance at which haze is full.
+    /// The eye in meters, and the distance at which haze is full.
     pub eye: [f32; 4],
-    /// Towards the sun, and the share of ambient light.
+    /// Toward the sun, and the share of ambient light.
     pub sun: [f32; 4],
-    /// Centre of cell (0, 0), metres per cell, exaggeration of heights.
+    /// Center of cell (0, 0), meters per cell, exaggeration of heights.
     pub origin_cell: [f32; 4],
     /// Least and greatest height, contour interval (0: none), grid spacing (0: none).
     pub range: [f32; 4],
-    /// Width and height in pixels, colouring (0 natural, 1 height, 2 slope), strength of the overlay.
+    /// Width and height in pixels, coloring (0 natural, 1 height, 2 slope), strength of the overlay.
     pub image: [f32; 4],
-    /// The colour of distance, and the distance of the near plane in metres.
+    /// The color of distance, and the distance of the near plane in meters.
     pub horizon: [f32; 4],
 }
 
@@ -42,7 +42,7 @@ pub struct Frame {
     pub patches: Vec<Patch>,
     /// What stands and lies on it.
     pub shapes: Shapes,
-    /// Colour behind everything.
+    /// Color behind everything.
     pub background: [f32; 3],
 }
 

@@ -11,11 +11,11 @@ pub struct Ground {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Metres per cell.
+    /// Meters per cell.
     pub cell_m: f32,
-    /// Mission coordinates of the centre of cell (0, 0).
+    /// Mission coordinates of the center of cell (0, 0).
     pub origin_m: Vec2,
-    /// Heights in metres, row by row.
+    /// Heights in meters, row by row.
     pub heights_m: Arc<[f32]>,
     /// Least and greatest height.
     pub range_m: [f32; 2],
@@ -41,7 +41,7 @@ impl Ground {
         Self::new(cells, cells, cell_m, center_m - Vec2::splat(size_m / 2.0), &heights)
     }
 
-    /// Extent east and north in metres.
+    /// Extent east and north in meters.
     pub fn size_m(&self) -> Vec2 {
         Vec2::new((self.width.max(1) - 1) as f32, (self.height.max(1) - 1) as f32) * self.cell_m
     }

@@ -39,7 +39,7 @@ const REACH: f32 = 14.0;
 const HANDLE_REACH: f32 = 9.0;
 /// Pointers this near to a path, in points, are on it.
 const PATH_REACH: f32 = 8.0;
-/// Metres between the points of a path that are looked at.
+/// Meters between the points of a path that are looked at.
 const PATH_STEP_M: f32 = 4.0;
 
 impl Scene<'_> {
@@ -184,7 +184,7 @@ pub fn place_of(snapshot: &Snapshot, selection: &Selection, time: f64) -> Option
     }
 }
 
-/// How much ground a selected thing takes up, in metres.
+/// How much ground a selected thing takes up, in meters.
 pub fn extent_of(snapshot: &Snapshot, selection: &Selection) -> f32 {
     let points: Vec<Vec2> = if let Selection::Obstacle(name) = selection {
         let obstacles = &snapshot.program.world.obstacles;

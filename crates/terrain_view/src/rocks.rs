@@ -9,9 +9,9 @@ use crate::ground::Ground;
 use crate::scene::place;
 use crate::shapes::Shapes;
 
-/// Rocks are drawn when the camera is no farther away, in metres.
+/// Rocks are drawn when the camera is no farther away, in meters.
 const SHOWN_WITHIN_M: f32 = 160.0;
-/// Rocks farther from the camera's target are left out, in metres; and so are smaller ones, and all beyond this many.
+/// Rocks farther from the camera's target are left out, in meters; and so are smaller ones, and all beyond this many.
 const AROUND_M: f32 = 70.0;
 const LEAST_M: f64 = 0.35;
 const MOST: usize = 300;

@@ -5,7 +5,7 @@ pub fn vehicle_scale(distance_m: f32) -> f32 {
     (distance_m / 45.0).clamp(1.0, 12.0)
 }
 
-/// Metres between grid lines.
+/// Meters between grid lines.
 pub fn grid_spacing_m(distance_m: f32) -> f32 {
     round_step(distance_m / 6.0)
 }

@@ -15,7 +15,7 @@ use crate::sights;
 use crate::tree;
 use crate::vehicles::{VehicleShape, airship, rover};
 
-/// The colours of the scene. They do not depend on the theme, because the ground does not.
+/// The colors of the scene. They do not depend on the theme, because the ground does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScenePalette {
     /// Posts, rims and paths.
@@ -70,7 +70,7 @@ pub struct SceneInput<'a> {
     pub options: &'a SceneOptions,
     /// What a tool in hand has and would do.
     pub sketch: &'a Sketch,
-    /// Obstacles that have appeared in the run that is watched, with centres and radii in metres.
+    /// Obstacles that have appeared in the run that is watched, with centers and radii in meters.
     pub appeared: &'a [(Point2<f64>, f64)],
 }
 
@@ -88,7 +88,7 @@ pub struct Sketch {
     pub disc: Option<(Vec2, f32)>,
 }
 
-/// The height of the posts at locations, in metres.
+/// The height of the posts at locations, in meters.
 pub const POST_M: f32 = 7.0;
 const FENCE_M: f32 = 2.0;
 
@@ -172,7 +172,7 @@ pub fn flight_height_m(ground: &Ground, world: &World, vehicle: &VehicleDecl, pl
     Some((cruise_m - below_m).max(ground_clearance_m as f32))
 }
 
-/// The outline of an obstacle in metres.
+/// The outline of an obstacle in meters.
 pub fn outline(shape: &ObstacleShape) -> Vec<Vec2> {
     match shape {
         ObstacleShape::Circle { center_m, radius_m } => circle_outline(place(*center_m), *radius_m as f32),
@@ -385,7 +385,7 @@ fn sketch(shapes: &mut Shapes, input: &SceneInput<'_>) {
     }
 }
 
-/// A colour with less opacity.
+/// A color with less opacity.
 pub fn faded([red, green, blue, opacity]: [f32; 4], part: f32) -> [f32; 4] {
     [red, green, blue, opacity * part]
 }

@@ -9,7 +9,7 @@ use crate::ground::Ground;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct ShapeCorner {
-    /// In metres.
+    /// In meters.
     pub position_m: [f32; 3],
     /// Outward unit normal.
     pub normal: [f32; 3],
@@ -21,9 +21,9 @@ pub struct ShapeCorner {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct LineSegment {
-    /// Where it starts, in metres, and its width in pixels.
+    /// Where it starts, in meters, and its width in pixels.
     pub from_width: [f32; 4],
-    /// Where it ends, in metres, and by which part of its distance it is drawn nearer to the eye.
+    /// Where it ends, in meters, and by which part of its distance it is drawn nearer to the eye.
     pub to_lift: [f32; 4],
     /// Red, green, blue, opacity.
     pub color: [f32; 4],

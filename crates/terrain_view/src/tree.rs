@@ -7,7 +7,7 @@ use crate::ground::Ground;
 use crate::scene::{SceneInput, cased_line, cased_lines, faded, place};
 use crate::shapes::{Shapes, circle_outline};
 
-/// Draws the trees as they stand, the last sample, and the best path. Of searches that race each has its colour, and a
+/// Draws the trees as they stand, the last sample, and the best path. Of searches that race each has its color, and a
 /// line of its own for its path ([`crate::dash::DASHES`]).
 pub(crate) fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
     let Some(shown) = input.growth.shown() else { return };
@@ -28,7 +28,7 @@ pub(crate) fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
             let ways = standing.edges.iter();
             ways.flat_map(|(tree, way)| way.windows(2).map(|pair| (*tree, [place(pair[0]), place(pair[1])])))
         };
-        // All of the dark ground first: beside short pieces it would cover their neighbours.
+        // All of the dark ground first: beside short pieces it would cover their neighbors.
         for (_, ends) in pairs().filter(|_| !is_race) {
             shapes.draped_line(input.ground, ends, width + 1.8, faded(palette.under, 0.55));
         }
@@ -64,7 +64,7 @@ pub(crate) fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
     }
 }
 
-/// The dashed line along which the nearest vertex was steered towards the sample.
+/// The dashed line along which the nearest vertex was steered toward the sample.
 fn to_sample(shapes: &mut Shapes, ground: &Ground, ends: [Vec2; 2], dash_m: f32, color: [f32; 4]) {
     for dash in crate::dash::dashed(&ends, &[1.0, 1.0], dash_m) {
         shapes.draped_line(ground, dash, 1.6, color);

@@ -8,7 +8,7 @@ use crate::shapes::Shapes;
 /// A vehicle as it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleShape {
-    /// Where it is, in metres.
+    /// Where it is, in meters.
     pub place_m: Vec2,
     /// Direction of its nose, counter-clockwise from east.
     pub heading_rad: f32,
@@ -41,7 +41,7 @@ pub fn rover(shapes: &mut Shapes, ground: &Ground, shape: &VehicleShape) {
     let base = ground.drape(shape.place_m, 0.0);
     let (length, width) = (shape.length_m, shape.width_m);
     let wheel = length * 0.2;
-    // A place on the vehicle: metres ahead, to the left and up.
+    // A place on the vehicle: meters ahead, to the left and up.
     let at = |ahead: f32, left: f32, up: f32| base + axes * Vec3::new(ahead, left, up);
     let box_at =
         |shapes: &mut Shapes, center: Vec3, half: Vec3, color| shapes.cuboid(center, half, &axes, color);
@@ -95,7 +95,7 @@ pub fn airship(shapes: &mut Shapes, shape: &VehicleShape, height_m: f32) {
     let point = |ring: u32, side: u32| {
         let polar = ring as f32 / RINGS as f32 * std::f32::consts::PI;
         let around = side as f32 / SIDES as f32 * std::f32::consts::TAU;
-        // Fuller towards the nose, as hulls are.
+        // Fuller toward the nose, as hulls are.
         let swell = radius * polar.sin() * (1.0 + 0.18 * polar.cos());
         let local = Vec3::new(polar.cos() * half, around.cos() * swell, around.sin() * swell);
         center + axes * local

@@ -1,6 +1,6 @@
-//! How the app looks: colour tokens, spacing, type sizes, and their translation to egui's style.
+//! How the app looks: color tokens, spacing, type sizes, and their translation to egui's style.
 //!
-//! Panels name meanings ("a threat", "weak text"), never colours; `clippy.toml` refuses colour constructors elsewhere.
+//! Panels name meanings ("a threat", "weak text"), never colors; `clippy.toml` refuses color constructors elsewhere.
 //! Everything that draws takes its looks from here; this knows nothing of missions.
 
 pub mod icon;
@@ -21,7 +21,7 @@ pub use tokens::{DARK, LIGHT, Syntax, Tokens};
 pub mod space {
     /// Between parts of one thing.
     pub const XS: f32 = 2.0;
-    /// Between neighbours.
+    /// Between neighbors.
     pub const S: f32 = 4.0;
     /// Between groups; a panel's margin.
     pub const M: f32 = 8.0;

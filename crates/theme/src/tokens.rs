@@ -1,14 +1,14 @@
-//! The colours, each named for what it means, in both themes.
+//! The colors, each named for what it means, in both themes.
 //!
-//! Categories use the palette of Okabe and Ito, which stays apart for the common kinds of colour blindness; shades are
+//! Categories use the palette of Okabe and Ito, which stays apart for the common kinds of color blindness; shades are
 //! adapted to each background so that text keeps a contrast of 4.5 : 1.
-#![expect(clippy::disallowed_methods, reason = "this is the one place where colours are made")]
+#![expect(clippy::disallowed_methods, reason = "this is the one place where colors are made")]
 #![expect(clippy::mistyped_literal_suffixes, reason = "the digits stand in pairs: red, green, blue")]
 
 use display::{ColorRole, Theme};
 use egui::Color32;
 
-/// The colours of one theme.
+/// The colors of one theme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tokens {
     /// Whether the theme is light on dark.
@@ -85,12 +85,12 @@ pub struct Tokens {
     /// Failures in search trees.
     pub failure: Color32,
 
-    /// Categories such as vehicles and threads, in order; always with another sign beside the colour.
+    /// Categories such as vehicles and threads, in order; always with another sign beside the color.
     pub series: [Color32; 8],
     pub syntax: Syntax,
 }
 
-/// The colours of source text.
+/// The colors of source text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Syntax {
     pub keyword: Color32,
@@ -123,13 +123,13 @@ impl Tokens {
     /// Ground where a vehicle has no room, on clearance maps.
     pub const NO_ROOM: Color32 = rgb(0x12_0A_10);
 
-    /// The colour of a category, starting over after the last.
+    /// The color of a category, starting over after the last.
     pub fn series(&self, index: usize) -> Color32 {
         self.series[index % self.series.len()]
     }
 
-    /// The colour of `part`, from 0 to 1, on the ramp for heights and slopes: even to the eye, and apart for the
-    /// colour-blind. The terrain's shader uses the same one.
+    /// The color of `part`, from 0 to 1, on the ramp for heights and slopes: even to the eye, and apart for the
+    /// color-blind. The terrain's shader uses the same one.
     pub fn ramp(part: f32) -> Color32 {
         const STOPS: [Color32; 4] = [rgb(0x21_30_6B), rgb(0x2B_75_8C), rgb(0x9E_B0_78), rgb(0xFC_E8_99)];
         let scaled = part.clamp(0.0, 1.0) * 3.0;
@@ -137,7 +137,7 @@ impl Tokens {
         STOPS[index].lerp_to_gamma(STOPS[index + 1], scaled - index as f32)
     }
 
-    /// The colour of a role in a display list.
+    /// The color of a role in a display list.
     pub fn role(&self, role: ColorRole) -> Color32 {
         match role {
             ColorRole::Surface => self.surface,
@@ -175,12 +175,12 @@ impl Tokens {
         }
     }
 
-    /// The theme that pictures and files in these colours have.
+    /// The theme that pictures and files in these colors have.
     pub const fn exported(&self) -> Theme {
         if self.is_dark { Theme::Dark } else { Theme::Light }
     }
 
-    /// `color` mixed into the surface: `part` 0 is the surface, 1 the colour.
+    /// `color` mixed into the surface: `part` 0 is the surface, 1 the color.
     pub fn mixed(&self, color: Color32, part: f32) -> Color32 {
         self.surface.lerp_to_gamma(color, part)
     }
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn files_have_the_colours_of_the_screen() {
+    fn files_have_the_colors_of_the_screen() {
         let roles = [
             ColorRole::Surface,
             ColorRole::Sunken,
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn categories_differ_in_lightness_or_are_far_apart_in_colour() {
+    fn categories_differ_in_lightness_or_are_far_apart_in_color() {
         for tokens in [&DARK, &LIGHT] {
             for (index, left) in tokens.series.iter().enumerate() {
                 for right in &tokens.series[index + 1..] {

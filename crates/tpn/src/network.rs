@@ -50,7 +50,7 @@ id! {
     ArcId;
     /// A decision, in textual order: `DecisionId(0)` is `D1`.
     DecisionId;
-    /// A labelled interval: one label of one arc, in textual order of the arcs.
+    /// A labeled interval: one label of one arc, in textual order of the arcs.
     LabelId;
     /// One occurrence of an activity, assertion, delay, scenario or conditional scope, in textual expansion order.
     OccurrenceId;
@@ -74,7 +74,7 @@ pub struct Network {
     pub nodes: Vec<Node>,
     /// The constraints, in textual order within each node.
     pub arcs: Vec<Arc>,
-    /// The labelled intervals.
+    /// The labeled intervals.
     pub labels: Vec<Label>,
     /// The decisions, in textual order.
     pub decisions: Vec<Decision>,
@@ -93,7 +93,7 @@ pub struct Network {
     pub worths: Vec<Worth>,
     /// How long movements take at least, by where they start, as far as that is known (SPEC 10.3).
     pub departures: Vec<Departure>,
-    /// How many metres movements drive at least, by where they start, as far as that is known and counts (SPEC 12).
+    /// How many meters movements drive at least, by where they start, as far as that is known and counts (SPEC 12).
     #[serde(default)]
     pub distances: Vec<Distance>,
     /// What plans are to be best in, the most important goal first; empty if any plan will do.
@@ -314,8 +314,8 @@ pub struct Use {
     pub change: Change,
     /// How much; not negative.
     pub amount: Rational,
-    /// How much more for each metre of the planned path.
-    pub per_metre: Rational,
+    /// How much more for each meter of the planned path.
+    pub per_meter: Rational,
     /// How much less a drive may consume, or how much more it may produce, than `amount` counts: drives differ in length.
     #[serde(default)]
     pub spread: Rational,
@@ -339,8 +339,8 @@ pub struct Worth {
     pub arc: ArcId,
     /// Its cost, however far it drives.
     pub cost: Rational,
-    /// Its cost for each metre of the planned path.
-    pub cost_per_metre: Rational,
+    /// Its cost for each meter of the planned path.
+    pub cost_per_meter: Rational,
     pub reward: Rational,
 }
 
@@ -356,7 +356,7 @@ pub struct Departure {
     pub least: Option<Time>,
 }
 
-/// How many metres a movement drives at least if it starts at one place: before its path is known along the straight
+/// How many meters a movement drives at least if it starts at one place: before its path is known along the straight
 /// line, and along its path afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Distance {
@@ -364,8 +364,8 @@ pub struct Distance {
     pub arrival: LabelId,
     /// Where that vehicle is before.
     pub from: ValueId,
-    /// The metres.
-    pub metres: Rational,
+    /// The meters.
+    pub meters: Rational,
 }
 
 /// One goal of an objective (SPEC 12).
@@ -494,7 +494,7 @@ pub enum OccurrenceKind {
     Delay,
     /// The scenario itself, or the activity planned for.
     Scenario,
-    /// A `do` or an `if` whose condition is no activity's own: `do#1`, `if#1`. It names the labelled interval and has
+    /// A `do` or an `if` whose condition is no activity's own: `do#1`, `if#1`. It names the labeled interval and has
     /// no events of its own, so it appears in no windows.
     Scope,
 }
@@ -516,7 +516,7 @@ pub struct Block {
 pub enum BlockKind {
     /// One arc: a primitive, an assertion, a delay, or nothing (an empty block's glue).
     Leaf { arc: ArcId },
-    /// One after the other; the glue between neighbours is the arc from one's end to the next one's start, if they
+    /// One after the other; the glue between neighbors is the arc from one's end to the next one's start, if they
     /// are different nodes.
     Sequence { children: Vec<BlockId> },
     /// All, between a fork and a join.
@@ -683,9 +683,9 @@ impl Network {
         natures
     }
 
-    /// Whether the objective counts metres: driven ones, or the cost of each.
-    pub fn counts_metres(&self) -> bool {
-        let has_cost = self.worths.iter().any(|worth| !worth.cost_per_metre.is_zero());
+    /// Whether the objective counts meters: driven ones, or the cost of each.
+    pub fn counts_meters(&self) -> bool {
+        let has_cost = self.worths.iter().any(|worth| !worth.cost_per_meter.is_zero());
         let counted = |measure: Measure| match measure {
             Measure::Length => true,
             Measure::Cost => has_cost,
@@ -724,7 +724,7 @@ impl Network {
         }
     }
 
-    /// The name of a labelled interval: `Ask(PATH1=OK)@Group-Traverse-Path#1`, `Set(ARM=OUT)@Deploy#1`, `Init(ARM=IN)`. Of
+    /// The name of a labeled interval: `Ask(PATH1=OK)@Group-Traverse-Path#1`, `Set(ARM=OUT)@Deploy#1`, `Init(ARM=IN)`. Of
     /// several by one owner the second is `Ask(ARM=OUT)#2@Dig#1`.
     pub fn label_name(&self, label: LabelId) -> String {
         let of = &self.labels[label.index()];

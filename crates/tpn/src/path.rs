@@ -12,7 +12,7 @@ pub struct TraversePath {
     pub occurrence: OccurrenceId,
     /// Its legs between waypoints, in order.
     pub legs: Vec<PathLeg>,
-    /// Least and greatest speed in metres per second; the greatest is positive.
+    /// Least and greatest speed in meters per second; the greatest is positive.
     pub speed_mps: (Rational, Rational),
     /// Whether the rover may stop on the way, so that no segment has a greatest duration.
     pub may_stop: bool,
@@ -21,9 +21,9 @@ pub struct TraversePath {
 /// The path between two waypoints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathLeg {
-    /// The length of each segment in metres, in order. The vertex that ends the last one is the waypoint.
+    /// The length of each segment in meters, in order. The vertex that ends the last one is the waypoint.
     pub segment_lengths_m: Vec<f64>,
-    /// The mean speed in metres per second that the ground allows on each segment, where that is less than the
+    /// The mean speed in meters per second that the ground allows on each segment, where that is less than the
     /// greatest speed. A segment beyond the end of this list is driven as fast as the traverse may be.
     pub slope_speeds_mps: Vec<Option<f64>>,
 }
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(minutes(500.0, (45, 1000)), Time::new(11_111_112, 60_000));
         assert_eq!(minutes(415.0, (5, 100)), Time::new(8_300_000, 60_000));
         assert_eq!(minutes(0.0, (1, 1)), Some(Time::ZERO));
-        // One ten-thousandth of a millimetre still takes a millisecond.
+        // One ten-thousandth of a millimeter still takes a millisecond.
         assert_eq!(duration(1e-7, Rational::ONE, 1), Time::new(1, 1000));
         assert_eq!(duration(1e-300, Rational::ONE, 1), Time::new(1, 1000));
     }

@@ -324,7 +324,7 @@ pub struct Quality {
     pub reward: Rational,
     /// The earliest time of the scenario's end.
     pub end: Time,
-    /// Metres driven, once paths are known.
+    /// Meters driven, once paths are known.
     pub length_m: f64,
     /// Whether no valid plan is better, where the mission has an objective.
     pub is_optimal: Option<bool>,

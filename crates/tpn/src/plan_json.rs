@@ -324,9 +324,9 @@ impl Names {
         self.uses.get(name).copied().ok_or_else(|| unknown("use of a resource", name))
     }
 
-    /// A labelled interval.
+    /// A labeled interval.
     pub fn label(&self, name: &str) -> Result<LabelId, PlanError> {
-        self.labels.get(name).copied().ok_or_else(|| unknown("labelled interval", name))
+        self.labels.get(name).copied().ok_or_else(|| unknown("labeled interval", name))
     }
 }
 

@@ -12,7 +12,7 @@ pub fn measures(network: &Network) -> Vec<Measure> {
         let terms = network.objective.iter().flat_map(|goal| &goal.terms);
         let is_goal = terms.into_iter().any(|(_, it)| *it == measure);
         let is_given = network.worths.iter().any(|worth| match measure {
-            Measure::Cost => !worth.cost.is_zero() || !worth.cost_per_metre.is_zero(),
+            Measure::Cost => !worth.cost.is_zero() || !worth.cost_per_meter.is_zero(),
             Measure::Reward => !worth.reward.is_zero(),
             Measure::End | Measure::Length => false,
         });
@@ -39,7 +39,7 @@ pub fn words(network: &Network, plan: &Plan) -> Option<String> {
     (!figures.is_empty()).then(|| figures.join(", "))
 }
 
-/// What a plan comes to in each goal of its mission's objective, with so many metres driven, rounded up to the millimetre;
+/// What a plan comes to in each goal of its mission's objective, with so many meters driven, rounded up to the millimeter;
 /// `None` where a number does not fit.
 pub fn goal_values(network: &Network, plan: &Plan, driven_m: f64) -> Option<Vec<Rational>> {
     let quality = &plan.quality;
@@ -55,12 +55,12 @@ pub fn goal_values(network: &Network, plan: &Plan, driven_m: f64) -> Option<Vec<
     network.objective.iter().map(|goal| goal.terms.iter().try_fold(Rational::ZERO, add)).collect()
 }
 
-/// Metres as numbers that plans are weighed by: to the millimetre, rounded up.
+/// Meters as numbers that plans are weighed by: to the millimeter, rounded up.
 pub fn rounded_up(length_m: f64) -> Option<Rational> {
     Rational::from_f64_up(length_m, 1000)
 }
 
-/// Whether one plan is better than another by its mission's objective, with the metres that each drives.
+/// Whether one plan is better than another by its mission's objective, with the meters that each drives.
 pub fn compare(network: &Network, one: &Plan, other: &Plan) -> Ordering {
     let [left, right] = [one, other].map(|plan| goal_values(network, plan, plan.quality.length_m));
     let (Some(left), Some(right)) = (left, right) else { return Ordering::Equal };

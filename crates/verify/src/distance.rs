@@ -149,7 +149,7 @@ impl Distances {
         &self,
         source: u32,
         target: Option<u32>,
-        neighbours: impl Fn(&Self, u32, &mut dyn FnMut(u32, i128)),
+        neighbors: impl Fn(&Self, u32, &mut dyn FnMut(u32, i128)),
     ) -> Vec<Option<i128>> {
         let mut best: Vec<Option<i128>> = vec![None; self.potential.len()];
         let mut queue = BinaryHeap::new();
@@ -162,7 +162,7 @@ impl Distances {
             if Some(node) == target {
                 break;
             }
-            neighbours(self, node, &mut |next, reduced| {
+            neighbors(self, node, &mut |next, reduced| {
                 let through = distance + reduced;
                 if best[next as usize].is_none_or(|known| through < known) {
                     best[next as usize] = Some(through);

@@ -163,7 +163,7 @@ enum Direction {
     To,
 }
 
-/// Distances between one node and others: the first by a search of its own, which is short for neighbours, later ones
+/// Distances between one node and others: the first by a search of its own, which is short for neighbors, later ones
 /// from a whole row or column.
 struct Lookup<'distances> {
     distances: &'distances Distances,

@@ -1,9 +1,9 @@
-//! The selected labelled intervals, and which pairs of them conflict where the variable does not last (SPEC 3.1).
+//! The selected labeled intervals, and which pairs of them conflict where the variable does not last (SPEC 3.1).
 
 use exact::Bound;
 use tpn::{Extent, LabelId, Network, NodeId, Plan};
 
-/// A selected labelled interval.
+/// A selected labeled interval.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
     pub(crate) label: LabelId,

@@ -41,7 +41,7 @@ pub struct Violation {
     pub message: String,
     /// The events it is about, as named in all output.
     pub events: Vec<String>,
-    /// The labelled intervals and the uses of resources that it is about.
+    /// The labeled intervals and the uses of resources that it is about.
     pub intervals: Vec<String>,
 }
 

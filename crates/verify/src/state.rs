@@ -100,7 +100,7 @@ pub(crate) fn is_own_effect(network: &Network, effect: LabelId, required: LabelI
     effect.extent == Extent::Effect && effect.arc == required.arc
 }
 
-/// Who a labelled interval belongs to, for people: `Deploy#1`, or the interval's own name.
+/// Who a labeled interval belongs to, for people: `Deploy#1`, or the interval's own name.
 pub(crate) fn owner_name(network: &Network, label: LabelId) -> String {
     match network.labels[label.index()].owner.and_then(|owner| network.occurrences.get(owner.index())) {
         Some(owner) => owner.name.to_string(),

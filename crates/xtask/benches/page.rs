@@ -147,7 +147,7 @@ enum Movement {
 impl Movement {
     /// Moves the drawing of this name, and answers how long each frame took.
     fn measure(self, tab: &Tab, drawing: &str) -> Result<Frames> {
-        let (x, y) = tab.widget("img", drawing)?.centre();
+        let (x, y) = tab.widget("img", drawing)?.center();
         let mut frames = Frames::default();
         match self {
             Self::Zoom => {

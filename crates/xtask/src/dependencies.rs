@@ -15,7 +15,7 @@ const UNDERSTOOD: [(&str, &str, Option<&str>); 11] = [
     ("graph", "all-features", Some("true")),
     ("licenses", "allow", None),
     ("licenses", "exceptions", None),
-    // Licences are taken as packages state them; their files are not read.
+    // Licenses are taken as packages state them; their files are not read.
     ("licenses", "confidence-threshold", None),
     ("bans", "multiple-versions", Some("\"allow\"")),
     ("bans", "wildcards", Some("\"deny\"")),
@@ -51,13 +51,13 @@ impl Rules {
                 }
             }
         }
-        let licences = tables.get("licenses").context("deny.toml has no [licenses]")?;
-        let exceptions = licences.get("exceptions").and_then(toml::Value::as_array);
+        let licenses = tables.get("licenses").context("deny.toml has no [licenses]")?;
+        let exceptions = licenses.get("exceptions").and_then(toml::Value::as_array);
         let exceptions = exceptions.into_iter().flatten().map(|exception| {
             let name = exception.get("crate").and_then(toml::Value::as_str);
             Ok((name.context("an exception names no crate")?.to_owned(), texts(exception.get("allow"))))
         });
-        Ok(Self { allowed: texts(licences.get("allow")), exceptions: exceptions.collect::<Result<_>>()? })
+        Ok(Self { allowed: texts(licenses.get("allow")), exceptions: exceptions.collect::<Result<_>>()? })
     }
 
     /// What is wrong with the packages of `cargo metadata`, a line each.
@@ -82,21 +82,21 @@ impl Rules {
             Some(REGISTRY) => {}
             Some(other) => wrong.push(format!("{name} comes from {other}")),
         }
-        let Some(licence) = package["license"].as_str() else {
-            wrong.push(format!("{name} names no licence"));
+        let Some(license) = package["license"].as_str() else {
+            wrong.push(format!("{name} names no license"));
             return wrong;
         };
         let by_exception = self.exceptions.get(name);
-        match Expression::parse_mode(licence, ParseMode::LAX) {
+        match Expression::parse_mode(license, ParseMode::LAX) {
             Err(problem) => {
-                wrong.push(format!("{name} has a licence that SPDX does not know: {}", problem.reason));
+                wrong.push(format!("{name} has a license that SPDX does not know: {}", problem.reason));
             }
             Ok(expression) => {
                 let is_met = |allowed: &BTreeSet<String>| {
                     expression.evaluate(|requirement| allowed.contains(&requirement.to_string()))
                 };
                 if !is_met(&self.allowed) && !by_exception.is_some_and(is_met) {
-                    wrong.push(format!("{name} has the licence {licence}"));
+                    wrong.push(format!("{name} has the license {license}"));
                 }
             }
         }
@@ -128,8 +128,8 @@ mod tests {
     }
 
     #[test]
-    fn licence_expressions_are_read_as_spdx_says() {
-        for (licence, is_allowed) in [
+    fn license_expressions_are_read_as_spdx_says() {
+        for (license, is_allowed) in [
             ("MIT", true),
             ("GPL-3.0-only", false),
             ("MIT/Apache-2.0", true),
@@ -138,16 +138,16 @@ mod tests {
             ("(MIT OR GPL-2.0-only) AND Apache-2.0", true),
             ("GPL-2.0-only OR (MIT AND ISC)", false),
             ("Apache-2.0 WITH LLVM-exception", true),
-            ("no licence at all", false),
+            ("no license at all", false),
         ] {
-            let package = json!({ "name": "some", "source": REGISTRY, "license": licence });
-            assert_eq!(said_of(&package).is_empty(), is_allowed, "{licence}");
+            let package = json!({ "name": "some", "source": REGISTRY, "license": license });
+            assert_eq!(said_of(&package).is_empty(), is_allowed, "{license}");
         }
         let named = |name: &str| json!({ "name": name, "source": REGISTRY, "license": "MPL-2.0" });
         assert_eq!(said_of(&named("colored")), Vec::<String>::new());
-        assert_eq!(said_of(&named("colour")).len(), 1);
+        assert_eq!(said_of(&named("color")).len(), 1);
         let silent = json!({ "name": "some", "source": REGISTRY, "license": null });
-        assert_eq!(said_of(&silent), ["some names no licence"]);
+        assert_eq!(said_of(&silent), ["some names no license"]);
     }
 
     #[test]

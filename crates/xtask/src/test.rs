@@ -182,7 +182,7 @@ fn check_dependencies() -> Result<()> {
         return run(cargo().args(["deny", "--log-level", "error", "check"]));
     }
     println!(
-        "cargo-deny is not installed: licences, sources and versions are checked by a test, known vulnerabilities are \
+        "cargo-deny is not installed: licenses, sources and versions are checked by a test, known vulnerabilities are \
          not (`cargo install --locked cargo-deny`)"
     );
     Ok(())

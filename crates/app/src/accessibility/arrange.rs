@@ -29,7 +29,7 @@ pub(super) fn is_leaf(role: &str) -> bool {
     LEAVES.contains(&role)
 }
 
-/// Puts the tabs among neighbours into a list of tabs, where the first of them stood. `parent` is whose children they
+/// Puts the tabs among neighbors into a list of tabs, where the first of them stood. `parent` is whose children they
 /// are.
 pub(super) fn gather_tabs(parent: u64, inside: &[u64], elements: &mut BTreeMap<u64, Element>) -> Vec<u64> {
     let is_tab = |id: &u64| elements.get(id).is_some_and(|element| element.role == "tab");

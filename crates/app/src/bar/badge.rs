@@ -1,4 +1,4 @@
-//! How the badge looks: a sign, a word and a colour for each way in which the plan can stand.
+//! How the badge looks: a sign, a word and a color for each way in which the plan can stand.
 
 use egui::Color32;
 use theme::Tokens;
@@ -11,7 +11,7 @@ use workbench::state::Status;
 pub struct Look {
     pub sign: Icon,
     pub text: &'static str,
-    /// The colour of both.
+    /// The color of both.
     pub color: Color32,
     /// What lies behind them.
     pub fill: Color32,

@@ -201,7 +201,7 @@ fn workspace_list(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSend
     shown.response.accessible_name("Workspace");
 }
 
-/// Where the plan stands: a sign, a word, and a colour.
+/// Where the plan stands: a sign, a word, and a color.
 fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let latest = context.state.snapshots.latest();

@@ -37,7 +37,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_has_the_size_that_was_asked_for_and_the_colours_of_the_drawing() {
+    fn a_picture_has_the_size_that_was_asked_for_and_the_colors_of_the_drawing() {
         let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" width="10" height="5">
             <rect width="10" height="5" fill="#102030"/></svg>"##;
         let picture = pixels(svg, [40, 20]);

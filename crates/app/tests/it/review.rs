@@ -1,4 +1,4 @@
-//! The review as a reviewer meets it: computed lines that lead to their places, staleness, comments, acknowledgements, approvals, files.
+//! The review as a reviewer meets it: computed lines that lead to their places, staleness, comments, acknowledgments, approvals, files.
 
 use crate::support;
 use egui::Role;

@@ -106,8 +106,8 @@ fn two_clicks_measure_and_a_third_begins_anew() {
     });
     let label = found.into_inner();
     let ground = label.split("Surface distance ").nth(1).and_then(|rest| rest.split(" m").next());
-    let metres: f64 = ground.and_then(|text| text.parse().ok()).expect("a distance");
-    assert!((metres - 80.0).abs() < 2.5, "{label}");
+    let meters: f64 = ground.and_then(|text| text.parse().ok()).expect("a distance");
+    assert!((meters - 80.0).abs() < 2.5, "{label}");
     app.harness.get_by_label("Line of sight");
     app.harness.get_by_label("clear");
     click(&mut app, here);
@@ -141,14 +141,14 @@ fn a_drag_places_a_round_obstacle_and_clicks_place_one_with_corners() {
     let mut app = above();
     let middle = on_path(&app) + vec2(0.0, 90.0);
     let (here, there) = (place(&app, "HERE"), place(&app, "THERE"));
-    let ten_metres = (there.x - here.x) / 8.0;
+    let ten_meters = (there.x - here.x) / 8.0;
     dispatch(&mut app, "terrain.circle", &json!(null));
     press(&mut app, middle, true);
     for part in 1..=4 {
-        app.harness.event(egui::Event::PointerMoved(middle + vec2(ten_metres * part as f32 / 4.0, 0.0)));
+        app.harness.event(egui::Event::PointerMoved(middle + vec2(ten_meters * part as f32 / 4.0, 0.0)));
         app.harness.step();
     }
-    press(&mut app, middle + vec2(ten_metres, 0.0), false);
+    press(&mut app, middle + vec2(ten_meters, 0.0), false);
     app.settle();
     let source = app.harness.state().source();
     let line =
@@ -179,7 +179,7 @@ fn a_drag_draws_a_wall_while_a_tree_is_shown_and_a_click_none() {
     dispatch(&mut app, "terrain.growTo", &json!({ "samples": 3 }));
     assert_eq!(app.json()["terrain"]["growth"]["samples"], 3);
     let (here, there) = (place(&app, "HERE"), place(&app, "THERE"));
-    let ten_metres = (there.x - here.x) / 8.0;
+    let ten_meters = (there.x - here.x) / 8.0;
     let from = on_path(&app) + vec2(0.0, 90.0);
     dispatch(&mut app, "terrain.wall", &json!(null));
     app.harness.get_by_label("Drag from one end of the wall to the other · Shift for several");
@@ -187,10 +187,10 @@ fn a_drag_draws_a_wall_while_a_tree_is_shown_and_a_click_none() {
     assert_eq!(app.harness.state().source(), MISSION, "a click is no wall");
     press(&mut app, from, true);
     for part in 1..=4 {
-        app.harness.event(egui::Event::PointerMoved(from + vec2(ten_metres * part as f32 / 2.0, 0.0)));
+        app.harness.event(egui::Event::PointerMoved(from + vec2(ten_meters * part as f32 / 2.0, 0.0)));
         app.harness.step();
     }
-    press(&mut app, from + vec2(2.0 * ten_metres, 0.0), false);
+    press(&mut app, from + vec2(2.0 * ten_meters, 0.0), false);
     app.settle();
     let source = app.harness.state().source();
     let line =

@@ -37,7 +37,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let text = read_text(&args.file)?;
     let name = args.file.display().to_string();
     if is_places(&name, &text) {
-        let frame = Frame { is_metres: args.meters, origin_deg: args.origin, radius_m: args.radius };
+        let frame = Frame { is_meters: args.meters, origin_deg: args.origin, radius_m: args.radius };
         let lines =
             geojson::declarations(&name, &text, &frame).with_context(|| format!("cannot read {name}"))?;
         match args.format {

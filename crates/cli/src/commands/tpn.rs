@@ -103,7 +103,7 @@ fn print_rmpl(
 ) -> anyhow::Result<ExitCode> {
     let (mut nodes, mut arcs, mut remarks) = (Vec::new(), Vec::new(), Vec::new());
     if let Some(read) = as_read(compiled) {
-        remarks.extend(read.not_honoured().iter().map(|said| format!("Not honoured: {said}.")));
+        remarks.extend(read.not_honored().iter().map(|said| format!("Not honored: {said}.")));
         (nodes, arcs) = (read.node_uids, read.arc_uids);
     }
     match (interchange::rmpl_text::write(network, &remarks), format) {

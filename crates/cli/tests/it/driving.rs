@@ -60,7 +60,7 @@ fn vehicles_drive_in_simulation_and_scripts_get_in_their_way() {
 
 #[test]
 fn a_mission_drives_over_a_map_file_that_lies_beside_it() {
-    // A valley between two ridges: 40 × 40 cells of 5 m, heights in whole metres.
+    // A valley between two ridges: 40 × 40 cells of 5 m, heights in whole meters.
     let rows = (0..40).flat_map(|row: i32| std::iter::repeat_n((row - 20).unsigned_abs() as u8, 40));
     let mut map = b"P5 40 40 255\n".to_vec();
     map.extend(rows);

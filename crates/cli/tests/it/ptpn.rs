@@ -51,7 +51,7 @@ fn a_network_of_rmpyl_is_planned_and_its_choice_is_one() {
         Some(if rows.to_string().contains("ridge") { 4 } else { 5 }),
         "{rows}"
     );
-    // Utilities are not honoured, and said.
+    // Utilities are not honored, and said.
     let said = plan["diagnostics"].to_string();
     assert!(said.contains("W-NETWORK") && said.contains("a reward (2 times)"), "{said}");
 

@@ -18,7 +18,7 @@ use text_editing::{Caret, Document, Find, Motion, Rows, TextCommand};
 struct Known {
     foldable: Vec<usize>,
     signature: Option<Signature>,
-    /// What was asked to be coloured.
+    /// What was asked to be colored.
     asked: Vec<Range<usize>>,
 }
 

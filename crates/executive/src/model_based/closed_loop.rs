@@ -1,7 +1,7 @@
 //! The closed loop of one step: goals, commands, what nature answers, what is observed, what is believed then (SPEC 9.3).
 //!
 //! What a program knows is what its estimate entails: in the most likely state or, where the program says so, with a
-//! probability (SPEC3 17.4). One plant may be under several programs at once: each step commands it towards the goals of all of them, and all move on
+//! probability (SPEC3 17.4). One plant may be under several programs at once: each step commands it toward the goals of all of them, and all move on
 //! by the same estimate.
 
 use std::collections::BTreeMap;
@@ -332,7 +332,7 @@ fn drawn(choice: &Choice, random: &mut Random) -> usize {
     choice.weights.iter().position(is_it).unwrap_or(0)
 }
 
-/// The commands from a state towards the goals of the marked locations.
+/// The commands from a state toward the goals of the marked locations.
 fn command(
     programs: &[&mut ProgramExecution],
     estimator: &mut Estimator,

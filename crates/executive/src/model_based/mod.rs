@@ -1,6 +1,6 @@
 //! The model-based executive: a control program in a closed loop with a plant (SPEC 9.3).
 //!
-//! Each step asserts goals, commands the plant towards them, lets nature answer, observes, updates the belief, and
+//! Each step asserts goals, commands the plant toward them, lets nature answer, observes, updates the belief, and
 //! moves the automaton by what is entailed: by the most likely state, or from a probability on that the program names.
 
 mod closed_loop;

@@ -19,7 +19,7 @@ use crate::plan_network::PlanError;
 use crate::world::WorldChange;
 use crate::world_state::Lack;
 
-/// A traverse has driven so many metres more than its path has.
+/// A traverse has driven so many meters more than its path has.
 pub(super) struct Odometer {
     at: Time,
     pub(super) occurrence: OccurrenceId,
@@ -42,7 +42,7 @@ impl Run<'_> {
             let Some(at) = next else { return Ok(None) };
             self.advance(at);
             let violation = if driven == Some(at) {
-                self.count_metres()
+                self.count_meters()
             } else if read == Some(at) {
                 self.read_plant()?
             } else {
@@ -55,13 +55,13 @@ impl Run<'_> {
     }
 
     /// Takes in how far a traverse that starts now will have driven, and when.
-    pub(super) fn expect_metres(
+    pub(super) fn expect_meters(
         &mut self,
         occurrence: OccurrenceId,
         execution: &ActivityExecution,
     ) -> Result<(), Overflow> {
         self.counted_margins.insert(occurrence, execution.counted_margins);
-        for &(after, extra_m) in &execution.extra_metres {
+        for &(after, extra_m) in &execution.extra_meters {
             let at = self.now.checked_add(after).ok_or(Overflow)?;
             let place = self.odometers.partition_point(|before| before.at <= at);
             self.odometers.insert(place, Odometer { at, occurrence, extra_m });
@@ -199,8 +199,8 @@ impl Run<'_> {
         )
     }
 
-    /// A traverse has driven farther than planned, or is there and has driven less: what it takes for each metre counts.
-    fn count_metres(&mut self) -> Option<Violation> {
+    /// A traverse has driven farther than planned, or is there and has driven less: what it takes for each meter counts.
+    fn count_meters(&mut self) -> Option<Violation> {
         let Odometer { occurrence, extra_m, .. } = self.odometers.pop_front()?;
         let before_m = self.extra_m.insert(occurrence, extra_m);
         let [taken_m, given_m] = self.counted_margins.get(&occurrence).copied().unwrap_or_default();
@@ -220,7 +220,7 @@ impl Run<'_> {
             };
             let is_gain = used.change == Change::Produces;
             let more_m = since_m(if is_gain { given_m.checked_neg() } else { Some(taken_m) });
-            let amount = more_m.and_then(|more_m| used.per_metre.checked_mul(more_m));
+            let amount = more_m.and_then(|more_m| used.per_meter.checked_mul(more_m));
             let Some(amount) = amount.filter(|amount| !amount.is_zero()) else { continue };
             let mut by = if is_gain { amount } else { amount.checked_neg().unwrap_or_default() };
             if !is_gain && by.is_positive() {

@@ -188,7 +188,7 @@ fn contradicting_and_impossible_goals_are_reported_and_the_others_still_pursued(
 }
 
 #[test]
-fn program_variables_end_a_trap_in_the_loop_and_a_misspelt_component_is_no_program_variable() {
+fn program_variables_end_a_trap_in_the_loop_and_a_misspelled_component_is_no_program_variable() {
     let plant = text("orbit_plant.rmpl");
     let trap = "(DO-WATCHING (exit = true) (PARALLEL (ALWAYS true) (WHEN-DONEXT (Camera = Off) (exit = true)) (Camera = Off)))";
     let system = System::compile(trap, Some(&plant)).system.expect("compiles");
@@ -291,7 +291,7 @@ fn a_run_that_got_stuck_is_made_again_from_its_seed() {
 
 #[test]
 fn the_interval_is_wilsons() {
-    // Wilson's interval of 8 in 10, computed by hand: centre 0.716740, half width 0.226577.
+    // Wilson's interval of 8 in 10, computed by hand: center 0.716740, half width 0.226577.
     let (low, high) = wilson_interval(8, 10);
     assert!((low - 0.490_162).abs() < 1e-5 && (high - 0.943_318).abs() < 1e-5, "{low} {high}");
     assert_eq!(wilson_interval(0, 0), (0.0, 1.0));

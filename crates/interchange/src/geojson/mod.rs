@@ -17,7 +17,7 @@ use serde_json::Value;
 pub use keyhole::without_holes;
 pub use projection::{BODY_RADII_M, EARTH_RADIUS_M, Frame, Projection};
 
-/// The member of a file, beside `type`, that says what its coordinates are: `{"units": "metres"}` for metres east and
+/// The member of a file, beside `type`, that says what its coordinates are: `{"units": "metres"}` for meters east and
 /// north of the mission's origin, or `{"origin": [LON, LAT], "radius_m": R}` for where the origin is and how large the
 /// body.
 pub const FRAME: &str = "enroute_frame";
@@ -280,7 +280,7 @@ impl Reader {
 
 const MAX_NAME_BYTES: usize = 60;
 
-/// Radii that a declaration can give: at least a millimetre.
+/// Radii that a declaration can give: at least a millimeter.
 const RADII_M: std::ops::Range<f64> = 0.001..1e8;
 
 impl Shape {
@@ -289,7 +289,7 @@ impl Shape {
         let project = |position: [f64; 2]| {
             let place = || name.clone();
             projection
-                .to_metres(position)
+                .to_meters(position)
                 .map_err(|problem| GeoJsonError::Position { place: place(), problem })
         };
         match &self.geometry {
@@ -298,7 +298,7 @@ impl Shape {
             }
             Geometry::Circle { center, radius_m } => {
                 let center = written([project(*center)?]);
-                let _ = writeln!(lines, "obstacle {name} circle ({center}, {});", millimetres(*radius_m));
+                let _ = writeln!(lines, "obstacle {name} circle ({center}, {});", millimeters(*radius_m));
             }
             Geometry::Polygon(rings) => {
                 let rings = rings.iter().map(|ring| ring.iter().copied().map(project).collect());
@@ -322,14 +322,14 @@ fn wrong(feature: &Feature, problem: String) -> GeoJsonError {
     GeoJsonError::Position { place, problem }
 }
 
-/// Numbers of the language, to the millimetre.
+/// Numbers of the language, to the millimeter.
 fn written(points_m: impl IntoIterator<Item = Point2<f64>>) -> String {
-    let numbers = points_m.into_iter().map(|it| format!("{}, {}", millimetres(it.x), millimetres(it.y)));
+    let numbers = points_m.into_iter().map(|it| format!("{}, {}", millimeters(it.x), millimeters(it.y)));
     numbers.collect::<Vec<_>>().join(", ")
 }
 
-fn millimetres(metres: f64) -> String {
-    let text = format!("{metres:.3}");
+fn millimeters(meters: f64) -> String {
+    let text = format!("{meters:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }

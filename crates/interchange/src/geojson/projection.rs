@@ -1,4 +1,4 @@
-//! Between degrees on a body and metres on a mission's plane.
+//! Between degrees on a body and meters on a mission's plane.
 
 use std::fmt;
 
@@ -13,14 +13,14 @@ pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 /// Positions farther from the origin than this are refused: distances across them would be wrong by more than 0.2 %.
 const MAX_ANGLE_RAD: f64 = 0.1;
 
-/// Radii of bodies, in metres: from a boulder to a star.
+/// Radii of bodies, in meters: from a boulder to a star.
 pub const BODY_RADII_M: std::ops::RangeInclusive<f64> = 1.0..=1e9;
 
 /// What is known of the coordinates of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
-    /// Whether they are metres east and north already.
-    pub is_metres: bool,
+    /// Whether they are meters east and north already.
+    pub is_meters: bool,
     /// The longitude and latitude in degrees at which the mission's origin is; the south-west corner of what the file has
     /// otherwise.
     pub origin_deg: Option<[f64; 2]>,
@@ -33,11 +33,11 @@ impl Frame {
     pub fn of_file(document: &Value) -> Result<Self, GeoJsonError> {
         let said = |problem: &str| GeoJsonError::Shape(format!("`{FRAME}` {problem}"));
         let Some(frame) = document.get(FRAME) else {
-            let is_metres = System::of(document)? == System::Metres;
-            return Ok(Self { is_metres, ..Self::default() });
+            let is_meters = System::of(document)? == System::Meters;
+            return Ok(Self { is_meters, ..Self::default() });
         };
         match frame.get("units").and_then(Value::as_str) {
-            Some("metres") => return Ok(Self { is_metres: true, ..Self::default() }),
+            Some("metres") => return Ok(Self { is_meters: true, ..Self::default() }),
             None | Some("degrees") => {}
             Some(_) => return Err(said("needs `units` \"metres\" or \"degrees\"")),
         }
@@ -56,23 +56,23 @@ impl Frame {
                 Some(radius.ok_or_else(|| said("needs a `radius_m` from 1 to 1,000,000,000"))?)
             }
         };
-        Ok(Self { is_metres: false, origin_deg, radius_m })
+        Ok(Self { is_meters: false, origin_deg, radius_m })
     }
 
     /// The same, but with what `wanted` says where it says something.
     pub fn overridden(self, wanted: &Self) -> Self {
         let is_degrees = wanted.origin_deg.is_some() || wanted.radius_m.is_some();
         Self {
-            is_metres: wanted.is_metres || (self.is_metres && !is_degrees),
+            is_meters: wanted.is_meters || (self.is_meters && !is_degrees),
             origin_deg: wanted.origin_deg.or(self.origin_deg),
             radius_m: wanted.radius_m.or(self.radius_m),
         }
     }
 
-    /// The way to metres, for these positions.
+    /// The way to meters, for these positions.
     pub fn projection(self, positions: impl Iterator<Item = [f64; 2]>) -> Result<Projection, GeoJsonError> {
-        if self.is_metres {
-            return Ok(Projection::Metres);
+        if self.is_meters {
+            return Ok(Projection::Meters);
         }
         let corner =
             || positions.reduce(|low, it| [low[0].min(it[0]), low[1].min(it[1])]).unwrap_or_default();
@@ -87,7 +87,7 @@ impl Frame {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum System {
     Degrees,
-    Metres,
+    Meters,
 }
 
 impl System {
@@ -119,7 +119,7 @@ impl System {
         match code.parse::<u32>() {
             _ if code == "CRS84" => Ok(Some(Self::Degrees)),
             Ok(4326) => Ok(Some(Self::Degrees)),
-            Ok(WEB_MERCATOR | 32_601..=32_660 | 32_701..=32_760 | 25_828..=25_838) => Ok(Some(Self::Metres)),
+            Ok(WEB_MERCATOR | 32_601..=32_660 | 32_701..=32_760 | 25_828..=25_838) => Ok(Some(Self::Meters)),
             _ => Err(GeoJsonError::ReferenceSystem(super::one_line(name))),
         }
     }
@@ -129,14 +129,14 @@ impl System {
 const WEB_MERCATOR: u32 = 3857;
 
 /// How far from (0, 0) lengths in the Web Mercator are wrong by less than 0.2 %.
-const TRUE_MERCATOR_METRES: f64 = 400_000.0;
+const TRUE_MERCATOR_METERS: f64 = 400_000.0;
 
 /// Refuses positions in the Web Mercator where its meters are longer than those on the ground.
 pub(super) fn check_mercator(
     document: &Value,
     mut positions: impl Iterator<Item = [f64; 2]>,
 ) -> Result<(), GeoJsonError> {
-    let mut is_true = || positions.all(|[_, north]| north.abs() < TRUE_MERCATOR_METRES);
+    let mut is_true = || positions.all(|[_, north]| north.abs() < TRUE_MERCATOR_METERS);
     if names_mercator(document) && !is_true() {
         let problem = "EPSG:3857 far from the equator, where its meters are too short";
         return Err(GeoJsonError::ReferenceSystem(problem.to_owned()));
@@ -154,11 +154,11 @@ fn names_mercator(document: &Value) -> bool {
     })
 }
 
-/// From a file's coordinates to metres east and north, and back.
+/// From a file's coordinates to meters east and north, and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// They are metres.
-    Metres,
+    /// They are meters.
+    Meters,
     /// Longitude and latitude in degrees on a sphere, by the azimuthal equidistant projection (Snyder 1987, chapter 25):
     /// distances and directions from the origin are exact.
     Degrees {
@@ -170,10 +170,10 @@ pub enum Projection {
 }
 
 impl Projection {
-    /// Metres east and north of the origin; in words why there are none.
-    pub fn to_metres(&self, position: [f64; 2]) -> Result<Point2<f64>, String> {
+    /// Meters east and north of the origin; in words why there are none.
+    pub fn to_meters(&self, position: [f64; 2]) -> Result<Point2<f64>, String> {
         let &Self::Degrees { origin_deg, radius_m } = self else {
-            let is_near = position.iter().all(|metres| metres.abs() < MAX_METRES);
+            let is_near = position.iter().all(|meters| meters.abs() < MAX_METERS);
             return if is_near { Ok(position.into()) } else { Err("too far away".to_owned()) };
         };
         check_degrees(position)?;
@@ -194,7 +194,7 @@ impl Projection {
     }
 
     /// The position of a point in the coordinates of a file.
-    pub fn from_metres(&self, point_m: Point2<f64>) -> [f64; 2] {
+    pub fn from_meters(&self, point_m: Point2<f64>) -> [f64; 2] {
         let &Self::Degrees { origin_deg, radius_m } = self else { return point_m.into() };
         let [lon_0, lat_0] = origin_deg.map(f64::to_radians);
         let distance = libm::hypot(point_m.x, point_m.y);
@@ -213,7 +213,7 @@ impl Projection {
     /// What [`FRAME`] says of it.
     pub fn to_json(&self) -> Value {
         match self {
-            Self::Metres => serde_json::json!({ "units": "metres" }),
+            Self::Meters => serde_json::json!({ "units": "metres" }),
             Self::Degrees { origin_deg, radius_m } => {
                 serde_json::json!({ "units": "degrees", "origin": origin_deg, "radius_m": radius_m })
             }
@@ -221,7 +221,7 @@ impl Projection {
     }
 }
 
-const MAX_METRES: f64 = 1e8;
+const MAX_METERS: f64 = 1e8;
 
 fn check_degrees([lon, lat]: [f64; 2]) -> Result<(), String> {
     if lon.abs() <= 360.0 && lat.abs() <= 90.0 {
@@ -237,7 +237,7 @@ fn check_degrees([lon, lat]: [f64; 2]) -> Result<(), String> {
 impl fmt::Display for Projection {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Metres => out.write_str("meters as in the file"),
+            Self::Meters => out.write_str("meters as in the file"),
             Self::Degrees { origin_deg: [lon, lat], radius_m } => write!(
                 out,
                 "meters east and north of longitude {lon}, latitude {lat}, on a sphere with a radius of {radius_m} m"

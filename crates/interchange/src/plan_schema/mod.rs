@@ -82,9 +82,9 @@ impl Document {
         read::read(objects)
     }
 
-    /// What the file says and planning does not honour, in words, each with how often: costs and rewards, durations that
+    /// What the file says and planning does not honor, in words, each with how often: costs and rewards, durations that
     /// are not the executive's to choose, guards, probabilities, and kinds of object that are not known.
-    pub fn not_honoured(&self) -> Vec<String> {
+    pub fn not_honored(&self) -> Vec<String> {
         let mut counts: BTreeMap<String, usize> = BTreeMap::new();
         for object in self.objects.values().filter(|object| object.is_object()) {
             for said in said_in_vain(object) {
@@ -101,7 +101,7 @@ impl Document {
     }
 }
 
-/// What one object says that planning does not honour.
+/// What one object says that planning does not honor.
 fn said_in_vain(object: &Value) -> Vec<String> {
     const KNOWN: [&str; 11] = [
         "network",

@@ -420,7 +420,7 @@ fn make_bounds(edges: &[Edge<'_>], places: &mut [Place]) {
     }
 }
 
-/// The bounds of a duration, without a lower one where there is none; what planning does not honour of it goes into
+/// The bounds of a duration, without a lower one where there is none; what planning does not honor of it goes into
 /// `object`.
 fn duration(
     xml: Node<'_, '_>,

@@ -526,7 +526,7 @@ mod tests {
     fn only_what_was_searched_for_is_called_optimal() {
         assert_eq!(is_optimal(""), None);
         assert_eq!(is_optimal("objective minimize end, maximize reward;"), Some(true));
-        // Metres are only known of planned paths, and no path is looked for because it is shorter.
+        // Meters are only known of planned paths, and no path is looked for because it is shorter.
         for objective in ["minimize length", "minimize cost", "maximize reward, minimize end + length"] {
             assert_eq!(is_optimal(&format!("objective {objective};")), Some(false), "{objective}");
         }

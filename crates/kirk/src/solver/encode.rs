@@ -237,7 +237,7 @@ impl<'m> Problem<'m> {
         solver.at_least_one(literals);
     }
 
-    /// What must lie between two labelled intervals that exclude each other, unless they may touch.
+    /// What must lie between two labeled intervals that exclude each other, unless they may touch.
     pub(crate) fn gap_between(&self, _first: LabelId, then: LabelId) -> i64 {
         self.model.gap_before(then, self.model.gap)
     }

@@ -1,8 +1,8 @@
-//! Labelled intervals, and what lies between two of them.
+//! Labeled intervals, and what lies between two of them.
 
 use super::literal::{Literal, Variable};
 
-/// A labelled interval.
+/// A labeled interval.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interval {
     pub(crate) start: Variable,

@@ -1,6 +1,6 @@
 //! An automaton as a display list: nested composites, locations with their marking, transitions with their guards.
 //!
-//! What is marked has a dot and a heavier border besides its colour. Non-entailment is a bar over what is not entailed.
+//! What is marked has a dot and a heavier border besides its color. Non-entailment is a bar over what is not entailed.
 
 use display::{
     Anchor, ColorRole, Dash, DisplayList, Fit, Group, PathEnd, Piece, Point, Rect, Stroke, TargetKind, Text,

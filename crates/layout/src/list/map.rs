@@ -8,7 +8,7 @@ use nalgebra::{Point2, Vector2};
 use rmpl::program::{ObstacleShape, World};
 use smol_str::{SmolStr, format_smolstr};
 
-/// Which part of the world is shown, in metres east and north, and where in the drawing.
+/// Which part of the world is shown, in meters east and north, and where in the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapFrame {
     low_m: Point2<f64>,
@@ -121,7 +121,7 @@ pub fn map_list(
     list
 }
 
-/// The line of a path of this number: colours repeat after eight, patterns after three.
+/// The line of a path of this number: colors repeat after eight, patterns after three.
 pub fn path_stroke(number: usize) -> Stroke {
     let dash = [Dash::Solid, Dash::Dashed, Dash::Dotted][number % 3];
     Stroke::solid(ColorRole::Series((number % 8) as u8), 2.5).dashed(dash)
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn patterns_tell_paths_of_one_colour_apart() {
+    fn patterns_tell_paths_of_one_color_apart() {
         let strokes: Vec<_> = (0..24).map(path_stroke).collect();
         let differ = |one: usize, other: usize| strokes[one] != strokes[other];
         assert!((0..24).all(|one| (0..24).all(|other| one == other || differ(one, other))));

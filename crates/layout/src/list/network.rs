@@ -37,13 +37,13 @@ pub struct Emphasis<'a> {
     pub nodes: &'a [NodeId],
     /// A glow behind these.
     pub arcs: &'a [ArcId],
-    /// A plate behind these, if there is a colour for it.
+    /// A plate behind these, if there is a color for it.
     pub labels: &'a [LabelId],
     /// The outline of this activity.
     pub occurrence: Option<OccurrenceId>,
-    /// The colour of rings and glows, and how strong they are.
+    /// The color of rings and glows, and how strong they are.
     pub color: (ColorRole, f32),
-    /// The colour of plates.
+    /// The color of plates.
     pub plate: Option<ColorRole>,
 }
 

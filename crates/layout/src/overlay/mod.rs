@@ -134,8 +134,8 @@ pub(crate) fn free_curve(from: Point, from_radius: f64, to: Point, to_radius: f6
         let reach = (dx.abs() * 0.4).clamp(SAG.0, SAG.1);
         (from.shifted(reach, dy * 0.3), to.shifted(-reach, -dy * 0.3))
     };
-    let rim = |center: Point, towards: Point, radius: f64| {
-        let direction = center.direction_to(towards);
+    let rim = |center: Point, toward: Point, radius: f64| {
+        let direction = center.direction_to(toward);
         center.shifted(direction.x * radius, direction.y * radius)
     };
     (rim(from, first, from_radius), Piece::Cubic(first, second, rim(to, second, to_radius)))

@@ -3,15 +3,15 @@
 /// The marks of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ticks {
-    /// The times of the labelled marks, ascending.
+    /// The times of the labeled marks, ascending.
     pub marks: Vec<f64>,
-    /// From one labelled mark to the next.
+    /// From one labeled mark to the next.
     pub step: f64,
     /// Into how many parts small marks divide a step.
     pub parts: u32,
 }
 
-/// Least distance of two labelled marks, in points, for short numbers.
+/// Least distance of two labeled marks, in points, for short numbers.
 const MIN_DISTANCE: f32 = 64.0;
 /// Points that a digit takes, at most.
 const DIGIT_WIDTH: f32 = 8.0;

@@ -418,7 +418,7 @@ fn a_rule_is_drawn_where_it_is_looked_at_and_where_it_is_broken() {
     let track = track(&chart, Rect::new(0.0, 0.0, 1_900.0, 900.0), 200.0, 8.0);
     let list = rows_of(&chart, (&network, &plan), &track);
     let has_word = list.texts().iter().any(|text| text.text == "broken");
-    assert!(has_word, "a state is a word, never a colour alone");
+    assert!(has_word, "a state is a word, never a color alone");
     let closed: BTreeSet<_> = [chart.rows[rows].key.clone().expect("it can be closed")].into();
     let mut folded = chart_of(&network, &plan, TIMED);
     folded.add_rules(chart.rules.clone(), &closed);
@@ -468,7 +468,7 @@ fn a_network_over_another_plan_has_words_beside_what_is_new_or_moved_and_crosses
             |it: &layout::NodeShape| display::Rect { min: it.center, max: it.center }.expanded(it.radius);
         assert!(!drawing.nodes.iter().any(|it| circle(it).overlaps(words.rect)), "{}", words.text);
     }
-    // Told apart without colour: what has moved is dashed, what is new is not.
+    // Told apart without color: what has moved is dashed, what is new is not.
     let dashed = |item: &&display::Item| item.stroke.is_some_and(|it| it.dash == display::Dash::Dashed);
     let paths: Vec<_> = list.items().iter().filter(|item| matches!(item.shape, Shape::Path { .. })).collect();
     assert_eq!(paths.iter().copied().filter(dashed).count(), 2, "A#1 and B#1 have moved");

@@ -160,9 +160,9 @@ fn the_exported_picture_shows_the_plan_and_the_theme() {
     assert!(light.starts_with("<svg ") && light.ends_with("</svg>\n"));
     assert!(light.contains("<title>A &lt; B</title>"));
     assert_eq!(light.matches("<circle").count(), network.nodes.len() + network.decisions.len());
-    let grey = "stroke=\"#a3aeba\"";
-    assert!(light.contains(grey), "what is not selected is grey");
-    assert!(!export(Theme::Light, None).contains(grey));
+    let gray = "stroke=\"#a3aeba\"";
+    assert!(light.contains(gray), "what is not selected is gray");
+    assert!(!export(Theme::Light, None).contains(gray));
     assert!(export(Theme::Dark, Some(&plan)).contains("fill=\"#13171d\""));
     assert!(light.contains("stroke-dasharray"), "the causal link is dashed");
 }

@@ -26,7 +26,7 @@ struct Waiting {
 struct UnderWay {
     job: Job,
     failures: u32,
-    is_cancelled: bool,
+    is_canceled: bool,
     /// Whether the core gave it up for want of its text.
     lacks_text: bool,
 }
@@ -35,7 +35,7 @@ impl Queue {
     /// Adds a request; those that it makes pointless are dropped.
     pub(super) fn post(&mut self, request: Request) -> JobId {
         let key = request.key();
-        let is_wanted = |it: &&UnderWay| it.job.key == key && !it.is_cancelled;
+        let is_wanted = |it: &&UnderWay| it.job.key == key && !it.is_canceled;
         if let Some(known) = self.under_way.as_ref().filter(is_wanted)
             && !self.waiting.iter().any(|newer| newer.job.request.supersedes(&known.job.request))
         {
@@ -55,7 +55,7 @@ impl Queue {
             return None;
         }
         let Waiting { job, failures } = self.waiting.pop_front()?;
-        let under_way = UnderWay { job, failures, is_cancelled: false, lacks_text: false };
+        let under_way = UnderWay { job, failures, is_canceled: false, lacks_text: false };
         Some(&mut self.under_way.insert(under_way).job)
     }
 
@@ -83,7 +83,7 @@ impl Queue {
     /// The job under way was answered in full, or given up; it comes next again if it was for want of its text.
     pub(super) fn finished(&mut self) {
         let is_in_vain = self.is_in_vain();
-        let Some(UnderWay { job, failures, is_cancelled: false, lacks_text }) = self.under_way.take() else {
+        let Some(UnderWay { job, failures, is_canceled: false, lacks_text }) = self.under_way.take() else {
             return;
         };
         if lacks_text && !is_in_vain {
@@ -98,14 +98,14 @@ impl Queue {
     pub(super) fn cancel(&mut self, id: JobId) {
         self.waiting.retain(|it| it.job.id != id);
         if let Some(under_way) = self.under_way.as_mut().filter(|it| it.job.id == id) {
-            under_way.is_cancelled = true;
+            under_way.is_canceled = true;
         }
     }
 
     /// Whether nobody wants the job under way any more.
     pub(super) fn is_in_vain(&self) -> bool {
         self.under_way.as_ref().is_some_and(|it| {
-            it.is_cancelled || self.waiting.iter().any(|newer| newer.job.request.supersedes(&it.job.request))
+            it.is_canceled || self.waiting.iter().any(|newer| newer.job.request.supersedes(&it.job.request))
         })
     }
 

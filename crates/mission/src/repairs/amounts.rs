@@ -9,8 +9,8 @@ use rmpl::program::{Change, Program};
 use rmpl::{Edit, Fix, Span};
 use tpn::{Network, Resource, ResourceId, Supply, Use};
 
-/// Metres of paths are counted in so many parts ([`tpn::worth::rounded_up`]).
-const PARTS_OF_A_METRE: i64 = 1_000;
+/// Meters of paths are counted in so many parts ([`tpn::worth::rounded_up`]).
+const PARTS_OF_A_METER: i64 = 1_000;
 /// More amounts than this between what there is and what is enough are not looked through.
 const MAX_STEPS: i64 = 1 << 40;
 
@@ -131,10 +131,10 @@ impl Amount {
 
 /// The largest amount of which all that is used of a resource, and all its bounds' distance, are whole multiples.
 fn unit(network: &Network, id: ResourceId, resource: &Resource) -> Option<Rational> {
-    let of_metres = Rational::new(1, PARTS_OF_A_METRE)?;
+    let of_meters = Rational::new(1, PARTS_OF_A_METER)?;
     let mut unit = Rational::ZERO;
     for used in network.uses.iter().filter(|used| used.resource == id) {
-        unit = unit.common_part(used.amount)?.common_part(used.per_metre.checked_mul(of_metres)?)?;
+        unit = unit.common_part(used.amount)?.common_part(used.per_meter.checked_mul(of_meters)?)?;
     }
     if let Supply::Reservoir { least, greatest, .. } = resource.supply {
         unit = unit.common_part(greatest.checked_sub(least)?)?;
@@ -145,16 +145,16 @@ fn unit(network: &Network, id: ResourceId, resource: &Resource) -> Option<Ration
 /// Whether a reservoir with this level has too little for `uses`, not too much.
 fn is_short(uses: &[&Use], lowest: Rational, level: Rational) -> Option<bool> {
     let mut after = level;
-    let mut counts_metres = false;
+    let mut counts_meters = false;
     for used in uses {
         after = match used.change {
             Change::Produces => after.checked_add(used.amount)?,
             Change::Consumes => after.checked_sub(used.amount)?,
             Change::Uses => after,
         };
-        counts_metres |= used.change == Change::Consumes && used.per_metre.is_positive();
+        counts_meters |= used.change == Change::Consumes && used.per_meter.is_positive();
     }
-    Some(after < lowest || counts_metres)
+    Some(after < lowest || counts_meters)
 }
 
 /// The least number of steps, from 1 to `most`, with which there is a plan, where there is one with more; and whether it is known

@@ -10,7 +10,7 @@ pub(super) struct SeenMap {
     points: BTreeMap<(i64, i64), (Point2<f64>, f64)>,
 }
 
-/// The side of a square in metres.
+/// The side of a square in meters.
 const SQUARE_M: f64 = 0.25;
 
 impl SeenMap {
@@ -41,7 +41,7 @@ impl SeenMap {
     }
 }
 
-/// Whether a disc that goes along a way comes nearer than `reach` metres to a point. Where it starts and ends it has to be.
+/// Whether a disc that goes along a way comes nearer than `reach` meters to a point. Where it starts and ends it has to be.
 pub(super) fn is_blocked(way: &[Point2<f64>], points: &[Point2<f64>], reach: f64) -> bool {
     let (Some(first), Some(last)) = (way.first(), way.last()) else { return false };
     let is_at_end =

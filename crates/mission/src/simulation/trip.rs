@@ -19,20 +19,20 @@ use super::seen::{SeenMap, is_blocked};
 use super::way::{nearest_free, rest_of, until};
 use super::{Course, DriveFrame, Driving, SimulatedVehicle};
 
-/// Frames are kept this far apart, in metres and radians, and at least every so many steps.
+/// Frames are kept this far apart, in meters and radians, and at least every so many steps.
 const FRAME_M: f64 = 1.0;
 const FRAME_RAD: f64 = 0.4;
 const FRAME_STEPS: u32 = 40;
-/// Of a vehicle that moves so many metres from another one, or nearer, every step is kept.
+/// Of a vehicle that moves so many meters from another one, or nearer, every step is kept.
 const CLOSE_M: f64 = 0.5;
-/// How far ahead a frame shows the way, in metres.
+/// How far ahead a frame shows the way, in meters.
 const SHOWN_PLAN_M: f64 = 6.0;
 /// The leader aims to be there early, because what it meets costs time: by this share of its time at least, or by some
 /// seconds, which are another share at most. A vehicle that is early waits.
 const EARLY_SHARE: f64 = 0.015;
 const EARLY_S: f64 = 60.0;
 const MAX_EARLY_SHARE: f64 = 0.1;
-/// A driver looks so many seconds ahead at the ways of others that are this near its leader, in metres.
+/// A driver looks so many seconds ahead at the ways of others that are this near its leader, in meters.
 const FORESEEN_S: u32 = 30;
 const NEAR_M: f64 = 40.0;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
@@ -40,17 +40,17 @@ const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
 /// Steps of simulation that one drive takes at most, so that none goes on without end.
 const MAX_STEPS: u32 = 500_000;
-/// A follower that cannot go on looks for a way to its own path so many metres ahead, or else to its end.
+/// A follower that cannot go on looks for a way to its own path so many meters ahead, or else to its end.
 const REJOINING_M: [f64; 3] = [8.0, 15.0, 30.0];
-/// It stays where it is, when it is this near to the end of its way, in metres, and something stands no farther beside that
+/// It stays where it is, when it is this near to the end of its way, in meters, and something stands no farther beside that
 /// than it needs itself and so much more.
 const STAYS_WITHIN_M: f64 = 4.0;
 const BESIDE_M: f64 = 0.3;
-/// What is seen this near to what the map shows, in metres, is taken for that.
+/// What is seen this near to what the map shows, in meters, is taken for that.
 const KNOWN_M: f64 = 0.9;
-/// What sonars hear goes on the map from this near on, in metres.
+/// What sonars hear goes on the map from this near on, in meters.
 const HEARD_M: f64 = 1.5;
-/// Metres beyond the path are counted by so many.
+/// Meters beyond the path are counted by so many.
 const COUNTED_M: f64 = 5.0;
 
 /// One traverse under way.
@@ -75,25 +75,25 @@ pub(super) struct Trip<'a> {
     speeds_mps: [f64; 2],
     /// When it is to be there, in seconds from its start.
     wanted_s: f64,
-    /// How far from the path's end its vertices are, in metres, with their events; the next first.
+    /// How far from the path's end its vertices are, in meters, with their events; the next first.
     vertices: Vec<(f64, EventRef)>,
     pub(super) frames: Vec<Vec<DriveFrame>>,
     steps_since_frame: Vec<u32>,
     pub(super) entries: Vec<(f64, String)>,
     pub(super) passes: Vec<(EventRef, f64)>,
     pub(super) reroutes: u32,
-    /// How far the leader has driven, in metres.
+    /// How far the leader has driven, in meters.
     driven_m: f64,
-    /// How many metres that is more than its path has, with seconds from the start: every so often,
+    /// How many meters that is more than its path has, with seconds from the start: every so often,
     /// and in the end.
-    pub(super) extra_metres: Vec<(f64, f64)>,
+    pub(super) extra_meters: Vec<(f64, f64)>,
     pub(super) least_clearance_m: f64,
     /// What others had seen when it started, and what is seen on the way.
     known: Vec<Point2<f64>>,
     pub(super) seen: SeenMap,
     /// Places where vehicles stand, with radii: to be seen, but not to be put on a map.
     standing: Vec<(Point2<f64>, f64)>,
-    /// How far along the path each leg ends, in metres.
+    /// How far along the path each leg ends, in meters.
     leg_ends_m: Vec<f64>,
 }
 
@@ -225,7 +225,7 @@ impl<'a> Trip<'a> {
             passes: Vec::new(),
             reroutes: 0,
             driven_m: 0.0,
-            extra_metres: Vec::new(),
+            extra_meters: Vec::new(),
             least_clearance_m: f64::INFINITY,
             known: if is_flight { Vec::new() } else { driving.seen.known_at(start) },
             seen: SeenMap::default(),
@@ -234,7 +234,7 @@ impl<'a> Trip<'a> {
         }
     }
 
-    /// How far the leader has driven, in metres.
+    /// How far the leader has driven, in meters.
     pub(super) const fn driven_m(&self) -> f64 {
         self.driven_m
     }
@@ -273,7 +273,7 @@ impl<'a> Trip<'a> {
             let before = self.convoy.state(0).position_m;
             let steps = self.convoy.step(&around, self.pace_mps(), &most);
             self.driven_m += distance(&before, &self.convoy.state(0).position_m);
-            self.note_extra_metres();
+            self.note_extra_meters();
             self.note_passes();
             self.note_clearance();
             self.put_on_map(&steps, now);
@@ -284,7 +284,7 @@ impl<'a> Trip<'a> {
             }
             self.record_all(&steps);
         }
-        self.extra_metres.push((self.convoy.time_s(), self.driven_m - self.course.drive.path.length_m()));
+        self.extra_meters.push((self.convoy.time_s(), self.driven_m - self.course.drive.path.length_m()));
         Ok(())
     }
 
@@ -303,11 +303,11 @@ impl<'a> Trip<'a> {
     }
 
     /// What the leader drives beyond its path counts soon after it is driven.
-    fn note_extra_metres(&mut self) {
+    fn note_extra_meters(&mut self) {
         let extra_m = self.driven_m - self.course.drive.path.length_m();
-        let known_m = self.extra_metres.last().map_or(0.0, |&(_, metres)| metres);
+        let known_m = self.extra_meters.last().map_or(0.0, |&(_, meters)| meters);
         if extra_m >= known_m + COUNTED_M {
-            self.extra_metres.push((self.convoy.time_s(), extra_m));
+            self.extra_meters.push((self.convoy.time_s(), extra_m));
         }
     }
 
@@ -546,7 +546,7 @@ impl<'a> Trip<'a> {
             if !is_due && !is_over {
                 continue;
             }
-            let single = |point_m: Point2<f64>| point_m.map(|metres| metres as f32);
+            let single = |point_m: Point2<f64>| point_m.map(|meters| meters as f32);
             self.steps_since_frame[index] = 0;
             let frame = DriveFrame {
                 time: self.start + self.convoy.time_s() / self.unit_s,

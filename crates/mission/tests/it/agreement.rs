@@ -1,4 +1,4 @@
-//! What a plan promises of its drives is what undisturbed runs do: pace, places, metres, and room between vehicles.
+//! What a plan promises of its drives is what undisturbed runs do: pace, places, meters, and room between vehicles.
 
 use executive::{Ending, Happening, Script};
 use kirk::Options;
@@ -153,7 +153,7 @@ fn vehicles_that_touch_end_the_run() {
                 if reason.contains("Alpha and Delta touch"))
         });
         assert_eq!(tells, execution.ending == Ending::Stopped, "seed {seed}: {:?}", violations(&execution));
-        // Frames are up to a metre apart.
+        // Frames are up to a meter apart.
         assert!(tells || nearest > 1.3, "seed {seed}: {nearest} m apart");
         touched += usize::from(tells);
     }

@@ -61,7 +61,7 @@ fn a_sol_takes_what_is_worth_most_and_another_worth_changes_the_plan() {
 }
 
 #[test]
-fn a_fleet_shares_its_sites_by_the_metres_it_drives() {
+fn a_fleet_shares_its_sites_by_the_meters_it_drives() {
     let planned = day(FLEET);
     assert_eq!(planned.tally.succeeded, planned.tally.runs, "{:?}", planned.tally.breaks);
     let scouts = |day: &Day| {

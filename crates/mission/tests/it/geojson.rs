@@ -25,12 +25,12 @@ fn point(name: &str, position: [f64; 2]) -> Value {
     json!({ "type": "Feature", "properties": { "name": name }, "geometry": geometry })
 }
 
-fn metres(features: &[Value]) -> Value {
+fn meters(features: &[Value]) -> Value {
     json!({ "type": "FeatureCollection", "enroute_frame": { "units": "metres" }, "features": features })
 }
 
 #[test]
-fn degrees_are_metres_east_and_north_of_the_south_west_corner() {
+fn degrees_are_meters_east_and_north_of_the_south_west_corner() {
     let (lon, lat) = (-6.5, 46.5);
     let file = json!({ "type": "FeatureCollection", "features": [
         point("Base", [lon, lat]), point("East", [lon + 0.01, lat]), point("North", [lon, lat + 0.01]),
@@ -67,8 +67,8 @@ fn what_is_projected_comes_back_and_the_distance_from_the_origin_is_that_on_the_
     for origin_deg in [[77.4, 18.4], [179.99, -45.0], [0.0, 89.99], [12.0, 0.0]] {
         let projection = Projection::Degrees { origin_deg, radius_m: 3_396_190.0 };
         for point in [[0.0, 0.0], [1500.0, -20.0], [-4000.0, 3000.0]].map(Point2::from) {
-            let position = projection.from_metres(point);
-            let back = projection.to_metres(position).expect("it is near");
+            let position = projection.from_meters(point);
+            let back = projection.to_meters(position).expect("it is near");
             assert!(nalgebra::distance(&point, &back) < 1e-5, "{origin_deg:?} {point} {back}");
             let [[lon, lat], [lon_0, lat_0]] = [position, origin_deg].map(|it| it.map(f64::to_radians));
             let half = ((lat - lat_0) / 2.0).sin().powi(2)
@@ -100,7 +100,7 @@ fn a_polygon_is_an_obstacle_and_its_holes_are_free_whichever_way_they_turn() {
             }
         }
         let [a, b, c] = holes;
-        let world = world(&metres(&[polygon(&json!([square(0.0, 0.0, 10.0), a, b, c]))]));
+        let world = world(&meters(&[polygon(&json!([square(0.0, 0.0, 10.0), a, b, c]))]));
         assert_eq!(world.obstacles[0].name.text, "Obstacle_7");
         assert_eq!(world.obstacles.len(), 1);
         for free in [[2.0, 2.1], [7.5, 6.6], [4.4, 1.6], [11.0, 5.0]] {
@@ -117,7 +117,7 @@ fn parts_circles_and_names() {
     let square = |x: f64| json!([[[x, 0.0], [x + 1.0, 0.0], [x, 1.0], [x, 0.0]]]);
     let parts = json!({ "type": "MultiPolygon", "coordinates": [square(0.0), square(5.0)] });
     let circle = json!({ "type": "Point", "coordinates": [1.5, 2.0, 99.0] });
-    let file = metres(&[
+    let file = meters(&[
         json!({ "type": "Feature", "properties": { "name": "Big rock" }, "geometry": parts }),
         json!({ "type": "Feature", "properties": { "name": "choose", "radius_m": 2.5 }, "geometry": circle }),
         point("2nd site", [-1.0, 1e-9]),
@@ -136,7 +136,7 @@ fn parts_circles_and_names() {
 fn what_is_left_out_is_said() {
     let line = json!({ "type": "LineString", "coordinates": [[0, 0], [1, 1]] });
     let file =
-        metres(&[point("A", [0.0, 0.0]), json!({ "type": "Feature", "properties": {}, "geometry": line })]);
+        meters(&[point("A", [0.0, 0.0]), json!({ "type": "Feature", "properties": {}, "geometry": line })]);
     let lines = declarations("a\nb.geojson", &file.to_string(), &Frame::default()).expect("it is GeoJSON");
     assert!(lines.contains("// Not read: a line.") && lines.contains("of a b.geojson"), "{lines}");
 }
@@ -184,10 +184,10 @@ fn what_cannot_be_placed_is_refused_with_its_reason() {
     assert!(refusal(&collection(&[])).contains("needs a Point, Polygon"));
     let mut flat = point("Dot", [0.0, 0.0]);
     flat["properties"]["radius_m"] = json!(0.0001);
-    assert!(refusal(&metres(&[flat])).contains("must be greater than 0"));
+    assert!(refusal(&meters(&[flat])).contains("must be greater than 0"));
     assert!(refusal(&json!({ "type": "Topology" })).contains("not GeoJSON"));
     assert!(
-        refusal(&metres(&[polygon(&json!([[[0, 0], [1, 1], [0, 0]]]))])).contains("at least three corners")
+        refusal(&meters(&[polygon(&json!([[[0, 0], [1, 1], [0, 0]]]))])).contains("at least three corners")
     );
-    assert!(refusal(&metres(&[polygon(&json!([[[0, 0], [1, null], [2, 2]]]))])).contains("pair of numbers"));
+    assert!(refusal(&meters(&[polygon(&json!([[[0, 0], [1, null], [2, 2]]]))])).contains("pair of numbers"));
 }

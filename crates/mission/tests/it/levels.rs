@@ -1,4 +1,4 @@
-//! States and levels in simulation (SPEC 10, 11, 15): metres that are really driven count, and what the world changes is
+//! States and levels in simulation (SPEC 10, 11, 15): meters that are really driven count, and what the world changes is
 //! followed from the text of a mission to the record of its run.
 
 use exact::{Rational, Time};
@@ -73,7 +73,7 @@ fn boulder() -> Disturbance {
 }
 
 #[test]
-fn metres_that_are_driven_are_taken_from_the_battery() {
+fn meters_that_are_driven_are_taken_from_the_battery() {
     let execution = run(ROVER, &[]);
     assert_eq!((execution.ending, reasons(&execution)), (Ending::Finished, Vec::new()));
     let taken = 111.0 - last_level(&execution);

@@ -12,7 +12,7 @@ const WORLD: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
     vehicle R1 : ATRV-Jr at BASE;
     primitive Drive(to) moves R1 speed (0.02, 0.5);
     ";
-/// Metres between BASE, A, B and C, along straight lines.
+/// Meters between BASE, A, B and C, along straight lines.
 const BASE_A: f64 = 20.1;
 const BASE_B: f64 = 50.0;
 const BASE_C: f64 = 35.36;
@@ -39,7 +39,7 @@ fn alternatives(choices: &[Choice]) -> Vec<u32> {
     choices.iter().map(|choice| choice.alternative).collect()
 }
 
-/// The metres that each plan drives, and that it takes the time that these need, half a metre a second at most.
+/// The meters that each plan drives, and that it takes the time that these need, half a meter a second at most.
 fn lengths(planned: &Planned) -> Vec<f64> {
     let lengths = plans(planned).into_iter().map(|plan: &Plan| {
         let end = plan.windows[planned.network.end.index()].expect("it ends").earliest.to_f64();

@@ -91,7 +91,7 @@ fn a_vehicle_that_never_moves_is_gone_around() {
 }
 
 #[test]
-fn vehicles_that_come_towards_each_other_with_no_time_to_wait_go_around_each_other() {
+fn vehicles_that_come_toward_each_other_with_no_time_to_wait_go_around_each_other() {
     let planned = plan(
         "vehicle Rover4 : ATRV at EAST; primitive Drive4(to) moves Rover4 speed (0.1, 0.5);
         scenario S[0,200] = { Drive1(EAST)[120,160], Drive4(WEST)[120,160] }",

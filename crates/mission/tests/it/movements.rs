@@ -82,7 +82,7 @@ fn one_vehicle_does_not_drive_to_two_places_at_once() {
 }
 
 #[test]
-fn what_a_path_takes_for_each_metre_counts() {
+fn what_a_path_takes_for_each_meter_counts() {
     let drive = "primitive Drive(to) moves R1 speed (0.02, 0.5) consumes Battery 0.5 per metre;";
     let mission = |level: &str| {
         plan(&format!(
@@ -116,7 +116,7 @@ fn the_shortest_way_is_found_and_proven() {
     assert_driven_one_after_the_other(&shortest, 5);
     let best = &shortest.planning.outcome.plans[0].quality;
     assert_eq!(best.is_optimal, Some(true));
-    // A, D, B, E, C takes 4.03 minutes at half a metre per second.
+    // A, D, B, E, C takes 4.03 minutes at half a meter per second.
     assert!((best.length_m - 4.03 * 30.0).abs() < 0.5, "{} m", best.length_m);
     let cheapest = sites("objective minimize cost;", " costs 2 per metre");
     let quality = &cheapest.planning.outcome.plans[0].quality;

@@ -39,7 +39,7 @@ const CHOICE: &str = r#"{"network-id": "net",
   "whole": {"uid": "whole", "tpn-type": "temporal-constraint", "value": [1, 100], "end-node": "n2"}}"#;
 
 #[test]
-fn a_network_is_planned_reviewed_and_executed_and_what_is_not_honoured_is_said() {
+fn a_network_is_planned_reviewed_and_executed_and_what_is_not_honored_is_said() {
     let mut core = Core::default();
     for (revision, text) in [(1, CHOICE.to_owned()), (2, format!("\u{feff}{CHOICE}"))] {
         let snapshot = shown(&mut core, revision, &text);

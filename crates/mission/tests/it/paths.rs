@@ -59,7 +59,7 @@ impl Answer {
         Some(plan.choices.first()?.alternative)
     }
 
-    /// Occupied squares of the map for a vehicle of this model, as centres, with half their side.
+    /// Occupied squares of the map for a vehicle of this model, as centers, with half their side.
     fn occupied(&self, model: &str) -> (Vec<Point2<f64>>, f64) {
         let map = self.map.as_ref().expect("there is ground");
         let model = motion::vehicle_model(model).expect("it is known");
@@ -439,7 +439,7 @@ fn a_mission_on_an_imported_map_of_phobos_keeps_to_ground_that_can_be_driven() {
     let Some(bytes) = shared("Phobos_ME_HRSC_DEM_Global_2ppd.tiff") else { return };
     let mut planner = Planner::default();
     planner.grounds.import("phobos", &bytes).expect("it can be read");
-    // Two places kilometres apart; much of Phobos between them is too steep.
+    // Two places kilometers apart; much of Phobos between them is too steep.
     let source = "terrain \"phobos\" cell 100 origin (0, 0);
         location LANDING (31050, 15050);
         location MONOLITH (36050, 19050);

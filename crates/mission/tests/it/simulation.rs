@@ -60,7 +60,7 @@ fn progress(execution: &Execution) -> Vec<&str> {
         .collect()
 }
 
-/// The radius of an ATRV in metres.
+/// The radius of an ATRV in meters.
 const ATRV_M: f64 = 0.661;
 
 #[test]

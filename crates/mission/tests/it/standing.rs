@@ -9,7 +9,7 @@ const WORLD: &str = "option time_unit = second;
     vehicle R1 : ATRV-Jr at BASE; vehicle R2 : ATRV-Jr at BASE; vehicle R3 : ATRV at BASE; vehicle R4 : ATRV-Jr at BASE;
     primitive Drive(rover, to) moves rover speed (0.1, 0.5);
     ";
-/// The least distance of two vehicles here: radii of 0.661 and 0.515 m with a metre between them.
+/// The least distance of two vehicles here: radii of 0.661 and 0.515 m with a meter between them.
 const APART_M: f64 = 0.515 + 0.515 + 1.0;
 
 fn plan(rest: &str) -> Planned {

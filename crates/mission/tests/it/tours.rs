@@ -8,7 +8,7 @@ use tpn::generate::Rng;
 const BASES: [Point2<f64>; 3] =
     [Point2::new(500.0, 500.0), Point2::new(150.0, 850.0), Point2::new(900.0, 300.0)];
 /// Paths are planned for four fifths of a vehicle's greatest speed, which is 60 m a minute here.
-const METRES_PER_MINUTE: f64 = 0.8 * 60.0;
+const METERS_PER_MINUTE: f64 = 0.8 * 60.0;
 
 /// A place to go to, no earlier than at a time in minutes.
 struct Stop {
@@ -22,7 +22,7 @@ fn quickest(at: Point2<f64>, time: f64, stops: &[&Stop]) -> f64 {
         let left: Vec<&Stop> =
             stops.iter().enumerate().filter(|(other, _)| *other != next).map(|(_, stop)| *stop).collect();
         let begun = time.max(stops[next].release);
-        let over = begun + distance(&at, &stops[next].place) / METRES_PER_MINUTE;
+        let over = begun + distance(&at, &stops[next].place) / METERS_PER_MINUTE;
         quickest(stops[next].place, over, &left)
     });
     then.reduce(f64::min).unwrap_or(time)

@@ -339,7 +339,7 @@ fn shortening_comes_near_the_shortest_way_around_a_disc() {
     occupancy
         .mark(&Obstacle::Circle { center_m: Point2::new(20.0, 20.0), radius_m: 6.0 }, CellState::Obstacle);
     let space = ConfigurationSpace::new(occupancy, 0.5);
-    // Two tangents and an arc, around the disc grown by the radius, from 15 m left to 15 m right of its centre.
+    // Two tangents and an arc, around the disc grown by the radius, from 15 m left to 15 m right of its center.
     let grown = 6.5_f64;
     let tangent = (15.0_f64 * 15.0 - grown * grown).sqrt();
     let arc = std::f64::consts::PI - 2.0 * (grown / 15.0).acos();

@@ -6,7 +6,7 @@ use terrain::{Obstacle, Random};
 
 type Pair = [f64; 2];
 
-/// Discs as centre and radius, and faces by their ends.
+/// Discs as center and radius, and faces by their ends.
 #[derive(Default)]
 struct Things {
     discs: Vec<(Pair, f64)>,

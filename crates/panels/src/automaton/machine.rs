@@ -1,4 +1,4 @@
-//! One component's state machine: modes coloured by how likely they are, commanded transitions, faults dashed.
+//! One component's state machine: modes colored by how likely they are, commanded transitions, faults dashed.
 
 use display::DisplayList;
 use display::geometry::distance_point_curve;

@@ -160,7 +160,7 @@ fn summary(ui: &mut Ui, context: &Context<'_>, comparison: &Comparison) {
     });
 }
 
-/// The sign and the colour of a change; the sign alone tells them apart.
+/// The sign and the color of a change; the sign alone tells them apart.
 fn change_look(tokens: &Tokens, change: Change) -> (Icon, egui::Color32) {
     match change {
         Change::Added => (Icon::Plus, tokens.good),

@@ -22,7 +22,7 @@ const COLUMN_GAP: f64 = 96.0;
 const ROW_GAP: f64 = 64.0;
 /// How far the two directions between vertices are apart.
 const LANE: f64 = 7.0;
-/// Barycentre sweeps to and fro.
+/// Barycenter sweeps to and fro.
 const SWEEPS: usize = 12;
 
 /// Something that stands in a column: a vertex, or a place that a long edge passes.
@@ -172,7 +172,7 @@ impl Slots {
         self.before[to].push(from);
     }
 
-    /// Orders each column by the middle of its neighbours, to and fro.
+    /// Orders each column by the middle of its neighbors, to and fro.
     fn order(&mut self) {
         let mut position = vec![0.0; self.column.len()];
         for members in &self.members {
@@ -186,10 +186,10 @@ impl Slots {
                 _ => (0..self.members.len()).rev().collect(),
             };
             for column in columns {
-                let neighbours = if sweep % 2 == 0 { &self.before } else { &self.after };
+                let neighbors = if sweep % 2 == 0 { &self.before } else { &self.after };
                 let mut keyed: Vec<(f64, usize)> = self.members[column]
                     .iter()
-                    .map(|&slot| (middle(&neighbours[slot], &position).unwrap_or(position[slot]), slot))
+                    .map(|&slot| (middle(&neighbors[slot], &position).unwrap_or(position[slot]), slot))
                     .collect();
                 keyed.sort_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
                 self.members[column] = keyed.into_iter().map(|(_, slot)| slot).collect();
@@ -200,7 +200,7 @@ impl Slots {
         }
     }
 
-    /// The row of each slot: near its neighbours, and one apart from the others of its column.
+    /// The row of each slot: near its neighbors, and one apart from the others of its column.
     fn rows(&self) -> Vec<f64> {
         let mut rows = vec![0.0; self.column.len()];
         for members in &self.members {

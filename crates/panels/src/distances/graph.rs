@@ -99,7 +99,7 @@ impl DistanceGraph {
         self.edges.dedup_by_key(|edge| (edge.from, edge.to));
     }
 
-    /// A nameless vertex with one neighbour before and one after it is passed over.
+    /// A nameless vertex with one neighbor before and one after it is passed over.
     fn join_chains(&mut self) {
         for vertex in 0..self.vertices.len() {
             if !self.vertices[vertex].names.is_empty() {
@@ -107,11 +107,11 @@ impl DistanceGraph {
             }
             let incoming: Vec<Edge> = self.edges.iter().filter(|edge| edge.to == vertex).copied().collect();
             let outgoing: Vec<Edge> = self.edges.iter().filter(|edge| edge.from == vertex).copied().collect();
-            let mut neighbours: Vec<usize> =
+            let mut neighbors: Vec<usize> =
                 incoming.iter().map(|edge| edge.from).chain(outgoing.iter().map(|edge| edge.to)).collect();
-            neighbours.sort_unstable();
-            neighbours.dedup();
-            if neighbours.len() != 2 {
+            neighbors.sort_unstable();
+            neighbors.dedup();
+            if neighbors.len() != 2 {
                 continue;
             }
             self.edges.retain(|edge| edge.from != vertex && edge.to != vertex);

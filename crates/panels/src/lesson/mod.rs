@@ -171,7 +171,7 @@ fn buttons(ui: &mut Ui, context: &Context<'_>, lesson: &Lesson, at: usize, comma
         ui.max_rect().top(),
         egui::Stroke::new(1.0, context.tokens.line),
     );
-    let is_first = at == 0 && state.neighbour(false).is_none();
+    let is_first = at == 0 && state.neighbor(false).is_none();
     let is_last = at + 1 >= lesson.stops.len();
     ui.horizontal_centered(|ui| {
         ui.add_space(space::L);
@@ -179,7 +179,7 @@ fn buttons(ui: &mut Ui, context: &Context<'_>, lesson: &Lesson, at: usize, comma
         if back.on_hover_text("Previous step (Shift+N)").clicked() {
             commands.send(Command::Lesson(LessonCommand::Turn(false)));
         }
-        let (title, hint, turn) = match (is_last, state.neighbour(true)) {
+        let (title, hint, turn) = match (is_last, state.neighbor(true)) {
             (false, _) => ("Next", "Next step (N)", LessonCommand::Turn(true)),
             (true, Some(_)) => ("Next lesson", "Next step (N)", LessonCommand::Turn(true)),
             (true, None) => ("Back to contents", "List all lessons of the course", LessonCommand::Contents),

@@ -80,7 +80,7 @@ impl LanguageService for Language<'_> {
     }
 }
 
-/// A letter and a colour for a kind of completion.
+/// A letter and a color for a kind of completion.
 pub(super) const fn completion_sign(tokens: &Tokens, kind: CompletionKind) -> (&'static str, Color32) {
     let syntax = &tokens.syntax;
     match kind {

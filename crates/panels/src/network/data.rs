@@ -298,7 +298,7 @@ fn sliding_texts(drawing: &NetworkDrawing) -> BTreeMap<u32, Vec<u32>> {
     sliding
 }
 
-/// The activities as level lines: enough to recognise a drawing by when it is very small.
+/// The activities as level lines: enough to recognize a drawing by when it is very small.
 fn outline(drawing: &NetworkDrawing, network: &Network) -> Vec<(Point, Point)> {
     let arcs = drawing
         .arcs

@@ -16,7 +16,7 @@ use super::view::FIT_MARGIN;
 pub(super) struct Detail {
     /// Blocks that the user collapsed.
     pub(super) collapsed: BTreeSet<String>,
-    /// The first and the last of the neighbours that are drawn in more detail than the rest.
+    /// The first and the last of the neighbors that are drawn in more detail than the rest.
     focus: Option<(String, String)>,
     /// Whether everything is drawn, however small.
     pub(super) is_whole: bool,

@@ -329,7 +329,7 @@ impl NetworkPanel {
             }
             self.view.pan(vec2(scroll.x, 0.0));
         }
-        // With something selected, arrows go from it to its neighbours.
+        // With something selected, arrows go from it to its neighbors.
         if response.has_focus() && context.state.selection.is_none() {
             self.view.pan(arrow_keys(ui) * 48.0);
         }

@@ -44,7 +44,7 @@ impl Scene<'_> {
         let progress = self.progress.map(|it| progress_list(drawing, self.network, &state, it, area));
         let step = self.focus.map(|focus| Highlight::of_focus(focus, self.network)).unwrap_or_default();
         let is_failure = self.focus.is_some_and(|focus| focus.is_failure);
-        // Two glows over each other would be of neither colour: what failed keeps its own.
+        // Two glows over each other would be of neither color: what failed keeps its own.
         let selected = if is_failure { &self.selected.without(&step) } else { self.selected };
         let step_role = if is_failure { ColorRole::Error } else { ColorRole::Decision };
         let marked = [
@@ -91,7 +91,7 @@ impl Scene<'_> {
     }
 }
 
-/// A short message in a corner of the panel, with a sign that does not depend on colour.
+/// A short message in a corner of the panel, with a sign that does not depend on color.
 pub(super) fn badge(
     painter: &egui::Painter,
     corner: egui::Pos2,

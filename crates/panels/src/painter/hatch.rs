@@ -14,7 +14,7 @@ pub(super) fn add(mesh: &mut Mesh, rect: Rect, visible: Rect, color: Color32) {
     if right <= left || height <= 0.0 || rect.bottom() < visible.top() || rect.top() > visible.bottom() {
         return;
     }
-    // The lines stand still on the screen's grid, so that neighbours match and nothing crawls while bars move.
+    // The lines stand still on the screen's grid, so that neighbors match and nothing crawls while bars move.
     let first = ((left - height) / STEP).floor() as i64;
     let last = (right / STEP).ceil() as i64;
     for index in first..=last {

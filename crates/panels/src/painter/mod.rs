@@ -208,7 +208,7 @@ impl<'a> DisplayPainter<'a> {
         }
     }
 
-    /// The colour as it is on the screen.
+    /// The color as it is on the screen.
     fn color(&self, color: Color) -> Color32 {
         let full = self.tokens.role(color.role);
         match color.ground {

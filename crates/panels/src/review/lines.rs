@@ -50,7 +50,7 @@ pub(super) fn line(
     if line.status == Status::Attention && !list.is_stale {
         let known = list.acknowledged.get(&LineKey::new(section, line)).copied();
         ui.push_id((section.title(), index), |ui| {
-            people.acknowledgement(ui, list.context, (section, line), known, commands);
+            people.acknowledgment(ui, list.context, (section, line), known, commands);
         });
     }
 }

@@ -1,6 +1,6 @@
 //! The review: a checklist that is computed, and what its board says of it until it approves.
 //!
-//! Each line leads to its place in all other panels. A state is always a sign and a word, never a colour alone.
+//! Each line leads to its place in all other panels. A state is always a sign and a word, never a color alone.
 
 mod capital;
 pub(crate) mod changes;
@@ -169,7 +169,7 @@ fn is_stale(context: &Context<'_>) -> bool {
     state.review.shown().is_some_and(|(_, is_stale)| is_stale)
 }
 
-/// The sign, the word and the colour of a status. What was reviewed of another text keeps its words, in grey.
+/// The sign, the word and the color of a status. What was reviewed of another text keeps its words, in gray.
 fn status_look(tokens: &Tokens, status: Status, is_stale: bool) -> (Icon, &'static str, egui::Color32) {
     if is_stale {
         let word = match status {

@@ -156,7 +156,7 @@ impl People {
     }
 
     /// Below a line for attention: who acknowledged it, or how to.
-    pub(super) fn acknowledgement(
+    pub(super) fn acknowledgment(
         &mut self,
         ui: &mut Ui,
         context: &Context<'_>,

@@ -140,7 +140,7 @@ fn conditions(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Un
     });
 }
 
-/// The colour of a share of runs that reach their end.
+/// The color of a share of runs that reach their end.
 pub(crate) fn share_color(tokens: &theme::Tokens, share: f64) -> egui::Color32 {
     match share {
         share if share >= 0.95 => tokens.good,

@@ -399,14 +399,14 @@ impl Scene<'_> {
         self.painter.line_segment([pos2(from.x, middle), from], stroke);
     }
 
-    /// An edge of merged trees, in the colour and the dashes of the search that alone entered its state.
+    /// An edge of merged trees, in the color and the dashes of the search that alone entered its state.
     fn merged_edge(&self, share: Share, corners: [Pos2; 4], stroke: Stroke) {
         let is_path = stroke.color == self.context.tokens.accent;
         let color = if is_path { stroke.color } else { merged::color(self.context, share) };
         let clip = self.rect.expand(4.0);
         let corners = corners.map(|corner| pos2(corner.x.clamp(clip.left(), clip.right()), corner.y));
         let stroke = Stroke::new(stroke.width.max(1.4), color);
-        // What is smaller than its dashes is told by its colour alone.
+        // What is smaller than its dashes is told by its color alone.
         let share = if self.view.cell.x < 8.0 { Share::Both } else { share };
         self.painter.extend(merged::lines(&corners, stroke, share));
     }

@@ -236,10 +236,10 @@ fn legend(ui: &mut Ui, context: &Context<'_>, drawn: &Drawn) {
     });
 }
 
-/// The colour of lines to the states that a search entered.
+/// The color of lines to the states that a search entered.
 pub fn color(context: &Context<'_>, share: Share) -> egui::Color32 {
     match share {
-        // Not the first colour, which is that of the way to the step.
+        // Not the first color, which is that of the way to the step.
         Share::Only(side) => context.tokens.series(side + 1),
         Share::Both | Share::Neither => context.tokens.text_faint,
     }

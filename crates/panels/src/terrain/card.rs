@@ -10,7 +10,7 @@ use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::time_text;
 
-use super::measure::{Measurement, metres, show_chart, show_rows};
+use super::measure::{Measurement, meters, show_chart, show_rows};
 use crate::Context;
 
 /// Cards are as wide as this, or as the panel allows.
@@ -118,7 +118,7 @@ pub fn path_rows(
     leg: Option<usize>,
 ) -> Vec<(&'static str, String)> {
     let mut rows = vec![
-        ("Length", metres(traverse.length_m)),
+        ("Length", meters(traverse.length_m)),
         ("Clearance", room(traverse.clearance_m)),
         ("Steepest slope", format!("{:.0}°", traverse.slope_max_rad.to_degrees())),
     ];
@@ -127,7 +127,7 @@ pub fn path_rows(
     let parts = leg.and_then(|leg| Some((traverse.legs.get(leg)?, traverse.leg_figures.get(leg)?)));
     if let Some((leg, figures)) = parts {
         let unit = time_text::unit(unit(context));
-        rows.push(("This leg", format!("to {}, {}", leg.to, metres(figures.length_m))));
+        rows.push(("This leg", format!("to {}, {}", leg.to, meters(figures.length_m))));
         rows.push(("Leg clearance", room(figures.min_clearance_m)));
         rows.push(("Leg steepest slope", format!("{:.0}°", figures.max_slope_deg)));
         rows.push(("Leg minimum duration", format!("{} {unit}", time_text::short(figures.least_duration))));

@@ -20,7 +20,7 @@ pub struct Clearance {
     /// The name of the model of the vehicle whose room it shows.
     pub model: SmolStr,
     vehicle: VehicleModel,
-    /// Metres from the vehicle's rim to the nearest obstacle, one number per cell, rows from the south.
+    /// Meters from the vehicle's rim to the nearest obstacle, one number per cell, rows from the south.
     pub room_m: Arc<[f32]>,
 }
 

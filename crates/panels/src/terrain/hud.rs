@@ -198,7 +198,7 @@ impl Overlay<'_> {
         self.painter.galley(corner, galley, self.tokens().text);
     }
 
-    /// The legends of what the colours of the ground mean.
+    /// The legends of what the colors of the ground mean.
     fn legends(&self, clearance_of: Option<&str>) {
         let mut left = self.rect.left() + MARGIN;
         let [low, high] = self.ground.range_m.map(|height| height / self.view.height_scale);
@@ -217,7 +217,7 @@ impl Overlay<'_> {
         }
     }
 
-    /// A colour ramp with its ends named; answers how wide it is. `has_none` adds the colour of places without room.
+    /// A color ramp with its ends named; answers how wide it is. `has_none` adds the color of places without room.
     fn legend(&self, left: f32, title: &str, low: &str, high: &str, has_none: bool) -> f32 {
         const NONE: &str = "no clearance";
         let tokens = self.tokens();

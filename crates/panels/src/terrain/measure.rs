@@ -38,8 +38,8 @@ impl Measurement {
         let profile = &self.profile;
         let [up, down] = profile.climb_m;
         vec![
-            ("Surface distance", metres(profile.ground_m)),
-            ("Straight-line distance", metres(profile.straight_m)),
+            ("Surface distance", meters(profile.ground_m)),
+            ("Straight-line distance", meters(profile.straight_m)),
             ("Ascent, descent", format!("{up:.1} m, {down:.1} m")),
             ("Steepest slope", format!("{:.0}°", profile.slope_max_rad.to_degrees())),
             ("Line of sight", self.sight_words()),
@@ -50,7 +50,7 @@ impl Measurement {
     pub fn sight_words(&self) -> String {
         match self.blocked() {
             None => "clear".to_owned(),
-            Some((away_m, _)) => format!("blocked after {}", metres(away_m)),
+            Some((away_m, _)) => format!("blocked after {}", meters(away_m)),
         }
     }
 
@@ -79,7 +79,7 @@ impl Measurement {
 }
 
 /// A distance as people read it.
-pub fn metres(value: f64) -> String {
+pub fn meters(value: f64) -> String {
     match value {
         value if value >= 10_000.0 => format!("{:.2} km", value / 1000.0),
         value if value >= 100.0 => format!("{value:.0} m"),
@@ -106,7 +106,7 @@ pub fn show_chart(ui: &mut Ui, tokens: &Tokens, measurement: &Measurement) {
     let points = &measurement.profile.points_m;
     let heights = || points.iter().map(|point| point.y);
     let (low, high) = heights().fold((f64::MAX, f64::MIN), |(low, high), up| (low.min(up), high.max(up)));
-    let name = format!("Height profile: {low:.1} m to {high:.1} m over {}", metres(last_of(points)));
+    let name = format!("Height profile: {low:.1} m to {high:.1} m over {}", meters(last_of(points)));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
     let chart = Chart {
         rect: rect.shrink2(vec2(0.0, space::S)),

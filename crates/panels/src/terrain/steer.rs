@@ -13,7 +13,7 @@ use workbench::state::Selection;
 use super::{TerrainPanel, clearance};
 use crate::Context;
 
-/// How near the camera comes to a place that it flies to, in metres.
+/// How near the camera comes to a place that it flies to, in meters.
 const NEAR_M: f32 = 45.0;
 
 /// From how far two places are seen that are so far apart, with some ground around them.

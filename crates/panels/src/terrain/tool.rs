@@ -13,9 +13,9 @@ use workbench::state::terrain::{TerrainCommand, Tool};
 use super::drag::start_at;
 use super::measure::Measurement;
 
-/// The radius that a click alone gives a round obstacle, in metres.
+/// The radius that a click alone gives a round obstacle, in meters.
 const CLICKED_RADIUS_M: f64 = 5.0;
-/// A wall is as thick as this, in metres, or as so many cells if those are more.
+/// A wall is as thick as this, in meters, or as so many cells if those are more.
 const WALL_M: f64 = 3.0;
 const WALL_CELLS: f64 = 2.0;
 /// Corners nearer to the last one than this many points are not meant.
@@ -37,7 +37,7 @@ pub fn update(
     let mut send = |command| commands.send(Command::Terrain(command));
     let pointer = response.interact_pointer_pos();
     let clicked = pointer.filter(|_| response.clicked());
-    let at = |pointer: Pos2| scene.ground_at(pointer).map(metres);
+    let at = |pointer: Pos2| scene.ground_at(pointer).map(meters);
     match &state.tool {
         Tool::Look => {}
         Tool::Measure => {
@@ -59,7 +59,7 @@ pub fn update(
         Tool::Circle | Tool::Appear => {
             let is_drawn = response.drag_stopped_by(PointerButton::Primary);
             let drawn = drawn_disc(response, scene, *pressed_m).filter(|_| is_drawn);
-            let drawn = drawn.map(|(center, radius_m)| (metres(center), f64::from(radius_m)));
+            let drawn = drawn.map(|(center, radius_m)| (meters(center), f64::from(radius_m)));
             let disc = drawn.or_else(|| Some((clicked.and_then(at)?, CLICKED_RADIUS_M)));
             if let Some((center_m, radius_m)) = disc {
                 commands.send(if state.tool == Tool::Appear {
@@ -120,10 +120,10 @@ fn drawn_disc(response: &Response, scene: &Scene<'_>, center: Option<Vec2>) -> O
 fn drawn_wall(response: &Response, scene: &Scene<'_>, from: Option<Vec2>) -> Option<[Point2<f64>; 2]> {
     let to = scene.ground_at(response.interact_pointer_pos()?)?;
     let from = from.filter(|from| from.distance(to) >= 1.0)?;
-    Some([metres(from), metres(to)])
+    Some([meters(from), meters(to)])
 }
 
-/// How thick a wall is that is drawn, in metres: it must not slip between the cells of the map.
+/// How thick a wall is that is drawn, in meters: it must not slip between the cells of the map.
 fn thickness_m(scene: &Scene<'_>) -> f64 {
     WALL_M.max(WALL_CELLS * f64::from(scene.ground.cell_m))
 }
@@ -206,6 +206,6 @@ pub fn hint(tool: &Tool, points: usize) -> Option<String> {
     })
 }
 
-fn metres(place: Vec2) -> Point2<f64> {
+fn meters(place: Vec2) -> Point2<f64> {
     Point2::new(f64::from(place.x), f64::from(place.y))
 }

@@ -203,7 +203,7 @@ fn paint(ui: &Ui, painting: &Painting<'_>, x: f32, row: Rect, is_pinned: bool, i
     let painter = painting.on_track(ui);
     let middle = row.center().y - 2.0;
     if is_pinned {
-        // A pin: a head above a needle, so that colour is not the only sign.
+        // A pin: a head above a needle, so that color is not the only sign.
         painter.vline(x, row.top() + 2.0..=row.bottom() - 1.0, Stroke::new(2.0, tokens.accent));
         painter.circle(pos2(x, row.top() + 5.0), 4.5, tokens.accent, Stroke::new(1.0, tokens.surface));
         return;

@@ -58,9 +58,9 @@ pub struct Item {
 /// The way of a traverse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// The path, in metres.
+    /// The path, in meters.
     pub points_m: Vec<Point2<f64>>,
-    /// Its length along the map, in metres.
+    /// Its length along the map, in meters.
     pub length_m: f64,
 }
 

@@ -60,7 +60,7 @@ fn by_end(one: &str, other: &str) -> Ordering {
     letters(one).cmp(letters(other)).then_with(|| one.cmp(other))
 }
 
-/// The number of insertions, deletions, replacements and swaps of neighbours from one name to the other, ignoring
+/// The number of insertions, deletions, replacements and swaps of neighbors from one name to the other, ignoring
 /// case, if it is at most `limit`. Names that differ only in digits at the same places are different on purpose.
 pub(crate) fn edit_distance_at_most(left: &str, right: &str, limit: usize) -> Option<usize> {
     let (left, right) = (left.as_bytes(), right.as_bytes());
@@ -88,7 +88,7 @@ pub(crate) fn edit_distance_at_most(left: &str, right: &str, limit: usize) -> Op
             row[to + 1] = distance;
             least = least.min(distance);
         }
-        // A swap goes back two rows, so one row alone does not decide; its neighbour may be one less.
+        // A swap goes back two rows, so one row alone does not decide; its neighbor may be one less.
         if least > limit + 1 {
             return None;
         }
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_swap_of_neighbours_counts_as_one_mistake() {
+    fn a_swap_of_neighbors_counts_as_one_mistake() {
         assert_eq!(edit_distance_at_most("Drvie", "Drive", 2), Some(1));
         assert_eq!(edit_distance_at_most("Drive", "Dive", 2), Some(1));
         assert_eq!(edit_distance_at_most("Drive", "Sample", 2), None);

@@ -1,4 +1,4 @@
-//! Summarises a declaration: collects what it declares and uses.
+//! Summarizes a declaration: collects what it declares and uses.
 
 use std::hash::{Hash as _, Hasher as _};
 
@@ -21,7 +21,7 @@ use crate::program::{
 };
 use crate::span::Span;
 
-/// Summarises what was lowered. `bare_names` are the starts of names that stand alone as statements.
+/// Summarizes what was lowered. `bare_names` are the starts of names that stand alone as statements.
 pub(crate) fn summarize(item: Option<&Item>, bare_names: &[u32], names: &mut Names) -> Summary {
     let mut collector = Collector { names, bare_names, formals: Vec::new(), summary: Summary::default() };
     if let Some(item) = item {

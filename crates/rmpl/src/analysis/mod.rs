@@ -1,6 +1,6 @@
 //! What a mission text means as a whole: names, their uses, and the diagnostics that follow from them.
 //!
-//! Each declaration is summarised once, when it is parsed; the index counts what all summaries declare and use; a
+//! Each declaration is summarized once, when it is parsed; the index counts what all summaries declare and use; a
 //! declaration is checked again only when something that it mentions has changed.
 
 mod alike;

@@ -1,4 +1,4 @@
-//! What an editor colours, token by token.
+//! What an editor colors, token by token.
 
 use serde::{Deserialize, Serialize};
 

@@ -5,7 +5,7 @@ const MAX_LETTERS: usize = 64;
 
 /// The one of `known` nearest to `word`, when it is near enough to be a slip of the fingers.
 ///
-/// Distance is the number of letters inserted, removed, replaced or swapped with a neighbour, whatever their case; of
+/// Distance is the number of letters inserted, removed, replaced or swapped with a neighbor, whatever their case; of
 /// two that are equally near it is the one whose case agrees better, and then the first in the alphabet.
 pub fn nearest<'name>(word: &str, known: impl IntoIterator<Item = &'name str>) -> Option<&'name str> {
     let most = match word.chars().count() {

@@ -132,7 +132,7 @@ fn every_beginning_of_a_text_is_read_without_panic_and_without_loss() {
 }
 
 #[test]
-fn the_notation_of_a_text_is_recognised_with_comments_and_when_broken() {
+fn the_notation_of_a_text_is_recognized_with_comments_and_when_broken() {
     for text in [
         ORBIT,
         "; scenario of the engine; with drivers\n(DEFCLASS Engine () (MODE Off true))",

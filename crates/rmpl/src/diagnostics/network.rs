@@ -1,4 +1,4 @@
-//! `W-NETWORK`: what the file of a network says and planning does not honour. Only reading such a file can find it.
+//! `W-NETWORK`: what the file of a network says and planning does not honor. Only reading such a file can find it.
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
@@ -21,7 +21,7 @@ scenario Day[0,60] = { Act() }",
 };
 
 /// `what` the file of a network says in vain.
-pub fn not_honoured(what: &[String]) -> Diagnostic {
+pub fn not_honored(what: &[String]) -> Diagnostic {
     let message = format!("ignored when planning: {}", what.join(", "));
     Diagnostic::warning(CODE, Span::default(), message)
 }

@@ -154,21 +154,21 @@ fn numbers(node: SyntaxNode<'_>) -> Vec<(bool, Rational, Span)> {
     found
 }
 
-/// The metres in `( … )`, and the span inside the parentheses.
+/// The meters in `( … )`, and the span inside the parentheses.
 fn coordinates(node: SyntaxNode<'_>) -> Option<(Vec<f64>, Span)> {
     let node = node.child(SyntaxKind::Coordinates)?;
     let open = node.token(SyntaxKind::LeftParen)?;
     let end = node.token(SyntaxKind::RightParen).map_or(node.span().end, |close| close.span.start);
-    let metres =
+    let meters =
         numbers(node).into_iter().map(|(negative, magnitude, _)| signed(negative, magnitude)).collect();
-    Some((metres, Span::new(open.span.end, end)))
+    Some((meters, Span::new(open.span.end, end)))
 }
 
 pub(super) fn terrain(node: SyntaxNode<'_>) -> Option<TerrainDecl> {
     let asset = node.token(SyntaxKind::String)?;
     let cell = node.child(SyntaxKind::Cell).and_then(|cell| numbers(cell).first().copied());
     let origin = node.child(SyntaxKind::Origin).and_then(coordinates);
-    let origin_m = match origin.as_ref().map(|(metres, _)| metres.as_slice()) {
+    let origin_m = match origin.as_ref().map(|(meters, _)| meters.as_slice()) {
         Some(&[east, north]) => Some([east, north]),
         _ => None,
     };
@@ -184,16 +184,16 @@ pub(super) fn terrain(node: SyntaxNode<'_>) -> Option<TerrainDecl> {
 pub(super) fn location(node: SyntaxNode<'_>) -> Option<LocationDecl> {
     // The first name is the word `location` itself.
     let name = names(node).nth(1)?;
-    let (metres, numbers_span) = coordinates(node)?;
-    let &[east, north] = metres.as_slice() else { return None };
+    let (meters, numbers_span) = coordinates(node)?;
+    let &[east, north] = meters.as_slice() else { return None };
     Some(LocationDecl { name, position_m: [east, north], numbers_span, span: node.span() })
 }
 
 pub(super) fn obstacle(node: SyntaxNode<'_>) -> Option<ObstacleDecl> {
     let mut words = names(node).skip(1);
     let (name, shape) = (words.next()?, words.next()?);
-    let (metres, numbers_span) = coordinates(node)?;
-    let shape = match (shape.text.as_str(), metres.as_slice()) {
+    let (meters, numbers_span) = coordinates(node)?;
+    let shape = match (shape.text.as_str(), meters.as_slice()) {
         ("circle", &[east, north, radius_m]) => ObstacleShape::Circle { center_m: [east, north], radius_m },
         ("polygon", corners) if corners.len() >= 6 && corners.len() % 2 == 0 => ObstacleShape::Polygon {
             corners_m: corners

@@ -204,7 +204,7 @@ fn argument(node: SyntaxNode<'_>) -> Option<Argument> {
     Some(Argument { value, span })
 }
 
-/// A number with its sign, in metres.
+/// A number with its sign, in meters.
 pub(super) fn signed(negative: bool, magnitude: Rational) -> f64 {
     let magnitude = magnitude.to_f64();
     if negative { -magnitude } else { magnitude }

@@ -174,7 +174,7 @@ impl<'a> SyntaxNode<'a> {
     pub fn path_to(self, offset: u32) -> Vec<SyntaxNode<'a>> {
         let mut path = vec![self];
         let mut here = self;
-        // Of two neighbours that meet at the offset, the later one is where typing continues a construct.
+        // Of two neighbors that meet at the offset, the later one is where typing continues a construct.
         while let Some(child) = here.children().filter(|child| child.span().touches(offset)).last() {
             path.push(child);
             here = child;

@@ -122,7 +122,7 @@ fn hovering_tells_what_lasts_who_changes_it_and_who_needs_it() {
     hovers("M() = { ask Scout.a$0t=BASE }", &["the location of the vehicle V"]);
 }
 
-/// The cursor's name has exactly the marked places; the one labelled `def` is its definition.
+/// The cursor's name has exactly the marked places; the one labeled `def` is its definition.
 #[track_caller]
 fn references(written: &str) {
     let fixture = fixture(written);

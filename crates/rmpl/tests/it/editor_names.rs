@@ -4,7 +4,7 @@ use crate::fixture::{apply, fixture};
 use rmpl::editor::{self, HighlightKind, RenameProblem};
 use rmpl::{Span, parse};
 
-/// The cursor's name has exactly the marked places; the one labelled `def` is its definition.
+/// The cursor's name has exactly the marked places; the one labeled `def` is its definition.
 #[track_caller]
 fn check_references(written: &str) {
     let fixture = fixture(written);

@@ -58,7 +58,7 @@ fn clauses(decl: &PrimitiveDecl) -> Vec<String> {
     let sets = decl.sets.iter().map(|it| format!("sets {}={}", it.variable.text, it.value.text));
     let amount = |it: &rmpl::program::Amount| match it.per {
         None => shown(&it.value),
-        Some(Per::Metre) => format!("{} per metre", shown(&it.value)),
+        Some(Per::Meter) => format!("{} per metre", shown(&it.value)),
         Some(Per::Time(unit)) => format!("{} per {unit:?}", shown(&it.value)),
     };
     let uses = decl.uses.iter().map(|it| {

@@ -291,7 +291,7 @@ fn random_dispatches_of_the_dispatchable_form_never_dead_end() {
     }
 }
 
-/// Executes the form with random times, propagating to direct neighbours only (SPEC 6.2). `None` at a dead end.
+/// Executes the form with random times, propagating to direct neighbors only (SPEC 6.2). `None` at a dead end.
 fn dispatch(
     form: &stn::Dispatchable,
     distances: &stn::DistanceMatrix,

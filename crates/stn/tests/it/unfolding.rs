@@ -111,7 +111,7 @@ fn windows_are_exact_in_narrow_networks() {
 
 #[test]
 fn windows_are_exact_where_there_is_a_core() {
-    // Every point has more neighbours than are eliminated.
+    // Every point has more neighbors than are eliminated.
     (0..4).for_each(|seed| {
         unfold(60, 2400, 60, seed);
     });

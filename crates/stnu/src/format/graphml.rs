@@ -2,7 +2,7 @@
 //!
 //! Nodes are time points. Edges have the data `Type` (`requirement`, `contingent`, or `derived`, which is left out),
 //! `Value` (the weight) and `LabeledValue`: `LC(C):x` from a link's activation to its end C, `UC(C):-y` back. The
-//! labelled values of conditional networks are read where their labels are empty. A contingent pair with values only has
+//! labeled values of conditional networks are read where their labels are empty. A contingent pair with values only has
 //! its upper bound on the way to the end and its negated lower one on the way back.
 
 use std::collections::BTreeMap;
@@ -100,13 +100,13 @@ fn add_links(draft: &mut Draft, pairs: &BTreeMap<(PointId, PointId), Pair>) -> R
     for (&(from, to), pair) in pairs {
         let back = pairs.get(&(to, from));
         let back_value = back.and_then(|back| back.value);
-        let is_back_labelled = back.is_some_and(|back| back.lower.is_some() || back.upper.is_some());
-        let is_labelled = pair.lower.is_some() || pair.upper.is_some();
+        let is_back_labeled = back.is_some_and(|back| back.lower.is_some() || back.upper.is_some());
+        let is_labeled = pair.lower.is_some() || pair.upper.is_some();
         let (lower, upper) = match (pair.lower, pair.upper) {
             (Some(lower), Some(upper)) => (lower, upper),
             // With values only, the positive one leads to the end.
             (None, None) => {
-                if is_back_labelled {
+                if is_back_labeled {
                     if let Some(weight) = pair.value {
                         draft.edges.push(DraftEdge { line: pair.line, from, to, weight });
                     }
@@ -130,7 +130,7 @@ fn add_links(draft: &mut Draft, pairs: &BTreeMap<(PointId, PointId), Pair>) -> R
             }
             _ => return Err(incomplete(draft, from, to, pair.line)),
         };
-        if is_labelled && let Some(weight) = pair.value {
+        if is_labeled && let Some(weight) = pair.value {
             draft.edges.push(DraftEdge { line: pair.line, from, to, weight });
         }
         draft.links.push(DraftLink { line: pair.line, activation: from, end: to, lower, upper });

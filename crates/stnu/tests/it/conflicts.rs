@@ -96,7 +96,7 @@ fn relaxations_are_the_least_changes() {
                 relax(&mut changed, relaxation.part, value);
                 changed
             };
-            // Towards what is easier.
+            // Toward what is easier.
             let (step, limit) = match relaxation.part {
                 Part::Edge(_) => (1, relaxation.old + 1_000),
                 Part::Lower(id) => (1, network.link(id).upper),

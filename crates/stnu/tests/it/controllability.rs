@@ -134,7 +134,7 @@ fn a_check_can_be_stopped() {
 }
 
 #[test]
-fn random_networks_agree_with_labelled_reductions() {
+fn random_networks_agree_with_labeled_reductions() {
     let mut verdicts = [0, 0];
     for seed in 0..40_000 {
         let network = small(seed, 3 + (seed % 6) as usize, 2 + (seed % 9) as i64);

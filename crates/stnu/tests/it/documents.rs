@@ -162,12 +162,12 @@ fn other_ways_to_write_a_contingent_link_in_graphml_are_read() {
         .replace("<data key=\"LabeledValue\">LC(C):20</data>", "<data key=\"Value\">40</data>")
         .replace("<data key=\"LabeledValue\">UC(C):-40</data>", "<data key=\"Value\">-20</data>");
     assert_eq!(Document::parse(&values), Ok(plain.clone()));
-    let labelled = GRAPHML
+    let labeled = GRAPHML
         .replace("LabeledValue\">LC(C):20", "LowerCaseLabeledValues\">{(C, 20, ⊡) }")
         .replace("LabeledValue\">UC(C):-40", "UpperCaseLabeledValues\">{(C, -40, ⊡) }")
         .replace("Value\">35", "LabeledValues\">{(35, ⊡) }");
-    assert_eq!(Document::parse(&labelled), Ok(plain.clone()));
-    let conditional = labelled.replace("(35, ⊡)", "(35, p)");
+    assert_eq!(Document::parse(&labeled), Ok(plain.clone()));
+    let conditional = labeled.replace("(35, ⊡)", "(35, p)");
     assert_eq!(refused(&conditional), (11, "conditional networks are not supported".into()));
     let keyed = GRAPHML
         .replace("<key id=\"Type\"", "<key id=\"d1\" for=\"edge\" attr.name=\"Value\"/>\n<key id=\"Type\"")

@@ -70,7 +70,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
         height,
         samples,
         cell_size_m,
-        origin_m: origin_m.filter(|origin| origin.iter().all(|metres| metres.is_finite())),
+        origin_m: origin_m.filter(|origin| origin.iter().all(|meters| meters.is_finite())),
         meaning: Meaning::Levels { greatest: None },
     })
 }

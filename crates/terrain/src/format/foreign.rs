@@ -1,4 +1,4 @@
-//! Map files of formats that are not read: recognised, so that their refusal can say what to do.
+//! Map files of formats that are not read: recognized, so that their refusal can say what to do.
 
 use super::FormatError;
 

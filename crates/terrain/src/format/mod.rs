@@ -26,7 +26,7 @@ pub use pds::{RawLayout, SampleType};
 /// The most cells that a map may have: 33 million, or 5800 × 5800.
 pub const MAX_CELL_COUNT: u64 = 1 << 25;
 
-/// Metres per cell where neither the file nor the caller says (SPEC 1.8).
+/// Meters per cell where neither the file nor the caller says (SPEC 1.8).
 pub const DEFAULT_CELL_SIZE_M: f64 = 0.6;
 
 /// The kinds of file.
@@ -34,7 +34,7 @@ pub const DEFAULT_CELL_SIZE_M: f64 = 0.6;
 pub enum FileFormat {
     /// Portable Network Graphics, 8 or 16 bits.
     Png,
-    /// Portable grey map, text (P2) or binary (P5).
+    /// Portable gray map, text (P2) or binary (P5).
     Pgm,
     /// TIFF or `GeoTIFF`.
     Tiff,
@@ -88,9 +88,9 @@ pub enum FormatError {
 /// What the caller knows about a file, or wants otherwise than the file says.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImportOptions {
-    /// Metres per cell, instead of the file's own.
+    /// Meters per cell, instead of the file's own.
     pub cell_size_m: Option<f64>,
-    /// Metres for each unit of the samples, besides the file's own scale; 1 by default.
+    /// Meters for each unit of the samples, besides the file's own scale; 1 by default.
     pub vertical_scale: Option<f64>,
     /// A sample value that means "no data", besides what the file says.
     pub no_data: Option<f64>,
@@ -107,11 +107,11 @@ pub struct Raster {
     pub width: u32,
     /// Rows from top to bottom.
     pub height: u32,
-    /// Values row by row from the top, in metres for elevations; NaN where there is no data.
+    /// Values row by row from the top, in meters for elevations; NaN where there is no data.
     pub samples: Vec<f32>,
-    /// Metres per cell, if the file says.
+    /// Meters per cell, if the file says.
     pub cell_size_m: Option<f64>,
-    /// Where the south-west corner is in metres east and north, if the file says so in a plane of its own.
+    /// Where the south-west corner is in meters east and north, if the file says so in a plane of its own.
     pub origin_m: Option<[f64; 2]>,
     /// What the samples are.
     pub meaning: Meaning,
@@ -120,14 +120,14 @@ pub struct Raster {
 /// What the samples of a raster are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Meaning {
-    /// Heights, or grey levels that stand for them; the greatest value that the format can hold, if it has one.
+    /// Heights, or gray levels that stand for them; the greatest value that the format can hold, if it has one.
     Levels {
-        /// The greatest grey level.
+        /// The greatest gray level.
         greatest: Option<u32>,
     },
-    /// Grey levels of which 0 is white and the greatest black: heights as they are, and obstacles where they are high.
+    /// Gray levels of which 0 is white and the greatest black: heights as they are, and obstacles where they are high.
     InvertedLevels {
-        /// The greatest grey level.
+        /// The greatest gray level.
         greatest: u32,
     },
     /// 1 in obstacles, 0 where it is free, and NaN where neither is known.
@@ -191,7 +191,7 @@ pub fn read_terrain(bytes: &[u8], options: &ImportOptions) -> Result<Terrain, Fo
 }
 
 impl Raster {
-    /// The map with its south-west corner where the file says, or else at the origin. Obstacles stand a metre above
+    /// The map with its south-west corner where the file says, or else at the origin. Obstacles stand a meter above
     /// the ground.
     pub fn into_terrain(self) -> Terrain {
         let frame = self.frame();
@@ -211,7 +211,7 @@ impl Raster {
         GridFrame { origin_m, ..GridFrame::new(self.width, self.height, cell_size_m) }
     }
 
-    /// Which cells are obstacles, row by row from the top: those that the file calls so, grey levels in the darker
+    /// Which cells are obstacles, row by row from the top: those that the file calls so, gray levels in the darker
     /// half of their range, and cells without data.
     pub fn obstacles(&self) -> Vec<bool> {
         let limit = match self.meaning {

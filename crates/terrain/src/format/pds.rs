@@ -108,18 +108,18 @@ pub struct RawLayout {
     pub sample_type: SampleType,
     /// Bytes before the first sample.
     pub start_byte: u64,
-    /// Metres for each unit.
+    /// Meters for each unit.
     pub scaling_factor: f64,
-    /// Metres of value 0.
+    /// Meters of value 0.
     pub offset_m: f64,
     /// The value that means "no data".
     pub no_data: Option<f64>,
-    /// Metres per cell, if known.
+    /// Meters per cell, if known.
     pub cell_size_m: Option<f64>,
 }
 
 impl RawLayout {
-    /// Samples in metres from the first byte on.
+    /// Samples in meters from the first byte on.
     pub const fn new(width: u32, height: u32, sample_type: SampleType) -> Self {
         Self {
             width,
@@ -145,7 +145,7 @@ pub(super) fn read(bytes: &[u8], options: &ImportOptions) -> Result<Raster, Form
 }
 
 /// Reads an image without a label as what such files of elevations mostly are: a whole planet, twice as wide as high,
-/// in 16-bit big-endian metres, like the MOLA maps of Mars.
+/// in 16-bit big-endian meters, like the MOLA maps of Mars.
 pub(super) fn read_without_label(bytes: &[u8]) -> Result<Raster, FormatError> {
     let height = ((bytes.len() / 4) as f64).sqrt() as u64;
     let looks_global = height >= 90 && height.is_multiple_of(90) && 4 * height * height == bytes.len() as u64;
@@ -328,7 +328,7 @@ impl Label {
         }
     }
 
-    /// The metres of the unit of heights.
+    /// The meters of the unit of heights.
     fn unit_m(&self) -> Result<f64, FormatError> {
         match self.word("UNIT").as_deref() {
             None | Some("M" | "METER" | "METERS" | "METRE" | "METRES") => Ok(1.0),
@@ -337,7 +337,7 @@ impl Label {
         }
     }
 
-    /// Metres per cell by scale or resolution; `None` if the label gives neither.
+    /// Meters per cell by scale or resolution; `None` if the label gives neither.
     fn cell_size_m(&self) -> Result<Option<f64>, FormatError> {
         if let Some(scale) = self.number("MAP_SCALE") {
             return Ok(Some(scale * self.length_unit_m("MAP_SCALE")?));
@@ -354,7 +354,7 @@ impl Label {
         Ok(Some(1.0_f64.to_radians() * radius_m / pixels_per_degree))
     }
 
-    /// The metres of the unit that follows a length in angle brackets. Without one it is the kilometre, which the
+    /// The meters of the unit that follows a length in angle brackets. Without one it is the kilometer, which the
     /// PDS data dictionary gives these lengths.
     fn length_unit_m(&self, keyword: &str) -> Result<f64, FormatError> {
         let value = self.value(keyword).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! PNG height maps and obstacle pictures: grey, palette or colour, 8 or 16 bits; transparent pixels have no data.
+//! PNG height maps and obstacle pictures: gray, palette or color, 8 or 16 bits; transparent pixels have no data.
 
 use std::io::Cursor;
 
@@ -33,7 +33,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
             if has_alpha && level(alpha) == 0 {
                 return f32::NAN;
             }
-            // Grey is its own mean; a colour counts as its mean.
+            // Gray is its own mean; a color counts as its mean.
             let sum: u32 = color.chunks_exact(sample_bytes).map(level).sum();
             (f64::from(sum) / colors as f64) as f32
         })

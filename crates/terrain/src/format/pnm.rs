@@ -1,4 +1,4 @@
-//! Portable grey maps (Netpbm): P2 text and P5 binary, one or two bytes a sample.
+//! Portable gray maps (Netpbm): P2 text and P5 binary, one or two bytes a sample.
 
 use super::{FormatError, Meaning, Raster, checked_cell_count};
 

@@ -14,9 +14,9 @@ const MAX_YAML_BYTES: usize = 16 << 10;
 /// Which cells of an image are free (`mode`).
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mode {
-    /// Grey levels against both thresholds: occupied, free, and unknown between them.
+    /// Gray levels against both thresholds: occupied, free, and unknown between them.
     Trinary,
-    /// Grey levels between the thresholds stand for a degree. Only what is surely free is free here.
+    /// Gray levels between the thresholds stand for a degree. Only what is surely free is free here.
     Scale,
     /// Samples are the degree itself in percent; above 100 it is unknown.
     Raw,

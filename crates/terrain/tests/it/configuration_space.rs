@@ -20,13 +20,13 @@ fn random_grid(random: &mut Random, density: f64) -> (GridFrame, Vec<bool>) {
 }
 
 fn random_point(frame: &GridFrame, random: &mut Random) -> Point2<f64> {
-    frame.to_metres(Point2::new(
+    frame.to_meters(Point2::new(
         random.unit() * f64::from(frame.width),
         random.unit() * f64::from(frame.height),
     ))
 }
 
-/// Metres from a point to the nearest occupied square, over all squares.
+/// Meters from a point to the nearest occupied square, over all squares.
 fn distance_by_brute_force(frame: &GridFrame, occupied: &[bool], point: Point2<f64>) -> f64 {
     let mut least = f64::INFINITY;
     for (index, _) in occupied.iter().enumerate().filter(|(_, occupied)| **occupied) {
@@ -101,7 +101,7 @@ fn a_free_segment_is_free_at_every_dense_sample_and_a_blocked_one_comes_too_near
     assert!(free > 200 && blocked > 200, "{free} free, {blocked} blocked");
 }
 
-/// Metres between a segment and the nearest occupied square, by parry's convex distance.
+/// Meters between a segment and the nearest occupied square, by parry's convex distance.
 fn distance_by_parry(frame: &GridFrame, occupied: &[bool], a: Point2<f64>, b: Point2<f64>) -> f64 {
     let half = 0.5 * frame.cell_size_m;
     let square = Cuboid::new(Vector2::new(half, half));

@@ -56,7 +56,7 @@ fn eight_bit_pictures_keep_their_levels() {
 }
 
 #[test]
-fn a_colour_counts_as_its_mean_and_a_transparent_pixel_has_no_data() {
+fn a_color_counts_as_its_mean_and_a_transparent_pixel_has_no_data() {
     let raster = fixture("pillow-rgba8.png");
     assert_eq!(raster.samples[..5], [0.0, 60.0, 0.0, 0.0, 0.0]);
     assert!(raster.samples[5].is_nan());
@@ -77,7 +77,7 @@ fn geotiff_tags_give_cell_size_and_holes() {
 }
 
 #[test]
-fn geotiff_in_degrees_is_brought_to_metres_by_the_bodys_radius() {
+fn geotiff_in_degrees_is_brought_to_meters_by_the_bodys_radius() {
     let raster = fixture("tifffile-int32-tiled-degrees.tiff");
     assert_eq!((raster.width, raster.height), (40, 37));
     // Half a degree of a circle of 1000 m radius.
@@ -191,7 +191,7 @@ fn an_ascii_grid_has_square_cells() {
 }
 
 #[test]
-fn a_text_grey_map_may_have_comments() {
+fn a_text_gray_map_may_have_comments() {
     let raster = read(b"P2 # made by hand\n# size\n2 2\n9\n0 9 # row\n4 5").unwrap();
     assert_eq!(raster.samples, [0.0, 9.0, 4.0, 5.0]);
     assert_eq!(raster.obstacles(), [true, false, true, false]);
@@ -299,7 +299,7 @@ fn pds_with(lines: &str) -> Vec<u8> {
 }
 
 #[test]
-fn scaling_factor_offset_and_unit_of_a_label_make_metres() {
+fn scaling_factor_offset_and_unit_of_a_label_make_meters() {
     for (lines, expected) in [
         ("SCALING_FACTOR = N/A", [3.0, 40.0]),
         ("SCALING_FACTOR = 0.5<METER>\r\nOFFSET = -1.0", [0.5, 19.0]),
@@ -509,7 +509,7 @@ fn no_cut_or_flipped_byte_of_a_file_makes_reading_panic() {
 }
 
 #[test]
-fn formats_are_recognised_by_their_first_bytes() {
+fn formats_are_recognized_by_their_first_bytes() {
     assert_eq!(FileFormat::detect(b"MM\0*\0\0\0\x08"), Some(FileFormat::Tiff));
     assert_eq!(FileFormat::detect(b"\nNCOLS 3"), Some(FileFormat::AsciiGrid));
     assert_eq!(FileFormat::detect(b"nothing known"), None);

@@ -175,7 +175,7 @@ fn scale_and_offset_of_gdal_make_heights_of_stored_values() {
 }
 
 #[test]
-fn heights_in_other_units_are_brought_to_metres_or_refused() {
+fn heights_in_other_units_are_brought_to_meters_or_refused() {
     let unit = |unit: &str| {
         let text = format!("<Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">{unit}</Item>");
         Image::plain().with(METADATA, Value::Text(text.leak()))

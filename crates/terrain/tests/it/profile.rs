@@ -10,7 +10,7 @@ fn walled() -> Terrain {
     Terrain::new(frame, heights.collect())
 }
 
-/// Ground that rises by 0.75 m for each metre east.
+/// Ground that rises by 0.75 m for each meter east.
 fn slope() -> Terrain {
     let frame = GridFrame::new(100, 100, 1.0);
     Terrain::new(frame, (0..100 * 100).map(|index| (index % 100) as f32 * 0.75).collect())
@@ -32,7 +32,7 @@ fn over_a_wall_the_ground_is_longer_by_going_up_and_down() {
     let profile = walled().profile(Point2::new(20.5, 50.5), Point2::new(80.5, 50.5)).expect("on the map");
     assert!((profile.straight_m - 60.0).abs() < 1e-9);
     assert!((profile.climb_m[0] - 10.0).abs() < 1e-6 && (profile.climb_m[1] - 10.0).abs() < 1e-6);
-    // Each flank leads 10 m up within one metre.
+    // Each flank leads 10 m up within one meter.
     let expected = 58.0 + 2.0 * 101.0_f64.sqrt();
     assert!((profile.ground_m - expected).abs() < 0.01, "{} {expected}", profile.ground_m);
 }

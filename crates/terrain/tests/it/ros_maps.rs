@@ -4,7 +4,7 @@ use nalgebra::Point2;
 use terrain::format::{FileFormat, FormatError, ImportOptions, attach_label, image_of_label, read_raster};
 use terrain::{Cell, CellState, Occupancy, Terrain, Traversability};
 
-/// Two rows of four cells: black, dark, grey (205, as `map_saver` writes unknown cells), white; and all white.
+/// Two rows of four cells: black, dark, gray (205, as `map_saver` writes unknown cells), white; and all white.
 const IMAGE: &[u8] = b"P5 4 2 255\n\x00\x40\xcd\xfe\xff\xff\xff\xff";
 
 const YAML: &str = "image: site.pgm\nresolution: 0.050000\norigin: [-51.2, -12.5, 0.000000]\nnegate: 0\n\
@@ -68,7 +68,7 @@ fn the_map_has_its_own_scale_and_place() {
     let frame = *raster.into_terrain().frame();
     assert_eq!((frame.cell_size_m, frame.origin_m), (0.05, Point2::new(-51.2, -12.5)));
     let list =
-        YAML.replace("origin: [-51.2, -12.5, 0.000000]", "origin:\n  - -51.2\n  - -12.5  # metres\n  - 0.0");
+        YAML.replace("origin: [-51.2, -12.5, 0.000000]", "origin:\n  - -51.2\n  - -12.5  # meters\n  - 0.0");
     assert_eq!(self::raster(&list, IMAGE).expect("a list in lines").origin_m, Some([-51.2, -12.5]));
 }
 
@@ -132,6 +132,6 @@ fn what_is_not_read_is_refused_with_its_reason() {
     }
     let alone = read_raster(YAML.as_bytes(), &ImportOptions::default()).expect_err("no image").to_string();
     assert!(alone.contains("its image site.pgm is also needed"), "{alone}");
-    let heights = raster(YAML, b"ncols 1\nnrows 1\ncellsize 1\n5\n").expect_err("no grey levels").to_string();
+    let heights = raster(YAML, b"ncols 1\nnrows 1\ncellsize 1\n5\n").expect_err("no gray levels").to_string();
     assert!(heights.contains("needs gray levels"), "{heights}");
 }

@@ -127,12 +127,12 @@ impl Expander<'_> {
     }
 
     fn worth(&mut self, activity: &Activity<'_>) {
-        let (mut cost, mut cost_per_metre, mut reward) =
+        let (mut cost, mut cost_per_meter, mut reward) =
             (Rational::default(), Rational::default(), Rational::default());
         let declared = activity.declared;
         for amount in &declared.costs {
             let value = self.amount(&amount.value, activity.scope);
-            let sum = if amount.per == Some(Per::Metre) { &mut cost_per_metre } else { &mut cost };
+            let sum = if amount.per == Some(Per::Meter) { &mut cost_per_meter } else { &mut cost };
             self.add(sum, value, amount.span);
         }
         for written in &declared.rewards {
@@ -140,7 +140,7 @@ impl Expander<'_> {
             self.add(&mut reward, value, written.span);
         }
         if !declared.costs.is_empty() || !declared.rewards.is_empty() {
-            self.builder.worths.push(Worth { arc: activity.arc, cost, cost_per_metre, reward });
+            self.builder.worths.push(Worth { arc: activity.arc, cost, cost_per_meter, reward });
         }
     }
 

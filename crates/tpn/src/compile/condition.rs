@@ -27,12 +27,12 @@ impl<'program> Expander<'program> {
         // Of what keeps its value, `watching` requires that the condition does not come about.
         let is_lasting = fact.as_ref().is_some_and(|fact| self.vocabulary.is_lasting(&fact.variable));
         let mode = if is_lasting { LabelMode::Ask } else { mode };
-        self.labelled(body, fact, mode, condition, span, entry, scope)
+        self.labeled(body, fact, mode, condition, span, entry, scope)
     }
 
     /// `body` with a label of `condition`, which says `fact`.
     #[expect(clippy::too_many_arguments, reason = "what a label needs and what a piece needs")]
-    pub(super) fn labelled(
+    pub(super) fn labeled(
         &mut self,
         body: &'program Statement,
         fact: Option<Fact>,

@@ -127,7 +127,7 @@ impl<'program> Expander<'program> {
             }
             StatementKind::Telling(body, condition) => {
                 let fact = self.told(condition, scope);
-                self.labelled(body, fact, LabelMode::Tell, condition, span, entry, scope)
+                self.labeled(body, fact, LabelMode::Tell, condition, span, entry, scope)
             }
             StatementKind::IfThennext(condition, body) => self.guard(condition, body, span, entry, scope),
             StatementKind::Repeat(count, body) => self.repeat(count, body, span, entry, scope),

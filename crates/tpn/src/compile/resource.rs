@@ -88,15 +88,15 @@ impl<'program> Expander<'program> {
         called: Span,
     ) {
         let Some(resource) = self.resource(&written.resource, activity.scope, called) else { return };
-        let mut per_metre = Rational::default();
+        let mut per_meter = Rational::default();
         let amount = match &written.amount {
             None => Rational::ONE,
             Some(amount) => {
                 let value = self.amount(&amount.value, activity.scope);
                 match amount.per {
                     None => value,
-                    Some(Per::Metre) => {
-                        per_metre = value;
+                    Some(Per::Meter) => {
+                        per_meter = value;
                         Rational::default()
                     }
                     Some(Per::Time(unit)) => {
@@ -109,7 +109,7 @@ impl<'program> Expander<'program> {
             resource,
             change: written.change,
             amount,
-            per_metre,
+            per_meter,
             spread: Rational::default(),
             detour: Rational::default(),
             arc: activity.arc,
@@ -235,7 +235,7 @@ impl<'program> Expander<'program> {
                 resource: resource_id,
                 change: Change::Uses,
                 amount,
-                per_metre: Rational::default(),
+                per_meter: Rational::default(),
                 spread: Rational::default(),
                 detour: Rational::default(),
                 arc,
@@ -274,7 +274,7 @@ impl<'program> Expander<'program> {
                 resource,
                 change: Change::Uses,
                 amount: Rational::ONE,
-                per_metre: Rational::default(),
+                per_meter: Rational::default(),
                 spread: Rational::default(),
                 detour: Rational::default(),
                 arc,

@@ -33,7 +33,7 @@ fn meaning(network: &Network) -> Vec<String> {
     let resources = network.resources.iter().map(|it| format!("{} {:?}", it.name, it.supply));
     let uses = network.uses.iter().map(|it| {
         let name = &network.resources[it.resource.index()].name;
-        format!("{name} {:?} {} {} {}→{}", it.change, it.amount, it.per_metre, it.start.0, it.end.0)
+        format!("{name} {:?} {} {} {}→{}", it.change, it.amount, it.per_meter, it.start.0, it.end.0)
     });
     arcs.chain(occurrences).chain(resources).chain(uses).collect()
 }

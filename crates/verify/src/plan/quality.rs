@@ -33,8 +33,8 @@ impl Checker<'_> {
         self.check_length(violations);
     }
 
-    /// The metres driven are those of the selected movements from where each of them starts, which are known to the
-    /// millimetre, rounded up.
+    /// The meters driven are those of the selected movements from where each of them starts, which are known to the
+    /// millimeter, rounded up.
     fn check_length(&self, violations: &mut Vec<Violation>) {
         let (network, plan) = (self.network, self.plan);
         let terms = network.objective.iter().flat_map(|goal| &goal.terms);
@@ -43,14 +43,14 @@ impl Checker<'_> {
             return;
         }
         let movements = departure::of_plan(network, plan);
-        let metres = movements.iter().filter_map(|movement| {
+        let meters = movements.iter().filter_map(|movement| {
             let values = &network.labels[movement.before.index()].literal.values;
             let starts_there = |distance: &&Distance| {
                 distance.arrival == movement.arrival && *values == ValueSet::In(vec![distance.from])
             };
-            network.distances.iter().find(starts_there).map(|distance| distance.metres.to_f64())
+            network.distances.iter().find(starts_there).map(|distance| distance.meters.to_f64())
         });
-        let (sum, count) = metres.fold((0.0, 0.0), |(sum, count), metres| (sum + metres, count + 1.0));
+        let (sum, count) = meters.fold((0.0, 0.0), |(sum, count), meters| (sum + meters, count + 1.0));
         let stated = plan.quality.length_m;
         if (stated - sum).abs() > 0.002 * (count + 1.0) {
             let message = format!("the plan's length is {sum:.3} m, not {stated:.3} m");

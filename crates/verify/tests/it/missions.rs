@@ -93,7 +93,7 @@ fn state_order(network: &Network, names: &[&str]) -> StateOrder {
     StateOrder { variable: network.labels[producers[0].index()].literal.variable, producers }
 }
 
-/// The labelled interval of a name.
+/// The labeled interval of a name.
 pub fn label(network: &Network, name: &str) -> LabelId {
     Names::new(network).label(name).unwrap_or_else(|problem| panic!("{problem}"))
 }

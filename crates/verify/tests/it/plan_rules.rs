@@ -136,10 +136,10 @@ fn names_that_the_network_does_not_have_make_no_plan() {
     assert_eq!(violations(&network, &read), []);
     assert_eq!(plan_to_json(&network, &read), written);
     for (pointer, name, kind) in [
-        ("/causal_links/0/ask", "Ask(c)@D#2", "labelled interval"),
-        ("/causal_links/0/tell", "Tell(c)", "labelled interval"),
-        ("/conflict_order/0/0", "", "labelled interval"),
-        ("/orderings_added/0/1", "Tell(V=Y)@Tell(V=Y)#01", "labelled interval"),
+        ("/causal_links/0/ask", "Ask(c)@D#2", "labeled interval"),
+        ("/causal_links/0/tell", "Tell(c)", "labeled interval"),
+        ("/conflict_order/0/0", "", "labeled interval"),
+        ("/orderings_added/0/1", "Tell(V=Y)@Tell(V=Y)#01", "labeled interval"),
     ] {
         let mut wrong = written.clone();
         *wrong.pointer_mut(pointer).expect("it is there") = json!(name);

@@ -217,7 +217,7 @@ impl AppState {
     fn turn_lesson(&mut self, forwards: bool) {
         let Some(lesson) = &self.lesson.open else { return };
         let (at, stops) = (self.lesson.stop, lesson.stops.len());
-        match (forwards, self.lesson.neighbour(forwards)) {
+        match (forwards, self.lesson.neighbor(forwards)) {
             (true, _) if at + 1 < stops => self.go_to_stop(at + 1),
             (false, _) if at > 0 => self.go_to_stop(at - 1),
             (true, Some(next)) => self.open_lesson(next, 0),

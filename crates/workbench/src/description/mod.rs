@@ -182,7 +182,7 @@ pub struct Verdict {
 #[cfg_attr(test, derive(TS))]
 pub struct Failure {
     pub reasons: Vec<Reason>,
-    /// The labelled intervals that take part.
+    /// The labeled intervals that take part.
     pub conditions: Vec<String>,
     /// What would make a plan possible.
     pub relaxations: Vec<String>,

@@ -29,7 +29,7 @@ enum Notation {
     Network(Arc<str>),
 }
 
-/// What a piece of source text is, in either notation: each has a colour of its own.
+/// What a piece of source text is, in either notation: each has a color of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SyntaxRole {
     Keyword,

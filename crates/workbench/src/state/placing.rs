@@ -12,12 +12,12 @@ use crate::state::selection::Selection;
 /// Something that is to be declared.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NewThing {
-    /// A named place, in metres east and north.
+    /// A named place, in meters east and north.
     Location(Point2<f64>),
     /// A round obstacle.
     Circle {
         center_m: Point2<f64>,
-        /// Its radius in metres.
+        /// Its radius in meters.
         radius_m: f64,
     },
     /// An obstacle with at least three corners.
@@ -26,7 +26,7 @@ pub enum NewThing {
     Wall {
         /// Its ends, which differ.
         ends_m: [Point2<f64>; 2],
-        /// How thick it is, in metres.
+        /// How thick it is, in meters.
         thickness_m: f64,
     },
     Vehicle {
@@ -77,7 +77,7 @@ pub fn declare(text: &str, program: &Program, thing: &NewThing) -> Declared {
         NewThing::Circle { center_m, radius_m } => {
             let name = names.fresh("Rock");
             let text =
-                format!("obstacle {name} circle ({}, {});", place(*center_m), metres(radius_m.max(0.1)));
+                format!("obstacle {name} circle ({}, {});", place(*center_m), meters(radius_m.max(0.1)));
             (Kind::Obstacle, text, Selection::Obstacle(name), None)
         }
         NewThing::Polygon(corners_m) => {
@@ -116,15 +116,15 @@ pub fn move_start(text: &str, program: &Program, vehicle: &str, start: &VehicleS
     Some(edits)
 }
 
-/// Metres to a tenth, as an author would write them.
-pub fn metres(value: f64) -> String {
+/// Meters to a tenth, as an author would write them.
+pub fn meters(value: f64) -> String {
     let tenths = (value * 10.0).round() / 10.0;
     format!("{}", if tenths == 0.0 { 0.0 } else { tenths })
 }
 
-/// A place to a tenth of a metre, without parentheses.
+/// A place to a tenth of a meter, without parentheses.
 pub fn place(point_m: Point2<f64>) -> String {
-    format!("{}, {}", metres(point_m.x), metres(point_m.y))
+    format!("{}, {}", meters(point_m.x), meters(point_m.y))
 }
 
 /// The corners of a wall of some thickness between two ends, counter-clockwise.

@@ -24,7 +24,7 @@ pub enum Selection {
     Decision(DecisionId),
     /// One alternative of a decision, from 0.
     Alternative(DecisionId, u32),
-    /// A labelled interval.
+    /// A labeled interval.
     Label(LabelId),
     /// An assertion that carries a requirement.
     Link(CausalLink),
@@ -211,7 +211,7 @@ impl Selection {
     }
 
     /// The thing of this name: an occurrence (`Group-Wait#1`), an event (`Group-Wait#1.start`), a decision (`D1`), a
-    /// labelled interval, a location, an obstacle or a vehicle.
+    /// labeled interval, a location, an obstacle or a vehicle.
     pub fn by_name(snapshot: &Snapshot, name: &str) -> Option<Self> {
         if let Some(network) = snapshot.network.as_deref() {
             if let Some(found) = network.occurrences.iter().position(|it| it.name == name) {

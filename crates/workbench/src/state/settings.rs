@@ -341,13 +341,13 @@ pub struct TerrainView {
     pub grid: bool,
     /// How much room the vehicle has to the nearest obstacle.
     pub clearance: bool,
-    /// What the colours of the ground mean.
+    /// What the colors of the ground mean.
     pub coloring: Coloring,
     /// How much heights are exaggerated; 1 is true to scale.
     pub height_scale: f32,
 }
 
-/// What the colours of the ground mean.
+/// What the colors of the ground mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coloring {

@@ -57,7 +57,7 @@ impl Tool {
 pub struct TerrainState {
     /// What clicks do.
     pub tool: Tool,
-    /// The places clicked so far, in metres east and north: ends of a measurement, corners of an obstacle.
+    /// The places clicked so far, in meters east and north: ends of a measurement, corners of an obstacle.
     pub points_m: Vec<Point2<f64>>,
     /// The growth of search trees.
     pub growth: Growth,

@@ -90,7 +90,7 @@ fn turning_goes_round_the_panels_on_screen_and_the_keyboard_goes_along() {
 }
 
 #[test]
-fn the_editor_follows_the_caret_and_centres_only_where_it_was_sent() {
+fn the_editor_follows_the_caret_and_centers_only_where_it_was_sent() {
     let mut app = opened("one\ntwo\nthree");
     let select = Command::Text(TextCommand::Select { anchor: 4, head: 7 });
     let typed = leaves(&mut app, select);

@@ -25,7 +25,7 @@ impl Picture {
         let channels = match frame.color_type {
             png::ColorType::Rgb => 3,
             png::ColorType::Rgba => 4,
-            other => bail!("screenshots are in colour, not {other:?}"),
+            other => bail!("screenshots are in color, not {other:?}"),
         };
         let pixels = bytes[..frame.buffer_size()]
             .chunks_exact(channels)
@@ -34,12 +34,12 @@ impl Picture {
         Ok(Self { width: frame.width, height: frame.height, pixels })
     }
 
-    /// How many different colours there are; a blank picture has one.
-    pub fn colours(&self) -> usize {
+    /// How many different colors there are; a blank picture has one.
+    pub fn colors(&self) -> usize {
         self.pixels.iter().collect::<BTreeSet<_>>().len()
     }
 
-    /// The part of the pixels, from 0 to 1, whose colour differs visibly from the other picture's. Pictures of
+    /// The part of the pixels, from 0 to 1, whose color differs visibly from the other picture's. Pictures of
     /// different sizes differ altogether.
     pub fn difference(&self, other: &Self) -> f64 {
         /// Differences below this come from rounding in the renderer.
@@ -58,7 +58,7 @@ impl Picture {
         differing as f64 / self.pixels.len().max(1) as f64
     }
 
-    /// The part of the pixels, from 0 to 1, that differ visibly from the most common colour.
+    /// The part of the pixels, from 0 to 1, that differ visibly from the most common color.
     pub fn drawn(&self) -> f64 {
         let mut counts = std::collections::BTreeMap::new();
         for pixel in &self.pixels {
@@ -78,9 +78,9 @@ mod tests {
     }
 
     #[test]
-    fn a_blank_picture_has_one_colour_and_nothing_drawn() {
+    fn a_blank_picture_has_one_color_and_nothing_drawn() {
         let blank = picture(vec![[7, 7, 7]; 4]);
-        assert_eq!(blank.colours(), 1);
+        assert_eq!(blank.colors(), 1);
         assert_eq!(blank.drawn(), 0.0);
     }
 

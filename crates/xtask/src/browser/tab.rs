@@ -50,7 +50,7 @@ pub struct Widget {
 
 impl Widget {
     /// The middle of the widget.
-    pub fn centre(&self) -> (f64, f64) {
+    pub fn center(&self) -> (f64, f64) {
         (self.x + self.width / 2.0, self.y + self.height / 2.0)
     }
 }
@@ -328,14 +328,14 @@ impl Tab {
 
     /// Clicks the middle of a widget, once it keeps still: what has just appeared may make room for something else.
     pub fn click_widget(&self, role: &str, label: &str) -> Result<()> {
-        let mut centre = self.widget(role, label)?.centre();
+        let mut center = self.widget(role, label)?.center();
         for _ in 0..FRAMES_TO_KEEP_STILL {
             self.next_frame()?;
-            let now = self.widget(role, label)?.centre();
-            if now == centre {
+            let now = self.widget(role, label)?.center();
+            if now == center {
                 return self.click(now.0, now.1);
             }
-            centre = now;
+            center = now;
         }
         bail!("the {role} \"{label}\" does not keep still")
     }

@@ -1,4 +1,4 @@
-//! Rules of the repository, as tests: layering of the crates, licences, reasons for dependencies, file headers.
+//! Rules of the repository, as tests: layering of the crates, licenses, reasons for dependencies, file headers.
 
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -88,7 +88,7 @@ pub(super) const TIFF: Reader = format(
     ],
 );
 
-/// Portable grey maps.
+/// Portable gray maps.
 pub(super) const PNM: Reader = format(
     "pgm",
     &["crates/terrain/tests/fixtures/*.pgm"],

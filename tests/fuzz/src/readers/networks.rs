@@ -72,7 +72,7 @@ pub(super) const PTPN: Reader = Reader {
 fn ptpn(input: &[u8]) -> Outcome {
     match interchange::ptpn::read(&text_of(input)) {
         Ok(document) => {
-            let said = document.not_honoured().join(" ");
+            let said = document.not_honored().join(" ");
             let is_written = interchange::ptpn::write(&document.network).is_ok();
             read(&format!("{said} {is_written} {}", magnitude(document.network.nodes.len())))
         }
@@ -86,7 +86,7 @@ fn networks(input: &[u8]) -> Outcome {
         Ok(source) => source,
         Err(reason) => return refused(&reason.to_string()),
     };
-    let said = source.not_honoured().join(" ");
+    let said = source.not_honored().join(" ");
     let network = source.into_network();
     let written = interchange::plan_schema::write(&network);
     assert!(Document::parse(&written.to_string()).is_ok(), "what is written can be read");

@@ -6,10 +6,10 @@ use xtask::browser::{Graphics, Key, Modifiers};
 use crate::opened::Opened;
 
 #[test]
-fn the_page_is_drawn_in_many_colours() -> Result<()> {
+fn the_page_is_drawn_in_many_colors() -> Result<()> {
     let page = Opened::planned()?;
     let picture = page.look()?;
-    assert!(picture.colours() > 50, "only {} colours", picture.colours());
+    assert!(picture.colors() > 50, "only {} colors", picture.colors());
     assert!(picture.drawn() > 0.05, "only {} of the page differs from the ground", picture.drawn());
     Ok(())
 }
@@ -36,7 +36,7 @@ fn playing_moves_time_and_vehicles_and_the_picture() -> Result<()> {
 fn dragging_over_the_terrain_turns_the_view() -> Result<()> {
     let page = Opened::planned()?;
     let terrain = page.tab.widget("img", "Terrain")?;
-    let (x, y) = terrain.centre();
+    let (x, y) = terrain.center();
     page.tab.hover(x, y)?;
     let before = page.tab.screenshot_of(&terrain)?;
     page.tab.drag(&[(x, y), (x + 40.0, y + 10.0), (x + 90.0, y + 20.0)])?;
@@ -58,6 +58,6 @@ fn web_gpu_draws_the_page_where_there_is_one() -> Result<()> {
     page.settle()?;
     assert_eq!(page.state()?["renderer"], "webgpu");
     let picture = page.look()?;
-    assert!(picture.colours() > 50, "only {} colours", picture.colours());
+    assert!(picture.colors() > 50, "only {} colors", picture.colors());
     Ok(())
 }

@@ -179,7 +179,7 @@ fn lost_graphics_come_back_in_place_with_everything_as_it_was() -> Result<()> {
         // Its shaders are compiled again first, while frames go by.
         let mut colors = 0;
         for _ in 0..FRAMES_TO_COMPILE_SHADERS {
-            colors = page.look()?.colours();
+            colors = page.look()?.colors();
             if colors > 20 {
                 break;
             }

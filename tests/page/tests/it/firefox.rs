@@ -165,7 +165,7 @@ fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
 fn firefox_starts_plans_takes_keys_and_opens_again_without_a_network() -> Result<()> {
     let Some(mut firefox) = firefox("")? else { return Ok(()) };
     use_page(&mut firefox, "firefox")?;
-    assert!(firefox.screenshot()?.colours() > 20, "nothing is drawn");
+    assert!(firefox.screenshot()?.colors() > 20, "nothing is drawn");
     Ok(())
 }
 

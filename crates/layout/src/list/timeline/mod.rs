@@ -624,7 +624,7 @@ pub struct PairRow {
 pub const PAIR_HEIGHTS: (f64, f64) = (28.0, 9.0);
 
 /// Two plans over one time axis: the first as outlines with lines across, the second as filled bars below, so that no
-/// colour is needed to tell them apart. Rows begin at the top of the track; names after `indent`.
+/// color is needed to tell them apart. Rows begin at the top of the track; names after `indent`.
 pub fn pair_list(rows: &[PairRow], track: &Track, indent: f64) -> DisplayList {
     let (row_height, bar_height) = PAIR_HEIGHTS;
     let bottom = track.top + rows.len() as f64 * row_height;

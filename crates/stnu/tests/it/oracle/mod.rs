@@ -43,7 +43,7 @@ pub fn scaled(network: &Network, scale: i64) -> Network {
 
 const INFINITE: i64 = i64::MAX / 4;
 
-/// Dynamic controllability by labelled all-pairs reductions.
+/// Dynamic controllability by labeled all-pairs reductions.
 pub fn by_reductions(network: &Network) -> bool {
     let n = network.num_points();
     let links = network.links();

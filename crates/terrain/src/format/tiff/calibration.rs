@@ -38,7 +38,7 @@ impl Calibration {
         }
         let unit_m = match item_of_first_band(&metadata, "unittype").map(str::trim) {
             None | Some("") => unit_m.unwrap_or(1.0),
-            Some(unit) => metres(unit)
+            Some(unit) => meters(unit)
                 .ok_or_else(|| unsupported(format!("`{}` is not a known unit of length", start(unit))))?,
         };
         Ok(Self { scale, offset, unit_m, no_data })
@@ -65,7 +65,7 @@ impl Calibration {
 }
 
 /// A unit of length by GDAL's names.
-fn metres(unit: &str) -> Option<f64> {
+fn meters(unit: &str) -> Option<f64> {
     Some(match unit.to_ascii_lowercase().as_str() {
         "m" | "metre" | "meter" | "metres" | "meters" => 1.0,
         "km" | "kilometre" | "kilometer" | "kilometres" | "kilometers" => 1000.0,

@@ -23,8 +23,8 @@ pub(super) fn read_mask(bytes: &[u8], decoder: &mut Decoder<'_>) -> Result<Optio
     if !matches!(bits, 1 | 8) || number(decoder, Tag::SamplesPerPixel)?.unwrap_or(1) != 1 {
         return Err(unsupported(format!("its mask has samples of {bits} bits")));
     }
-    let grey = without_inversion(bytes, decoder)?;
-    let mut decoder = open(&grey)?;
+    let gray = without_inversion(bytes, decoder)?;
+    let mut decoder = open(&gray)?;
     decoder.seek_to_image(index).map_err(|error| problem(&error))?;
     let image = decoder.read_image().map_err(|error| problem(&error))?;
     let ::tiff::decoder::DecodingResult::U8(packed) = image else {

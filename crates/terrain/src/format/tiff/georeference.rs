@@ -1,4 +1,4 @@
-//! Where the cells of a `GeoTIFF` lie: their size in metres, and on which side north is (OGC 19-008r4).
+//! Where the cells of a `GeoTIFF` lie: their size in meters, and on which side north is (OGC 19-008r4).
 
 use ::tiff::tags::Tag;
 
@@ -14,7 +14,7 @@ const RASTER_TYPE: u16 = 1025;
 const PIXEL_IS_POINT: u16 = 2;
 /// `GeodeticCRSGeoKey`: a code of the EPSG registry, which is about the Earth.
 const GEODETIC_CRS: u16 = 2048;
-/// `EllipsoidSemiMajorAxisGeoKey`, in metres.
+/// `EllipsoidSemiMajorAxisGeoKey`, in meters.
 const SEMI_MAJOR_AXIS: u16 = 2057;
 /// `ProjLinearUnitsGeoKey` and `ProjLinearUnitSizeGeoKey`.
 const HORIZONTAL_UNIT: u16 = 3076;
@@ -31,11 +31,11 @@ const EARTH_RADIUS_M: f64 = 6_378_137.0;
 
 /// How the rows and columns of an image lie on the ground.
 pub(super) struct Georeference {
-    /// Metres per cell, if the file says.
+    /// Meters per cell, if the file says.
     pub cell_size_m: Option<f64>,
-    /// The south-west corner in metres, if the file says and its coordinates are not degrees.
+    /// The south-west corner in meters, if the file says and its coordinates are not degrees.
     pub origin_m: Option<[f64; 2]>,
-    /// Metres for each unit of heights, if the file says.
+    /// Meters for each unit of heights, if the file says.
     pub vertical_unit_m: Option<f64>,
     rows_from_south: bool,
     columns_from_east: bool,
@@ -192,9 +192,9 @@ impl Keys {
         self.double(SEMI_MAJOR_AXIS).unwrap_or(of_body)
     }
 
-    /// The metres of a unit of length by its EPSG code; `None` if the file has no such key.
+    /// The meters of a unit of length by its EPSG code; `None` if the file has no such key.
     fn unit_m(&self, unit: u16, size: Option<u16>) -> Result<Option<f64>, FormatError> {
-        let metres = match self.value(unit) {
+        let meters = match self.value(unit) {
             None | Some(0) => return Ok(None),
             Some(9001) => Some(1.0),
             Some(9002) => Some(0.3048),
@@ -204,7 +204,7 @@ impl Keys {
             Some(_) => None,
         };
         let code = self.value(unit).unwrap_or_default();
-        metres.filter(|metres| metres.is_finite() && *metres > 0.0).map(Some).ok_or_else(|| {
+        meters.filter(|meters| meters.is_finite() && *meters > 0.0).map(Some).ok_or_else(|| {
             unsupported(format!("its unit of length (EPSG code {code}) must be meters, kilometers or feet"))
         })
     }

@@ -130,7 +130,7 @@ fn alpha_band(decoder: &mut Decoder<'_>) -> Result<Option<usize>, FormatError> {
     Ok(place.and_then(|place| (bands + place).checked_sub(extra.len())).filter(|&band| band > 0))
 }
 
-/// Samples as doubles, and the greatest grey level of unsigned ones of up to 16 bits.
+/// Samples as doubles, and the greatest gray level of unsigned ones of up to 16 bits.
 fn to_doubles(image: DecodingResult) -> Result<(Vec<f64>, Option<u32>), FormatError> {
     fn convert<T: Into<f64>>(samples: Vec<T>) -> Vec<f64> {
         samples.into_iter().map(Into::into).collect()

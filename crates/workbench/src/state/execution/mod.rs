@@ -58,7 +58,7 @@ pub enum ExecutionCommand {
     /// A round obstacle appears at the time shown.
     Appear {
         center_m: Point2<f64>,
-        /// Its radius in metres.
+        /// Its radius in meters.
         radius_m: f64,
         /// Whether the tool that places it stays in hand.
         again: bool,
@@ -106,7 +106,7 @@ impl ExecutionState {
         self.view.as_ref().map(|view| &view.moment)
     }
 
-    /// The obstacles that have appeared by `time`, with centres and radii in metres.
+    /// The obstacles that have appeared by `time`, with centers and radii in meters.
     pub fn appeared(&self, time: f64) -> impl Iterator<Item = (Point2<f64>, f64)> + '_ {
         self.disturbances().iter().filter_map(move |disturbance| match *disturbance {
             Disturbance::Obstacle { at, x, y, radius, .. } if has_come(at, time) => {
@@ -234,7 +234,7 @@ impl ExecutionState {
             }
             ExecutionCommand::Appear { center_m, radius_m, .. } => {
                 let at = settle_time(playback);
-                let to_tenth = |metres: f64| (metres * 10.0).round() / 10.0;
+                let to_tenth = |meters: f64| (meters * 10.0).round() / 10.0;
                 let (x, y) = (to_tenth(center_m.x), to_tenth(center_m.y));
                 let radius = to_tenth(radius_m).max(0.1);
                 self.disturb(Disturbance::Obstacle { at, x, y, radius, low: false });

@@ -65,7 +65,7 @@ pub struct Counts {
     pub vertices: u32,
     /// Straight pieces of ground that were checked for obstacles.
     pub checks: u32,
-    /// The length of the best path, in metres.
+    /// The length of the best path, in meters.
     pub length_m: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The colours of JSON and EDN, the notations in which other tools write networks.
+//! The colors of JSON and EDN, the notations in which other tools write networks.
 
 use rmpl::Span;
 
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_texts_and_numbers_of_both_notations_have_colours_of_their_own() {
+    fn keys_texts_and_numbers_of_both_notations_have_colors_of_their_own() {
         use SyntaxRole::{Comment, Keyword, Number, Punctuation, String, Value, Variable};
         assert_eq!(
             told(r#"{"uid": "a\"b", "value": [1.5e3, null]}"#, 0),

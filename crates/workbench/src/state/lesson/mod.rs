@@ -133,7 +133,7 @@ impl LessonState {
     }
 
     /// The lesson before the open one in the course, or after it.
-    pub fn neighbour(&self, forwards: bool) -> Option<&'static str> {
+    pub fn neighbor(&self, forwards: bool) -> Option<&'static str> {
         let names: Vec<&str> = COURSE.iter().flat_map(|chapter| chapter.lessons).map(|it| it.name).collect();
         let at =
             names.iter().position(|name| Some(*name) == self.open.as_ref().map(|it| it.name.as_str()))?;
