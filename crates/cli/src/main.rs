@@ -18,7 +18,7 @@ use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _, Parser, Subcomm
 
 use crate::output::{E_CALL, E_INPUT, E_TIME, Format, LIMIT, WRONG, YES};
 use commands::{
-    check, compare, contradict, estimate, execute, explain, export, fmt, hca, import, path, plan,
+    check, compare, contradict, estimate, execute, explain, export, fmt, hca, import, path, plan, prove,
     reconfigure, report, review, robustness, run, schema, simulate, step, stn, tpn, verify,
 };
 
@@ -46,6 +46,7 @@ enum Command {
     Hca(hca::Args),
     Step(step::Args),
     Run(run::Args),
+    Prove(prove::Args),
     Estimate(estimate::Args),
     Reconfigure(reconfigure::Args),
     Import(import::Args),
@@ -126,6 +127,7 @@ fn run(call: &Cli, answer: (&str, Format)) -> ExitCode {
         Command::Step(args) => step::run(args),
         Command::Run(args) => run::run(args),
         Command::Estimate(args) => estimate::run(args),
+        Command::Prove(args) => prove::run(args),
         Command::Reconfigure(args) => reconfigure::run(args),
         Command::Import(args) => import::run(args),
         Command::Report(args) => report::run(args),

@@ -83,6 +83,14 @@ impl Ends {
         self.ranges.push_back((end, end));
     }
 
+    /// Counts from another step, which was `before` and is `after`.
+    fn shift(&mut self, before: u64, after: u64) {
+        let shifted = |end: u64| end.saturating_sub(before).saturating_add(after);
+        for (first, last) in &mut self.ranges {
+            (*first, *last) = (shifted(*first), shifted(*last));
+        }
+    }
+
     /// Takes the end out that is now, and returns whether there was one.
     pub(crate) fn take(&mut self, now: u64) -> bool {
         let Some((first, last)) = self.ranges.front_mut().filter(|(first, _)| *first == now) else {
@@ -132,6 +140,30 @@ impl Times {
         if let Err(place) = self.open.binary_search(&choice) {
             self.open.insert(place, choice);
         }
+    }
+
+    /// Forgets how many steps have been taken, but not what that means for the steps to come.
+    ///
+    /// The step becomes the smallest number for which everything that lies in the past still has a number: how long a
+    /// condition has lasted matters up to what is asked for, and of locks that are waited for only who came first.
+    pub(crate) fn count_from_now(&mut self, automaton: &Automaton) {
+        let lasting = automaton.held.iter().map(|held| held.steps).max().unwrap_or(0);
+        let now = lasting.max(self.locks.len() as u64);
+        for ends in &mut self.ends {
+            ends.shift(self.step, now);
+        }
+        for (held, unsatisfied) in automaton.held.iter().zip(&mut self.unsatisfied) {
+            *unsatisfied = now - (self.step - *unsatisfied).min(held.steps);
+        }
+        let mut since: Vec<u64> = self.locks.iter().filter_map(LockState::waiting_since).collect();
+        since.sort_unstable();
+        since.dedup();
+        for lock in &mut self.locks {
+            if let LockState::Waiting(from) = lock {
+                *from = since.partition_point(|earlier| earlier < from) as u64;
+            }
+        }
+        self.step = now;
     }
 
     pub(crate) fn ends_mut(&mut self, clock: ClockId) -> Option<&mut Ends> {

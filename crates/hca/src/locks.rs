@@ -46,6 +46,16 @@ pub(crate) enum LockState {
     },
 }
 
+impl LockState {
+    /// The step since which it has been waited for, if it is.
+    pub(crate) const fn waiting_since(&self) -> Option<u64> {
+        match self {
+            Self::Waiting(since) => Some(*since),
+            Self::Free | Self::Held { .. } => None,
+        }
+    }
+}
+
 /// A lock of one of several programs, by the program's place.
 type Which = (usize, LockId);
 

@@ -83,6 +83,14 @@ impl Standing {
     pub const fn marking(&self) -> &Marking {
         &self.marking
     }
+
+    /// The same with times that count from now: standings from which the same comes next are then equal, whenever they are
+    /// come to.
+    #[must_use]
+    pub fn relative(mut self, automaton: &Automaton) -> Self {
+        self.times.count_from_now(automaton);
+        self
+    }
 }
 
 /// A marking of an automaton and the room to compute the next one.
@@ -248,10 +256,7 @@ impl Stepper {
 
     /// For how many steps a lock has been waited for; `None` if it is not.
     pub(crate) fn waited(&self, lock: LockId) -> Option<u64> {
-        match self.times.locks.get(lock.0 as usize)? {
-            LockState::Waiting(since) => Some(self.times.step - since),
-            LockState::Free | LockState::Held { .. } => None,
-        }
+        Some(self.times.step - self.times.locks.get(lock.0 as usize)?.waiting_since()?)
     }
 
     /// Starts what is done under a lock that is waited for.

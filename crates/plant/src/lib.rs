@@ -37,6 +37,7 @@ pub mod simulate;
 mod spans;
 pub mod successor;
 mod table;
+mod targets;
 
 pub use belief::{Belief, State};
 pub use best_first::{SearchStatistics, update_best};
@@ -60,3 +61,4 @@ pub use probability::Probability;
 pub use reconfigure::{Command, Goal, NextCommands, Plan, Unreachable};
 pub use simulate::{Random, SimulatedPlant};
 pub use successor::{EstimateError, successor};
+pub use targets::{Target, targets};

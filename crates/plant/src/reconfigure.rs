@@ -46,6 +46,8 @@ pub struct Unreachable {
     pub reason: String,
     /// Whether this is only because the search was cut off.
     pub limit_reached: bool,
+    /// Whether it is because no state satisfies it together with other goals.
+    pub is_contradiction: bool,
 }
 
 /// What to command now.
@@ -131,6 +133,7 @@ impl Planner {
                     goal: *goal,
                     reason: reason.clone(),
                     limit_reached: false,
+                    is_contradiction: true,
                 });
                 unreachable.extend(failed);
             } else {
@@ -169,6 +172,7 @@ impl Planner {
                 goal: *goal,
                 reason: reason.clone(),
                 limit_reached: false,
+                is_contradiction: true,
             }));
             goals.retain(|goal| !culprits.contains(&goal.component));
         }
@@ -213,6 +217,7 @@ impl Planner {
                         goal: *goal,
                         reason: self.reason(state, *goal, &accepted, limit_reached),
                         limit_reached,
+                        is_contradiction: false,
                     });
                 }
             }

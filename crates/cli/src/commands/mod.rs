@@ -13,6 +13,7 @@ pub mod held_rules;
 pub mod import;
 pub mod path;
 pub mod plan;
+pub mod prove;
 pub mod reconfigure;
 pub mod report;
 pub mod review;

@@ -1,14 +1,14 @@
 //! `enroute run`: a control program in a closed loop with a simulated plant.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::{anyhow, bail};
 use executive::model_based::{
-    Options, ProgramTally, Run, RunStatus, StepInput, StepOutcome, StepRecord, System, Trials, run_seed,
-    sample,
+    Knowledge, Options, ProgramTally, Run, RunStatus, StepInput, StepOutcome, StepRecord, System, Trials,
+    run_seed, sample,
 };
 use hca::{Automaton, TraceStep};
 use plant::Interval;
@@ -39,6 +39,9 @@ pub struct Args {
     /// Track only the K most likely states of each group of components.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     k: Option<u32>,
+    /// What the program knows of its plant.
+    #[arg(long, value_enum, default_value_t)]
+    knowledge: KnowledgeArg,
     /// Run N times with random faults and report the success rate.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     monte_carlo: Option<u64>,
@@ -47,28 +50,64 @@ pub struct Args {
     format: Format,
 }
 
-/// Runs the command.
-pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let source = read_control(&args.file, "use `enroute simulate`")?;
+/// What a program knows of its plant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum KnowledgeArg {
+    /// What is estimated from commands and observations.
+    #[default]
+    Estimated,
+    /// The true modes of all components.
+    Perfect,
+}
+
+impl From<KnowledgeArg> for Knowledge {
+    fn from(arg: KnowledgeArg) -> Self {
+        match arg {
+            KnowledgeArg::Estimated => Self::Estimated,
+            KnowledgeArg::Perfect => Self::Perfect,
+        }
+    }
+}
+
+/// Compiles a program with its plant, and prints what is wrong with them if the output is text; a file that turns out to be a
+/// mission is refused with a word about missions.
+pub(super) fn read_system(
+    file: &Path,
+    model_file: Option<&Path>,
+    format: Format,
+    about_missions: &'static str,
+) -> anyhow::Result<(Option<Arc<System>>, Vec<Problem>)> {
+    let source = read_control(file, about_missions)?;
     let read_model = |path| read_control(path, "--model expects a plant model");
-    let model = args.model.as_deref().map(read_model).transpose()?;
+    let model = model_file.map(read_model).transpose()?;
     let compilation = System::compile(&source, model.as_deref());
     let mut problems = Problem::all(&compilation.program_diagnostics, &source);
     let model_problems = Problem::all(&compilation.model_diagnostics, model.as_deref().unwrap_or(""));
-    if args.format == Format::Text {
-        print_problems(&args.file.display().to_string(), &source, &problems)?;
-        if let (Some(path), Some(text)) = (&args.model, &model) {
+    if format == Format::Text {
+        print_problems(&file.display().to_string(), &source, &problems)?;
+        if let (Some(path), Some(text)) = (model_file, &model) {
             print_problems(&path.display().to_string(), text, &model_problems)?;
         }
     }
     problems.extend(model_problems);
-    let Some(system) = &compilation.system else {
+    Ok((compilation.system, problems))
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let (system, problems) =
+        read_system(&args.file, args.model.as_deref(), args.format, "use `enroute simulate`")?;
+    let Some(system) = &system else {
         if args.format == Format::Json {
             print_json(&document("run", &problems, json!({})))?;
         }
         return Ok(exit(WRONG));
     };
-    let options = Options { most_states: args.k.map(|count| count as usize), seed: args.fault_seed };
+    let options = Options {
+        most_states: args.k.map(|count| count as usize),
+        seed: args.fault_seed,
+        knowledge: args.knowledge.into(),
+    };
     let inputs = injections(system, &args.inject)?;
     if let Some(runs) = args.monte_carlo {
         let seed = args.fault_seed.unwrap_or(0);

@@ -672,3 +672,34 @@ fn a_choice_is_drawn_with_a_seed() {
         (0..20_u64).map(|seed| first(&["--fault-seed", &seed.to_string()])).collect();
     assert_eq!(drawn.len(), 2, "{drawn:?}");
 }
+
+#[test]
+fn orbit_insertion_is_proven_to_end_with_one_fault_and_shown_to_wait_forever_with_two() {
+    let (program, plant) = (case_path("h01_orbit_nominal.rmpl"), case_path("orbit_plant.rmpl"));
+    let prove = |more: &[&str]| {
+        let mut call = vec!["prove", &program, "--model", &plant];
+        call.extend(more);
+        enroute(&call)
+    };
+    let one = prove(&[]);
+    assert_eq!(one.status, 0);
+    assert!(!one.output.contains("broken") && one.output.contains("holds      the program ends\n"));
+    let two = prove(&["--faults", "2", "--property", "ends"]);
+    assert_eq!(two.status, 1);
+    // What is printed to repeat the run repeats it.
+    let repeat = two.output.lines().find_map(|line| line.trim().strip_prefix("repeat   enroute "));
+    let call: Vec<&str> = repeat.expect("a run that can be repeated").split(' ').collect();
+    let repeated = enroute(&call);
+    assert_eq!(repeated.status, 3);
+    assert!(two.output.contains("active   assert EngineB=Firing"), "{}", two.output);
+    assert!(repeated.output.contains("Still active:\n  assert EngineB=Firing"), "{}", repeated.output);
+    let chance = prove(&["--knowledge", "perfect", "--chance", "20", "--property", "ends within 20"]);
+    assert!(
+        chance.output.contains("chance     the program ends within 20 steps: 0.9993"),
+        "{}",
+        chance.output
+    );
+    let wrong = prove(&["--property", "never EngineA = Fring"]);
+    assert_eq!(wrong.status, 2);
+    assert!(wrong.errors.contains("did you mean `Firing`?"), "{}", wrong.errors);
+}

@@ -39,7 +39,7 @@ fn help_fits_a_terminal_and_has_no_markup() {
 fn every_command_says_what_it_does_by_a_verb() {
     let verbs = [
         "Check", "Compare", "Compile", "Convert", "Estimate", "Explain", "Export", "Find", "Format", "Plan",
-        "Print", "Review", "Run", "Search", "Show", "Simulate", "Update", "Verify",
+        "Print", "Prove", "Review", "Run", "Search", "Show", "Simulate", "Update", "Verify",
     ];
     let commands = commands();
     assert!(commands.len() > 20, "{commands:?}");

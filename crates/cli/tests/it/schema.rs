@@ -200,6 +200,9 @@ fn every_answer_keeps_the_schema() {
     }
     let state = &file("schema-state.json", "{}");
     let goal = &file("schema-goal.json", r#"{"EngineA":"Firing"}"#);
+    schema.holds(&["prove", PROGRAM, "--model", PLANT, "--chance", "8"], 0);
+    schema.holds(&["prove", PROGRAM, "--model", PLANT, "--faults", "2"], 1);
+    schema.holds(&["prove", PROGRAM, "--model", PLANT, "--states", "2"], 3);
     schema.holds(&["reconfigure", PLANT, "--state", state, "--goal", goal], 0);
 }
 
@@ -226,6 +229,8 @@ fn every_command_answers_what_it_cannot_use() {
         &["hca", nothing],
         &["step", PROGRAM, "--estimates", empty],
         &["run", MISSION],
+        &["prove", MISSION],
+        &["prove", PROGRAM, "--model", PLANT, "--property", "soon"],
         &["estimate", PLANT, "--prior", empty, "--commands", empty, "--observations", empty],
         &["reconfigure", PLANT, "--state", empty, "--goal", empty],
         &["report", nothing],
@@ -240,7 +245,7 @@ fn every_command_answers_what_it_cannot_use() {
         schema.refuses(arguments, "E-INPUT");
     }
     let commands: Vec<String> = schema.seen.iter().cloned().collect();
-    assert_eq!(commands.len(), 21, "{commands:?}");
+    assert_eq!(commands.len(), 22, "{commands:?}");
     for arguments in [
         &["plan"][..],
         &["plan", MISSION, "--nothing"],

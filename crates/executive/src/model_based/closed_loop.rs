@@ -7,16 +7,16 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hca::{Choice, Stepper, TestId, TraceStep, locks};
+use hca::{Choice, StepObserver, Stepper, TestId, TraceStep, locks};
 use plant::successor::nominal;
 use plant::{
     Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Formula, Goal, Interval, Known,
-    Observation, Random, SimulatedPlant, Situation, State, draw_initial,
+    NextCommands, Observation, Random, SimulatedPlant, Situation, State, VariableId, draw_initial,
 };
 use serde::{Deserialize, Serialize};
 use smol_str::{SmolStr, ToSmolStr as _};
 
-use super::estimator::{Believed, Estimator, StepOutcome, Threshold};
+use super::estimator::{BeliefUpdate, Believed, Estimator, StepOutcome, Threshold};
 use super::run::StepInput;
 use super::system::System;
 
@@ -54,7 +54,7 @@ impl ProgramExecution {
         &mut self,
         asked: &[(TestId, Formula)],
         known: Known<'_>,
-        trace: &mut TraceStep,
+        observer: &mut impl StepObserver,
     ) -> Vec<AskedCondition> {
         let system = Arc::clone(&self.system);
         let mut situation = Situation::new(&system.model, known.belief.most_likely(), known.observation);
@@ -86,7 +86,7 @@ impl ProgramExecution {
             let place = asked.binary_search_by_key(&test, |(asked, _)| *asked);
             place.is_ok_and(|place| entailed[place])
         };
-        self.stepper.step_told(&is_entailed, trace);
+        self.stepper.step_told(&is_entailed, observer);
         shown
     }
 }
@@ -101,10 +101,22 @@ pub struct AskedCondition {
     pub is_entailed: bool,
 }
 
+/// What programs know of their plant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Knowledge {
+    /// What is estimated from commands and observations.
+    #[default]
+    Estimated,
+    /// The true modes of all components.
+    Perfect,
+}
+
 /// A plant under control, with what is believed of it.
 #[derive(Clone, Debug)]
 pub struct ClosedLoop {
     plant: SimulatedPlant,
+    knowledge: Knowledge,
     believed: Believed,
     /// What was observed in the last step.
     observation: Observation,
@@ -141,6 +153,23 @@ pub struct LoopStep {
     pub conflicts: Vec<Conflict>,
 }
 
+/// What the programs command in a step.
+pub(super) struct Commanded {
+    pub(super) commands: Commands,
+    planned_from: Option<State>,
+    unachievable: Vec<(SmolStr, String)>,
+    /// Why goals contradict each other, if some do.
+    pub(super) contradiction: Option<String>,
+}
+
+/// What the programs know after a step, and how they came to it.
+pub(super) struct Learned {
+    is_explained: bool,
+    asked: Vec<Vec<AskedCondition>>,
+    is_uncertain: bool,
+    conflicts: Vec<Conflict>,
+}
+
 impl ClosedLoop {
     /// A plant in its most likely first state. With a source of chance the first state is drawn, and components fail with
     /// their probabilities.
@@ -153,12 +182,30 @@ impl ClosedLoop {
         };
         Self {
             plant: SimulatedPlant::new(&system.model, Some(state)),
+            knowledge: Knowledge::Estimated,
             believed,
             observation: Observation::default(),
             outcome: StepOutcome::Explained,
             deadlock: None,
             random,
         }
+    }
+
+    /// The same plant, with programs that know this of it.
+    #[must_use]
+    pub fn with_knowledge(mut self, system: &System, knowledge: Knowledge) -> Self {
+        self.knowledge = knowledge;
+        if knowledge == Knowledge::Perfect {
+            self.believed = Believed::certain(system, self.plant.state());
+        }
+        self
+    }
+
+    /// The same loop with the plant in another first state.
+    #[must_use]
+    pub(super) fn starting_in(mut self, system: &System, state: State) -> Self {
+        self.plant = SimulatedPlant::new(&system.model, Some(state));
+        self
     }
 
     /// The names of the locks that wait for each other for ever, if there are any after the last step.
@@ -178,6 +225,11 @@ impl ClosedLoop {
                 program.stepper.choose(alternative);
             }
         }
+        Self::set_aside(programs);
+    }
+
+    /// Sets aside the goals of programs, all choices of which are made, that contradict what is locked.
+    pub(super) fn set_aside(programs: &mut [&mut ProgramExecution]) {
         locks::set_aside(&mut steppers(programs));
     }
 
@@ -226,67 +278,128 @@ impl ClosedLoop {
     ) -> Result<LoopStep, EstimateError> {
         self.settle(programs);
         let mut traces: Vec<TraceStep> = programs.iter().map(|program| program.upcoming()).collect();
+        let commanded = self.command(system, programs, estimator);
+        let failed = self.answer(system, &commanded.commands, input)?;
+        let learned =
+            self.learn(system, programs, estimator, &commanded.commands, &input.observed, &mut traces)?;
+        if learned.is_explained {
+            self.settle(programs);
+            self.note_deadlock(programs);
+        }
+        Ok(LoopStep {
+            traces,
+            commands: commanded.commands,
+            planned_from: commanded.planned_from,
+            unachievable: commanded.unachievable,
+            failed,
+            observation: self.observation.clone(),
+            outcome: self.outcome.clone(),
+            asked: learned.asked,
+            is_uncertain: learned.is_uncertain,
+            conflicts: learned.conflicts,
+        })
+    }
+
+    /// What the settled programs command from where they are.
+    pub(super) fn command(
+        &self,
+        system: &System,
+        programs: &[&mut ProgramExecution],
+        estimator: &mut Estimator,
+    ) -> Commanded {
         let planned_from = self.planning_state(system, programs);
         let state = planned_from.as_ref().unwrap_or_else(|| self.belief().most_likely());
-        let (commands, unachievable) = command(programs, estimator, state);
-        let mut failed = Vec::new();
-        match &mut self.random {
-            Some(random) => {
-                let expected = nominal(&system.model, self.plant.state(), &commands)?;
-                self.plant.step_with_chance(&commands, &input.injected, random)?;
-                let state = self.plant.state();
-                let is_chance = |id: &ComponentId| {
-                    state.mode(*id) != expected.mode(*id) && !input.injected.contains_key(id)
-                };
-                let by_chance = system.model.component_ids().filter(is_chance);
-                failed.extend(by_chance.map(|id| (id, state.mode(id))));
-            }
-            None => self.plant.step(&commands, &input.injected)?,
-        }
+        let (next, mut unachievable) = command(programs, estimator, state);
+        let model = estimator.planner().model();
+        let contradiction = next.unreachable.iter().find(|failed| failed.is_contradiction);
+        let contradiction = contradiction.map(|failed| failed.reason.clone());
+        let described = next.unreachable.into_iter();
+        unachievable.extend(described.map(|failed| (failed.goal.describe(model).into(), failed.reason)));
+        unachievable.sort();
+        unachievable.dedup();
+        Commanded { commands: next.commands, planned_from, unachievable, contradiction }
+    }
+
+    /// What the plant makes of commands; returns the components that chance brought into another mode than the commanded
+    /// one, with that mode.
+    fn answer(
+        &mut self,
+        system: &System,
+        commands: &Commands,
+        input: &StepInput,
+    ) -> Result<Vec<(ComponentId, u8)>, EstimateError> {
+        let Some(random) = &mut self.random else {
+            self.plant.step(commands, &input.injected)?;
+            return Ok(Vec::new());
+        };
+        let expected = nominal(&system.model, self.plant.state(), commands)?;
+        self.plant.step_with_chance(commands, &input.injected, random)?;
+        let state = self.plant.state();
+        let is_chance =
+            |id: &ComponentId| state.mode(*id) != expected.mode(*id) && !input.injected.contains_key(id);
+        let by_chance = system.model.component_ids().filter(is_chance);
+        Ok(by_chance.map(|id| (id, state.mode(id))).collect())
+    }
+
+    /// Brings the plant into a state; an error if its modes contradict each other.
+    pub(super) fn enter(&mut self, state: &State, commands: &Commands) -> Result<(), EstimateError> {
+        let all = state.0.iter().enumerate().map(|(at, mode)| (ComponentId(at as u32), *mode));
+        self.plant.step(commands, &all.collect())
+    }
+
+    /// Takes in what is observed, and what is said to be `observed` instead: what is believed then, and where the programs go
+    /// by it. Choices that they come to stay open.
+    pub(super) fn learn(
+        &mut self,
+        system: &System,
+        programs: &mut [&mut ProgramExecution],
+        estimator: &mut Estimator,
+        commands: &Commands,
+        observed: &BTreeMap<VariableId, u8>,
+        observers: &mut [impl StepObserver],
+    ) -> Result<Learned, EstimateError> {
         let mut observation = self.plant.observation();
-        observation.0.extend(&input.observed);
+        observation.0.extend(observed);
         let asked: Vec<Vec<(TestId, Formula)>> = programs.iter().map(|program| program.asked()).collect();
-        let thresholds: Vec<Threshold<'_>> = programs
-            .iter()
-            .zip(&asked)
-            .filter_map(|(program, asked)| Some((program.system.entailment.as_ref()?, asked)))
-            .flat_map(|(entailed_from, asked)| {
-                asked.iter().map(move |(_, condition)| Threshold { condition, entailed_from })
-            })
-            .collect();
-        let update = estimator.estimate(&self.believed, &commands, &observation, &thresholds)?;
+        let update = match self.knowledge {
+            Knowledge::Perfect => BeliefUpdate::certain(system, self.plant.state()),
+            Knowledge::Estimated => {
+                let thresholds: Vec<Threshold<'_>> = programs
+                    .iter()
+                    .zip(&asked)
+                    .filter_map(|(program, asked)| Some((program.system.entailment.as_ref()?, asked)))
+                    .flat_map(|(entailed_from, asked)| {
+                        asked.iter().map(move |(_, condition)| Threshold { condition, entailed_from })
+                    })
+                    .collect();
+                estimator.estimate(&self.believed, commands, &observation, &thresholds)?
+            }
+        };
         let is_explained = update.believed.is_some();
         self.outcome = update.outcome;
         if let Some(believed) = update.believed {
             self.believed = believed;
         }
-        self.observation.clone_from(&observation);
+        self.observation = observation;
         let known = self.known(system);
-        let mut shown = vec![Vec::new(); traces.len()];
-        for (at, (program, trace)) in programs.iter_mut().zip(&mut traces).enumerate() {
+        let mut shown = vec![Vec::new(); programs.len()];
+        for (at, (program, observer)) in programs.iter_mut().zip(observers).enumerate() {
             // Under a refuted belief no guard holds, and no goal is achieved.
             if is_explained {
-                shown[at] = program.step(&asked[at], known, trace);
+                shown[at] = program.step(&asked[at], known, observer);
             }
             program.steps += 1;
         }
         if is_explained {
             locks::grant(&mut steppers(programs));
-            self.settle(programs);
-            self.deadlock = locks::deadlock(&steppers(programs));
         }
-        Ok(LoopStep {
-            traces,
-            commands,
-            planned_from,
-            unachievable,
-            failed,
-            observation,
-            outcome: self.outcome.clone(),
-            asked: shown,
-            is_uncertain: update.is_uncertain,
-            conflicts: update.conflicts,
-        })
+        let (is_uncertain, conflicts) = (update.is_uncertain, update.conflicts);
+        Ok(Learned { is_explained, asked: shown, is_uncertain, conflicts })
+    }
+
+    /// Finds out whether locks of the settled programs wait for each other.
+    pub(super) fn note_deadlock(&mut self, programs: &mut [&mut ProgramExecution]) {
+        self.deadlock = locks::deadlock(&steppers(programs));
     }
 
     fn known<'known>(&'known self, system: &'known System) -> Known<'known> {
@@ -332,12 +445,12 @@ fn drawn(choice: &Choice, random: &mut Random) -> usize {
     choice.weights.iter().position(is_it).unwrap_or(0)
 }
 
-/// The commands from a state toward the goals of the marked locations.
+/// The commands from a state toward the goals of the marked locations, and the goals that no mode makes true.
 fn command(
     programs: &[&mut ProgramExecution],
     estimator: &mut Estimator,
     state: &State,
-) -> (Commands, Vec<(SmolStr, String)>) {
+) -> (NextCommands, Vec<(SmolStr, String)>) {
     let mut goals: Vec<Goal> = Vec::new();
     let mut unachievable: Vec<(SmolStr, String)> = Vec::new();
     for program in programs {
@@ -357,12 +470,5 @@ fn command(
     }
     goals.sort_unstable();
     goals.dedup();
-    let next = estimator.plan(state, &goals);
-    let model = estimator.planner().model();
-    let described =
-        next.unreachable.iter().map(|failed| (failed.goal.describe(model).into(), failed.reason.clone()));
-    unachievable.extend(described);
-    unachievable.sort();
-    unachievable.dedup();
-    (next.commands, unachievable)
+    (estimator.plan(state, &goals), unachievable)
 }

@@ -73,6 +73,11 @@ impl Drop for TakenStep {
 }
 
 impl Believed {
+    /// Certainty of one state.
+    pub(super) fn certain(system: &System, state: &State) -> Self {
+        Self::initial(FactoredBelief::certain(&system.groups, state))
+    }
+
     /// What is believed before the first step.
     fn initial(belief: FactoredBelief) -> Self {
         let histories = belief.beliefs().map(|belief| History { complete: Arc::clone(belief), since: None });
@@ -103,6 +108,14 @@ pub(super) struct BeliefUpdate {
     /// Whether limits kept the dropped measure from becoming small, or a threshold from being decided.
     pub(super) is_uncertain: bool,
     pub(super) conflicts: Vec<Conflict>,
+}
+
+impl BeliefUpdate {
+    /// The state is known.
+    pub(super) fn certain(system: &System, state: &State) -> Self {
+        let believed = Some(Believed::certain(system, state));
+        Self { believed, outcome: StepOutcome::Explained, is_uncertain: false, conflicts: Vec::new() }
+    }
 }
 
 /// What was asked of a group: its number, what is believed of it, what was commanded and observed.

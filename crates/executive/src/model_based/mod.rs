@@ -9,10 +9,11 @@ mod estimator;
 mod goal;
 mod liveness;
 mod monte_carlo;
+pub mod proof;
 mod run;
 mod system;
 
-pub use closed_loop::{AskedCondition, ClosedLoop, LoopStep, ProgramExecution};
+pub use closed_loop::{AskedCondition, ClosedLoop, Knowledge, LoopStep, ProgramExecution};
 pub use estimator::{Estimator, StepOutcome};
 pub use liveness::waits_forever;
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};

@@ -11,7 +11,7 @@ use plant::{
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
-use super::closed_loop::{AskedCondition, ClosedLoop, ProgramExecution};
+use super::closed_loop::{AskedCondition, ClosedLoop, Knowledge, ProgramExecution};
 use super::estimator::{Estimator, StepOutcome};
 use super::system::System;
 
@@ -22,6 +22,8 @@ pub struct Options {
     pub most_states: Option<usize>,
     /// With a seed, components fail by chance with their probabilities; without, only what is injected fails.
     pub seed: Option<u64>,
+    /// What the program knows of its plant.
+    pub knowledge: Knowledge,
 }
 
 /// What comes from outside in one step. The inputs of a run's steps are its log: they replay it.
@@ -106,7 +108,8 @@ impl Run {
 
     /// The same with an estimator that remembers what earlier runs asked.
     pub fn with_estimator(system: &Arc<System>, options: Options, mut estimator: Estimator) -> Self {
-        let mut closed = ClosedLoop::new(system, &mut estimator, options.seed.map(Random::new));
+        let closed = ClosedLoop::new(system, &mut estimator, options.seed.map(Random::new));
+        let mut closed = closed.with_knowledge(system, options.knowledge);
         let mut program = ProgramExecution::new(system);
         closed.settle(&mut [&mut program]);
         Self { closed, estimator, program, records: Vec::new(), before: Vec::new() }

@@ -3,8 +3,11 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use exact::Rational;
 use hca::{Automaton, TestId, VariableId as ProgramVariableId, Vocabulary};
-use plant::{ComponentId, Formula, Group, Model, Planner, Probability, VariableId};
+use plant::{
+    ComponentId, FactoredBelief, Formula, Group, Known, Model, Observation, Planner, Probability, VariableId,
+};
 use rmpl::control::{
     Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Name,
     expand_main, nearest,
@@ -36,6 +39,8 @@ pub struct System {
     /// From which probability on the program takes a condition for known; `None` if it does so when the condition holds in
     /// the most likely state.
     pub entailment: Option<Probability>,
+    /// The seconds that a step takes.
+    pub step_secs: Rational,
     bindings: Vec<Binding>,
     /// Per location, the configurations of the plant that satisfy what it asserts.
     goal_configurations: Vec<Option<GoalConfigurations>>,
@@ -164,6 +169,26 @@ impl System {
         self.planner.commanded_for(goals.flat_map(GoalConfigurations::components))
     }
 
+    /// The groups of components that a condition speaks of.
+    pub(super) fn groups_of(&self, condition: &Formula) -> Vec<usize> {
+        let (belief, observation) =
+            (FactoredBelief::certain(&self.groups, &self.model.initial_state()), Observation::default());
+        Known { groups: &self.groups, belief: &belief, observation: &observation }.groups_of(condition)
+    }
+
+    /// The groups of components that the program asks about or commands.
+    pub(super) fn groups_used(&self) -> BTreeSet<usize> {
+        let tests = (0..self.automaton.tests.len()).map(|at| TestId(at as u32));
+        let mut used: BTreeSet<usize> =
+            tests.flat_map(|test| self.groups_of(&self.condition(test, Vec::new()))).collect();
+        let commanded = self.commanded();
+        let is_commanded = |group: &Group| group.components.iter().any(|id| commanded.contains(id));
+        used.extend(
+            self.groups.iter().enumerate().filter(|(_, group)| is_commanded(group)).map(|(at, _)| at),
+        );
+        used
+    }
+
     /// The configurations of the plant that satisfy what a location asserts, if it asserts anything.
     pub(super) fn goal_configurations(&self, location: hca::LocationId) -> Option<&GoalConfigurations> {
         self.goal_configurations.get(location.0 as usize)?.as_ref()
@@ -225,7 +250,9 @@ fn bind(file: &ControlFile, plant: &ControlledPlant) -> (Option<Arc<System>>, Ve
     let (model, planner, groups) = (Arc::clone(model), Arc::clone(planner), Arc::clone(groups));
     let entailment =
         file.entailment().map(|given| Probability::new(given.numerator().into(), given.denominator().into()));
-    let system = System { automaton, model, planner, groups, entailment, bindings, goal_configurations };
+    let step_secs = file.step_secs();
+    let system =
+        System { automaton, model, planner, groups, entailment, step_secs, bindings, goal_configurations };
     (Some(Arc::new(system)), diagnostics)
 }
 

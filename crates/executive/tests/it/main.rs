@@ -5,6 +5,7 @@ mod instants;
 mod model_based;
 mod pinned;
 mod progress;
+mod proof;
 mod runs;
 mod states;
 mod strategy;

@@ -1,0 +1,248 @@
+//! `enroute prove`: what holds in every run of a control program with its plant.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use anyhow::anyhow;
+use executive::model_based::proof::{
+    Counterexample, DEFAULTS, End, Move, Proof, Property, Scope, Verdict, chance_to_end, prove,
+};
+use executive::model_based::{Options, Run, RunStatus, StepInput, System};
+use plant::{Interval, Model};
+use serde_json::{Map, Value, json};
+
+use crate::commands::run::{KnowledgeArg, read_system};
+use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
+
+/// Prove properties of a control program over all its runs.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Control program; - reads standard input.
+    file: PathBuf,
+    /// Plant model [default: the one that the program file declares].
+    #[arg(long, value_name = "M.rmpl")]
+    model: Option<PathBuf>,
+    /// Prove this, such as "never A=On & B=On" (repeatable) [default: six checks].
+    #[arg(long, value_name = "PROPERTY")]
+    property: Vec<String>,
+    /// Let components fail at most N times in a run.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    faults: u32,
+    /// What the program knows of its plant.
+    #[arg(long, value_enum, default_value_t)]
+    knowledge: KnowledgeArg,
+    /// Stop after N states (exit status 3).
+    #[arg(long, value_name = "N", default_value_t = 200_000)]
+    states: usize,
+    /// Explore runs of at most N steps [default: no limit].
+    #[arg(long, value_name = "N")]
+    steps: Option<u32>,
+    /// Also compute the probability that the program ends within N steps.
+    #[arg(long, value_name = "N")]
+    chance: Option<u32>,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// Of the runs with their probabilities so many different places are followed in each step.
+const MOST_PLACES: usize = 20_000;
+
+const ABOUT_MISSIONS: &str = "save the program of its `control` block in a file of its own";
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let (system, problems) = read_system(&args.file, args.model.as_deref(), args.format, ABOUT_MISSIONS)?;
+    let Some(system) = &system else {
+        if args.format == Format::Json {
+            print_json(&document("prove", &problems, json!({})))?;
+        }
+        return Ok(exit(WRONG));
+    };
+    let read = |text: &String| Property::read(text, system).map_err(|error| anyhow!("--property: {error}"));
+    let mut properties: Vec<Property> = args.property.iter().map(read).collect::<Result<_, _>>()?;
+    if properties.is_empty() {
+        properties.extend(DEFAULTS);
+    }
+    let knowledge = args.knowledge.into();
+    let steps = args.steps.unwrap_or(u32::MAX);
+    let scope = Scope { faults: args.faults, knowledge, states: args.states, steps };
+    let proof = prove(system, &properties, scope, &mut |_| true)?;
+    let chance = match args.chance {
+        Some(steps) => Some((steps, chance_to_end(system, knowledge, steps, MOST_PLACES)?)),
+        None => None,
+    };
+    match args.format {
+        Format::Json => {
+            let verdicts = proof
+                .verdicts
+                .iter()
+                .map(|(property, verdict)| verdict_json(property, verdict, &system.model));
+            let chance = chance.as_ref().map(|(steps, interval)| {
+                let (low, high) = interval.to_f64();
+                json!({ "steps": steps, "ends": [low, high] })
+            });
+            let body = json!({
+                "states": proof.states,
+                "transitions": proof.transitions,
+                "depth": proof.depth,
+                "stopped": proof.stopped,
+                "properties": verdicts.collect::<Vec<_>>(),
+                "chance": chance,
+            });
+            print_json(&document("prove", &problems, body))?;
+        }
+        Format::Text => print_text(&text(args, system, &proof, chance.as_ref()))?,
+    }
+    let is = |verdict: fn(&Verdict) -> bool| proof.verdicts.iter().any(|(_, it)| verdict(it));
+    Ok(exit(if is(|it| matches!(it, Verdict::Broken(_) | Verdict::Never(_))) {
+        NO
+    } else if is(|it| *it == Verdict::Open) {
+        LIMIT
+    } else {
+        YES
+    }))
+}
+
+fn modes<'model>(by: &'model Move, model: &'model Model) -> impl Iterator<Item = (&'model str, &'model str)> {
+    by.modes
+        .iter()
+        .filter_map(|(id, mode)| Some((model.component(*id)?.name.as_str(), model.mode_name(*id, *mode))))
+}
+
+fn move_json(by: &Move, model: &Model) -> Value {
+    let modes: Map<String, Value> =
+        modes(by, model).map(|(name, mode)| (name.to_owned(), json!(mode))).collect();
+    json!({ "modes": modes, "choices": by.choices })
+}
+
+fn verdict_json(property: &Property, verdict: &Verdict, model: &Model) -> Value {
+    let property = property.to_string();
+    match verdict {
+        Verdict::Holds => json!({ "property": property, "verdict": "holds" }),
+        Verdict::Open => json!({ "property": property, "verdict": "open" }),
+        Verdict::Never(what) => json!({ "property": property, "verdict": "broken", "never": what }),
+        Verdict::Broken(run) => json!({
+            "property": property,
+            "verdict": "broken",
+            "run": {
+                "start": move_json(&run.start, model),
+                "steps": run.moves.iter().map(|by| move_json(by, model)).collect::<Vec<_>>(),
+                "repeats_after": run.repeats_after,
+                "goes_on_for": run.goes_on_for,
+            },
+        }),
+    }
+}
+
+fn count(number: usize, one: &str) -> String {
+    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
+}
+
+fn text(args: &Args, system: &Arc<System>, proof: &Proof, chance: Option<&(u32, Interval)>) -> String {
+    let faults = match args.faults {
+        0 => "no component fails".to_owned(),
+        1 => "at most 1 fault".to_owned(),
+        more => format!("at most {more} faults"),
+    };
+    let mut out = format!(
+        "Explored {} and {}, with {faults}.\n",
+        count(proof.states, "state"),
+        count(proof.transitions, "transition")
+    );
+    if let Some(stopped) = &proof.stopped {
+        out.push_str(&format!("Not all states were explored: {stopped}.\n"));
+    }
+    for (property, verdict) in &proof.verdicts {
+        match verdict {
+            Verdict::Holds => out.push_str(&format!("holds      {property}\n")),
+            Verdict::Open => out.push_str(&format!(
+                "open       {property}: no counterexample in the states explored, up to {} steps\n",
+                proof.depth
+            )),
+            Verdict::Never(what) => {
+                out.push_str(&format!("broken     {property}\n"));
+                out.extend(what.iter().map(|what| format!("  never    {what}\n")));
+            }
+            Verdict::Broken(run) => {
+                out.push_str(&format!("broken     {property}\n"));
+                out.push_str(&run_text(args, system, run));
+            }
+        }
+    }
+    if let Some((steps, interval)) = chance {
+        let (low, high) = interval.decimals();
+        let value = if low == high { low } else { format!("{low} to {high}") };
+        out.push_str(&format!("chance     the program ends within {steps} steps: {value}\n"));
+    }
+    out
+}
+
+fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
+    let model = &system.model;
+    let mut out = String::new();
+    let shown = |by: &Move| -> String {
+        let modes = modes(by, model).map(|(name, mode)| format!("{name}={mode}"));
+        let choices = by.choices.iter().map(|choice| format!("alternative {}", choice + 1));
+        modes.chain(choices).collect::<Vec<_>>().join(", ")
+    };
+    let start = shown(&run.start);
+    if !start.is_empty() {
+        out.push_str(&format!("  start    {start}\n"));
+    }
+    let mut flags = String::new();
+    for (number, by) in (1..).zip(&run.moves) {
+        if *by != Move::default() {
+            out.push_str(&format!("  step {number:<3} {}\n", shown(by)));
+        }
+        for (name, mode) in modes(by, model) {
+            flags.push_str(&format!(" --inject {number}:{name}={mode}"));
+        }
+    }
+    let steps = run.moves.len();
+    let end = match (run.end, run.repeats_after) {
+        (Some(End::Ended), _) => format!("ends after {}", count(run.repeats_after.unwrap_or(steps), "step")),
+        (Some(End::Deadlock), _) => "locks deadlock".to_owned(),
+        (Some(End::Refuted), _) => "the observation refutes the belief".to_owned(),
+        (Some(End::Unclear), _) => "the belief keeps too few states to explain the observation".to_owned(),
+        (None, Some(from)) if steps - from == 1 => {
+            format!("after {} nothing changes any more", count(from, "step"))
+        }
+        (None, Some(from)) => {
+            format!("after {} the last {} repeat forever", count(from, "step"), count(steps - from, "step"))
+        }
+        (None, None) if run.goes_on_for.is_some() => {
+            format!("still waiting {} later", count(run.goes_on_for.unwrap_or(0) as usize, "step"))
+        }
+        (None, None) => format!("broken after {}", count(steps, "step")),
+    };
+    out.push_str(&format!("  end      {end}\n"));
+    let is_repeatable = run.start == Move::default() && run.moves.iter().all(|by| by.choices.is_empty());
+    if is_repeatable && let Some(active) = active_at_end(args, system, run) {
+        out.push_str(&active);
+        let file = args.file.display();
+        let model =
+            args.model.as_ref().map_or_else(String::new, |path| format!(" --model {}", path.display()));
+        let knowledge = if args.knowledge == KnowledgeArg::Perfect { " --knowledge perfect" } else { "" };
+        out.push_str(&format!(
+            "  repeat   enroute run {file}{model}{knowledge}{flags} --steps {}\n",
+            steps.max(1)
+        ));
+    }
+    out
+}
+
+/// What is still active when the run is repeated.
+fn active_at_end(args: &Args, system: &Arc<System>, counterexample: &Counterexample) -> Option<String> {
+    let options = Options { knowledge: args.knowledge.into(), ..Options::default() };
+    let mut run = Run::new(system, options);
+    for by in &counterexample.moves {
+        if run.status() != RunStatus::Running {
+            break;
+        }
+        let input = StepInput { injected: by.modes.iter().copied().collect(), ..StepInput::default() };
+        run.step(&input).ok()?;
+    }
+    Some(run.upcoming().labels.iter().map(|label| format!("  active   {label}\n")).collect())
+}

@@ -1,0 +1,456 @@
+//! Everything that a program, its plant and what is believed of the plant can come to: the product of the three.
+//!
+//! A node is where all three are between two steps. What happens in a step is decided by nature, which picks the modes of
+//! the components and makes the program's choices by chance. Nodes from which the same comes next are one node.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
+use std::sync::Arc;
+
+use hca::{LocationId, Standing, StepObserver, TransitionId};
+use num_traits::One as _;
+use plant::{Belief, ComponentId, EstimateError, Probability, Situation, State, Target, targets};
+
+use super::property::Condition;
+use crate::model_based::closed_loop::{ClosedLoop, Knowledge, ProgramExecution};
+use crate::model_based::estimator::{Estimator, StepOutcome};
+use crate::model_based::system::System;
+
+/// Index of a node.
+pub(super) type NodeId = u32;
+
+/// What nature decides in a step.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Move {
+    /// The components that do not do what is nominal, with the modes that they enter.
+    pub modes: Vec<(ComponentId, u8)>,
+    /// The alternatives of the choices that come up at the step's end, in their order.
+    pub choices: Vec<usize>,
+}
+
+/// A step from one node to another.
+#[derive(Clone, Debug)]
+pub(super) struct Edge {
+    pub(super) to: NodeId,
+    pub(super) by: Move,
+    /// Whether components fail in it.
+    pub(super) is_fault: bool,
+}
+
+/// Between two steps.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    standing: Standing,
+    closed: ClosedLoop,
+    faults_left: u32,
+    /// After how many steps it is first come to.
+    pub(super) depth: u32,
+    /// Which of the conditions hold, one bit each.
+    pub(super) holds: u64,
+    /// Why it has no next step, if it has none.
+    pub(super) end: Option<End>,
+    /// Why goals contradict each other in the next step, if some do.
+    pub(super) contradiction: Option<String>,
+    /// Where nature can lead it in a step; `None` if that was not explored.
+    pub(super) edges: Option<Vec<Edge>>,
+}
+
+/// Why a run is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    Ended,
+    Deadlock,
+    Refuted,
+    /// The limit of states that a belief keeps leaves open whether an observation can be explained.
+    Unclear,
+}
+
+/// Exploring ends after so many steps in which only the probabilities of beliefs were new: they change in every step, and
+/// no state is like another.
+const STILL_STEPS: u32 = 200;
+
+/// How far to explore.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    pub(super) faults: u32,
+    pub(super) nodes: usize,
+    pub(super) depth: u32,
+}
+
+/// What tells nodes apart.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(super) struct Key {
+    standing: Standing,
+    modes: Vec<u8>,
+    beliefs: Vec<Arc<Belief>>,
+    faults_left: u32,
+    end: u8,
+    /// Tells nodes apart whose beliefs have dropped something: what a history is expanded to again may differ.
+    unlike: Option<NodeId>,
+}
+
+/// What was explored.
+pub(super) struct Product {
+    pub(super) nodes: Vec<Node>,
+    /// Where runs start, each with the choices made before the first step.
+    pub(super) starts: Vec<(NodeId, Move)>,
+    /// The locations that are active in some node.
+    pub(super) reached: BTreeSet<LocationId>,
+    pub(super) fired: BTreeSet<TransitionId>,
+    /// What stopped the exploration, if something did.
+    pub(super) stopped: Option<String>,
+}
+
+/// Notes which transitions fire.
+#[derive(Default)]
+struct Fired(Vec<TransitionId>);
+
+impl StepObserver for Fired {
+    fn fired(&mut self, transition: TransitionId) {
+        self.0.push(transition);
+    }
+}
+
+/// A way through a step: where it leads, and what nature decided.
+pub(super) struct Way {
+    standing: Standing,
+    closed: ClosedLoop,
+    pub(super) by: Move,
+    pub(super) is_fault: bool,
+    faults: u32,
+    /// Its share of all ways from the same node, as a product of fractions.
+    pub(super) weights: Vec<(u64, u64)>,
+}
+
+/// Takes steps in all ways.
+pub(super) struct Explorer {
+    system: Arc<System>,
+    estimator: Estimator,
+    program: ProgramExecution,
+    conditions: Vec<Condition>,
+    /// The groups of components that matter to the program or to a condition, and the components of these.
+    groups: BTreeSet<usize>,
+    components: BTreeSet<ComponentId>,
+    fired: Fired,
+}
+
+impl Explorer {
+    pub(super) fn new(system: &Arc<System>, conditions: Vec<Condition>) -> Self {
+        let mut groups = system.groups_used();
+        groups.extend(conditions.iter().flat_map(|condition| system.groups_of(&condition.formula)));
+        let of = |at: &usize| system.groups.get(*at).map_or(&[][..], |group| group.components.as_slice());
+        let components = groups.iter().flat_map(of).copied().collect();
+        Self {
+            system: Arc::clone(system),
+            estimator: Estimator::new(system, None),
+            program: ProgramExecution::new(system),
+            conditions,
+            groups,
+            components,
+            fired: Fired::default(),
+        }
+    }
+
+    /// Where runs may start: in each state that is possible at first, and with each of the first choices.
+    pub(super) fn starts(&mut self, knowledge: Knowledge, most: usize) -> Vec<Way> {
+        let closed = ClosedLoop::new(&self.system, &mut self.estimator, None);
+        let likeliest = closed.true_state().clone();
+        let states: Vec<_> = closed.belief().states().take(most).collect();
+        let mut ways = Vec::new();
+        for (state, probability) in states {
+            let differs = |id: &ComponentId| state.mode(*id) != likeliest.mode(*id);
+            let modes = self.system.model.component_ids().filter(differs).map(|id| (id, state.mode(id)));
+            let by = Move { modes: modes.collect(), choices: Vec::new() };
+            let mut closed = closed.clone().starting_in(&self.system, state);
+            closed = closed.with_knowledge(&self.system, knowledge);
+            let standing = ProgramExecution::new(&self.system).stepper.standing();
+            // A start that is not known exactly has no share.
+            let share = probability.exact().and_then(fraction).unwrap_or((0, 1));
+            let way = Way { standing, closed, by, is_fault: false, faults: 0, weights: vec![share] };
+            self.choose(way, &mut ways);
+        }
+        ways
+    }
+
+    /// The ways through the next step, with at most so many faults; and why goals contradict each other in it, if some do.
+    pub(super) fn ways(
+        &mut self,
+        standing: &Standing,
+        closed: &ClosedLoop,
+        most_faults: u32,
+    ) -> Result<(Vec<Way>, Option<String>), EstimateError> {
+        let system = Arc::clone(&self.system);
+        self.program.stepper.return_to(standing);
+        let commanded = closed.command(&system, &[&mut self.program], &mut self.estimator);
+        let commands = &commanded.commands;
+        let each: Vec<Vec<Target>> = system
+            .model
+            .component_ids()
+            .map(|id| {
+                let mut targets = targets(&system.model, id, closed.true_state(), commands)?;
+                if !self.components.contains(&id) {
+                    targets.truncate(1);
+                }
+                Ok(targets)
+            })
+            .collect::<Result<_, _>>()?;
+        let mut ways = Vec::new();
+        for picked in combinations(&each, most_faults) {
+            let next = State(picked.iter().map(|target| target.mode).collect());
+            let mut closed = closed.clone();
+            // Modes that contradict each other do not occur together.
+            if closed.enter(&next, commands).is_err() {
+                continue;
+            }
+            self.program.stepper.return_to(standing);
+            let programs = &mut [&mut self.program];
+            let observers = std::slice::from_mut(&mut self.fired);
+            let nothing = BTreeMap::new();
+            closed.learn(&system, programs, &mut self.estimator, commands, &nothing, observers)?;
+            let mut by = Move::default();
+            let mut weights = Vec::new();
+            for ((id, targets), target) in system.model.component_ids().zip(&each).zip(&picked) {
+                if targets.first().is_some_and(|nominal| nominal.mode != target.mode) {
+                    by.modes.push((id, target.mode));
+                }
+                if targets.len() > 1 {
+                    weights.push((target.weight, targets.iter().map(|target| target.weight).sum()));
+                }
+            }
+            let faults = picked.iter().filter(|target| target.is_fault).count() as u32;
+            let standing = self.program.stepper.standing();
+            self.choose(Way { standing, closed, by, is_fault: faults > 0, faults, weights }, &mut ways);
+        }
+        Ok((ways, commanded.contradiction))
+    }
+
+    /// Adds a way once for each combination of the alternatives that are open at its end.
+    fn choose(&mut self, mut way: Way, into: &mut Vec<Way>) {
+        self.program.stepper.return_to(&way.standing);
+        if *way.closed.outcome() == StepOutcome::Explained
+            && let Some(choice) = self.program.stepper.open_choice()
+        {
+            let weights = choice.weights.clone();
+            let total = weights.iter().sum();
+            for (alternative, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0) {
+                self.program.stepper.return_to(&way.standing);
+                self.program.stepper.choose(alternative);
+                let mut by = way.by.clone();
+                by.choices.push(alternative);
+                let mut shares = way.weights.clone();
+                shares.push((*weight, total));
+                let standing = self.program.stepper.standing();
+                let closed = way.closed.clone();
+                self.choose(Way { standing, closed, by, weights: shares, ..way }, into);
+            }
+            return;
+        }
+        let programs = &mut [&mut self.program];
+        ClosedLoop::set_aside(programs);
+        way.closed.note_deadlock(programs);
+        way.standing = self.program.stepper.standing().relative(&self.system.automaton);
+        into.push(way);
+    }
+
+    fn holds(&self, state: &State) -> u64 {
+        let mut situation = Situation::new(&self.system.model, state, &plant::Observation::default());
+        let holding = self.conditions.iter().enumerate().filter(|(_, it)| situation.entails(&it.formula));
+        holding.fold(0, |bits, (at, _)| bits | 1 << at)
+    }
+
+    /// Explores in breadth as long as `go_on` says so, which is told how many nodes there are.
+    pub(super) fn explore(
+        &mut self,
+        knowledge: Knowledge,
+        limits: Limits,
+        go_on: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<Product, EstimateError> {
+        let mut product = Product {
+            nodes: Vec::new(),
+            starts: Vec::new(),
+            reached: BTreeSet::new(),
+            fired: BTreeSet::new(),
+            stopped: None,
+        };
+        let mut known: HashMap<Key, NodeId> = HashMap::new();
+        let mut queue = VecDeque::new();
+        let mut kinds: HashSet<Key> = HashSet::new();
+        let mut last_new_kind = 0;
+        for way in self.starts(knowledge, limits.nodes) {
+            let by = way.by.clone();
+            let id = self.node(way, limits.faults, 0, &mut product, &mut known, &mut queue);
+            product.starts.push((id, by));
+        }
+        while let Some(id) = queue.pop_front() {
+            let node = &product.nodes[id as usize];
+            let (depth, faults_left) = (node.depth, node.faults_left);
+            if depth >= limits.depth {
+                product
+                    .stopped
+                    .get_or_insert_with(|| format!("runs of more than {depth} steps were not explored"));
+                continue;
+            }
+            if product.nodes.len() >= limits.nodes {
+                product.stopped = Some(format!("the limit of {} states was reached", limits.nodes));
+                break;
+            }
+            if !go_on(product.nodes.len()) {
+                product.stopped = Some("it was stopped".to_owned());
+                break;
+            }
+            if kinds.insert(self.kind(node)) {
+                last_new_kind = depth;
+            } else if depth - last_new_kind > STILL_STEPS {
+                product.stopped =
+                    Some(format!("after {last_new_kind} steps only the probabilities of beliefs change"));
+                break;
+            }
+            let (standing, closed) = (node.standing.clone(), node.closed.clone());
+            let (ways, contradiction) = self.ways(&standing, &closed, faults_left)?;
+            let mut edges: Vec<Edge> = Vec::with_capacity(ways.len());
+            for way in ways {
+                let (by, is_fault, left) = (way.by.clone(), way.is_fault, faults_left - way.faults);
+                let to = self.node(way, left, depth + 1, &mut product, &mut known, &mut queue);
+                edges.push(Edge { to, by, is_fault });
+            }
+            product.fired.extend(self.fired.0.drain(..));
+            let node = &mut product.nodes[id as usize];
+            node.edges = Some(edges);
+            node.contradiction = contradiction;
+        }
+        Ok(product)
+    }
+
+    /// What tells the place apart to which a way leads. What the program has nothing to do with does not matter.
+    pub(super) fn key(&self, way: &Way, faults_left: u32) -> Key {
+        let beliefs = way.closed.belief().beliefs().enumerate();
+        let beliefs = beliefs.filter(|(at, _)| self.groups.contains(at));
+        let state = way.closed.true_state();
+        Key {
+            standing: way.standing.clone(),
+            modes: self.components.iter().map(|id| state.mode(*id)).collect(),
+            beliefs: beliefs.map(|(_, belief)| Arc::clone(belief)).collect(),
+            faults_left,
+            end: way.end().map_or(0, |end| end as u8 + 1),
+            unlike: None,
+        }
+    }
+
+    /// What tells a node apart from those that differ from it in the probabilities of what is believed only.
+    fn kind(&self, node: &Node) -> Key {
+        let (state, likeliest) = (node.closed.true_state(), node.closed.belief().most_likely());
+        let modes = self.components.iter().flat_map(|id| [state.mode(*id), likeliest.mode(*id)]);
+        Key {
+            standing: node.standing.clone(),
+            modes: modes.collect(),
+            beliefs: Vec::new(),
+            faults_left: node.faults_left,
+            end: 0,
+            unlike: None,
+        }
+    }
+
+    /// What comes next at a node by what is nominal, as long as no goal is come to; the number of steps that were taken of
+    /// `most`.
+    pub(super) fn nominal_steps(
+        &mut self,
+        from: &Node,
+        is_goal: &dyn Fn(u64, Option<End>) -> bool,
+        most: u32,
+    ) -> Result<u32, EstimateError> {
+        let (mut standing, mut closed) = (from.standing.clone(), from.closed.clone());
+        for step in 0..most {
+            let (ways, _) = self.ways(&standing, &closed, 0)?;
+            let Some(way) = ways.into_iter().next() else { return Ok(step) };
+            let end = way.end();
+            if end.is_some() || is_goal(self.holds(way.closed.true_state()), end) {
+                return Ok(step);
+            }
+            (standing, closed) = way.place();
+        }
+        Ok(most)
+    }
+
+    /// The node that a way leads to, added if it is new.
+    fn node(
+        &self,
+        way: Way,
+        faults_left: u32,
+        depth: u32,
+        product: &mut Product,
+        known: &mut HashMap<Key, NodeId>,
+        queue: &mut VecDeque<NodeId>,
+    ) -> NodeId {
+        let end = way.end();
+        let id = product.nodes.len() as NodeId;
+        let mut key = self.key(&way, faults_left);
+        key.unlike = (!way.closed.belief().is_exact()).then_some(id);
+        if let Some(&known) = known.get(&key) {
+            return known;
+        }
+        known.insert(key, id);
+        product.reached.extend(way.standing.marking().iter());
+        let holds = self.holds(way.closed.true_state());
+        let edges = end.map(|_| vec![Edge { to: id, by: Move::default(), is_fault: false }]);
+        if end.is_none() {
+            queue.push_back(id);
+        }
+        product.nodes.push(Node {
+            standing: way.standing,
+            closed: way.closed,
+            faults_left,
+            depth,
+            holds,
+            end,
+            contradiction: None,
+            edges,
+        });
+        id
+    }
+}
+
+impl Way {
+    /// Why the run is over where it leads, if it is.
+    pub(super) fn end(&self) -> Option<End> {
+        match self.closed.outcome() {
+            StepOutcome::Refuted { .. } => Some(End::Refuted),
+            StepOutcome::LimitReached => Some(End::Unclear),
+            StepOutcome::Explained if self.standing.marking().is_empty() => Some(End::Ended),
+            StepOutcome::Explained => self.closed.deadlock().map(|_| End::Deadlock),
+        }
+    }
+
+    /// Where it leads.
+    pub(super) fn place(self) -> (Standing, ClosedLoop) {
+        (self.standing, self.closed)
+    }
+
+    /// The probability of what nature decides in it, up to a factor that all ways from the same node have in common.
+    pub(super) fn weight(&self) -> Probability {
+        let parts = self.weights.iter().map(|(part, of)| Probability::new((*part).into(), (*of).into()));
+        parts.fold(Probability::one(), |product, part| product * part)
+    }
+}
+
+/// A probability as a fraction of machine words, if it is one.
+fn fraction(probability: &plant::Probability) -> Option<(u64, u64)> {
+    Some((probability.numer().try_into().ok()?, probability.denom().try_into().ok()?))
+}
+
+/// All ways to pick one target for each component with at most so many faults.
+fn combinations(each: &[Vec<Target>], most_faults: u32) -> Vec<Vec<Target>> {
+    let mut found: Vec<(Vec<Target>, u32)> = vec![(Vec::with_capacity(each.len()), 0)];
+    for targets in each {
+        found = found
+            .into_iter()
+            .flat_map(|(picked, faults)| {
+                targets.iter().filter_map(move |target| {
+                    let faults = faults + u32::from(target.is_fault);
+                    let mut picked = picked.clone();
+                    picked.push(*target);
+                    (faults <= most_faults).then_some((picked, faults))
+                })
+            })
+            .collect();
+    }
+    found.into_iter().map(|(picked, _)| picked).collect()
+}
