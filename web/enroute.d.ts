@@ -651,6 +651,8 @@ export type ProgramRun = {
   trouble: string | null;
   /** How likely the program is to reach its end; `null` until many runs were made of the present text. */
   chance: ProgramChance | null;
+  /** What holds in all runs; `null` until it was asked of the present text. */
+  proof: ProgramProof | null;
   plant: PlantState | null;
 };
 
@@ -668,6 +670,25 @@ export type ProgramChance = {
   /** The 95 % confidence interval of the probability. */
   interval: [number, number];
   meanSteps: number;
+};
+
+/** What holds in all runs of a program, or why nothing can be proven. */
+export type ProgramProof = {
+  isRunning: boolean;
+  states: number;
+  trouble: string | null;
+  /** Why not all states were explored, if that is so. */
+  stopped: string | null;
+  verdicts: Array<ProgramVerdict>;
+};
+
+/** Whether a property holds in all runs. */
+export type ProgramVerdict = {
+  property: string;
+  /** `holds`, `broken`, or `open` where no run breaks it but not all were looked at. */
+  verdict: string;
+  /** In the run that breaks it, the steps in which a component does not do what is nominal, such as `3: EngineA=Failed`. */
+  faults: Array<string>;
 };
 
 /** What is believed and true of a plant; modes and values by component and variable. */

@@ -49,6 +49,8 @@ pub enum Kind {
     RunControl,
     /// Run a control program many times, with chance.
     SampleProgram,
+    /// Find out what holds in all runs of a control program.
+    ProveProgram,
     /// Grow the search tree of a path.
     GrowPath,
     /// Read a map file.
@@ -68,10 +70,10 @@ pub struct Rule {
 }
 
 /// The rules of all kinds, in the order of [`Kind`].
-pub const RULES: [Rule; 11] = {
+pub const RULES: [Rule; 12] = {
     use Kind::{
-        CompareSearches, Contradict, Evaluate, Execute, GrowPath, ImportMap, Review, RunControl, Sample,
-        SampleProgram, Update,
+        CompareSearches, Contradict, Evaluate, Execute, GrowPath, ImportMap, ProveProgram, Review,
+        RunControl, Sample, SampleProgram, Update,
     };
     [
         Rule {
@@ -86,6 +88,7 @@ pub const RULES: [Rule; 11] = {
                 Sample,
                 RunControl,
                 SampleProgram,
+                ProveProgram,
                 GrowPath,
             ],
             key: "revision, text, goal, search, seed, whether the search is recorded",
@@ -135,6 +138,12 @@ pub const RULES: [Rule; 11] = {
             kept: "the compiled program and plant",
         },
         Rule {
+            kind: ProveProgram,
+            supersedes: &[ProveProgram],
+            key: "revision, text, question, how many states were found before",
+            kept: "the compiled program and plant, and the states that were found",
+        },
+        Rule {
             kind: GrowPath,
             supersedes: &[GrowPath],
             key: "as of Update, the leg, the planner, what the asker holds",
@@ -171,6 +180,7 @@ impl Request {
             Self::Sample { .. } => Kind::Sample,
             Self::RunControl(_) => Kind::RunControl,
             Self::SampleProgram { .. } => Kind::SampleProgram,
+            Self::ProveProgram { .. } => Kind::ProveProgram,
             Self::GrowPath(_) => Kind::GrowPath,
             Self::ImportMap { .. } => Kind::ImportMap,
         }
@@ -185,7 +195,7 @@ impl Request {
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. } => Some(update.revision),
-            Self::SampleProgram { revision, .. } => Some(*revision),
+            Self::SampleProgram { revision, .. } | Self::ProveProgram { revision, .. } => Some(*revision),
             Self::RunControl(wanted) => Some(wanted.revision),
             Self::GrowPath(wanted) => Some(wanted.update.revision),
             Self::ImportMap { .. } | Self::Evaluate { .. } => None,
@@ -202,7 +212,7 @@ impl Request {
             | Self::Execute { update, .. }
             | Self::Sample { update, .. }
             | Self::Evaluate { update, .. } => Some(&update.source),
-            Self::SampleProgram { source, .. } => Some(source),
+            Self::SampleProgram { source, .. } | Self::ProveProgram { source, .. } => Some(source),
             Self::RunControl(wanted) => Some(&wanted.source),
             Self::GrowPath(wanted) => Some(&wanted.update.source),
             Self::ImportMap { .. } => None,
@@ -219,7 +229,7 @@ impl Request {
             | Self::Execute { update, .. }
             | Self::Sample { update, .. }
             | Self::Evaluate { update, .. } => Some(&mut update.source),
-            Self::SampleProgram { source, .. } => Some(source),
+            Self::SampleProgram { source, .. } | Self::ProveProgram { source, .. } => Some(source),
             Self::RunControl(wanted) => Some(&mut wanted.source),
             Self::GrowPath(wanted) => Some(&mut wanted.update.source),
             Self::ImportMap { .. } => None,

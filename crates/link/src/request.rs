@@ -12,10 +12,10 @@ use snapshot::{Goal, MapKey, Snapshot};
 use snapshot::{RobustnessSettings, Tally};
 
 use crate::BothSearches;
-use crate::ProgramChance;
 use crate::Source;
 use crate::{ControlRun, ControlStanding};
 use crate::{GrowthStanding, PathGrowth};
+use crate::{ProgramChance, ProofAnswer, ProofQuestion};
 
 /// Something that the core is asked to compute.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,6 +49,16 @@ pub enum Request {
         chance: ProgramChance,
         /// The first run, from 0.
         from: u64,
+    },
+    /// Find out what holds in all runs of a control program. The answer says how far it got.
+    ProveProgram {
+        /// The revision of the text.
+        revision: u64,
+        source: Source,
+        /// What is to be proven.
+        question: ProofQuestion,
+        /// How many states were found before; 0 begins anew.
+        from: usize,
     },
     /// Review the plan of a text: see [`review`].
     Review {
@@ -182,6 +192,17 @@ pub enum Response {
         from: u64,
         /// How they went, as many as there was time for, at least one; or why there can be none.
         tally: Result<executive::model_based::ProgramTally, String>,
+    },
+    /// How far a proof about a control program is.
+    ProgramProven {
+        /// The revision of its text.
+        revision: u64,
+        /// What is to be proven.
+        question: ProofQuestion,
+        /// How many states were found.
+        states: usize,
+        /// What was found once all is explored, or why there can be no proof.
+        answer: Option<Result<ProofAnswer, String>>,
     },
     /// How a control program's run stands.
     ControlRun(Box<ControlStanding>),

@@ -24,6 +24,7 @@ mod network_text;
 pub mod planning;
 mod program_chance;
 pub mod program_executor;
+mod program_proof;
 pub mod programs;
 mod reading;
 pub mod repairs;

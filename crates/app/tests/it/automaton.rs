@@ -184,6 +184,45 @@ fn many_runs_tell_how_likely_the_program_is_to_reach_its_end() {
 }
 
 #[test]
+fn a_proof_finds_the_faults_under_which_the_program_waits_forever_and_shows_the_run() {
+    let mut app = orbit_insertion();
+    press(&mut app, "Proof");
+    press(&mut app, "Prove properties");
+    app.settle();
+    let verdicts = |app: &support::App| {
+        let proof = app.json()["hca"]["proof"].clone();
+        assert_eq!((&proof["isRunning"], &proof["stopped"]), (&json!(false), &json!(null)), "{proof}");
+        proof["verdicts"].as_array().expect("verdicts").clone()
+    };
+    let one = verdicts(&app);
+    assert_eq!(one.len(), 6);
+    assert!(one.iter().all(|it| it["verdict"] == "holds"), "{one:?}");
+    app.harness.get_by_label("✓ the program ends");
+    let properties = "ends; never EngineA = Firing AND EngineB = Firing";
+    app.harness
+        .state_mut()
+        .dispatch("program.setProof", &json!({ "properties": properties, "faults": 2 }))
+        .expect("a command");
+    press(&mut app, "Prove properties");
+    app.settle();
+    let two = verdicts(&app);
+    assert_eq!((&two[0]["verdict"], &two[1]["verdict"]), (&json!("broken"), &json!("holds")));
+    assert_eq!(two[0]["faults"], json!(["3: EngineA=Failed, EngineB=Failed"]));
+    app.harness.get_by_label("Step 3: EngineA=Failed, EngineB=Failed");
+    app.harness.get_by_label("After 6 steps nothing changes any more.");
+    press(&mut app, "Step through counterexample");
+    app.settle();
+    let hca = app.json()["hca"].clone();
+    assert_eq!(hca["plant"]["trueState"]["EngineB"], "Failed");
+    assert_eq!(hca["marked"], json!(["assert EngineB=Firing"]));
+    // Another text, another answer.
+    let text = format!("; Another text.\n{}", app.harness.state().source());
+    app.harness.state_mut().set_source(&text);
+    app.settle();
+    assert_eq!(app.json()["hca"]["proof"], json!(null));
+}
+
+#[test]
 fn runs_stop_when_asked_to_and_belong_to_the_text_they_were_made_of() {
     let mut app = orbit_insertion();
     press(&mut app, "Monte Carlo");

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 use executive::model_based::proof::{
-    Counterexample, DEFAULTS, End, Move, Proof, Property, Scope, Verdict, chance_to_end, prove,
+    Counterexample, DEFAULTS, Move, Proof, Property, Scope, Verdict, chance_to_end, prove,
 };
 use executive::model_based::{Options, Run, RunStatus, StepInput, System};
 use plant::{Interval, Model};
@@ -105,15 +105,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }))
 }
 
-fn modes<'model>(by: &'model Move, model: &'model Model) -> impl Iterator<Item = (&'model str, &'model str)> {
-    by.modes
-        .iter()
-        .filter_map(|(id, mode)| Some((model.component(*id)?.name.as_str(), model.mode_name(*id, *mode))))
-}
-
 fn move_json(by: &Move, model: &Model) -> Value {
     let modes: Map<String, Value> =
-        modes(by, model).map(|(name, mode)| (name.to_owned(), json!(mode))).collect();
+        by.named(model).map(|(name, mode)| (name.to_owned(), json!(mode))).collect();
     json!({ "modes": modes, "choices": by.choices })
 }
 
@@ -183,7 +177,7 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
     let model = &system.model;
     let mut out = String::new();
     let shown = |by: &Move| -> String {
-        let modes = modes(by, model).map(|(name, mode)| format!("{name}={mode}"));
+        let modes = by.named(model).map(|(name, mode)| format!("{name}={mode}"));
         let choices = by.choices.iter().map(|choice| format!("alternative {}", choice + 1));
         modes.chain(choices).collect::<Vec<_>>().join(", ")
     };
@@ -196,28 +190,11 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
         if *by != Move::default() {
             out.push_str(&format!("  step {number:<3} {}\n", shown(by)));
         }
-        for (name, mode) in modes(by, model) {
+        for (name, mode) in by.named(model) {
             flags.push_str(&format!(" --inject {number}:{name}={mode}"));
         }
     }
-    let steps = run.moves.len();
-    let end = match (run.end, run.repeats_after) {
-        (Some(End::Ended), _) => format!("ends after {}", count(run.repeats_after.unwrap_or(steps), "step")),
-        (Some(End::Deadlock), _) => "locks deadlock".to_owned(),
-        (Some(End::Refuted), _) => "the observation refutes the belief".to_owned(),
-        (Some(End::Unclear), _) => "the belief keeps too few states to explain the observation".to_owned(),
-        (None, Some(from)) if steps - from == 1 => {
-            format!("after {} nothing changes any more", count(from, "step"))
-        }
-        (None, Some(from)) => {
-            format!("after {} the last {} repeat forever", count(from, "step"), count(steps - from, "step"))
-        }
-        (None, None) if run.goes_on_for.is_some() => {
-            format!("still waiting {} later", count(run.goes_on_for.unwrap_or(0) as usize, "step"))
-        }
-        (None, None) => format!("broken after {}", count(steps, "step")),
-    };
-    out.push_str(&format!("  end      {end}\n"));
+    out.push_str(&format!("  end      {}\n", run.ending()));
     let is_repeatable = run.start == Move::default() && run.moves.iter().all(|by| by.choices.is_empty());
     if is_repeatable && let Some(active) = active_at_end(args, system, run) {
         out.push_str(&active);
@@ -227,7 +204,7 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
         let knowledge = if args.knowledge == KnowledgeArg::Perfect { " --knowledge perfect" } else { "" };
         out.push_str(&format!(
             "  repeat   enroute run {file}{model}{knowledge}{flags} --steps {}\n",
-            steps.max(1)
+            run.moves.len().max(1)
         ));
     }
     out

@@ -27,6 +27,7 @@ use crate::control::ControlTexts;
 use crate::evaluated::{Manner, TRACE_EVENTS};
 use crate::ground::Grounds;
 use crate::host::{CoreHost, Quiet, Unhurried};
+use crate::program_proof::ProofUnderWay;
 use crate::reading::{Followed, Reading};
 use crate::sampling::Sampled;
 use crate::traverse::Paths;
@@ -45,6 +46,7 @@ pub struct Core {
     trying: Option<Trying>,
     controls: ControlTexts,
     control_run: Option<control_run::Session>,
+    proof: Option<ProofUnderWay>,
     growth: Vec<path_growth::Session>,
 }
 
@@ -66,6 +68,9 @@ impl Core {
             Request::Sample { update, settings, from } => self.sample(&update, settings, from, host),
             Request::SampleProgram { revision, source, chance, from } => {
                 self.sample_program((revision, source.text()), chance, from, host);
+            }
+            Request::ProveProgram { revision, source, question, from } => {
+                self.prove_program((revision, source.text()), question, from, host);
             }
             Request::Review { update, rules } => self.review(&update, &rules, host),
             Request::Contradict { update, review, only, effort, from } => {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use executive::{PlanError, Script};
-use link::{ProgramChance, Response, Update};
+use link::{ProgramChance, ProofQuestion, Response, Update};
 use review::Review;
 use review::contradict::{Effort, Trial};
 use review::record::LineKey;
@@ -15,6 +15,7 @@ use crate::evaluated::Evaluated;
 use crate::execution;
 use crate::host::CoreHost;
 use crate::program_chance;
+use crate::program_proof::ProofUnderWay;
 use crate::sampling::Sampled;
 
 /// Runs are made for about this long before the answer says how far they got.
@@ -152,6 +153,32 @@ impl Core {
         let mut go_on = || host.now_millis() - begun <= SAMPLING_MILLIS && !host.is_superseded();
         let tally = program_chance::sample_control(control, &chance, from, &mut go_on);
         host.answer(Response::ProgramSampled { revision, chance, from, tally });
+    }
+
+    /// Leads a proof about a control program on, from where the last request ended.
+    pub(super) fn prove_program(
+        &mut self,
+        (revision, source): (u64, &Arc<str>),
+        question: ProofQuestion,
+        from: usize,
+        host: &mut dyn CoreHost,
+    ) {
+        let begun = host.now_millis();
+        let known = self.proof.take().filter(|proof| proof.is_of(source, &question, from));
+        let proof = known.map_or_else(
+            || ProofUnderWay::new(source, self.controls.read(source, question.plant.as_ref()), &question),
+            Ok,
+        );
+        let mut go_on = || host.now_millis() - begun <= SAMPLING_MILLIS && !host.is_superseded();
+        let (states, answer) = match proof.and_then(|proof| proof.lead_on(&mut go_on)) {
+            Ok((states, Ok(answer))) => (states, Some(Ok(answer))),
+            Ok((states, Err(proof))) => {
+                self.proof = Some(proof);
+                (states, None)
+            }
+            Err(reason) => (0, Some(Err(reason))),
+        };
+        host.answer(Response::ProgramProven { revision, question, states, answer });
     }
 }
 

@@ -13,6 +13,7 @@ mod legend;
 mod log;
 mod machine;
 mod marks;
+mod proof;
 
 use std::sync::Arc;
 
@@ -151,7 +152,7 @@ impl AutomatonPanel {
         commands: &mut CommandSender,
     ) {
         let has_plant = shown.moment.plant.is_some();
-        let parts = ProgramPart::ALL.into_iter().filter(|part| has_plant || *part != ProgramPart::ManyRuns);
+        let parts = ProgramPart::ALL.into_iter().filter(|part| has_plant || !NEEDS_PLANT.contains(part));
         let part = context.state.automaton.part;
         let margin = Margin::symmetric(8, 2);
         Frame::new().inner_margin(margin).show(ui, |ui| {
@@ -163,7 +164,7 @@ impl AutomatonPanel {
         });
         match part {
             ProgramPart::Automaton => self.drawing(ui, context, shown, commands),
-            ProgramPart::Plant | ProgramPart::ManyRuns => {
+            ProgramPart::Plant | ProgramPart::ManyRuns | ProgramPart::Proof => {
                 Frame::new().inner_margin(margin).show(ui, |ui| self.side(ui, context, shown, commands));
             }
             ProgramPart::Steps => {
@@ -190,9 +191,11 @@ impl AutomatonPanel {
     fn beside(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
         if shown.moment.plant.is_some() {
             ui.horizontal(|ui| {
-                let is_sampled = context.state.automaton.part == ProgramPart::ManyRuns;
-                choose(ui, ProgramPart::Plant, !is_sampled, true, commands);
-                choose(ui, ProgramPart::ManyRuns, is_sampled, true, commands);
+                let part = context.state.automaton.part;
+                choose(ui, ProgramPart::Plant, !NEEDS_PLANT.contains(&part), true, commands);
+                for offered in NEEDS_PLANT {
+                    choose(ui, offered, offered == part, true, commands);
+                }
             });
         }
         self.side(ui, context, shown, commands);
@@ -201,10 +204,13 @@ impl AutomatonPanel {
     /// The plant, or many runs of it, or what is known where there is no plant.
     fn side(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
         let plant = shown.program.model().zip(shown.moment.plant.as_ref());
-        let is_sampled = plant.is_some() && context.state.automaton.part == ProgramPart::ManyRuns;
-        let mut area = ScrollArea::vertical().id_salt(("automaton-side", is_sampled)).auto_shrink(false);
+        let part = context.state.automaton.part;
+        let of_runs = plant.filter(|_| NEEDS_PLANT.contains(&part)).map(|_| part);
+        let mut area = ScrollArea::vertical()
+            .id_salt(("automaton-side", of_runs.map(ProgramPart::name)))
+            .auto_shrink(false);
         // What is found out in a step is brought into view, and what is believed after the next one again.
-        let found = plant.filter(|(_, plant)| !is_sampled && evidence::is_surprising(plant));
+        let found = plant.filter(|(_, plant)| of_runs.is_none() && evidence::is_surprising(plant));
         let found = found.map(|_| shown.moment.upcoming.step);
         if found.is_none() && self.diagnosed.is_some() {
             area = area.vertical_scroll_offset(0.0);
@@ -220,9 +226,10 @@ impl AutomatonPanel {
             ui.ctx().request_repaint();
         }
         area.show(ui, |ui| {
-            if is_sampled {
-                chance::show(ui, context, commands);
-                return;
+            match of_runs {
+                Some(ProgramPart::ManyRuns) => return chance::show(ui, context, commands),
+                Some(_) => return proof::show(ui, context, commands),
+                None => {}
             }
             goals(ui, context, shown);
             match plant {
@@ -249,6 +256,9 @@ impl AutomatonPanel {
     }
 }
 
+/// The parts about all runs, or many of them, which need a plant.
+const NEEDS_PLANT: [ProgramPart; 2] = [ProgramPart::ManyRuns, ProgramPart::Proof];
+
 /// A part of the panel, to choose it.
 fn choose(ui: &mut Ui, part: ProgramPart, is_chosen: bool, has_plant: bool, commands: &mut CommandSender) {
     let name = match part {
@@ -256,6 +266,7 @@ fn choose(ui: &mut Ui, part: ProgramPart, is_chosen: bool, has_plant: bool, comm
         ProgramPart::Plant if has_plant => "Plant",
         ProgramPart::Plant => "Observations",
         ProgramPart::ManyRuns => "Monte Carlo",
+        ProgramPart::Proof => "Proof",
         ProgramPart::Steps => "Steps",
     };
     if ui.selectable_label(is_chosen, name).clicked() {

@@ -120,6 +120,9 @@ impl AppState {
                 let update = self.update_with_plan();
                 self.contradict.take(answer, update, self.frame.now_secs, &mut self.window);
             }
+            Response::ProgramProven { .. } => {
+                self.automaton.take_proof(answer, &self.document, &mut self.window);
+            }
             Response::ProgramSampled { .. } => {
                 self.automaton.take_sample(answer, &self.document, &mut self.window);
             }

@@ -99,6 +99,9 @@ impl AppState {
             Command::Chance(command) => self.apply_to_chance(command),
             Command::Contradict(command) => self.apply_to_contradict(command),
             Command::ProgramChance(command) => self.apply_to_program_chance(command),
+            Command::ProgramProof(command) => {
+                self.automaton.apply_to_proof(command, &self.document, &mut self.window);
+            }
             Command::Search(command) => self.apply_to_search(command),
 
             Command::Review(command) => self.reviewing().apply(command),

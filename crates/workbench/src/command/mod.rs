@@ -21,6 +21,7 @@ use crate::state::networks::NetworkForm;
 use crate::state::pins::PinCommand;
 use crate::state::playback::TransportCommand;
 use crate::state::program_chance::ProgramChanceCommand;
+use crate::state::program_proof::ProgramProofCommand;
 use crate::state::review::ReviewCommand;
 use crate::state::search::SearchCommand;
 use crate::state::selection::Selection;
@@ -98,6 +99,8 @@ pub enum Command {
     Contradict(ContradictCommand),
     /// Something that concerns many runs of a control program with chance.
     ProgramChance(ProgramChanceCommand),
+    /// Something that concerns what holds in all runs of a control program.
+    ProgramProof(ProgramProofCommand),
 
     /// Something that concerns the review.
     Review(ReviewCommand),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use executive::model_based::proof::Verdict;
 use executive::model_based::{AskedCondition, StepOutcome};
 use hca::Automaton;
 use plant::{Interval, Model};
@@ -9,7 +10,7 @@ use serde::Serialize;
 #[cfg(test)]
 use ts_rs::TS;
 
-use crate::state::automaton::{AutomatonState, PlantMoment};
+use crate::state::automaton::{AutomatonState, PlantMoment, Program};
 use crate::state::program_chance::ProgramChanceState;
 
 /// So many of the most likely states are told.
@@ -36,6 +37,8 @@ pub struct ProgramRun {
     pub trouble: Option<String>,
     /// How likely the program is to reach its end; `null` until many runs were made of the present text.
     pub chance: Option<ProgramChance>,
+    /// What holds in all runs; `null` until it was asked of the present text.
+    pub proof: Option<ProgramProof>,
     pub plant: Option<PlantState>,
 }
 
@@ -60,6 +63,30 @@ pub struct ProgramChance {
     /// The 95 % confidence interval of the probability.
     pub interval: [f64; 2],
     pub mean_steps: f64,
+}
+
+/// What holds in all runs of a program, or why nothing can be proven.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct ProgramProof {
+    pub is_running: bool,
+    pub states: usize,
+    pub trouble: Option<String>,
+    /// Why not all states were explored, if that is so.
+    pub stopped: Option<String>,
+    pub verdicts: Vec<ProgramVerdict>,
+}
+
+/// Whether a property holds in all runs.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ProgramVerdict {
+    pub property: String,
+    /// `holds`, `broken`, or `open` where no run breaks it but not all were looked at.
+    pub verdict: String,
+    /// In the run that breaks it, the steps in which a component does not do what is nominal, such as `3: EngineA=Failed`.
+    pub faults: Vec<String>,
 }
 
 /// What is believed and true of a plant; modes and values by component and variable.
@@ -143,6 +170,7 @@ pub(super) fn program_run(state: &AutomatonState, revision: u64) -> Option<Progr
         is_playing: state.is_playing,
         trouble: state.error.clone(),
         chance: chance(&state.chance, revision),
+        proof: proof(state, revision),
         plant: plant.map(|(model, moment)| plant_state(model, moment)),
     })
 }
@@ -158,6 +186,37 @@ fn chance(chance: &ProgramChanceState, revision: u64) -> Option<ProgramChance> {
         interval: [low, high],
         mean_steps: tally.mean_steps(),
     })
+}
+
+fn proof(state: &AutomatonState, revision: u64) -> Option<ProgramProof> {
+    let proof = &state.proof;
+    let (is_running, states) = (proof.is_running(), proof.states());
+    let empty = ProgramProof { is_running, states, trouble: None, stopped: None, verdicts: Vec::new() };
+    match proof.answer(revision) {
+        None => is_running.then_some(empty),
+        Some((_, Err(trouble))) => Some(ProgramProof { trouble: Some(trouble.clone()), ..empty }),
+        Some((_, Ok(answer))) => {
+            let model = state.program().and_then(Program::model);
+            let verdict = |(property, verdict): &(String, Verdict)| ProgramVerdict {
+                property: property.clone(),
+                verdict: verdict_name(verdict).to_owned(),
+                faults: match verdict {
+                    Verdict::Broken(run) => model.map_or_else(Vec::new, |model| run.unusual(model)),
+                    _ => Vec::new(),
+                },
+            };
+            let verdicts = answer.verdicts.iter().map(verdict).collect();
+            Some(ProgramProof { stopped: answer.stopped.clone(), verdicts, ..empty })
+        }
+    }
+}
+
+const fn verdict_name(verdict: &Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "holds",
+        Verdict::Broken(_) | Verdict::Never(_) => "broken",
+        Verdict::Open => "open",
+    }
 }
 
 fn fired(automaton: &Automaton, id: hca::TransitionId) -> Option<Fired> {

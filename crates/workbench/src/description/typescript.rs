@@ -227,6 +227,8 @@ fn interface() -> String {
     declare::<program::ProgramRun>(&mut out);
     declare::<program::Fired>(&mut out);
     declare::<program::ProgramChance>(&mut out);
+    declare::<program::ProgramProof>(&mut out);
+    declare::<program::ProgramVerdict>(&mut out);
     declare::<program::PlantState>(&mut out);
     declare::<program::Believed>(&mut out);
     declare::<program::StateProbability>(&mut out);

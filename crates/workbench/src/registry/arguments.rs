@@ -8,6 +8,7 @@ use crate::command::Command;
 use crate::panel_kind::PanelKind;
 use crate::state::AppState;
 use crate::state::automaton::{AutomatonCommand, Program, ProgramPart};
+use crate::state::program_proof::ProgramProofCommand;
 
 /// The component and its mode by name; without a mode, the component is left to behave.
 pub(super) fn injection(state: &AppState, arguments: &Value) -> Result<Command, String> {
@@ -63,6 +64,22 @@ pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, 
         }
     };
     Ok(Command::Automaton(AutomatonCommand::Know(VariableId(at as u32), value)))
+}
+
+/// What is to be proven: `properties`, `faults` and `knowledge`; what is not given stays.
+pub(super) fn proof(state: &AppState, arguments: &Value) -> Result<Command, String> {
+    let mut settings = state.automaton.proof.settings.clone();
+    if let Some(properties) = arguments.get("properties") {
+        properties.as_str().ok_or("`properties` is a text")?.clone_into(&mut settings.properties);
+    }
+    if arguments.get("faults").is_some() {
+        settings.faults = number_argument(arguments, "faults")?.max(0.0) as u32;
+    }
+    if let Some(knowledge) = arguments.get("knowledge") {
+        settings.knowledge = serde_json::from_value(knowledge.clone())
+            .map_err(|_| "`knowledge` is \"estimated\" or \"perfect\"")?;
+    }
+    Ok(Command::ProgramProof(ProgramProofCommand::Set(settings)))
 }
 
 /// A part of what is shown of a program, by name.

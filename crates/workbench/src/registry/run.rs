@@ -2,7 +2,7 @@
 
 use executive::Disturbance;
 
-use super::arguments::{hitting, injection, knowledge, number_argument, part, text_argument};
+use super::arguments::{hitting, injection, knowledge, number_argument, part, proof, text_argument};
 use super::available::{with_chance, with_program, with_run};
 use super::spec::{called, plain, when};
 use crate::command::Command;
@@ -10,6 +10,7 @@ use crate::registry::spec::{CommandSpec, Group, Scope};
 use crate::state::automaton::AutomatonCommand;
 use crate::state::chance::ChanceCommand;
 use crate::state::execution::ExecutionCommand;
+use crate::state::program_proof::ProgramProofCommand;
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
@@ -61,6 +62,16 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         }),
         with_program,
     ),
+    when(
+        plain("program.prove", "Prove properties", Group::Play, &[], Scope::Everywhere, |_| {
+            Command::ProgramProof(ProgramProofCommand::Start)
+        }),
+        with_program,
+    ),
+    when(called("program.setProof", "Set properties to prove", Group::Play, proof), with_program),
+    plain("program.stopProof", "Stop proof", Group::Play, &[], Scope::Everywhere, |_| {
+        Command::ProgramProof(ProgramProofCommand::Stop)
+    }),
     when(
         plain("execute.sample", "Run Monte Carlo", Group::Play, &[], Scope::Everywhere, |_| {
             Command::Chance(ChanceCommand::Start)

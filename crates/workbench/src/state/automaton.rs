@@ -19,6 +19,7 @@ use text_editing::Document;
 use crate::mission_file;
 use crate::state::diagnosing::Diagnosing;
 use crate::state::program_chance::ProgramChanceState;
+use crate::state::program_proof::ProgramProofState;
 
 pub use link::ControlProgram as Program;
 pub use link::control_run::{Input, Moment, PlantMoment};
@@ -55,6 +56,8 @@ pub struct AutomatonState {
     fault_seed: Option<FaultSeed>,
     /// How likely the program is to reach its end.
     pub chance: ProgramChanceState,
+    /// What holds in all runs.
+    pub proof: ProgramProofState,
     /// The part that is shown where there is no room for all.
     pub part: ProgramPart,
     /// Why the last step could not be taken.
@@ -75,12 +78,14 @@ pub enum ProgramPart {
     Plant,
     /// Many runs with chance.
     ManyRuns,
+    /// What holds in all runs.
+    Proof,
     Steps,
 }
 
 impl ProgramPart {
     /// All parts, in the order in which they are offered.
-    pub const ALL: [Self; 4] = [Self::Automaton, Self::Plant, Self::ManyRuns, Self::Steps];
+    pub const ALL: [Self; 5] = [Self::Automaton, Self::Plant, Self::ManyRuns, Self::Proof, Self::Steps];
 
     /// What it is called by commands.
     pub const fn name(self) -> &'static str {
@@ -88,6 +93,7 @@ impl ProgramPart {
             Self::Automaton => "automaton",
             Self::Plant => "plant",
             Self::ManyRuns => "many-runs",
+            Self::Proof => "proof",
             Self::Steps => "steps",
         }
     }
@@ -148,6 +154,7 @@ impl AutomatonState {
             return;
         }
         self.chance.give_up();
+        self.proof.give_up();
         let asked = self.asked;
         if !is_control {
             *self = Self { asked, ..Self::default() };
@@ -225,6 +232,7 @@ impl AutomatonState {
         self.is_waiting = false;
         self.is_playing = false;
         self.chance.give_up();
+        self.proof.give_up();
     }
 
     /// Whether the text is a control program.
@@ -326,6 +334,19 @@ impl AutomatonState {
                 self.log.push(input);
             }
         }
+        self.wants_answer = true;
+    }
+
+    /// Starts again without chance, with these modes to come into in each step, and looks at the moment after the last.
+    pub(crate) fn show_steps(&mut self, injected: Vec<BTreeMap<ComponentId, u8>>) {
+        self.forget_steps();
+        self.fault_seed = None;
+        self.log.extend(injected.into_iter().map(|injected| {
+            let mut input = Input::default();
+            input.plant.injected = injected;
+            input
+        }));
+        self.target = self.log.len();
         self.wants_answer = true;
     }
 

@@ -29,6 +29,7 @@ pub mod pins;
 pub mod placing;
 pub mod playback;
 pub mod program_chance;
+pub mod program_proof;
 pub mod review;
 pub mod search;
 pub mod selection;

@@ -12,12 +12,13 @@ mod property;
 use std::sync::Arc;
 
 use plant::EstimateError;
+use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
 use super::closed_loop::Knowledge;
 use super::system::System;
 use paths::Found;
-use product::{Explorer, Limits, NodeId, Product};
+use product::{Exploration, Explorer, Limits, NodeId, Product};
 
 pub use chance::chance_to_end;
 pub use paths::Counterexample;
@@ -43,7 +44,7 @@ impl Default for Scope {
 }
 
 /// Whether a property holds.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Verdict {
     /// In all runs.
     Holds,
@@ -78,30 +79,69 @@ pub fn prove(
     scope: Scope,
     go_on: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Proof, EstimateError> {
-    let conditions: Vec<Condition> =
-        properties.iter().flat_map(Property::conditions).take(MAX_CONDITIONS).cloned().collect();
-    let limits = Limits { faults: scope.faults, nodes: scope.states, depth: scope.steps };
-    let mut explorer = Explorer::new(system, conditions.clone());
-    let product = explorer.explore(scope.knowledge, limits, go_on)?;
-    let judge = Judge { system, product: &product, conditions: &conditions };
-    let mut verdicts = Vec::with_capacity(properties.len());
-    for property in properties {
-        let mut verdict = judge.verdict(property);
-        if verdict == Verdict::Open
-            && let Some(run) = judge.long_run(property, &mut explorer)?
-        {
-            verdict = Verdict::Broken(Box::new(run));
-        }
-        verdicts.push((property.clone(), verdict));
+    let mut proving = Proving::new(system, properties.to_vec(), scope);
+    proving.advance(go_on)?;
+    proving.judge()
+}
+
+/// A proof under way, to be led on a little at a time.
+pub struct Proving {
+    system: Arc<System>,
+    properties: Vec<Property>,
+    conditions: Vec<Condition>,
+    exploration: Exploration,
+    is_over: bool,
+}
+
+impl Proving {
+    /// Begins a proof.
+    pub fn new(system: &Arc<System>, properties: Vec<Property>, scope: Scope) -> Self {
+        let conditions: Vec<Condition> =
+            properties.iter().flat_map(Property::conditions).take(MAX_CONDITIONS).cloned().collect();
+        let limits = Limits { faults: scope.faults, nodes: scope.states, depth: scope.steps };
+        let explorer = Explorer::new(system, conditions.clone());
+        let exploration = Exploration::new(explorer, scope.knowledge, limits);
+        Self { system: Arc::clone(system), properties, conditions, exploration, is_over: false }
     }
-    let edges = product.nodes.iter().filter(|node| node.end.is_none()).filter_map(|node| node.edges.as_ref());
-    Ok(Proof {
-        verdicts,
-        states: product.nodes.len(),
-        transitions: edges.map(Vec::len).sum(),
-        depth: product.nodes.iter().map(|node| node.depth).max().unwrap_or(0),
-        stopped: product.stopped,
-    })
+
+    /// How many states have been found.
+    pub fn states(&self) -> usize {
+        self.exploration.product.nodes.len()
+    }
+
+    /// Explores as long as `go_on` says so, which is told how many states have been found; returns whether all is explored
+    /// that the scope allows.
+    pub fn advance(&mut self, go_on: &mut dyn FnMut(usize) -> bool) -> Result<bool, EstimateError> {
+        self.is_over = self.exploration.advance(go_on)?;
+        Ok(self.is_over)
+    }
+
+    /// What the states that were explored say.
+    pub fn judge(mut self) -> Result<Proof, EstimateError> {
+        if !self.is_over {
+            self.exploration.end_early("it was stopped".to_owned());
+        }
+        let Exploration { explorer, product, .. } = &mut self.exploration;
+        let judge = Judge { system: &self.system, product, conditions: &self.conditions };
+        let mut verdicts = Vec::with_capacity(self.properties.len());
+        for property in self.properties {
+            let mut verdict = judge.verdict(&property);
+            if verdict == Verdict::Open
+                && let Some(run) = judge.long_run(&property, explorer)?
+            {
+                verdict = Verdict::Broken(Box::new(run));
+            }
+            verdicts.push((property, verdict));
+        }
+        let explored = product.nodes.iter().filter(|node| node.end.is_none());
+        Ok(Proof {
+            verdicts,
+            states: product.nodes.len(),
+            transitions: explored.filter_map(|node| node.edges.as_ref()).map(Vec::len).sum(),
+            depth: product.nodes.iter().map(|node| node.depth).max().unwrap_or(0),
+            stopped: product.stopped.clone(),
+        })
+    }
 }
 
 /// Conditions are kept in the bits of a word.

@@ -2,10 +2,13 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
+use plant::Model;
+use serde::{Deserialize, Serialize};
+
 use super::product::{End, Move, NodeId, Product};
 
 /// A run that breaks a property.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counterexample {
     /// Where the plant starts, if not in its most likely state, and the choices made before the first step.
     pub start: Move,
@@ -18,6 +21,42 @@ pub struct Counterexample {
     pub goes_on_for: Option<u32>,
     /// Why the run is over at its end, if it is.
     pub end: Option<End>,
+}
+
+impl Counterexample {
+    /// The steps in which a component does not do what is nominal, such as `3: EngineA=Failed`.
+    pub fn unusual(&self, model: &Model) -> Vec<String> {
+        let steps = (1..).zip(&self.moves).filter(|(_, by)| !by.modes.is_empty());
+        let shown = steps.map(|(step, by): (u32, _)| {
+            let modes = by.named(model).map(|(name, mode)| format!("{name}={mode}"));
+            format!("{step}: {}", modes.collect::<Vec<_>>().join(", "))
+        });
+        shown.collect()
+    }
+
+    /// How it ends, such as `after 6 steps nothing changes any more`.
+    pub fn ending(&self) -> String {
+        let steps = self.moves.len();
+        let count = |number: usize| format!("{number} step{}", if number == 1 { "" } else { "s" });
+        match (self.end, self.repeats_after) {
+            (Some(End::Ended), from) => format!("the program ends after {}", count(from.unwrap_or(steps))),
+            (Some(End::Deadlock), _) => "locks deadlock".to_owned(),
+            (Some(End::Refuted), _) => "the observation refutes the belief".to_owned(),
+            (Some(End::Unclear), _) => {
+                "the belief keeps too few states to explain the observation".to_owned()
+            }
+            (None, Some(from)) if steps - from == 1 => {
+                format!("after {} nothing changes any more", count(from))
+            }
+            (None, Some(from)) => {
+                format!("after {} the last {} repeat forever", count(from), count(steps - from))
+            }
+            (None, None) => match self.goes_on_for {
+                Some(more) => format!("still waiting {} later", count(more as usize)),
+                None => format!("broken after {}", count(steps)),
+            },
+        }
+    }
 }
 
 /// What a search for a run found.

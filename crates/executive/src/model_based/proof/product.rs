@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 use hca::{LocationId, Standing, StepObserver, TransitionId};
 use num_traits::One as _;
-use plant::{Belief, ComponentId, EstimateError, Probability, Situation, State, Target, targets};
+use plant::{Belief, ComponentId, EstimateError, Model, Probability, Situation, State, Target, targets};
+use serde::{Deserialize, Serialize};
 
 use super::property::Condition;
 use crate::model_based::closed_loop::{ClosedLoop, Knowledge, ProgramExecution};
@@ -19,12 +20,21 @@ use crate::model_based::system::System;
 pub(super) type NodeId = u32;
 
 /// What nature decides in a step.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Move {
     /// The components that do not do what is nominal, with the modes that they enter.
     pub modes: Vec<(ComponentId, u8)>,
     /// The alternatives of the choices that come up at the step's end, in their order.
     pub choices: Vec<usize>,
+}
+
+impl Move {
+    /// The components that do not do what is nominal, with the modes that they enter, by their names.
+    pub fn named<'model>(&self, model: &'model Model) -> impl Iterator<Item = (&'model str, &'model str)> {
+        self.modes
+            .iter()
+            .filter_map(|(id, mode)| Some((model.component(*id)?.name.as_str(), model.mode_name(*id, *mode))))
+    }
 }
 
 /// A step from one node to another.
@@ -55,7 +65,7 @@ pub(super) struct Node {
 }
 
 /// Why a run is over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum End {
     Ended,
     Deadlock,
@@ -89,6 +99,7 @@ pub(super) struct Key {
 }
 
 /// What was explored.
+#[derive(Default)]
 pub(super) struct Product {
     pub(super) nodes: Vec<Node>,
     /// Where runs start, each with the choices made before the first step.
@@ -257,69 +268,6 @@ impl Explorer {
         holding.fold(0, |bits, (at, _)| bits | 1 << at)
     }
 
-    /// Explores in breadth as long as `go_on` says so, which is told how many nodes there are.
-    pub(super) fn explore(
-        &mut self,
-        knowledge: Knowledge,
-        limits: Limits,
-        go_on: &mut dyn FnMut(usize) -> bool,
-    ) -> Result<Product, EstimateError> {
-        let mut product = Product {
-            nodes: Vec::new(),
-            starts: Vec::new(),
-            reached: BTreeSet::new(),
-            fired: BTreeSet::new(),
-            stopped: None,
-        };
-        let mut known: HashMap<Key, NodeId> = HashMap::new();
-        let mut queue = VecDeque::new();
-        let mut kinds: HashSet<Key> = HashSet::new();
-        let mut last_new_kind = 0;
-        for way in self.starts(knowledge, limits.nodes) {
-            let by = way.by.clone();
-            let id = self.node(way, limits.faults, 0, &mut product, &mut known, &mut queue);
-            product.starts.push((id, by));
-        }
-        while let Some(id) = queue.pop_front() {
-            let node = &product.nodes[id as usize];
-            let (depth, faults_left) = (node.depth, node.faults_left);
-            if depth >= limits.depth {
-                product
-                    .stopped
-                    .get_or_insert_with(|| format!("runs of more than {depth} steps were not explored"));
-                continue;
-            }
-            if product.nodes.len() >= limits.nodes {
-                product.stopped = Some(format!("the limit of {} states was reached", limits.nodes));
-                break;
-            }
-            if !go_on(product.nodes.len()) {
-                product.stopped = Some("it was stopped".to_owned());
-                break;
-            }
-            if kinds.insert(self.kind(node)) {
-                last_new_kind = depth;
-            } else if depth - last_new_kind > STILL_STEPS {
-                product.stopped =
-                    Some(format!("after {last_new_kind} steps only the probabilities of beliefs change"));
-                break;
-            }
-            let (standing, closed) = (node.standing.clone(), node.closed.clone());
-            let (ways, contradiction) = self.ways(&standing, &closed, faults_left)?;
-            let mut edges: Vec<Edge> = Vec::with_capacity(ways.len());
-            for way in ways {
-                let (by, is_fault, left) = (way.by.clone(), way.is_fault, faults_left - way.faults);
-                let to = self.node(way, left, depth + 1, &mut product, &mut known, &mut queue);
-                edges.push(Edge { to, by, is_fault });
-            }
-            product.fired.extend(self.fired.0.drain(..));
-            let node = &mut product.nodes[id as usize];
-            node.edges = Some(edges);
-            node.contradiction = contradiction;
-        }
-        Ok(product)
-    }
-
     /// What tells the place apart to which a way leads. What the program has nothing to do with does not matter.
     pub(super) fn key(&self, way: &Way, faults_left: u32) -> Key {
         let beliefs = way.closed.belief().beliefs().enumerate();
@@ -369,32 +317,104 @@ impl Explorer {
         }
         Ok(most)
     }
+}
+
+/// An exploration under way.
+pub(super) struct Exploration {
+    pub(super) explorer: Explorer,
+    pub(super) product: Product,
+    limits: Limits,
+    known: HashMap<Key, NodeId>,
+    /// The nodes that are still to be explored, those first that were come to first.
+    queue: VecDeque<NodeId>,
+    kinds: HashSet<Key>,
+    last_new_kind: u32,
+}
+
+impl Exploration {
+    pub(super) fn new(mut explorer: Explorer, knowledge: Knowledge, limits: Limits) -> Self {
+        let starts = explorer.starts(knowledge, limits.nodes);
+        let mut exploration = Self {
+            explorer,
+            product: Product::default(),
+            limits,
+            known: HashMap::new(),
+            queue: VecDeque::new(),
+            kinds: HashSet::new(),
+            last_new_kind: 0,
+        };
+        for way in starts {
+            let by = way.by.clone();
+            let id = exploration.node(way, limits.faults, 0);
+            exploration.product.starts.push((id, by));
+        }
+        exploration
+    }
+
+    /// Explores in breadth as long as `go_on` says so, which is told how many nodes there are; returns whether it is over.
+    pub(super) fn advance(&mut self, go_on: &mut dyn FnMut(usize) -> bool) -> Result<bool, EstimateError> {
+        while let Some(id) = self.queue.front().copied() {
+            if !go_on(self.product.nodes.len()) {
+                return Ok(false);
+            }
+            self.queue.pop_front();
+            let node = &self.product.nodes[id as usize];
+            let (depth, faults_left) = (node.depth, node.faults_left);
+            if depth >= self.limits.depth {
+                let why = format!("runs of more than {depth} steps were not explored");
+                self.product.stopped = Some(why);
+                continue;
+            }
+            if self.product.nodes.len() >= self.limits.nodes {
+                self.end_early(format!("the limit of {} states was reached", self.limits.nodes));
+                break;
+            }
+            if self.kinds.insert(self.explorer.kind(node)) {
+                self.last_new_kind = depth;
+            } else if depth - self.last_new_kind > STILL_STEPS {
+                let since = self.last_new_kind;
+                self.end_early(format!("after {since} steps only the probabilities of beliefs change"));
+                break;
+            }
+            let (standing, closed) = (node.standing.clone(), node.closed.clone());
+            let (ways, contradiction) = self.explorer.ways(&standing, &closed, faults_left)?;
+            let mut edges: Vec<Edge> = Vec::with_capacity(ways.len());
+            for way in ways {
+                let (by, is_fault, left) = (way.by.clone(), way.is_fault, faults_left - way.faults);
+                let to = self.node(way, left, depth + 1);
+                edges.push(Edge { to, by, is_fault });
+            }
+            self.product.fired.extend(self.explorer.fired.0.drain(..));
+            let node = &mut self.product.nodes[id as usize];
+            node.edges = Some(edges);
+            node.contradiction = contradiction;
+        }
+        Ok(true)
+    }
+
+    /// Leaves unexplored what is still to be explored.
+    pub(super) fn end_early(&mut self, why: String) {
+        self.queue.clear();
+        self.product.stopped = Some(why);
+    }
 
     /// The node that a way leads to, added if it is new.
-    fn node(
-        &self,
-        way: Way,
-        faults_left: u32,
-        depth: u32,
-        product: &mut Product,
-        known: &mut HashMap<Key, NodeId>,
-        queue: &mut VecDeque<NodeId>,
-    ) -> NodeId {
+    fn node(&mut self, way: Way, faults_left: u32, depth: u32) -> NodeId {
         let end = way.end();
-        let id = product.nodes.len() as NodeId;
-        let mut key = self.key(&way, faults_left);
+        let id = self.product.nodes.len() as NodeId;
+        let mut key = self.explorer.key(&way, faults_left);
         key.unlike = (!way.closed.belief().is_exact()).then_some(id);
-        if let Some(&known) = known.get(&key) {
+        if let Some(&known) = self.known.get(&key) {
             return known;
         }
-        known.insert(key, id);
-        product.reached.extend(way.standing.marking().iter());
-        let holds = self.holds(way.closed.true_state());
+        self.known.insert(key, id);
+        self.product.reached.extend(way.standing.marking().iter());
+        let holds = self.explorer.holds(way.closed.true_state());
         let edges = end.map(|_| vec![Edge { to: id, by: Move::default(), is_fault: false }]);
         if end.is_none() {
-            queue.push_back(id);
+            self.queue.push_back(id);
         }
-        product.nodes.push(Node {
+        self.product.nodes.push(Node {
             standing: way.standing,
             closed: way.closed,
             faults_left,
