@@ -18,6 +18,7 @@ use crate::automaton::{
 };
 use crate::clock::{Clock, ClockId, ClockKind, HeldCondition};
 use crate::condition::{Condition, Formula};
+use crate::equality::write_out;
 use crate::locks::{Lock, LockId, can_hold_together};
 use crate::vocabulary::{Variable, VariableId, Vocabulary};
 
@@ -59,7 +60,12 @@ pub fn compile_text(text: &str, vocabulary: &Vocabulary) -> Compilation {
 
 /// Compiles the main definition of a file that parsed without errors.
 pub fn compile(file: &ControlFile, vocabulary: &Vocabulary) -> (Option<Arc<Automaton>>, Vec<Diagnostic>) {
-    let (Some(program), diagnostics) = expand_main(file) else { return (None, expand_main(file).1) };
+    let (expanded, mut diagnostics) = expand_main(file);
+    let Some(mut program) = expanded else { return (None, diagnostics) };
+    diagnostics.extend(write_out(&mut program, vocabulary));
+    if !diagnostics.is_empty() {
+        return (None, diagnostics);
+    }
     let mut compiler = Compiler::new(vocabulary, file.step_secs(), diagnostics);
     compiler.collect(&program);
     let root = compiler.open(CompositeKind::Program, None, None, program.span);

@@ -8,6 +8,7 @@ pub mod clock;
 pub mod compile;
 pub mod condition;
 pub mod dot;
+mod equality;
 pub mod knowledge;
 pub mod locks;
 pub mod marking;

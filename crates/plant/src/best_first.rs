@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 
 use num_bigint::BigUint;
 use num_integer::Integer as _;
-use num_traits::{One as _, ToPrimitive as _, Zero as _};
+use num_traits::{One as _, Zero as _};
 
 use crate::belief::{Belief, State};
 use crate::exact::weighed;
@@ -70,9 +70,11 @@ pub fn update_best(
     let (mut weights, common) = weighed(model, found.into_iter().zip(weights).collect(), &mut likelihoods);
     if !dropped.is_zero() {
         // In one unit, so that nothing is rounded.
-        let fewest = likelihoods.fewest_of_all();
-        dropped = if fewest.is_some() { dropped * common } else { BigUint::zero() };
-        let unit = unit.taken_out * fewest.unwrap_or_else(BigUint::one);
+        let greatest = likelihoods.greatest_of_all();
+        let (weight, divisor) =
+            greatest.map_or_else(|| (BigUint::zero(), BigUint::one()), |it| (it.weight, it.divisor));
+        dropped = dropped * common * weight;
+        let unit = unit.taken_out * divisor;
         for (_, weight) in &mut weights {
             *weight *= &unit;
         }
@@ -327,8 +329,7 @@ impl Search {
         } else {
             let mut value: f64 = self.odds.products(&self.nodes.chosen[new..]).sum();
             for &at in &self.joint {
-                let divisor = likelihoods.divisor(at, &self.state.0);
-                value /= divisor.to_f64().unwrap_or(f64::MAX).max(1.0);
+                value *= likelihoods.chance(at, &self.state.0);
             }
             likelihood = (value > 0.0).then_some(value);
             let several = |at: &u32| self.nodes.sets[new + *at as usize].count_ones() > 1;

@@ -289,8 +289,11 @@ impl<'step> Step<'step> {
     fn observed(&mut self, predicted: Vec<(State, BigUint)>, mut dropped: BigUint) -> Expansion {
         let (weights, common) = weighed(self.model, predicted, &mut self.likelihoods);
         if !dropped.is_zero() {
-            dropped = match self.likelihoods.fewest_of_all() {
-                Some(fewest) => num_integer::Integer::div_ceil(&(dropped * common), &fewest),
+            dropped = match self.likelihoods.greatest_of_all() {
+                Some(greatest) => {
+                    let weight = dropped * common * greatest.weight;
+                    num_integer::Integer::div_ceil(&weight, &greatest.divisor)
+                }
                 None => BigUint::zero(),
             };
         }
@@ -341,7 +344,7 @@ impl<'step> Step<'step> {
         for &(mode, part) in choices.of(row.number, component) {
             row.state.0[component] = mode;
             if let Some(island) = self.alone[component]
-                && self.likelihoods.divisor(island, &row.state.0).is_zero()
+                && self.likelihoods.of(island, &row.state.0).is_zero()
             {
                 continue;
             }

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use rmpl::control::{Constraint, ConstraintKind, ControlFile, Instance, Name, nearest};
-use rmpl::{Code, Diagnostic, Span};
+use rmpl::{Code, Diagnostic, Span, diagnostics};
 use smol_str::SmolStr;
 
 use crate::probability;
-use rmpl::control::{MergedClass, MergedVariable};
+use rmpl::control::{MergedClass, MergedFault, MergedVariable};
 
 /// Value sets are words of 64 bits.
 const MAX_VALUES: usize = 64;
@@ -59,6 +59,16 @@ impl Checker<'_, '_> {
                 );
                 self.error("E-VALUE", variable.name.span, message, None);
             }
+            if let Some(error) = &variable.error {
+                self.check_probability(error);
+                if variable.values.len() < 2 {
+                    let message = format!(
+                        "`{}` has only one value, so that no other can be observed",
+                        variable.name.text
+                    );
+                    self.error("E-VALUE", error.span, message, Some("remove ERROR, or add a value".into()));
+                }
+            }
             if let Some(shows) = &variable.shows
                 && !variable.values.contains(&shows.text)
             {
@@ -87,10 +97,13 @@ impl Checker<'_, '_> {
                 self.check_constraint(class, constraint, false);
             }
         }
-        for (from, to, guard) in &class.transitions {
-            self.check_mode(class, name, from);
-            self.check_mode(class, name, to);
-            self.check_constraint(class, guard, true);
+        for transition in &class.transitions {
+            self.check_mode(class, name, transition.from);
+            self.check_mode(class, name, transition.to);
+            self.check_constraint(class, transition.guard, true);
+            if let Some(given) = transition.probability {
+                self.check_probability(given);
+            }
         }
         self.check_faults(class, name);
     }
@@ -103,44 +116,33 @@ impl Checker<'_, '_> {
     }
 
     fn check_faults(&mut self, class: &MergedClass<'_>, class_name: &str) {
-        let mut sums: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
-        for (at, (from, to, given)) in class.faults.iter().enumerate() {
-            self.check_mode(class, class_name, from);
-            self.check_mode(class, class_name, to);
-            if class
-                .faults
-                .iter()
-                .take(at)
-                .any(|earlier| earlier.0.text == from.text && earlier.1.text == to.text)
-            {
-                self.error(
-                    "E-DUP",
-                    from.span,
-                    format!("the fault from `{}` to `{}` is already declared", from.text, to.text),
-                    None,
-                );
+        for (at, fault) in class.faults.iter().enumerate() {
+            self.check_mode(class, class_name, fault.from);
+            self.check_mode(class, class_name, fault.to);
+            if let Some(guard) = fault.guard {
+                self.check_constraint(class, guard, true);
             }
-            let Some((numerator, denominator)) =
-                probability::parse(&given.text).filter(|(part, whole)| *part > 0 && part <= whole)
-            else {
-                let hint =
-                    Some("write a number greater than 0 and at most 1, such as `0.01` or `1/100`".into());
-                self.error("E-VALUE", given.span, format!("`{}` is not a probability", given.text), hint);
-                continue;
+            let guard = |fault: &MergedFault<'_>| fault.guard.map(ToString::to_string);
+            let is_same = |earlier: &MergedFault<'_>| {
+                earlier.from.text == fault.from.text
+                    && earlier.to.text == fault.to.text
+                    && guard(earlier) == guard(fault)
             };
-            let sum = sums.entry(from.text.as_str()).or_insert((0, 1));
-            match add(*sum, (numerator, denominator)) {
-                Some(total) if total.0 <= total.1 => *sum = total,
-                Some(_) => {
-                    let message =
-                        format!("the probabilities of the faults of `{}` add up to more than 1", from.text);
-                    self.error("E-VALUE", given.span, message, None);
-                }
-                None => {
-                    let message = format!("the fault probabilities of `{}` have too many digits", from.text);
-                    self.error("E-VALUE", given.span, message, None);
-                }
+            if class.faults.iter().take(at).any(is_same) {
+                let message = format!(
+                    "the fault from `{}` to `{}` is already declared",
+                    fault.from.text, fault.to.text
+                );
+                self.error("E-DUP", fault.probability.span, message, None);
             }
+            self.check_probability(fault.probability);
+        }
+    }
+
+    fn check_probability(&mut self, given: &Name) {
+        let parsed = probability::parse(&given.text).filter(|(part, whole)| *part > 0 && part <= whole);
+        if parsed.is_none() && !self.diagnostics.iter().any(|known| known.span == given.span) {
+            self.diagnostics.push(diagnostics::probability::of_model(&given.text, given.span));
         }
     }
 
@@ -204,14 +206,15 @@ impl Checker<'_, '_> {
                     return;
                 };
                 if meaning.is_command && !is_guard {
-                    let message = format!("a mode cannot constrain the command `{}`", variable.text);
-                    self.error(
-                        "E-CONSTRAINT",
-                        variable.span,
-                        message,
-                        Some("use commands only in the guards of transitions".into()),
-                    );
-                } else if !meaning.values.contains(&value.text) {
+                    self.refuse_command(variable);
+                    return;
+                }
+                if meaning.values.contains(&value.text) {
+                    return;
+                }
+                if let Some(other) = self.meaning(class, &value.text) {
+                    self.check_equality((variable, &meaning), (value, &other), is_guard);
+                } else {
                     let hint = did_you_mean(&value.text, meaning.values.iter().map(SmolStr::as_str));
                     self.error(
                         "E-VALUE",
@@ -223,6 +226,27 @@ impl Checker<'_, '_> {
             }
             _ => {}
         }
+    }
+
+    /// Two variables that are to be equal have one domain.
+    fn check_equality(&mut self, left: (&Name, &Meaning), right: (&Name, &Meaning), is_guard: bool) {
+        if right.1.is_command && !is_guard {
+            self.refuse_command(right.0);
+            return;
+        }
+        let is_within =
+            |one: &Meaning, other: &Meaning| one.values.iter().all(|it| other.values.contains(it));
+        if !is_within(left.1, right.1) || !is_within(right.1, left.1) {
+            let message = format!("`{}` and `{}` have different domains", left.0.text, right.0.text);
+            let hint = "two variables can be equal if they have the same values".to_owned();
+            self.error("E-VALUE", right.0.span, message, Some(hint));
+        }
+    }
+
+    fn refuse_command(&mut self, command: &Name) {
+        let message = format!("a mode cannot constrain the command `{}`", command.text);
+        let hint = "use commands only in the guards of transitions".to_owned();
+        self.error("E-CONSTRAINT", command.span, message, Some(hint));
     }
 
     fn check_instances(&mut self) {
@@ -327,11 +351,4 @@ fn did_you_mean<'name>(word: &str, known: impl IntoIterator<Item = &'name str> +
     nearest(word, known)
         .map(|known| format!("did you mean `{known}`?"))
         .or_else(|| (!all.is_empty() && all.len() <= 12).then(|| format!("use one of {}", all.join(", "))))
-}
-
-fn add(left: (u64, u64), right: (u64, u64)) -> Option<(u64, u64)> {
-    let divisor = num_integer::gcd(left.1, right.1).max(1);
-    let common = left.1.checked_mul(right.1 / divisor)?;
-    let sum = left.0.checked_mul(common / left.1)?.checked_add(right.0.checked_mul(common / right.1)?)?;
-    Some((sum, common))
 }

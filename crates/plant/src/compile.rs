@@ -2,19 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use num_integer::lcm;
+use num_integer::gcd;
 use rmpl::control::{
-    Constraint, ConstraintKind, ControlFile, Initial, Instance, MergedClass, MergedVariable, Name, merge_all,
+    Constraint, ConstraintKind, ControlFile, Initial, Instance, MergedClass, MergedTransition, Name,
+    merge_all,
 };
+use rmpl::diagnostics::constraint::impossible_guard;
+use rmpl::diagnostics::{ambiguous, probability as probabilities};
 use rmpl::{Code, Diagnostic, Severity, Span};
 use smol_str::{SmolStr, ToSmolStr as _, format_smolstr};
 
+use crate::arc_check::{check_arcs, check_reach};
+use crate::assignment::{Found, are_equal, describe, satisfying};
 use crate::belief::Belief;
 use crate::check::check;
 use crate::formula::Formula;
 use crate::guard_check::check_guards;
 use crate::model::{
-    CommandVariable, CommandVariableId, Component, ComponentId, Fault, Mode, Model, PlantVariable,
+    Choice, CommandVariable, CommandVariableId, Component, ComponentId, Fault, Mode, Model, PlantVariable,
     Transition, VariableId,
 };
 use crate::probability;
@@ -29,16 +34,28 @@ const CHECKED_STATES: usize = 1000;
 pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
     let (classes, mut diagnostics) = merge_all(file);
     check(file, &classes, &mut diagnostics);
-    diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
-    if diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
-        || file.instances.is_empty()
-    {
+    let has_errors = |diagnostics: &[Diagnostic]| {
+        diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
+    };
+    if has_errors(&diagnostics) {
+        diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
         return (None, diagnostics);
     }
-    let mut compiler = Compiler { file, classes, model: empty(), offsets: Vec::new() };
-    compiler.declare();
-    compiler.fill();
-    let mut model = compiler.model;
+    let mut model = assembled(&classes, &units(file, &classes), &mut diagnostics);
+    for id in model.component_ids() {
+        check_arcs(&model, id, &mut diagnostics);
+    }
+    // Classes that nothing is an instance of are checked by themselves, with components of their ports' classes.
+    for class in file.classes.iter().map(|class| &class.name.text) {
+        if !file.instances.iter().any(|instance| instance.class.text == *class) {
+            let alone = assembled(&classes, &units_of_class(class, &classes), &mut diagnostics);
+            check_arcs(&alone, ComponentId(0), &mut diagnostics);
+        }
+    }
+    if has_errors(&diagnostics) || file.instances.is_empty() {
+        diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+        return (None, diagnostics);
+    }
     model.prepare();
     if Belief::initial(&model, CHECKED_STATES).is_none() {
         let with_prior = file
@@ -59,6 +76,7 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
         return (None, diagnostics);
     }
     check_guards(&model, &mut diagnostics);
+    check_reach(&model, &mut diagnostics);
     if let Some(cycle) = crate::order::cycle(&model) {
         let names: Vec<&str> =
             cycle.iter().filter_map(|id| Some(model.component(*id)?.name.as_str())).collect();
@@ -71,7 +89,73 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
             "estimation still works, but commands are then found by search instead of in causal order",
         ));
     }
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
     (Some(model), diagnostics)
+}
+
+/// A component to be compiled.
+struct Unit {
+    name: SmolStr,
+    class: SmolStr,
+    /// Its ports, each with the place of what is connected there.
+    ports: Vec<(SmolStr, usize)>,
+    /// Modes in which it may start, in the order of its class, with their weights.
+    prior: Vec<(u8, u64)>,
+    span: Span,
+}
+
+/// The components of a file, in their order.
+fn units(file: &ControlFile, classes: &Classes<'_>) -> Vec<Unit> {
+    let unit = |instance: &Instance| {
+        let ports = instance.ports.iter().filter_map(|(port, component)| {
+            let at = file.instances.iter().position(|known| known.name.text == component.text)?;
+            Some((port.text.clone(), at))
+        });
+        Unit {
+            name: instance.name.text.clone(),
+            class: instance.class.text.clone(),
+            ports: ports.collect(),
+            prior: classes.get(&instance.class.text).map_or_else(Vec::new, |class| prior(instance, class)),
+            span: instance.span,
+        }
+    };
+    file.instances.iter().map(unit).collect()
+}
+
+/// A component of a class that nothing is an instance of, with components at its ports.
+fn units_of_class(name: &SmolStr, classes: &Classes<'_>) -> Vec<Unit> {
+    let ports = classes.get(name).map_or(&[][..], |class| class.ports.as_slice());
+    let bare = |name: &SmolStr, class: &SmolStr| Unit {
+        name: name.clone(),
+        class: class.clone(),
+        ports: Vec::new(),
+        prior: vec![(0, 1)],
+        span: Span::default(),
+    };
+    let mut units = vec![bare(name, name)];
+    for (port, class) in ports {
+        let at = units.len();
+        units[0].ports.push((port.text.clone(), at));
+        units.push(bare(&port.text, &class.text));
+    }
+    units
+}
+
+/// Classes with what they inherit, by name.
+type Classes<'file> = BTreeMap<SmolStr, MergedClass<'file>>;
+
+/// The model of some components; what its arcs say too much is added to `diagnostics`.
+fn assembled(classes: &Classes<'_>, units: &[Unit], diagnostics: &mut Vec<Diagnostic>) -> Model {
+    let mut compiler = Compiler { units, classes, model: empty(), offsets: Vec::new(), found: Vec::new() };
+    compiler.declare();
+    compiler.fill();
+    for diagnostic in compiler.found {
+        let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.code == diagnostic.code;
+        if !diagnostics.iter().any(is_same) {
+            diagnostics.push(diagnostic);
+        }
+    }
+    compiler.model
 }
 
 const fn empty() -> Model {
@@ -101,57 +185,66 @@ fn prior(instance: &Instance, class: &MergedClass<'_>) -> Vec<(u8, u64)> {
     prior
 }
 
-struct Compiler<'file> {
-    file: &'file ControlFile,
-    classes: BTreeMap<SmolStr, MergedClass<'file>>,
+struct Compiler<'compile, 'file> {
+    units: &'compile [Unit],
+    classes: &'compile Classes<'file>,
     model: Model,
     /// Per component, its first variable and command variable.
     offsets: Vec<(u32, u32)>,
+    /// What is wrong with arcs.
+    found: Vec<Diagnostic>,
 }
 
-impl Compiler<'_> {
+/// A symbol that a constraint speaks of, and its values.
+struct Named<'class> {
+    symbol: u32,
+    values: Vec<&'class SmolStr>,
+}
+
+impl Compiler<'_, '_> {
     /// Declares components, variables and commands, so that constraints can speak of any of them.
     fn declare(&mut self) {
-        for (at, instance) in self.file.instances.iter().enumerate() {
-            let id = ComponentId(at as u32);
-            let Some(class) = self.classes.get(&instance.class.text) else { continue };
+        for (id, unit) in (0..).map(ComponentId).zip(self.units) {
+            let Some(class) = self.classes.get(&unit.class) else { continue };
             self.offsets.push((self.model.variables.len() as u32, self.model.command_variables.len() as u32));
             for variable in &class.variables {
-                let shows = variable
-                    .shows
-                    .as_ref()
-                    .and_then(|shows| variable.values.iter().position(|value| *value == shows.text));
+                let shows = variable.shows.as_ref();
+                let shows =
+                    shows.and_then(|shows| variable.values.iter().position(|value| *value == shows.text));
+                let error = variable.error.as_ref().and_then(|error| probability::parse(&error.text));
                 self.model.variables.push(PlantVariable {
-                    name: format_smolstr!("{}.{}", instance.name.text, variable.name.text),
+                    name: format_smolstr!("{}.{}", unit.name, variable.name.text),
                     component: id,
                     values: variable.values.clone(),
                     observable: variable.observable,
-                    shows: shows.unwrap_or(0) as u8,
+                    shows: shows.map(|value| value as u8),
+                    error,
                 });
             }
             let first = self.model.command_variables.len() as u32;
             for command in &class.commands {
                 self.model.command_variables.push(CommandVariable {
-                    name: format_smolstr!("{}.{}", instance.name.text, command.name.text),
+                    name: format_smolstr!("{}.{}", unit.name, command.name.text),
                     component: id,
                     values: command.values.clone(),
                 });
             }
-            let ports = instance.ports.iter().filter_map(|(port, component)| {
-                let at = self.file.instances.iter().position(|known| known.name.text == component.text)?;
-                Some((port.text.clone(), ComponentId(at as u32)))
-            });
-            let prior = prior(instance, class);
+            let ports = unit.ports.iter().map(|(port, at)| (port.clone(), ComponentId(*at as u32)));
             self.model.components.push(Component {
-                name: instance.name.text.clone(),
-                class: instance.class.text.clone(),
+                name: unit.name.clone(),
+                class: unit.class.clone(),
                 modes: Vec::new(),
                 // Of several greatest ones the last is taken.
-                initial: prior.iter().rev().max_by_key(|(_, weight)| weight).map_or(0, |(mode, _)| *mode),
-                prior,
+                initial: unit
+                    .prior
+                    .iter()
+                    .rev()
+                    .max_by_key(|(_, weight)| weight)
+                    .map_or(0, |(mode, _)| *mode),
+                prior: unit.prior.clone(),
                 ports: ports.collect(),
                 commands: (first..self.model.command_variables.len() as u32).map(CommandVariableId).collect(),
-                span: instance.span,
+                span: unit.span,
             });
         }
     }
@@ -159,113 +252,268 @@ impl Compiler<'_> {
     /// Gives every component its modes, transitions and faults.
     fn fill(&mut self) {
         let bits = |count: usize| if count >= 64 { u64::MAX } else { (1 << count) - 1 };
-        let classes: Vec<&MergedClass<'_>> = self
-            .file
-            .instances
-            .iter()
-            .filter_map(|instance| self.classes.get(&instance.class.text))
-            .collect();
+        let classes: Vec<&MergedClass<'_>> =
+            self.units.iter().filter_map(|unit| self.classes.get(&unit.class)).collect();
         let modes = classes.iter().map(|class| bits(class.modes.len()));
         let variables = self.model.variables.iter().map(|variable| bits(variable.values.len()));
         let commands = self.model.command_variables.iter().map(|command| bits(command.values.len()));
         self.model.full = modes.chain(variables).chain(commands).collect();
         let mut all = Vec::with_capacity(classes.len());
-        for (at, class) in classes.iter().enumerate() {
-            all.push(self.modes(ComponentId(at as u32), class));
+        for (id, class) in (0..).map(ComponentId).zip(classes) {
+            let modes = self.modes(id, class);
+            if !has_common_denominator(&modes) {
+                let span = class.modes.first().map_or(Span::default(), |(name, _)| name.span);
+                self.found
+                    .push(probabilities::digits(class.lineage.first().map_or("?", SmolStr::as_str), span));
+            }
+            all.push(modes);
         }
         for (component, modes) in self.model.components.iter_mut().zip(all) {
             component.modes = modes;
         }
     }
 
-    fn modes(&self, id: ComponentId, class: &MergedClass<'_>) -> Vec<Mode> {
-        let mode = |(name, constraints): &(&Name, Vec<&Constraint>)| {
-            let transitions = class.transitions.iter().filter(|(from, ..)| from.text == name.text);
-            let faults: Vec<(u8, u64, u64, SmolStr)> = class
-                .faults
-                .iter()
-                .filter(|(from, ..)| from.text == name.text)
-                .filter_map(|(_, to, given)| {
-                    let (numerator, denominator) = probability::parse(&given.text)?;
-                    Some((class.mode(&to.text)? as u8, numerator, denominator, given.text.clone()))
+    fn modes(&mut self, id: ComponentId, class: &MergedClass<'_>) -> Vec<Mode> {
+        let mut modes = Vec::with_capacity(class.modes.len());
+        for (number, (name, constraints)) in (0_u8..).zip(&class.modes) {
+            let (faults, denominator) = self.faults(id, class, &name.text);
+            let constraint = constraints.iter().map(|constraint| self.formula(id, constraint, true));
+            let constraint = Formula::All(constraint.collect());
+            let leaving: Vec<&MergedTransition<'_>> =
+                class.transitions.iter().filter(|transition| transition.from.text == name.text).collect();
+            let transition = |transition: &&MergedTransition<'_>| {
+                Some(Transition {
+                    to: class.mode(&transition.to.text)? as u8,
+                    label: transition.guard.to_smolstr(),
+                    probability: transition.probability.map(|given| given.text.clone()),
+                    span: transition.guard.span,
                 })
-                .filter(|(_, numerator, ..)| *numerator > 0)
-                .collect();
-            let common = faults.iter().fold(1, |common, fault| lcm(common, fault.2));
-            Mode {
+            };
+            modes.push(Mode {
                 name: name.text.clone(),
-                constraint: Formula::All(
-                    constraints.iter().map(|constraint| self.formula(id, constraint)).collect(),
-                ),
-                transitions: transitions
-                    .filter_map(|(_, to, guard)| {
-                        let to = class.mode(&to.text)? as u8;
-                        Some(Transition {
-                            to,
-                            guard: self.formula(id, guard),
-                            label: guard.to_smolstr(),
-                            span: guard.span,
-                        })
-                    })
-                    .collect(),
-                faults: faults
-                    .into_iter()
-                    .map(|(to, numerator, denominator, label)| Fault {
-                        to,
-                        numerator: numerator * (common / denominator),
-                        label,
-                    })
-                    .collect(),
-                denominator: common,
+                constraint,
+                transitions: leaving.iter().filter_map(transition).collect(),
+                choices: self.choices(id, class, number, &leaving),
+                faults,
+                denominator,
                 span: name.span,
-            }
-        };
-        class.modes.iter().map(mode).collect()
+            });
+        }
+        modes
     }
 
-    fn formula(&self, id: ComponentId, constraint: &Constraint) -> Formula {
-        let full = |symbol: u32| self.model.full.get(symbol as usize).copied().unwrap_or(0);
+    /// The faults that leave a mode, over their common denominator.
+    fn faults(&self, id: ComponentId, class: &MergedClass<'_>, mode: &str) -> (Vec<Fault>, u64) {
+        let leaving = class.faults.iter().filter(|fault| fault.from.text == mode);
+        let known = leaving.filter_map(|fault| {
+            let (numerator, denominator) = probability::parse(&fault.probability.text)?;
+            let fault = Fault {
+                to: class.mode(&fault.to.text)? as u8,
+                numerator,
+                guard: fault.guard.map_or(Formula::Constant(true), |guard| self.formula(id, guard, true)),
+                label: fault.probability.text.clone(),
+                condition: fault.guard.map(smol_str::ToSmolStr::to_smolstr),
+                span: fault.probability.span,
+            };
+            Some((fault, denominator))
+        });
+        let mut known: Vec<(Fault, u64)> = known.collect();
+        let common = known.iter().try_fold(1, |common, (_, denominator)| checked_lcm(common, *denominator));
+        // Without a common denominator, which is reported, the numbers mean nothing.
+        let common = common.unwrap_or(0);
+        for (fault, denominator) in &mut known {
+            fault.numerator = fault.numerator.saturating_mul(common / *denominator);
+        }
+        (known.into_iter().map(|(fault, _)| fault).collect(), common)
+    }
+
+    /// Where the transitions that leave a mode lead: those with equal guards are outcomes of one choice.
+    fn choices(
+        &mut self,
+        id: ComponentId,
+        class: &MergedClass<'_>,
+        from: u8,
+        leaving: &[&MergedTransition<'_>],
+    ) -> Vec<Choice> {
+        let mut sets = self.model.full.clone();
+        sets[Model::mode_symbol(id) as usize] = 1 << from;
+        let mut grouped: Vec<(Formula, Vec<&MergedTransition<'_>>)> = Vec::new();
+        for transition in leaving {
+            let guard = self.guard(id, transition);
+            let written = self.formula(id, transition.guard, true);
+            if satisfying(&[&written], &mut self.model.full.clone()) == Found::Nothing {
+                self.found.push(impossible_guard(transition.guard.span));
+            }
+            let same = grouped.iter_mut().find(|(known, _)| are_equal(&self.model, known, &guard, &mut sets));
+            match same {
+                Some((_, outcomes)) => outcomes.push(transition),
+                None => grouped.push((guard, vec![transition])),
+            }
+        }
+        let choice = |(guard, outcomes): (Formula, Vec<&MergedTransition<'_>>)| {
+            self.choice(class, from, guard, &outcomes, &mut sets)
+        };
+        grouped.into_iter().filter_map(choice).collect()
+    }
+
+    /// What enables a transition: its guard, without what it gives way to.
+    fn guard(&self, id: ComponentId, transition: &MergedTransition<'_>) -> Formula {
+        let guard = self.formula(id, transition.guard, true);
+        if transition.unless.is_empty() {
+            return guard;
+        }
+        let unless = transition.unless.iter().map(|other| self.formula(id, other, false));
+        Formula::All(std::iter::once(guard).chain(unless).collect())
+    }
+
+    /// Where one guard leads. One outcome without a probability has the rest; without such an outcome the mode stays.
+    fn choice(
+        &mut self,
+        class: &MergedClass<'_>,
+        from: u8,
+        guard: Formula,
+        outcomes: &[&MergedTransition<'_>],
+        sets: &mut [u64],
+    ) -> Option<Choice> {
+        let span = outcomes.first()?.guard.span;
+        let mode = class.modes.get(usize::from(from))?.0;
+        let mut rest: Option<&Name> = None;
+        let mut parts: Vec<(u8, u64, u64)> = Vec::new();
+        for outcome in outcomes {
+            let to = class.mode(&outcome.to.text)? as u8;
+            match (outcome.probability, rest) {
+                (Some(given), _) => {
+                    let (numerator, denominator) = probability::parse(&given.text)?;
+                    parts.push((to, numerator, denominator));
+                }
+                (None, Some(first)) if first.text != outcome.to.text => {
+                    let place = match satisfying(&[&guard], sets) {
+                        Found::Assignment(assignment) => describe(&self.model, &assignment),
+                        Found::Nothing | Found::Undecided => SmolStr::new_static("in the same steps"),
+                    };
+                    let (first, second) = (&first.text, &outcome.to.text);
+                    let found = ambiguous::outcomes(&mode.text, first, second, &place, outcome.guard.span);
+                    self.found.push(found);
+                }
+                (None, _) => rest = Some(outcome.to),
+            }
+        }
+        let common = parts.iter().try_fold(1_u64, |common, part| checked_lcm(common, part.2));
+        let weighted = common.and_then(|common| {
+            let weight = |part: &(u8, u64, u64)| Some((part.0, part.1.checked_mul(common / part.2)?));
+            Some((common, parts.iter().map(weight).collect::<Option<Vec<_>>>()?))
+        });
+        let Some((denominator, mut weights)) = weighted else {
+            self.found.push(probabilities::digits(class.lineage.first().map_or("?", SmolStr::as_str), span));
+            return None;
+        };
+        let sum = weights.iter().map(|(_, weight)| u128::from(*weight)).sum::<u128>();
+        let Some(left) = u128::from(denominator).checked_sub(sum) else {
+            let last = outcomes.iter().rev().find_map(|outcome| outcome.probability);
+            self.found.push(probabilities::outcomes(&mode.text, last.map_or(span, |given| given.span)));
+            return None;
+        };
+        let to = rest.map_or(Some(from), |to| Some(class.mode(&to.text)? as u8))?;
+        // In the text's order, of which the first of equally likely outcomes is nominal.
+        let at = outcomes.iter().position(|outcome| outcome.probability.is_none()).unwrap_or(weights.len());
+        weights.insert(at.min(weights.len()), (to, left as u64));
+        let mut joined: Vec<(u8, u64)> = Vec::with_capacity(weights.len());
+        for (to, weight) in weights.into_iter().filter(|(_, weight)| *weight > 0) {
+            match joined.iter_mut().find(|(known, _)| *known == to) {
+                Some((_, known)) => *known += weight,
+                None => joined.push((to, weight)),
+            }
+        }
+        let leaving = joined.iter().rev().filter(|(to, _)| *to != from);
+        let nominal = leaving.max_by_key(|(_, weight)| *weight).map_or(from, |(to, _)| *to);
+        Some(Choice { guard, outcomes: joined, denominator, nominal, span })
+    }
+
+    /// The formula of a constraint, or of its opposite.
+    fn formula(&self, id: ComponentId, constraint: &Constraint, wanted: bool) -> Formula {
+        let joined = |parts: &[Constraint], is_all: bool| {
+            let parts = parts.iter().map(|part| self.formula(id, part, wanted)).collect();
+            if is_all == wanted { Formula::All(parts) } else { Formula::Any(parts) }
+        };
         match &constraint.kind {
-            ConstraintKind::True => Formula::Constant(true),
-            ConstraintKind::Not(inner) => self.formula(id, inner).negated(&full),
-            ConstraintKind::And(parts) => {
-                Formula::All(parts.iter().map(|part| self.formula(id, part)).collect())
+            ConstraintKind::True => Formula::Constant(wanted),
+            ConstraintKind::Not(inner) => self.formula(id, inner, !wanted),
+            ConstraintKind::And(parts) => joined(parts, true),
+            ConstraintKind::Or(parts) => joined(parts, false),
+            ConstraintKind::Equals { variable, value } => {
+                self.equality(id, &variable.text, &value.text, wanted).unwrap_or(Formula::Constant(false))
             }
-            ConstraintKind::Or(parts) => {
-                Formula::Any(parts.iter().map(|part| self.formula(id, part)).collect())
+            ConstraintKind::False | ConstraintKind::Parameter(_) | ConstraintKind::Unreadable => {
+                Formula::Constant(!wanted)
             }
-            ConstraintKind::Equals { variable, value } => self.member(id, &variable.text, &value.text),
-            _ => Formula::Constant(false),
         }
     }
 
-    fn member(&self, id: ComponentId, name: &str, value: &str) -> Formula {
-        let found = self.field(id, name, value).or_else(|| {
+    /// That a name has a value, or the value of another name, or that it has not.
+    fn equality(&self, id: ComponentId, name: &str, value: &str, wanted: bool) -> Option<Formula> {
+        let left = self.named(id, name)?;
+        let full = |symbol: u32| self.model.full.get(symbol as usize).copied().unwrap_or(0);
+        let member = |symbol: u32, value: usize, wanted: bool| {
+            let set = 1_u64 << value;
+            Formula::Member { symbol, set: if wanted { set } else { full(symbol) & !set } }
+        };
+        if let Some(at) = left.values.iter().position(|known| *known == value) {
+            return Some(member(left.symbol, at, wanted));
+        }
+        let right = self.named(id, value)?;
+        let each = left.values.iter().enumerate().map(|(at, value)| {
+            let first = member(left.symbol, at, true);
+            let second = match right.values.iter().position(|known| known == value) {
+                Some(other) => member(right.symbol, other, wanted),
+                None => Formula::Constant(!wanted),
+            };
+            Formula::All(vec![first, second])
+        });
+        Some(Formula::Any(each.collect()).given(&|_| None))
+    }
+
+    /// What a name stands for in the constraints of a component.
+    fn named(&self, id: ComponentId, name: &str) -> Option<Named<'_>> {
+        self.field(id, name).or_else(|| {
             let component = self.model.component(id)?;
             let at_port =
                 |port: &str| component.ports.iter().find(|(known, _)| known == port).map(|(_, other)| *other);
             if let Some(other) = at_port(name) {
                 let class = self.classes.get(&self.model.component(other)?.class)?;
-                return Some((Model::mode_symbol(other), class.mode(value)?));
+                let values = class.modes.iter().map(|(mode, _)| &mode.text).collect();
+                return Some(Named { symbol: Model::mode_symbol(other), values });
             }
             let (port, field) = name.split_once('.')?;
-            self.field(at_port(port)?, field, value)
-        });
-        found.map_or(Formula::Constant(false), |(symbol, value)| Formula::Member { symbol, set: 1 << value })
+            self.field(at_port(port)?, field)
+        })
     }
 
-    /// The symbol of a component's own variable or command, and the number of one of its values.
-    fn field(&self, id: ComponentId, name: &str, value: &str) -> Option<(u32, usize)> {
+    /// A component's own variable or command.
+    fn field(&self, id: ComponentId, name: &str) -> Option<Named<'_>> {
         let class = self.classes.get(&self.model.component(id)?.class)?;
         let (variables, commands) = *self.offsets.get(id.0 as usize)?;
-        let place = |fields: &[MergedVariable]| fields.iter().position(|known| known.name.text == name);
-        let number = |values: &[SmolStr]| values.iter().position(|known| known == value);
-        if let Some(at) = place(&class.variables) {
+        if let Some(at) = class.variables.iter().position(|known| known.name.text == name) {
             let id = VariableId(variables + at as u32);
-            return Some((self.model.variable_symbol(id), number(&class.variables.get(at)?.values)?));
+            let values = class.variables.get(at)?.values.iter().collect();
+            return Some(Named { symbol: self.model.variable_symbol(id), values });
         }
-        let at = place(&class.commands)?;
+        let at = class.commands.iter().position(|known| known.name.text == name)?;
         let id = CommandVariableId(commands + at as u32);
-        Some((self.model.command_symbol(id), number(&class.commands.get(at)?.values)?))
+        let values = class.commands.get(at)?.values.iter().collect();
+        Some(Named { symbol: self.model.command_symbol(id), values })
     }
+}
+
+/// Whether all that a component may do can be weighed over one denominator.
+fn has_common_denominator(modes: &[Mode]) -> bool {
+    let each = modes.iter().flat_map(|mode| {
+        let choices = mode.choices.iter().map(|choice| choice.denominator);
+        choices.chain([1]).map(|denominator| denominator.checked_mul(mode.denominator))
+    });
+    each.into_iter().try_fold(1, |common, one| checked_lcm(common, one.filter(|one| *one > 0)?)).is_some()
+}
+
+/// The least common multiple, if it is not too long.
+fn checked_lcm(left: u64, right: u64) -> Option<u64> {
+    (left / gcd(left, right).max(1)).checked_mul(right)
 }

@@ -52,7 +52,7 @@ pub(crate) struct Point {
 }
 
 impl Domains {
-    /// All values for all symbols, except that `observation` is as it is.
+    /// All values for all symbols, except that what is observed without errors is as it is.
     pub(crate) fn observed(model: &Model, observation: &Observation) -> Self {
         let mut domains = Self {
             sets: model.full.clone(),
@@ -62,6 +62,9 @@ impl Domains {
             standing: Vec::new(),
         };
         for (&variable, &value) in &observation.0 {
+            if model.variables.get(variable.0 as usize).is_some_and(|data| data.error.is_some()) {
+                continue;
+            }
             if let Some(set) = domains.sets.get_mut(model.variable_symbol(variable) as usize) {
                 *set &= 1_u64.checked_shl(u32::from(value)).unwrap_or(0);
             }

@@ -78,8 +78,7 @@ pub fn update_exact(
     Belief::from_weights(weights).ok_or(EstimateError::Unexplained)
 }
 
-/// The predicted weights that the observation leaves, times a common number, over the numbers of observations that the
-/// states admit; and that number.
+/// The predicted weights times the likelihoods of the observation, in a common unit; and by what that unit is smaller.
 pub(crate) fn weighed(
     model: &Model,
     predicted: Vec<(State, BigUint)>,
@@ -87,18 +86,21 @@ pub(crate) fn weighed(
 ) -> (Vec<(State, BigUint)>, BigUint) {
     let mut found: Vec<(State, BigUint, BigUint)> = Vec::with_capacity(predicted.len());
     let mut common = BigUint::one();
-    for (state, weight) in predicted {
+    for (state, mut weight) in predicted {
         let mut divisor = BigUint::one();
         for at in 0..model.islands.len() {
-            let one = likelihoods.divisor(at, &state.0);
-            if !one.is_one() {
-                divisor *= one;
+            let one = likelihoods.of(at, &state.0);
+            if !one.divisor.is_one() {
+                divisor *= &one.divisor;
             }
-            if divisor.is_zero() {
+            if !one.weight.is_one() {
+                weight *= &one.weight;
+            }
+            if weight.is_zero() {
                 break;
             }
         }
-        if !divisor.is_zero() {
+        if !weight.is_zero() {
             if divisor != common {
                 common = common.lcm(&divisor);
             }

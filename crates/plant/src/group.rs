@@ -8,8 +8,8 @@ use crate::belief::State;
 use crate::formula::Formula;
 use crate::island;
 use crate::model::{
-    CommandVariable, CommandVariableId, Commands, Component, ComponentId, Fault, Mode, Model, Observation,
-    PlantVariable, Transition, VariableId,
+    Choice, CommandVariable, CommandVariableId, Commands, Component, ComponentId, Fault, Mode, Model,
+    Observation, PlantVariable, VariableId,
 };
 
 /// Components that ports tie together, as a plant of their own.
@@ -157,14 +157,12 @@ impl Part<'_> {
     }
 
     fn mode(&self, mode: &Mode) -> Mode {
-        let transition = |transition: &Transition| Transition {
-            guard: self.formula(&transition.guard),
-            ..transition.clone()
-        };
+        let choice = |choice: &Choice| Choice { guard: self.formula(&choice.guard), ..choice.clone() };
+        let fault = |fault: &Fault| Fault { guard: self.formula(&fault.guard), ..fault.clone() };
         Mode {
             constraint: self.formula(&mode.constraint),
-            transitions: mode.transitions.iter().map(transition).collect(),
-            faults: mode.faults.iter().map(Fault::clone).collect(),
+            choices: mode.choices.iter().map(choice).collect(),
+            faults: mode.faults.iter().map(fault).collect(),
             ..mode.clone()
         }
     }

@@ -23,8 +23,8 @@ pub(crate) fn check_guards(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
     let mut reported: BTreeSet<Span> = BTreeSet::new();
     for (id, component) in model.component_ids().zip(&model.components) {
         for (from, mode) in (0_u8..).zip(&component.modes) {
-            for transition in mode.transitions.iter().filter(|transition| transition.to != from) {
-                if can_hold(model, id, from, &transition.guard) || !reported.insert(transition.span) {
+            for choice in mode.choices.iter().filter(|choice| choice.nominal != from) {
+                if can_hold(model, id, from, &choice.guard) || !reported.insert(choice.span) {
                     continue;
                 }
                 let message = format!(
@@ -33,7 +33,7 @@ pub(crate) fn check_guards(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
                 );
                 let hint =
                     "only modes and commands can make a guard true; values that they leave open cannot";
-                let warning = Diagnostic::warning(Code("E-CONSTRAINT"), transition.span, message);
+                let warning = Diagnostic::warning(Code("E-CONSTRAINT"), choice.span, message);
                 diagnostics.push(warning.with_hint(hint));
             }
         }

@@ -3,6 +3,8 @@
 //! A [`Model`] is data that never changes. What is believed of the plant, and what is commanded, is computed from it
 //! by functions; the loop that joins them with a control program is another crate's business.
 
+mod arc_check;
+mod assignment;
 pub mod belief;
 pub mod best_first;
 pub mod bounded;
@@ -29,6 +31,7 @@ pub mod observe;
 mod odds;
 pub mod order;
 pub mod policy;
+mod possible;
 mod prepared;
 mod prior;
 pub mod probability;
@@ -37,7 +40,6 @@ pub mod simulate;
 mod spans;
 pub mod successor;
 mod table;
-mod targets;
 
 pub use belief::{Belief, State};
 pub use best_first::{SearchStatistics, update_best};
@@ -51,14 +53,14 @@ pub use group::{Group, groups};
 pub use interval::Interval;
 pub use knowledge::{Known, Situation};
 pub use model::{
-    CommandVariable, CommandVariableId, Commands, Component, ComponentId, Fault, Mode, Model, Observation,
-    PlantVariable, Transition, VariableId,
+    Choice, CommandVariable, CommandVariableId, Commands, Component, ComponentId, Fault, Mode, Model,
+    Observation, PlantVariable, Transition, VariableId,
 };
 pub use order::CausalOrder;
 pub use policy::Planner;
+pub use possible::{Target, observations, targets};
 pub use prior::draw_initial;
 pub use probability::Probability;
 pub use reconfigure::{Command, Goal, NextCommands, Plan, Unreachable};
 pub use simulate::{Random, SimulatedPlant};
-pub use successor::{EstimateError, successor};
-pub use targets::{Target, targets};
+pub use successor::{EstimateError, intended, successor};

@@ -1,29 +1,87 @@
-//! How likely an observation is in a state: one over the number of observations that the state admits (SPEC 9.1).
+//! How likely an observation is in a state (SPEC 9.1): the true values of observed variables that the state admits are equally
+//! likely, and each is observed as it is, or with an error.
 
 use std::collections::BTreeMap;
 
 use num_bigint::BigUint;
-use num_traits::{One as _, Zero as _};
+use num_rational::BigRational;
+use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
 use crate::consistency::Assumed;
 use crate::diagnosis::shrink;
 use crate::domains::{Domains, Settled};
 use crate::formula::values;
 use crate::island::{Island, Places};
-use crate::model::{ComponentId, Model, Observation};
+use crate::model::{ComponentId, Model, Observation, VariableId};
 
 /// Of islands with at most so many combinations of modes all are looked at for the one that admits the fewest observations.
 const MAX_COMBINATIONS: usize = 4096;
 /// In larger islands a combination that admits what is observed is looked for among so many.
 const MAX_NODES: usize = 20_000;
 
-/// In how many ways variables that nothing ties together can be observed.
-fn product_of_values(observed: &[u32], domains: &Domains) -> BigUint {
+/// How likely what is observed of a variable with errors is, by its true value, in units that all states have in common.
+struct Sensor {
+    observed: u8,
+    /// If that is the true value.
+    right: BigUint,
+    /// If it is not.
+    wrong: BigUint,
+    /// What a probability of 1 weighs.
+    unit: BigUint,
+}
+
+impl Sensor {
+    /// The weight of all true values in a set.
+    fn weight(&self, set: u64) -> BigUint {
+        let is_possible = set >> self.observed & 1 == 1;
+        let others = u64::from(set.count_ones()) - u64::from(is_possible);
+        let wrong = &self.wrong * others;
+        if is_possible { wrong + &self.right } else { wrong }
+    }
+}
+
+/// By symbol, what is observed with errors.
+type Sensors = BTreeMap<u32, Sensor>;
+
+/// No errors: each true value weighs one.
+const WITHOUT_ERRORS: &Sensors = &Sensors::new();
+
+/// How likely an observation is in some modes of an island, as a fraction in units that all states have in common.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Likelihood {
+    /// The weight of what the modes admit and the observation leaves; zero if the observation contradicts the modes.
+    pub(crate) weight: BigUint,
+    /// How many combinations of true values of what is observed the modes admit.
+    pub(crate) divisor: BigUint,
+}
+
+impl Likelihood {
+    fn zero() -> Self {
+        Self { weight: BigUint::zero(), divisor: BigUint::one() }
+    }
+
+    pub(crate) fn is_zero(&self) -> bool {
+        self.weight.is_zero()
+    }
+
+    /// Whether it is greater than another one.
+    fn exceeds(&self, other: &Self) -> bool {
+        &self.weight * &other.divisor > &other.weight * &self.divisor
+    }
+}
+
+/// What the combinations of true values weigh that variables have which nothing ties together.
+fn product_of_values(observed: &[u32], domains: &Domains, sensors: &Sensors) -> BigUint {
     // Gathered in a machine word before it meets the long number.
     let mut product = BigUint::one();
     let mut gathered = 1_u64;
     for symbol in observed {
-        let values = u64::from(domains.sets.get(*symbol as usize).map_or(0, |set| set.count_ones()));
+        let set = domains.sets.get(*symbol as usize).copied().unwrap_or(0);
+        if let Some(sensor) = sensors.get(symbol) {
+            product *= sensor.weight(set);
+            continue;
+        }
+        let values = u64::from(set.count_ones());
         gathered = gathered.checked_mul(values).unwrap_or_else(|| {
             product *= gathered;
             values
@@ -41,18 +99,19 @@ fn product_over_parts(
     settled: &Settled,
     domains: &mut Domains,
     observed: &[u32],
+    sensors: &Sensors,
 ) -> BigUint {
     let mut outside = observed.to_vec();
     let mut product = BigUint::one();
     for part in parts(assumed, settled, domains) {
         let inside: Vec<u32> = observed.iter().copied().filter(|symbol| part.contains(symbol)).collect();
-        product *= count(assumed, domains, &inside);
+        product *= count(assumed, domains, &inside, sensors);
         if product.is_zero() {
             return product;
         }
         outside.retain(|symbol| !part.contains(symbol));
     }
-    product * product_of_values(&outside, domains)
+    product * product_of_values(&outside, domains, sensors)
 }
 
 /// The undetermined symbols of constraints that are still open, joined where they share one.
@@ -73,8 +132,13 @@ fn parts(assumed: &Assumed<'_>, settled: &Settled, domains: &Domains) -> Vec<Vec
     parts
 }
 
-/// In how many ways the variables of a part can be observed; all consequences of the modes were drawn.
-fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32]) -> BigUint {
+/// In how many ways the variables of some parts can be true; all consequences of the modes were drawn.
+pub(crate) fn combinations(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32]) -> BigUint {
+    count(assumed, domains, observed, WITHOUT_ERRORS)
+}
+
+/// What the combinations of true values of a part's variables weigh; all consequences of the modes were drawn.
+fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32], sensors: &Sensors) -> BigUint {
     let point = domains.point();
     let open = observed
         .iter()
@@ -82,13 +146,13 @@ fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32]) -> BigU
     let Some(&symbol) = open else {
         let is_possible = assumed.search(domains).is_ok();
         domains.return_to(&point);
-        return if is_possible { BigUint::one() } else { BigUint::zero() };
+        return if is_possible { product_of_values(observed, domains, sensors) } else { BigUint::zero() };
     };
     let mut sum = BigUint::zero();
     for value in values(domains.sets.get(symbol as usize).copied().unwrap_or(0)) {
         match assumed.restrict([(symbol, 1 << value)], domains) {
-            Ok(true) => sum += product_of_values(observed, domains),
-            Ok(false) => sum += count(assumed, domains, observed),
+            Ok(true) => sum += product_of_values(observed, domains, sensors),
+            Ok(false) => sum += count(assumed, domains, observed, sensors),
             Err(_) => {}
         }
         domains.return_to(&point);
@@ -120,6 +184,20 @@ fn explains(assumed: &mut Assumed<'_>, place: usize, domains: &mut Domains, node
     false
 }
 
+/// What is observed of a variable with errors.
+fn sensor(model: &Model, id: VariableId, observed: u8) -> Option<(u32, Sensor)> {
+    let data = model.variables.get(id.0 as usize)?;
+    let (part, whole) = data.error?;
+    let others = (data.values.len() as u64).saturating_sub(1);
+    let sensor = Sensor {
+        observed,
+        right: BigUint::from(whole - part) * others,
+        wrong: BigUint::from(part),
+        unit: BigUint::from(whole) * others,
+    };
+    Some((model.variable_symbol(id), sensor))
+}
+
 /// Likelihoods computed once per island and modes.
 pub(crate) struct Likelihoods<'model> {
     model: &'model Model,
@@ -131,13 +209,15 @@ pub(crate) struct Likelihoods<'model> {
     settled: Vec<Settled>,
     /// By island, its observed variables.
     symbols: Vec<Vec<u32>>,
+    /// By island, those that are observed with errors.
+    sensors: Vec<Sensors>,
     /// Per mode of components that are islands by themselves.
-    alone: Vec<Option<BigUint>>,
+    alone: Vec<Option<Likelihood>>,
     /// By island, where the modes of its component start there.
     alone_starts: Vec<usize>,
     /// By other island and the modes of its components.
-    known: Vec<BTreeMap<Vec<u8>, BigUint>>,
-    zero: BigUint,
+    known: Vec<BTreeMap<Vec<u8>, Likelihood>>,
+    zero: Likelihood,
     /// The modes that were asked for last.
     modes: Vec<u8>,
 }
@@ -157,25 +237,37 @@ impl<'model> Likelihoods<'model> {
             start
         };
         let alone_starts = model.islands.iter().map(start_of).collect();
+        let sensors = |island: &Island| {
+            let variables = island.variables.iter();
+            variables.filter_map(|id| sensor(model, *id, *observation.0.get(id)?)).collect()
+        };
+        let sensors: Vec<Sensors> = model.islands.iter().map(sensors).collect();
+        let mut observed = Domains::observed(model, observation);
+        // What is never observed as it is is not what is observed.
+        for (symbol, sensor) in sensors.iter().flatten().filter(|(_, sensor)| sensor.right.is_zero()) {
+            observed.sets[*symbol as usize] &= !(1 << sensor.observed);
+        }
         Self {
             model,
-            observed: Domains::observed(model, observation),
+            observed,
+            sensors,
             free: Domains::observed(model, &Observation::default()),
             settled: vec![Settled::default(); model.islands.len()],
             symbols: model.islands.iter().map(observed_of).collect(),
             alone: vec![None; alone],
             alone_starts,
-            zero: BigUint::zero(),
+            zero: Likelihood::zero(),
             known: vec![BTreeMap::new(); model.islands.len()],
             modes: Vec::new(),
         }
     }
 
-    /// The number of observations that the island's modes admit, or zero if they do not admit this one.
-    pub(crate) fn divisor(&mut self, at: usize, state: &[u8]) -> &BigUint {
+    /// How likely the observation is in the island's modes.
+    pub(crate) fn of(&mut self, at: usize, state: &[u8]) -> &Likelihood {
         let island = &self.model.islands[at];
         let judge = |likelihoods: &mut Self| {
-            likelihoods.judge(at, &Assumed::all(likelihoods.model, island, state)).unwrap_or_default()
+            let judged = likelihoods.judge(at, &Assumed::all(likelihoods.model, island, state));
+            judged.unwrap_or_else(|_| Likelihood::zero())
         };
         if let [component] = island.components.as_slice() {
             let place = self.alone_starts[at] + usize::from(state[component.0 as usize]);
@@ -186,19 +278,34 @@ impl<'model> Likelihoods<'model> {
         }
         self.ask(at, state);
         if !self.known[at].contains_key(&self.modes) {
-            let divisor = judge(self);
-            self.known[at].insert(self.modes.clone(), divisor);
+            let likelihood = judge(self);
+            self.known[at].insert(self.modes.clone(), likelihood);
         }
         &self.known[at][&self.modes]
     }
 
-    /// The fewest observations that any modes of an island admit, if some admit this one.
+    /// The same as a machine number, at most 1.
+    pub(crate) fn chance(&mut self, at: usize, state: &[u8]) -> f64 {
+        let unit = self.sensors[at].values().fold(BigUint::one(), |unit, sensor| unit * &sensor.unit);
+        let likelihood = self.of(at, state);
+        if likelihood.is_zero() {
+            return 0.0;
+        }
+        if likelihood.weight.is_one() && unit.is_one() {
+            return 1.0 / likelihood.divisor.to_f64().unwrap_or(f64::MAX);
+        }
+        let unit = &likelihood.divisor * unit;
+        BigRational::new(likelihood.weight.clone().into(), unit.into()).to_f64().unwrap_or(0.0)
+    }
+
+    /// The greatest likelihood in any modes of an island, if some admit the observation.
     ///
-    /// Where an island has more combinations of modes than are looked at, one if some combination may admit it.
-    pub(crate) fn fewest(&mut self, at: usize) -> Option<BigUint> {
+    /// Where an island has more combinations of modes than are looked at, what is observed as it most likely is, if some
+    /// combination may admit it.
+    fn greatest(&mut self, at: usize) -> Option<Likelihood> {
         let island = &self.model.islands[at];
         if self.symbols[at].is_empty() && island.core.is_empty() {
-            return Some(BigUint::one());
+            return Some(Likelihood { weight: BigUint::one(), divisor: BigUint::one() });
         }
         let components = &self.model.components;
         let modes_of = |id: &ComponentId| components.get(id.0 as usize).map_or(0, |data| data.modes.len());
@@ -210,10 +317,12 @@ impl<'model> Likelihoods<'model> {
             assumed.begin(&mut self.observed);
             let explains = explains(&mut assumed, 0, &mut self.observed, &mut 0);
             self.observed.undo(start);
-            return explains.then(BigUint::one);
+            let likeliest = |sensor: &Sensor| sensor.right.clone().max(sensor.wrong.clone());
+            let weight = self.sensors[at].values().map(likeliest).product();
+            return explains.then(|| Likelihood { weight, divisor: BigUint::one() });
         }
         let mut state = vec![0; self.model.components.len()];
-        let mut fewest: Option<BigUint> = None;
+        let mut greatest: Option<Likelihood> = None;
         for number in 0..all {
             let mut rest = number;
             for id in &island.components {
@@ -221,18 +330,22 @@ impl<'model> Likelihoods<'model> {
                 state[id.0 as usize] = (rest % count) as u8;
                 rest /= count;
             }
-            let divisor = self.divisor(at, &state);
-            if !divisor.is_zero() && fewest.as_ref().is_none_or(|fewest| divisor < fewest) {
-                fewest = Some(divisor.clone());
+            let likelihood = self.of(at, &state);
+            if !likelihood.is_zero() && greatest.as_ref().is_none_or(|greatest| likelihood.exceeds(greatest))
+            {
+                greatest = Some(likelihood.clone());
             }
         }
-        fewest
+        greatest
     }
 
-    /// The fewest observations that any state admits, or a lower bound of that; `None` if none admits this one.
-    pub(crate) fn fewest_of_all(&mut self) -> Option<BigUint> {
-        let mut each = (0..self.model.islands.len()).map(|at| self.fewest(at));
-        each.try_fold(BigUint::one(), |all, one| Some(all * one?))
+    /// The greatest likelihood in any state, or an upper bound of that; `None` if no state admits the observation.
+    pub(crate) fn greatest_of_all(&mut self) -> Option<Likelihood> {
+        let one = Likelihood { weight: BigUint::one(), divisor: BigUint::one() };
+        (0..self.model.islands.len()).map(|at| self.greatest(at)).try_fold(one, |all, one| {
+            let one = one?;
+            Some(Likelihood { weight: all.weight * one.weight, divisor: all.divisor * one.divisor })
+        })
     }
 
     /// Whether an observation made in an island, or modes that contradict each other there, can rule states out.
@@ -252,11 +365,11 @@ impl<'model> Likelihoods<'model> {
         self.modes.extend(components.filter_map(|component| state.get(component.0 as usize)));
     }
 
-    /// How many observations the assumed modes of an island admit; the error names components that cannot be in theirs.
+    /// How likely the observation is in the assumed modes of an island; the error names components that cannot be in theirs.
     ///
     /// Where the modes leave no constraint open, what they say without the observation tells whether they admit it.
-    fn judge(&mut self, at: usize, assumed: &Assumed<'_>) -> Result<BigUint, Places> {
-        let observed = &self.symbols[at];
+    fn judge(&mut self, at: usize, assumed: &Assumed<'_>) -> Result<Likelihood, Places> {
+        let (observed, sensors) = (&self.symbols[at], &self.sensors[at]);
         let is_settled = assumed.propagate_from(&mut self.settled[at], &mut self.free)?;
         let contradicts = |symbol: &&u32| {
             let sets = self.free.sets.get(**symbol as usize).zip(self.observed.sets.get(**symbol as usize));
@@ -266,16 +379,30 @@ impl<'model> Likelihoods<'model> {
             return Err(self.free.reason_of(*contradicted));
         }
         if is_settled {
-            return Ok(product_of_values(observed, &self.free));
+            let divisor = product_of_values(observed, &self.free, WITHOUT_ERRORS);
+            let erroneous: Vec<u32> = sensors.keys().copied().collect();
+            return Ok(Likelihood { weight: product_of_values(&erroneous, &self.free, sensors), divisor });
         }
         let point = self.free.resume(&self.settled[at]);
         let given = observed.iter().map(|symbol| (*symbol, self.observed.sets[*symbol as usize]));
         let is_settled = assumed.restrict(given, &mut self.free);
+        let restricted = self.free.point();
         let result =
             is_settled.and_then(|is_true| if is_true { Ok(()) } else { assumed.search(&mut self.free) });
+        self.free.return_to(&restricted);
+        let weight = match result {
+            Ok(()) if sensors.is_empty() => Ok(BigUint::one()),
+            Ok(()) => {
+                let settled = Settled { standing: self.free.standing.clone(), ..Settled::default() };
+                Ok(product_over_parts(assumed, &settled, &mut self.free, observed, sensors))
+            }
+            Err(places) => Err(places),
+        };
         self.free.return_to(&point);
-        result?;
-        Ok(product_over_parts(assumed, &self.settled[at], &mut self.free, observed))
+        let weight = weight?;
+        let divisor =
+            product_over_parts(assumed, &self.settled[at], &mut self.free, observed, WITHOUT_ERRORS);
+        Ok(Likelihood { weight, divisor })
     }
 
     /// Why the modes of an island do not admit the observation, if they do not: components of which none can be left out.
@@ -290,9 +417,9 @@ impl<'model> Likelihoods<'model> {
         let island = self.model.islands.get(at)?;
         let mut assumed = Assumed::all(self.model, island, state);
         match self.judge(at, &assumed) {
-            Ok(divisor) => {
+            Ok(likelihood) => {
                 self.ask(at, state);
-                self.known[at].entry(self.modes.clone()).or_insert(divisor);
+                self.known[at].entry(self.modes.clone()).or_insert(likelihood);
                 None
             }
             Err(places) => {

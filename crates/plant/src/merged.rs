@@ -9,7 +9,7 @@ use num_traits::{One as _, Zero as _};
 
 use crate::belief::State;
 use crate::likelihood::Likelihoods;
-use crate::model::{Commands, ComponentId, Model};
+use crate::model::{Commands, ComponentId, Mode, Model};
 use crate::successor::{EstimateError, distribution};
 
 /// At most this many states are held at once.
@@ -62,7 +62,7 @@ pub(crate) fn move_all(
                 let mut state = state.clone();
                 state.set_mode(component, mode);
                 if let Some(island) = alone[component.0 as usize]
-                    && likelihoods.divisor(island, &state.0).is_zero()
+                    && likelihoods.of(island, &state.0).is_zero()
                 {
                     continue;
                 }
@@ -86,9 +86,11 @@ fn denominator(model: &Model, component: ComponentId, states: &[Moving]) -> u64 
     let Some(data) = model.component(component) else { return 1 };
     let present = states.iter().fold(0_u64, |modes, moving| modes | 1 << moving.state.mode(component));
     let modes = data.modes.iter().enumerate().filter(|(at, _)| present >> at & 1 == 1);
-    modes
-        .filter(|(_, mode)| !mode.faults.is_empty())
-        .fold(1, |common, (_, mode)| lcm(common, mode.denominator))
+    let each = modes.flat_map(|(_, mode)| {
+        let choices = mode.choices.iter().map(|choice| choice.denominator);
+        choices.chain([1]).map(|denominator| denominator * mode.denominator)
+    });
+    each.fold(1, lcm)
 }
 
 /// Equal states as one, in the order of their modes.
@@ -114,8 +116,8 @@ fn effects_first(model: &Model) -> Option<Vec<ComponentId>> {
     for (id, component) in model.component_ids().zip(&model.components) {
         let mut mine = Vec::new();
         let mut asks_for_variables = false;
-        for transition in component.modes.iter().flat_map(|mode| &mode.transitions) {
-            transition.guard.symbols(&mut |symbol| {
+        for guard in component.modes.iter().flat_map(Mode::guards) {
+            guard.symbols(&mut |symbol| {
                 asks_for_variables |= model.symbol_variable(symbol).is_some();
                 if (symbol as usize) < model.components.len() && symbol != id.0 {
                     mine.push(symbol);

@@ -46,8 +46,10 @@ pub struct Mode {
     pub name: SmolStr,
     /// What holds in it.
     pub constraint: Formula,
-    /// The commanded transitions that leave it.
+    /// The commanded transitions that leave it, as written.
     pub transitions: Vec<Transition>,
+    /// Where its transitions lead: one for each guard.
+    pub choices: Vec<Choice>,
     /// The faults that leave it.
     pub faults: Vec<Fault>,
     /// The common denominator of its faults' probabilities.
@@ -56,16 +58,38 @@ pub struct Mode {
     pub span: Span,
 }
 
+impl Mode {
+    /// The guards that decide what comes after it: those of its transitions and of its faults.
+    pub(crate) fn guards(&self) -> impl Iterator<Item = &Formula> {
+        let choices = self.choices.iter().map(|choice| &choice.guard);
+        choices.chain(self.faults.iter().map(|fault| &fault.guard))
+    }
+}
+
 /// A commanded transition.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Transition {
     /// The mode that it enters.
     pub to: u8,
-    /// What enables it.
-    pub guard: Formula,
     /// Its guard in the short form of drawings.
     pub label: SmolStr,
+    /// Its probability as written, if it is one of several outcomes.
+    pub probability: Option<SmolStr>,
     /// Where it is declared.
+    pub span: Span,
+}
+
+/// Where the transitions with equal guards lead.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Choice {
+    /// What enables them.
+    pub guard: Formula,
+    /// The modes that may be entered, the one that is left among them, with their weights in parts of `denominator`.
+    pub outcomes: Vec<(u8, u64)>,
+    pub denominator: u64,
+    /// The likeliest of these modes that differs from the one that is left, of equally likely ones the first.
+    pub nominal: u8,
+    /// Where the guard is first written.
     pub span: Span,
 }
 
@@ -76,8 +100,14 @@ pub struct Fault {
     pub to: u8,
     /// Its probability per step, in parts of its mode's denominator.
     pub numerator: u64,
+    /// In which steps it is possible.
+    pub guard: Formula,
     /// Its probability as written.
     pub label: SmolStr,
+    /// Its guard in the short form of drawings, if it has one.
+    pub condition: Option<SmolStr>,
+    /// Where its probability is written.
+    pub span: Span,
 }
 
 /// A variable of the plant.
@@ -90,8 +120,10 @@ pub struct PlantVariable {
     pub values: Vec<SmolStr>,
     /// Whether it is observed.
     pub observable: bool,
-    /// What the simulated plant shows where the modes leave it open.
-    pub shows: u8,
+    /// What the simulated plant shows where the modes leave it open, if the text says so.
+    pub shows: Option<u8>,
+    /// The probability that another value than the true one is observed, as a fraction; `None` if that never happens.
+    pub error: Option<(u64, u64)>,
 }
 
 /// A command variable; its first value is the idle one.

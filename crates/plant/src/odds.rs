@@ -3,8 +3,6 @@
 //! Numbers of one component and mode, one per prior state, stand side by side: a search takes products over components
 //! for all prior states at once.
 
-use num_traits::ToPrimitive as _;
-
 use crate::belief::{Belief, State};
 use crate::formula::values;
 use crate::likelihood::Likelihoods;
@@ -59,10 +57,7 @@ impl Odds {
             let first = odds.modes.len();
             for mode in values(modes) {
                 state.0[component] = mode;
-                factors.push(island.map_or(1.0, |island| {
-                    let divisor = likelihoods.divisor(island, &state.0).to_f64().unwrap_or(f64::MAX);
-                    if divisor > 0.0 { 1.0 / divisor } else { 0.0 }
-                }));
+                factors.push(island.map_or(1.0, |island| likelihoods.chance(island, &state.0)));
             }
             if modes.count_ones() > 1 {
                 odds.free.push(component);

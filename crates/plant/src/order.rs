@@ -81,8 +81,8 @@ fn causes(model: &Model) -> Vec<Vec<ComponentId>> {
         .map(|id| {
             let mut causes = Vec::new();
             let modes = model.component(id).map_or(&[][..], |component| component.modes.as_slice());
-            for transition in modes.iter().flat_map(|mode| &mode.transitions) {
-                transition.guard.symbols(&mut |symbol| causes.extend(owner(model, symbol)));
+            for choice in modes.iter().flat_map(|mode| &mode.choices) {
+                choice.guard.symbols(&mut |symbol| causes.extend(owner(model, symbol)));
             }
             causes.sort_unstable();
             causes.dedup();

@@ -273,13 +273,13 @@ fn steps_of(
     let modes = model.component(component).map_or(&[][..], |data| data.modes.as_slice());
     let leave = |(from, mode): (usize, &crate::Mode)| {
         let mut steps = Vec::new();
-        for transition in mode.transitions.iter().filter(|transition| transition.to as usize != from) {
-            let Some(alternatives) = transition.guard.alternatives(MAX_ALTERNATIVES) else {
+        for choice in mode.choices.iter().filter(|choice| choice.nominal as usize != from) {
+            let Some(alternatives) = choice.guard.alternatives(MAX_ALTERNATIVES) else {
                 *is_complete = false;
                 continue;
             };
             for alternative in alternatives {
-                match planned(model, component, from as u8, transition.to, &alternative, is_complete) {
+                match planned(model, component, from as u8, choice.nominal, &alternative, is_complete) {
                     Some(step) if steps.contains(&step) => {}
                     Some(step) => steps.push(step),
                     None => joint.extend(components_behind(model, &alternative)),

@@ -3,11 +3,17 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use num_bigint::BigUint;
+use num_integer::Integer as _;
+use num_traits::{ToPrimitive as _, Zero as _};
+
 use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
 use crate::formula::values;
-use crate::model::{Commands, ComponentId, Model, Observation};
+use crate::island::Island;
+use crate::likelihood::combinations;
+use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
 use crate::successor::{EstimateError, distribution, nominal};
 
 /// Random numbers from a seed, the same on every machine (`SplitMix64`, Steele, Lea and Flood 2014).
@@ -50,6 +56,39 @@ impl Random {
             let bits = self.next_bits();
             if bits < last {
                 return bits % bound;
+            }
+        }
+    }
+
+    /// One of some values, each with its weight, however long. A value that stands alone takes no draw.
+    fn weighted_exactly(&mut self, weights: &[(u8, BigUint)]) -> u8 {
+        let divisor = weights.iter().fold(BigUint::zero(), |divisor, (_, weight)| divisor.gcd(weight));
+        let possible = weights.iter().filter(|(_, weight)| !weight.is_zero());
+        let possible: Vec<(u8, BigUint)> =
+            possible.map(|(value, weight)| (*value, weight / &divisor)).collect();
+        let total: BigUint = possible.iter().map(|(_, weight)| weight).sum();
+        let mut left = if possible.len() > 1 { self.below_exactly(&total) } else { BigUint::zero() };
+        for (value, weight) in &possible {
+            if left < *weight {
+                return *value;
+            }
+            left -= weight;
+        }
+        possible.first().map_or(0, |(value, _)| *value)
+    }
+
+    /// A number below `bound`, however long, all equally likely.
+    fn below_exactly(&mut self, bound: &BigUint) -> BigUint {
+        if let Some(bound) = bound.to_u64() {
+            return self.below(bound).into();
+        }
+        let bits = bound.bits();
+        loop {
+            let words = bits.div_ceil(64);
+            let drawn = (0..words).fold(BigUint::zero(), |drawn, _| (drawn << 64) + self.next_bits());
+            let drawn = drawn >> (64 * words - bits);
+            if drawn < *bound {
+                return drawn;
             }
         }
     }
@@ -147,10 +186,84 @@ impl SimulatedPlant {
         Ok(())
     }
 
-    /// What the plant shows: where the modes leave a variable open, its `SHOWS` value if that is possible.
+    /// What the plant shows without chance: where the modes leave a variable open, its `SHOWS` value if that is possible.
     pub fn observation(&self) -> Observation {
         observation_of(&self.model, &self.state)
     }
+
+    /// What the plant shows by chance: values that its modes leave open are drawn, but for `SHOWS`, and then errors.
+    pub fn observation_with_chance(&self, random: &mut Random) -> Observation {
+        let mut observation = Observation::default();
+        for island in &self.model.islands {
+            observation.0.extend(true_values(&self.model, island, &self.state, random));
+        }
+        for (id, value) in &mut observation.0 {
+            let Some(data) = self.model.variables.get(id.0 as usize) else { continue };
+            if let Some((part, whole)) = data.error
+                && random.below(whole) < part
+            {
+                let other = random.below(data.values.len() as u64 - 1) as u8;
+                *value = other + u8::from(other >= *value);
+            }
+        }
+        observation
+    }
+}
+
+/// Whether some values satisfy what is open; all consequences were drawn.
+fn is_completable(assumed: &Assumed<'_>, domains: &mut Domains) -> bool {
+    let point = domains.point();
+    let result = assumed.search(domains);
+    domains.return_to(&point);
+    result.is_ok()
+}
+
+/// True values of the observable variables of an island: all combinations that the modes allow are equally likely.
+fn true_values(model: &Model, island: &Island, state: &State, random: &mut Random) -> Vec<(VariableId, u8)> {
+    let mut domains = Domains::observed(model, &Observation::default());
+    let assumed = Assumed::all(model, island, &state.0);
+    if assumed.propagate(&mut domains).is_err() {
+        return Vec::new();
+    }
+    let data = |id: &VariableId| model.variables.get(id.0 as usize);
+    let observed: Vec<VariableId> =
+        island.variables.iter().copied().filter(|id| data(id).is_some_and(|data| data.observable)).collect();
+    for id in &observed {
+        let Some(shows) = data(id).and_then(|data| data.shows) else { continue };
+        let point = domains.point();
+        let restricted = assumed.restrict([(model.variable_symbol(*id), 1 << shows)], &mut domains);
+        let is_possible = restricted.is_ok_and(|is_true| is_true || is_completable(&assumed, &mut domains));
+        if !is_possible {
+            domains.return_to(&point);
+        }
+    }
+    let symbols: Vec<u32> = observed.iter().map(|id| model.variable_symbol(*id)).collect();
+    let mut values_drawn = Vec::with_capacity(observed.len());
+    for (at, (id, &symbol)) in observed.iter().zip(&symbols).enumerate() {
+        let set = domains.sets.get(symbol as usize).copied().unwrap_or(0);
+        let value = if set.count_ones() > 1 {
+            let each = values(set).map(|value| {
+                let point = domains.point();
+                let is_possible = assumed.restrict([(symbol, 1 << value)], &mut domains).is_ok();
+                let weight = if is_possible {
+                    combinations(&assumed, &mut domains, &symbols[at + 1..])
+                } else {
+                    BigUint::zero()
+                };
+                domains.return_to(&point);
+                (value, weight)
+            });
+            let each: Vec<(u8, BigUint)> = each.collect();
+            random.weighted_exactly(&each)
+        } else {
+            set.trailing_zeros() as u8
+        };
+        if assumed.restrict([(symbol, 1 << value)], &mut domains).is_err() {
+            return values_drawn;
+        }
+        values_drawn.push((*id, value));
+    }
+    values_drawn
 }
 
 /// What a plant in `state` shows.
@@ -168,7 +281,7 @@ pub fn observation_of(model: &Model, state: &State) -> Observation {
             };
             let symbol = model.variable_symbol(variable) as usize;
             let set = domains.sets.get(symbol).copied().unwrap_or(0);
-            let preferred = 1_u64 << data.shows;
+            let preferred = data.shows.map_or(0, |shows| 1_u64 << shows);
             let order = values(set & preferred).chain(values(set & !preferred));
             for value in order {
                 let mut trial = domains.clone();

@@ -7,7 +7,7 @@ use crate::belief::State;
 use crate::domains::Domains;
 use crate::formula::{Formula, Truth};
 use crate::knowledge::is_entailed_by_search;
-use crate::model::{CommandVariableId, Commands, Component, ComponentId, Mode, Model, Observation};
+use crate::model::{Choice, CommandVariableId, Commands, Component, ComponentId, Mode, Model, Observation};
 
 /// What can go wrong in a step of estimation or simulation.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -33,39 +33,79 @@ pub enum EstimateError {
     Impossible(String),
 }
 
-/// The mode that `component` nominally enters from `state` under `commands`.
+/// The mode that `component` nominally enters from `state` under `commands`: of several outcomes the likeliest that leaves
+/// its mode.
 pub fn successor(
     model: &Model,
     component: ComponentId,
     state: &State,
     commands: &Commands,
 ) -> Result<u8, EstimateError> {
-    let from = state.mode(component);
-    let Some(mode) = model.component(component).and_then(|data| data.modes.get(from as usize)) else {
-        return Ok(from);
-    };
-    let mut enabled = None;
-    for transition in &mode.transitions {
-        if !is_entailed(model, &transition.guard, state, commands) {
+    let enabled = enabled(model, component, state, commands)?;
+    Ok(enabled.map_or_else(|| state.mode(component), |choice| choice.nominal))
+}
+
+/// What the guards that are true in `state` under `commands` lead to; `None` if none is.
+fn enabled<'model>(
+    model: &'model Model,
+    component: ComponentId,
+    state: &State,
+    commands: &Commands,
+) -> Result<Option<&'model Choice>, EstimateError> {
+    let Some(mode) = mode_of(model, component, state) else { return Ok(None) };
+    let mut enabled: Option<&Choice> = None;
+    for choice in &mode.choices {
+        if !is_entailed(model, &choice.guard, state, commands) {
             continue;
         }
         match enabled {
-            None => enabled = Some(transition.to),
-            Some(first) if first != transition.to => {
+            None => enabled = Some(choice),
+            Some(first) if first.differs(choice) => {
                 return Err(EstimateError::Ambiguous {
                     component: model
                         .component(component)
                         .map(|data| data.name.to_string())
                         .unwrap_or_default(),
                     from: mode.name.to_string(),
-                    first: model.mode_name(component, first).to_owned(),
-                    second: model.mode_name(component, transition.to).to_owned(),
+                    first: model.mode_name(component, first.nominal).to_owned(),
+                    second: model.mode_name(component, choice.nominal).to_owned(),
                 });
             }
             Some(_) => {}
         }
     }
-    Ok(enabled.unwrap_or(from))
+    Ok(enabled)
+}
+
+fn mode_of<'model>(model: &'model Model, component: ComponentId, state: &State) -> Option<&'model Mode> {
+    model.component(component)?.modes.get(state.mode(component) as usize)
+}
+
+impl Choice {
+    /// Whether another choice of the same mode leads elsewhere, or with other probabilities.
+    pub(crate) fn differs(&self, other: &Self) -> bool {
+        let is_same = |left: &(u8, u64)| {
+            other.outcomes.iter().any(|right| {
+                let scaled = |weight: u64, denominator: u64| u128::from(weight) * u128::from(denominator);
+                left.0 == right.0 && scaled(left.1, other.denominator) == scaled(right.1, self.denominator)
+            })
+        };
+        self.outcomes.len() != other.outcomes.len() || !self.outcomes.iter().all(is_same)
+    }
+}
+
+/// The modes that a component may enter without a fault, one bit each.
+pub fn intended(
+    model: &Model,
+    component: ComponentId,
+    state: &State,
+    commands: &Commands,
+) -> Result<u64, EstimateError> {
+    let enabled = enabled(model, component, state, commands)?;
+    Ok(enabled.map_or_else(
+        || 1 << state.mode(component),
+        |choice| choice.outcomes.iter().fold(0, |modes, (to, _)| modes | 1 << to),
+    ))
 }
 
 /// All components' nominal targets.
@@ -77,7 +117,7 @@ pub fn nominal(model: &Model, state: &State, commands: &Commands) -> Result<Stat
         .map(State)
 }
 
-/// The modes a component may enter, each with its numerator over the returned denominator; zero numerators left out.
+/// The modes that a component may enter, each with its numerator over the returned denominator; zero numerators left out.
 pub(crate) fn distribution(
     model: &Model,
     component: ComponentId,
@@ -97,30 +137,48 @@ fn distribute(
     commands: &Commands,
     into: &mut Vec<(u8, u64)>,
 ) -> Result<u64, EstimateError> {
-    let target = successor(model, component, state, commands)?;
-    let mode = model.component(component).and_then(|data| data.modes.get(state.mode(component) as usize));
-    let Some(mode) = mode.filter(|mode| !mode.faults.is_empty()) else {
-        into.push((target, 1));
-        return Ok(1);
+    let choice = enabled(model, component, state, commands)?;
+    let stay = [(state.mode(component), 1)];
+    let (outcomes, scale) =
+        choice.map_or((&stay[..], 1), |choice| (choice.outcomes.as_slice(), choice.denominator));
+    let Some(mode) = mode_of(model, component, state).filter(|mode| !mode.faults.is_empty()) else {
+        into.extend_from_slice(outcomes);
+        return Ok(scale);
     };
     let start = into.len();
-    let faulty: u64 = mode.faults.iter().map(|fault| fault.numerator).sum();
-    into.push((target, mode.denominator - faulty));
+    into.extend_from_slice(outcomes);
+    let mut faulty = 0;
     for fault in &mode.faults {
-        match into[start..].iter_mut().find(|(to, _)| *to == fault.to) {
-            Some((_, weight)) => *weight += fault.numerator,
-            None => into.push((fault.to, fault.numerator)),
+        if !is_entailed(model, &fault.guard, state, commands) {
+            continue;
+        }
+        faulty += fault.numerator;
+        match into[start + outcomes.len()..].iter_mut().find(|(to, _)| *to == fault.to) {
+            Some((_, weight)) => *weight += fault.numerator * scale,
+            None => into.push((fault.to, fault.numerator * scale)),
         }
     }
+    // Outcomes share what the faults leave.
+    for (_, weight) in &mut into[start..start + outcomes.len()] {
+        *weight *= mode.denominator.saturating_sub(faulty);
+    }
+    join(into, start);
+    Ok(mode.denominator * scale)
+}
+
+/// Joins what leads to one mode, and takes out what has no weight.
+fn join(into: &mut Vec<(u8, u64)>, start: usize) {
     let mut kept = start;
     for at in start..into.len() {
-        if into[at].1 > 0 {
-            into.swap(kept, at);
+        let (to, weight) = into[at];
+        if let Some((_, known)) = into[start..kept].iter_mut().find(|(known, _)| *known == to) {
+            *known += weight;
+        } else if weight > 0 {
+            into[kept] = (to, weight);
             kept += 1;
         }
     }
     into.truncate(kept);
-    Ok(mode.denominator)
 }
 
 /// Where components may go next from each of some states, over denominators that the states have in common.
@@ -196,8 +254,8 @@ pub(crate) fn distributions(
 pub(crate) fn led_by_commands(model: &Model) -> Vec<u64> {
     let asks_only_commands = |mode: &Mode| {
         let mut result = true;
-        for transition in &mode.transitions {
-            transition.guard.symbols(&mut |symbol| result &= model.symbol_command(symbol).is_some());
+        for guard in mode.guards() {
+            guard.symbols(&mut |symbol| result &= model.symbol_command(symbol).is_some());
         }
         result
     };

@@ -108,7 +108,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 fn move_json(by: &Move, model: &Model) -> Value {
     let modes: Map<String, Value> =
         by.named(model).map(|(name, mode)| (name.to_owned(), json!(mode))).collect();
-    json!({ "modes": modes, "choices": by.choices })
+    let observed: Map<String, Value> =
+        by.shown(model).map(|(name, value)| (name.to_owned(), json!(value))).collect();
+    json!({ "modes": modes, "observed": observed, "choices": by.choices })
 }
 
 fn verdict_json(property: &Property, verdict: &Verdict, model: &Model) -> Value {
@@ -179,7 +181,8 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
     let shown = |by: &Move| -> String {
         let modes = by.named(model).map(|(name, mode)| format!("{name}={mode}"));
         let choices = by.choices.iter().map(|choice| format!("alternative {}", choice + 1));
-        modes.chain(choices).collect::<Vec<_>>().join(", ")
+        let seen = by.shown(model).map(|(name, value)| format!("{name}={value} observed"));
+        modes.chain(seen).chain(choices).collect::<Vec<_>>().join(", ")
     };
     let start = shown(&run.start);
     if !start.is_empty() {
@@ -195,7 +198,8 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
         }
     }
     out.push_str(&format!("  end      {}\n", run.ending()));
-    let is_repeatable = run.start == Move::default() && run.moves.iter().all(|by| by.choices.is_empty());
+    let is_repeatable = run.start == Move::default()
+        && run.moves.iter().all(|by| by.choices.is_empty() && by.observed.is_empty());
     if is_repeatable && let Some(active) = active_at_end(args, system, run) {
         out.push_str(&active);
         let file = args.file.display();

@@ -8,10 +8,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use hca::{Choice, StepObserver, Stepper, TestId, TraceStep, locks};
-use plant::successor::nominal;
 use plant::{
     Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Formula, Goal, Interval, Known,
-    NextCommands, Observation, Random, SimulatedPlant, Situation, State, VariableId, draw_initial,
+    NextCommands, Observation, Random, SimulatedPlant, Situation, State, draw_initial, intended,
 };
 use serde::{Deserialize, Serialize};
 use smol_str::{SmolStr, ToSmolStr as _};
@@ -280,8 +279,13 @@ impl ClosedLoop {
         let mut traces: Vec<TraceStep> = programs.iter().map(|program| program.upcoming()).collect();
         let commanded = self.command(system, programs, estimator);
         let failed = self.answer(system, &commanded.commands, input)?;
+        let mut observation = match &mut self.random {
+            Some(random) => self.plant.observation_with_chance(random),
+            None => self.plant.observation(),
+        };
+        observation.0.extend(&input.observed);
         let learned =
-            self.learn(system, programs, estimator, &commanded.commands, &input.observed, &mut traces)?;
+            self.learn(system, programs, estimator, &commanded.commands, observation, &mut traces)?;
         if learned.is_explained {
             self.settle(programs);
             self.note_deadlock(programs);
@@ -332,11 +336,16 @@ impl ClosedLoop {
             self.plant.step(commands, &input.injected)?;
             return Ok(Vec::new());
         };
-        let expected = nominal(&system.model, self.plant.state(), commands)?;
+        let ids = system.model.component_ids();
+        let intended = ids.map(|id| intended(&system.model, id, self.plant.state(), commands));
+        let intended = intended.collect::<Result<Vec<u64>, _>>()?;
         self.plant.step_with_chance(commands, &input.injected, random)?;
         let state = self.plant.state();
-        let is_chance =
-            |id: &ComponentId| state.mode(*id) != expected.mode(*id) && !input.injected.contains_key(id);
+        let is_chance = |id: &ComponentId| {
+            let is_intended =
+                intended.get(id.0 as usize).is_some_and(|modes| modes >> state.mode(*id) & 1 == 1);
+            !is_intended && !input.injected.contains_key(id)
+        };
         let by_chance = system.model.component_ids().filter(is_chance);
         Ok(by_chance.map(|id| (id, state.mode(id))).collect())
     }
@@ -347,19 +356,16 @@ impl ClosedLoop {
         self.plant.step(commands, &all.collect())
     }
 
-    /// Takes in what is observed, and what is said to be `observed` instead: what is believed then, and where the programs go
-    /// by it. Choices that they come to stay open.
+    /// Takes in what is observed: what is believed then, and where the programs go by it. Choices that they come to stay open.
     pub(super) fn learn(
         &mut self,
         system: &System,
         programs: &mut [&mut ProgramExecution],
         estimator: &mut Estimator,
         commands: &Commands,
-        observed: &BTreeMap<VariableId, u8>,
+        observation: Observation,
         observers: &mut [impl StepObserver],
     ) -> Result<Learned, EstimateError> {
-        let mut observation = self.plant.observation();
-        observation.0.extend(observed);
         let asked: Vec<Vec<(TestId, Formula)>> = programs.iter().map(|program| program.asked()).collect();
         let update = match self.knowledge {
             Knowledge::Perfect => BeliefUpdate::certain(system, self.plant.state()),

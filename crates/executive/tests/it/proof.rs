@@ -330,3 +330,50 @@ fn a_wait_under_a_belief_that_drifts_is_followed_for_long() {
     assert!(run.goes_on_for.is_some_and(|steps| steps >= 1000), "{run:?}");
     assert_eq!(proof.verdicts[1].1, Verdict::Open);
 }
+
+const DOUBTFUL: &str = "(DEFCLASS Lamp ()
+    (VAR seen {dark lit} OBSERVABLE ERROR 0.1)
+    (COMMAND cmd {none on})
+    (MODE Off (seen = dark)) (MODE On (seen = lit))
+    (TRANSITION Off On (cmd = on) 0.5))
+  (DEFINSTANCE L Lamp INIT Off)";
+
+#[test]
+fn outcomes_fall_in_any_way_and_a_sensor_s_error_counts_as_a_fault() {
+    let lamp = system("(L = On)", DOUBTFUL);
+    // Each attempt succeeds with one half.
+    let scope = Scope { faults: 0, knowledge: Knowledge::Perfect, ..Scope::default() };
+    let proof = proven(&lamp, &["ends", "ends within 1", "L.seen = lit leads to L = On"], scope);
+    assert_eq!(proof.verdicts[0].1, Verdict::Holds);
+    let Verdict::Broken(run) = &proof.verdicts[1].1 else { panic!("it may fail at first") };
+    assert_eq!(run.unusual(&lamp.model), ["1: L=Off"]);
+    let chance = |steps| chance_to_end(&lamp, Knowledge::Perfect, steps, 100).expect("it can be computed");
+    assert_eq!(chance(1), Interval::certain(Probability::new(1.into(), 2.into())));
+    assert_eq!(chance(3), Interval::certain(Probability::new(7.into(), 8.into())));
+    // What seems lit is taken for lit, though nothing but the sensor failed.
+    let plant = "(DEFCLASS Lamp () (VAR seen {dark lit} OBSERVABLE ERROR 0.1)
+        (MODE Off (seen = dark)) (MODE On (seen = lit)) (FAULT Off On 0.3))
+      (DEFCLASS Door () (COMMAND cmd {none open}) (MODE Shut true) (MODE Open true)
+        (TRANSITION Shut Open (cmd = open)))
+      (DEFINSTANCE L Lamp INIT Off) (DEFINSTANCE D Door INIT Shut)";
+    let door = system("(WHEN-DONEXT (L = On) (D = Open))", plant);
+    let Verdict::Broken(run) = verdict(&door, "D = Open leads to L = On within 1", 1) else {
+        panic!("an error opens the door")
+    };
+    assert_eq!(run.unusual(&door.model), ["1: L.seen=lit observed"]);
+    assert!(!matches!(verdict(&door, "never D = Open", 0), Verdict::Broken(_)));
+}
+
+#[test]
+fn what_modes_leave_open_is_observed_in_every_way() {
+    let plant = "(DEFCLASS Gauge () (VAR level {low high} OBSERVABLE) (COMMAND cmd {none go})
+        (MODE Idle true) (MODE Busy (level = high)) (TRANSITION Idle Busy (cmd = go)))
+      (DEFINSTANCE G Gauge INIT Idle)";
+    let gauge = system("(WHEN-DONEXT (G.level = high) (G = Busy))", plant);
+    // The level of an idle gauge is either, again and again; it is not high for ever.
+    assert_eq!(verdict(&gauge, "ends", 0), Verdict::Holds);
+    let Verdict::Broken(run) = verdict(&gauge, "ends within 3", 0) else { panic!("it may stay low") };
+    assert!(run.unusual(&gauge.model).is_empty());
+    let Verdict::Broken(run) = verdict(&gauge, "never G = Busy", 0) else { panic!("it may be high") };
+    assert_eq!(run.unusual(&gauge.model), ["1: G.level=high observed"]);
+}

@@ -51,12 +51,23 @@ impl Machine {
         for (from, mode) in component.modes.iter().enumerate() {
             for transition in &mode.transitions {
                 arcs.push(MachineArc { from, to: usize::from(transition.to), is_fault: false });
-                texts.push(format!("{} → {} when {}", mode.name, name(transition.to), transition.label));
+                let probability = transition.probability.as_ref();
+                let probability =
+                    probability.map_or_else(String::new, |given| format!(", probability {given}"));
+                texts.push(format!(
+                    "{} → {} when {}{probability}",
+                    mode.name,
+                    name(transition.to),
+                    transition.label
+                ));
             }
             for fault in &mode.faults {
                 arcs.push(MachineArc { from, to: usize::from(fault.to), is_fault: true });
                 let to = name(fault.to);
-                texts.push(format!("{} → {to}: random fault, {} per step", mode.name, fault.label));
+                let condition = fault.condition.as_ref();
+                let condition = condition.map_or_else(String::new, |guard| format!(" when {guard}"));
+                texts
+                    .push(format!("{} → {to}: random fault, {} per step{condition}", mode.name, fault.label));
             }
         }
         let drawing = layout::machine(&widths, &arcs);

@@ -23,10 +23,10 @@ fn each_mistake_in_a_model_gives_one_diagnostic_with_its_code() {
         ("(DEFCLASS A () (VAR v {x y} OBSERVABLE SHOWS z) (MODE M true))", "E-VALUE"),
         ("(DEFCLASS A () (COMMAND c {none go}) (MODE M (c = go)))", "E-CONSTRAINT"),
         ("(DEFCLASS A () (COMMAND c {none go}) (MODE M true) (TRANSITION M N (c = go)))", "E-UNDEF"),
-        ("(DEFCLASS A () (MODE M true) (MODE N true) (FAULT M N 1.5))", "E-VALUE"),
+        ("(DEFCLASS A () (MODE M true) (MODE N true) (FAULT M N 1.5))", "E-PROBABILITY"),
         (
             "(DEFCLASS A () (MODE M true) (MODE N true) (MODE O true) (FAULT M N 0.6) (FAULT M O 0.6))",
-            "E-VALUE",
+            "E-PROBABILITY",
         ),
         ("(DEFCLASS A () (MODE M true)) (DEFINSTANCE a A INIT N)", "E-UNDEF"),
         ("(DEFCLASS A () (MODE M true)) (DEFINSTANCE a B)", "E-UNDEF"),
@@ -66,15 +66,4 @@ fn a_class_inherits_modes_domains_and_arcs_and_the_most_specific_arc_wins() {
         [(plant::VariableId(0), 0)],
         "both constraints of M hold: of y and z only y is left"
     );
-}
-
-#[test]
-fn two_enabled_transitions_are_an_error_when_they_meet() {
-    let text = "(DEFCLASS A () (COMMAND c {none go}) (MODE M true) (MODE N true) (MODE O true)
-                  (TRANSITION M N (c = go)) (TRANSITION M O (c = go))) (DEFINSTANCE a A)";
-    let model = compile(&rmpl::control::parse(text).file).0.expect("a model");
-    let commands = model.commands_from_names([("a", "go")]).expect("command");
-    let error = plant::successor(&model, plant::ComponentId(0), &model.initial_state(), &commands)
-        .expect_err("ambiguous");
-    assert_eq!(error.to_string(), "`a` in mode M has two enabled transitions, to N and to O");
 }

@@ -5,4 +5,5 @@ mod checks;
 mod estimation;
 mod hitting_sets;
 mod knowledge;
+mod misbehaving;
 mod planning;

@@ -95,7 +95,17 @@ fn word_kind(word: &str, at: usize, items: &[Node]) -> HighlightKind {
         HighlightKind::Value
     } else if matches!(
         upper.as_str(),
-        "AND" | "OR" | "NOT" | "NOT-ENTAILED" | "HELD" | "TRUE" | "FALSE" | "OBSERVABLE" | "SHOWS" | "INIT"
+        "AND"
+            | "OR"
+            | "NOT"
+            | "NOT-ENTAILED"
+            | "HELD"
+            | "TRUE"
+            | "FALSE"
+            | "OBSERVABLE"
+            | "SHOWS"
+            | "ERROR"
+            | "INIT"
     ) {
         HighlightKind::Keyword
     } else {

@@ -20,6 +20,28 @@ pub struct MergedVariable {
     pub observable: bool,
     /// What it shows, if it says so.
     pub shows: Option<Name>,
+    /// How probable it is that another value is observed, if it says so.
+    pub error: Option<Name>,
+}
+
+/// A transition after inheritance.
+#[derive(Clone, Debug)]
+pub struct MergedTransition<'file> {
+    pub from: &'file Name,
+    pub to: &'file Name,
+    pub guard: &'file Constraint,
+    /// Of one written with `*`: the guards of the transitions that it gives way to.
+    pub unless: Vec<&'file Constraint>,
+    pub probability: Option<&'file Name>,
+}
+
+/// A fault after inheritance.
+#[derive(Clone, Debug)]
+pub struct MergedFault<'file> {
+    pub from: &'file Name,
+    pub to: &'file Name,
+    pub probability: &'file Name,
+    pub guard: Option<&'file Constraint>,
 }
 
 /// A class with all its fields.
@@ -34,10 +56,8 @@ pub struct MergedClass<'file> {
     pub ports: Vec<(&'file Name, &'file Name)>,
     /// Each mode with the constraints that all hold in it.
     pub modes: Vec<(&'file Name, Vec<&'file Constraint>)>,
-    /// From, to and guard.
-    pub transitions: Vec<(&'file Name, &'file Name, &'file Constraint)>,
-    /// From, to and probability.
-    pub faults: Vec<(&'file Name, &'file Name, &'file Name)>,
+    pub transitions: Vec<MergedTransition<'file>>,
+    pub faults: Vec<MergedFault<'file>>,
 }
 
 impl MergedClass<'_> {
@@ -230,12 +250,17 @@ impl<'file> Merger<'file> {
             let mut overridden = false;
             for field in &class.fields {
                 match &field.kind {
-                    FieldKind::Variable { name, values, observable, shows } => {
-                        let new = variable(name, values, *observable, shows.clone());
+                    FieldKind::Variable { name, values, observable, shows, error } => {
+                        let new = MergedVariable {
+                            observable: *observable,
+                            shows: shows.clone(),
+                            error: error.clone(),
+                            ..variable(name, values)
+                        };
                         self.join(&mut merged.variables, new);
                     }
                     FieldKind::Command { name, values } => {
-                        self.join(&mut merged.commands, variable(name, values, false, None));
+                        self.join(&mut merged.commands, variable(name, values));
                     }
                     FieldKind::Port { name, class } => {
                         merged.ports.retain(|(known, _)| known.text != name.text);
@@ -251,30 +276,89 @@ impl<'file> Merger<'file> {
                 }
             }
             if overridden {
-                Self::arcs(class, &mut merged);
+                self.arcs(class, &mut merged);
             }
         }
         merged
     }
 
     /// A more specific class replaces all arcs between the same two modes.
-    fn arcs(class: &'file Class, merged: &mut MergedClass<'file>) {
-        let mut transitions = Vec::new();
-        let mut faults = Vec::new();
-        for field in &class.fields {
-            match &field.kind {
-                FieldKind::Transition { from, to, guard } => transitions.push((from, to, guard)),
-                FieldKind::Fault { from, to, probability } => faults.push((from, to, probability)),
-                _ => {}
-            }
-        }
+    fn arcs(&self, class: &'file Class, merged: &mut MergedClass<'file>) {
+        let transitions = self.transitions(class);
+        let faults = self.faults(class);
         let same = |left: (&Name, &Name), right: (&Name, &Name)| {
             left.0.text == right.0.text && left.1.text == right.1.text
         };
-        merged.transitions.retain(|old| !transitions.iter().any(|new| same((old.0, old.1), (new.0, new.1))));
-        merged.faults.retain(|old| !faults.iter().any(|new| same((old.0, old.1), (new.0, new.1))));
+        merged
+            .transitions
+            .retain(|old| !transitions.iter().any(|new| same((old.from, old.to), (new.from, new.to))));
+        merged.faults.retain(|old| !faults.iter().any(|new| same((old.from, old.to), (new.from, new.to))));
         merged.transitions.extend(transitions);
         merged.faults.extend(faults);
+    }
+
+    /// The transitions that a class writes. One from `*` gives way to those that name the mode, where their guards hold.
+    fn transitions(&self, class: &'file Class) -> Vec<MergedTransition<'file>> {
+        let mut transitions = Vec::new();
+        for field in &class.fields {
+            let FieldKind::Transition { from, to, guard, probability } = &field.kind else { continue };
+            let probability = probability.as_ref();
+            if let Some(from) = from {
+                transitions.push(MergedTransition { from, to, guard, unless: Vec::new(), probability });
+                continue;
+            }
+            for from in self.modes(class).into_iter().filter(|mode| mode.text != to.text) {
+                let named = class.fields.iter().filter_map(|field| match &field.kind {
+                    FieldKind::Transition { from: Some(named), guard, .. } if named.text == from.text => {
+                        Some(guard)
+                    }
+                    _ => None,
+                });
+                transitions.push(MergedTransition { from, to, guard, unless: named.collect(), probability });
+            }
+        }
+        transitions
+    }
+
+    /// The faults that a class writes. One from `*` gives way to those that name both modes.
+    fn faults(&self, class: &'file Class) -> Vec<MergedFault<'file>> {
+        let is_named = |mode: &Name, target: &Name| {
+            class.fields.iter().any(|field| match &field.kind {
+                FieldKind::Fault { from: Some(from), to, .. } => {
+                    from.text == mode.text && to.text == target.text
+                }
+                _ => false,
+            })
+        };
+        let mut faults = Vec::new();
+        for field in &class.fields {
+            let FieldKind::Fault { from, to, probability, guard } = &field.kind else { continue };
+            let origins = match from {
+                Some(from) => vec![from],
+                None => self
+                    .modes(class)
+                    .into_iter()
+                    .filter(|mode| mode.text != to.text && !is_named(mode, to))
+                    .collect(),
+            };
+            let guard = guard.as_ref();
+            faults.extend(origins.into_iter().map(|from| MergedFault { from, to, probability, guard }));
+        }
+        faults
+    }
+
+    /// The modes of a class, own and inherited, in the order of its merged form.
+    fn modes(&self, class: &'file Class) -> Vec<&'file Name> {
+        let lineage = self.c3(class, &mut Vec::new()).unwrap_or_default();
+        let mut modes: Vec<&Name> = Vec::new();
+        for field in lineage.iter().rev().flat_map(|class| &class.fields) {
+            if let FieldKind::Mode { name, .. } = &field.kind
+                && !modes.iter().any(|known| known.text == name.text)
+            {
+                modes.push(name);
+            }
+        }
+        modes
     }
 
     fn join(&mut self, known: &mut Vec<MergedVariable>, new: MergedVariable) {
@@ -286,6 +370,7 @@ impl<'file> Merger<'file> {
             new.values.iter().filter(|value| old.values.contains(value)).cloned().collect();
         old.observable |= new.observable;
         old.shows = new.shows.or(old.shows.take());
+        old.error = new.error.or(old.error.take());
         old.name = new.name;
         if values.is_empty() {
             let (span, name) = (old.name.span, old.name.text.clone());
@@ -304,7 +389,7 @@ impl<'file> Merger<'file> {
     }
 }
 
-fn variable(name: &Name, values: &[Name], observable: bool, shows: Option<Name>) -> MergedVariable {
+fn variable(name: &Name, values: &[Name]) -> MergedVariable {
     let values = values.iter().map(|value| value.text.clone()).collect();
-    MergedVariable { name: name.clone(), values, observable, shows }
+    MergedVariable { name: name.clone(), values, observable: false, shows: None, error: None }
 }

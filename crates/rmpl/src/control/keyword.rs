@@ -32,7 +32,7 @@ pub const EXPRESSION_KEYWORDS: [&str; 19] = [
 pub(super) const TIMED_KEYWORDS: &[&str] = EXPRESSION_KEYWORDS.split_at(9).1;
 
 /// The heads of options and of the model part, and the words inside its fields.
-pub const MODEL_KEYWORDS: [&str; 13] = [
+pub const MODEL_KEYWORDS: [&str; 14] = [
     "DEFSTEP",
     "DEFOPTION",
     "DEFCLASS",
@@ -45,6 +45,7 @@ pub const MODEL_KEYWORDS: [&str; 13] = [
     "FAULT",
     "OBSERVABLE",
     "SHOWS",
+    "ERROR",
     "INIT",
 ];
 

@@ -22,13 +22,16 @@ mod spans;
 mod suggest;
 mod syntax;
 mod tree;
+mod visit;
 
 pub use detect::is_control_text;
 pub use duration::{Duration, DurationError};
 pub use expand::expand_main;
 pub use format::format;
 pub use highlight::{Highlight, HighlightKind, highlight};
-pub use inherit::{ComponentModes, MergedClass, MergedVariable, component_modes, merge_all};
+pub use inherit::{
+    ComponentModes, MergedClass, MergedFault, MergedTransition, MergedVariable, component_modes, merge_all,
+};
 pub use keyword::{EXPRESSION_KEYWORDS, MODEL_KEYWORDS};
 pub use lexer::{Token, TokenKind, lex};
 pub use probabilities::weights as probability_weights;

@@ -155,6 +155,7 @@ impl Reader<'_> {
         let values = self.domain(values)?;
         let mut observable = false;
         let mut shows = None;
+        let mut error = None;
         let mut rest = rest.iter();
         while let Some(node) = rest.next() {
             if self.is_word(node, "OBSERVABLE") {
@@ -166,11 +167,22 @@ impl Reader<'_> {
                         self.error("E-ARITY", node.span(), "expected a value after SHOWS");
                     }
                 }
+            } else if self.is_word(node, "ERROR") {
+                match rest.next() {
+                    Some(probability) => error = self.required_name(probability, "a probability"),
+                    None => {
+                        self.error("E-ARITY", node.span(), "expected a probability after ERROR");
+                    }
+                }
             } else {
-                self.error("E-SYNTAX", node.span(), "expected OBSERVABLE or SHOWS after the values");
+                self.error("E-SYNTAX", node.span(), "expected OBSERVABLE, SHOWS or ERROR after the values");
             }
         }
-        Some(FieldKind::Variable { name, values, observable, shows })
+        if let Some(error) = error.as_ref().filter(|_| !observable) {
+            self.error("E-FORM", error.span, "only an observable variable can have an ERROR").hint =
+                Some("write OBSERVABLE before ERROR".into());
+        }
+        Some(FieldKind::Variable { name, values, observable, shows, error })
     }
 
     fn command(&mut self, list: &List) -> Option<FieldKind> {
@@ -206,33 +218,65 @@ impl Reader<'_> {
     }
 
     fn transition(&mut self, list: &List) -> Option<FieldKind> {
-        let [_, from, to, guard] = list.items.as_slice() else {
-            self.shape(
-                "E-ARITY",
-                list,
-                "TRANSITION takes two modes and a guard",
-                "(TRANSITION Closed Open (cmd = open))",
-            );
+        let [_, from, to, guard, rest @ ..] = list.items.as_slice() else {
+            self.transition_shape(list);
             return None;
         };
-        let from = self.required_name(from, "a mode")?;
+        if rest.len() > 1 {
+            self.transition_shape(list);
+            return None;
+        }
+        let from = self.origin(from)?;
         let to = self.required_name(to, "a mode")?;
-        Some(FieldKind::Transition { from, to, guard: self.constraint(guard) })
+        let guard = self.constraint(guard);
+        let probability = match rest.first() {
+            Some(given) => Some(self.required_name(given, "a probability")?),
+            None => None,
+        };
+        Some(FieldKind::Transition { from, to, guard, probability })
     }
 
     fn fault(&mut self, list: &List) -> Option<FieldKind> {
-        let [_, from, to, probability] = list.items.as_slice() else {
-            self.shape(
-                "E-ARITY",
-                list,
-                "FAULT takes two modes and a probability per step",
-                "(FAULT Open Stuck 0.01)",
-            );
+        let [_, from, to, probability, rest @ ..] = list.items.as_slice() else {
+            self.fault_shape(list);
             return None;
         };
-        let from = self.required_name(from, "a mode")?;
+        if rest.len() > 1 {
+            self.fault_shape(list);
+            return None;
+        }
+        let from = self.origin(from)?;
         let to = self.required_name(to, "a mode")?;
-        Some(FieldKind::Fault { from, to, probability: self.required_name(probability, "a probability")? })
+        let probability = self.required_name(probability, "a probability")?;
+        let guard = rest.first().map(|guard| self.constraint(guard));
+        Some(FieldKind::Fault { from, to, probability, guard })
+    }
+
+    /// Reads the mode that an arc leaves: `None` for `*`.
+    #[expect(clippy::option_option, reason = "unreadable, all modes, or one of them")]
+    fn origin(&mut self, node: &Node) -> Option<Option<Name>> {
+        match node {
+            Node::Leaf(token) if token.kind == TokenKind::Star => Some(None),
+            _ => self.required_name(node, "a mode or `*`").map(Some),
+        }
+    }
+
+    fn transition_shape(&mut self, list: &List) {
+        self.shape(
+            "E-ARITY",
+            list,
+            "TRANSITION takes two modes, a guard, and perhaps a probability",
+            "(TRANSITION Closed Open (cmd = open) 0.9)",
+        );
+    }
+
+    fn fault_shape(&mut self, list: &List) {
+        self.shape(
+            "E-ARITY",
+            list,
+            "FAULT takes two modes, a probability per step, and perhaps a guard",
+            "(FAULT Open Stuck 0.01)",
+        );
     }
 
     fn domain(&mut self, list: &List) -> Option<Vec<Name>> {

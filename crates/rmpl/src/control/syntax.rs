@@ -352,7 +352,7 @@ pub struct Field {
 /// The fields of a class.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FieldKind {
-    /// `(VAR name {values} [OBSERVABLE [SHOWS value]])`.
+    /// `(VAR name {values} [OBSERVABLE [SHOWS value] [ERROR probability]])`.
     Variable {
         /// What it is called.
         name: Name,
@@ -361,6 +361,8 @@ pub enum FieldKind {
         observable: bool,
         /// What the simulated plant shows where the mode leaves it open.
         shows: Option<Name>,
+        /// The probability that another value is observed, as written: a decimal or a fraction.
+        error: Option<Name>,
     },
     /// `(COMMAND name {values})`, idle value first.
     Command {
@@ -382,23 +384,27 @@ pub enum FieldKind {
         /// What holds in it.
         constraint: Constraint,
     },
-    /// `(TRANSITION from to guard)`.
+    /// `(TRANSITION from to guard [probability])`.
     Transition {
-        /// The mode that is left.
-        from: Name,
+        /// The mode that is left; `None` for `*`: all but the one that is entered.
+        from: Option<Name>,
         /// The mode that is entered.
         to: Name,
         /// What triggers it.
         guard: Constraint,
+        /// Of one of several outcomes of the guard: its probability as written.
+        probability: Option<Name>,
     },
-    /// `(FAULT from to probability)`.
+    /// `(FAULT from to probability [guard])`.
     Fault {
-        /// The mode that is left.
-        from: Name,
+        /// The mode that is left; `None` for `*`: all but the one that is entered.
+        from: Option<Name>,
         /// The mode that is entered.
         to: Name,
         /// The probability per step as written: a decimal or a fraction.
         probability: Name,
+        /// What makes it possible, where it is not always possible.
+        guard: Option<Constraint>,
     },
 }
 

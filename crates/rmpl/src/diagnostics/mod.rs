@@ -1,5 +1,6 @@
 //! The kinds of diagnostic of SPEC 1.7, one file each: what it means, an example, its fix, and how it is worded.
 
+pub mod ambiguous;
 pub mod arity;
 pub mod bounds;
 pub mod choice;
@@ -32,6 +33,7 @@ pub mod together;
 pub mod traverse;
 pub mod undefined;
 pub mod unknown_name;
+pub mod unreachable;
 pub mod unreadable_network;
 pub mod unused;
 pub mod value;
@@ -51,6 +53,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &contingent::EXPLANATION,
     &value::EXPLANATION,
     &probability::EXPLANATION,
+    &ambiguous::EXPLANATION,
     &recursion::EXPLANATION,
     &no_scenario::EXPLANATION,
     &limit::EXPLANATION,
@@ -76,6 +79,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &encounter::EXPLANATION,
     &plant::EXPLANATION,
     &liveness::EXPLANATION,
+    &unreachable::EXPLANATION,
     &network::EXPLANATION,
 ];
 

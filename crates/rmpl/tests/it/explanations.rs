@@ -12,7 +12,8 @@ fn codes(text: &str) -> Vec<&'static str> {
 }
 
 /// Kinds that only compiling or planning can report.
-const LATER: [&str; 11] = [
+const LATER: [&str; 13] = [
+    "E-AMBIGUOUS",
     "E-KIND",
     "E-MODEL",
     "E-NOSCENARIO",
@@ -22,6 +23,7 @@ const LATER: [&str; 11] = [
     "W-EXOGENOUS",
     "W-PLANT",
     "W-LIVENESS",
+    "W-UNREACHABLE",
     "W-NETWORK",
     "E-NETWORK",
 ];

@@ -127,10 +127,12 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "E-FORM",
         "E-CONSTRAINT",
         "E-PROBABILITY",
+        "E-AMBIGUOUS",
         "W-ENCOUNTER",
         "W-EXOGENOUS",
         "W-PLANT",
         "W-LIVENESS",
+        "W-UNREACHABLE",
         "W-NETWORK",
         "E-NETWORK",
     ];

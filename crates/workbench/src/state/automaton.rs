@@ -337,15 +337,11 @@ impl AutomatonState {
         self.wants_answer = true;
     }
 
-    /// Starts again without chance, with these modes to come into in each step, and looks at the moment after the last.
-    pub(crate) fn show_steps(&mut self, injected: Vec<BTreeMap<ComponentId, u8>>) {
+    /// Starts again without chance, with what comes from outside in each step, and looks at the moment after the last.
+    pub(crate) fn show_steps(&mut self, inputs: impl Iterator<Item = StepInput>) {
         self.forget_steps();
         self.fault_seed = None;
-        self.log.extend(injected.into_iter().map(|injected| {
-            let mut input = Input::default();
-            input.plant.injected = injected;
-            input
-        }));
+        self.log.extend(inputs.map(|plant| Input { plant, ..Input::default() }));
         self.target = self.log.len();
         self.wants_answer = true;
     }

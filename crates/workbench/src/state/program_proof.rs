@@ -1,10 +1,9 @@
 //! What holds in all runs of a control program: what is asked, and what the core has found.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use executive::model_based::Knowledge;
 use executive::model_based::proof::{Counterexample, Move, Verdict};
+use executive::model_based::{Knowledge, StepInput};
 use link::{ProofAnswer, ProofQuestion, Request, Response};
 use text_editing::Document;
 
@@ -119,8 +118,11 @@ impl AutomatonState {
                 let answer = self.proof.answer.as_ref().and_then(|answer| answer.as_ref().ok());
                 let verdict = answer.and_then(|answer| answer.verdicts.get(number));
                 if let Some((_, Verdict::Broken(run))) = verdict {
-                    let moves = run.moves.iter().map(|by| by.modes.iter().copied().collect());
-                    self.show_steps(moves.collect::<Vec<BTreeMap<_, _>>>());
+                    let inputs = run.moves.iter().map(|by| StepInput {
+                        injected: by.modes.iter().copied().collect(),
+                        observed: by.observed.iter().copied().collect(),
+                    });
+                    self.show_steps(inputs);
                 }
             }
         }

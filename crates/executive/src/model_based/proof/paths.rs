@@ -24,12 +24,14 @@ pub struct Counterexample {
 }
 
 impl Counterexample {
-    /// The steps in which a component does not do what is nominal, such as `3: EngineA=Failed`.
+    /// The steps in which not everything is nominal, such as `3: EngineA=Failed`.
     pub fn unusual(&self, model: &Model) -> Vec<String> {
-        let steps = (1..).zip(&self.moves).filter(|(_, by)| !by.modes.is_empty());
+        let is_unusual = |by: &Move| !by.modes.is_empty() || !by.observed.is_empty();
+        let steps = (1..).zip(&self.moves).filter(|(_, by)| is_unusual(by));
         let shown = steps.map(|(step, by): (u32, _)| {
             let modes = by.named(model).map(|(name, mode)| format!("{name}={mode}"));
-            format!("{step}: {}", modes.collect::<Vec<_>>().join(", "))
+            let seen = by.shown(model).map(|(name, value)| format!("{name}={value} observed"));
+            format!("{step}: {}", modes.chain(seen).collect::<Vec<_>>().join(", "))
         });
         shown.collect()
     }

@@ -3,12 +3,16 @@
 //! A node is where all three are between two steps. What happens in a step is decided by nature, which picks the modes of
 //! the components and makes the program's choices by chance. Nodes from which the same comes next are one node.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
 use std::sync::Arc;
 
 use hca::{LocationId, Standing, StepObserver, TransitionId};
 use num_traits::One as _;
-use plant::{Belief, ComponentId, EstimateError, Model, Probability, Situation, State, Target, targets};
+use plant::simulate::observation_of;
+use plant::{
+    Belief, ComponentId, EstimateError, Model, Observation, Probability, Situation, State, Target,
+    VariableId, observations, targets,
+};
 use serde::{Deserialize, Serialize};
 
 use super::property::Condition;
@@ -24,6 +28,8 @@ pub(super) type NodeId = u32;
 pub struct Move {
     /// The components that do not do what is nominal, with the modes that they enter.
     pub modes: Vec<(ComponentId, u8)>,
+    /// The variables that show something else than without chance, with their values.
+    pub observed: Vec<(VariableId, u8)>,
     /// The alternatives of the choices that come up at the step's end, in their order.
     pub choices: Vec<usize>,
 }
@@ -34,6 +40,14 @@ impl Move {
         self.modes
             .iter()
             .filter_map(|(id, mode)| Some((model.component(*id)?.name.as_str(), model.mode_name(*id, *mode))))
+    }
+
+    /// The variables that show something else than without chance, with their values, by their names.
+    pub fn shown<'model>(&self, model: &'model Model) -> impl Iterator<Item = (&'model str, &'model str)> {
+        self.observed.iter().filter_map(|(id, value)| {
+            let variable = model.variables.get(id.0 as usize)?;
+            Some((variable.name.as_str(), variable.values.get(usize::from(*value))?.as_str()))
+        })
     }
 }
 
@@ -132,6 +146,27 @@ pub(super) struct Way {
     pub(super) weights: Vec<(u64, u64)>,
 }
 
+/// Components have entered their modes.
+struct Entered {
+    closed: ClosedLoop,
+    by: Move,
+    faults: u32,
+    weights: Vec<(u64, u64)>,
+}
+
+/// What is observed then.
+#[derive(Clone)]
+struct Seen {
+    observation: Observation,
+    /// The values that differ from what is shown without chance.
+    unusual: Vec<(VariableId, u8)>,
+    errors: u32,
+    weights: Vec<(u64, u64)>,
+}
+
+/// Of a state that admits more observations only the one without chance is explored.
+const MAX_OBSERVATIONS: usize = 256;
+
 /// Takes steps in all ways.
 pub(super) struct Explorer {
     system: Arc<System>,
@@ -142,6 +177,8 @@ pub(super) struct Explorer {
     groups: BTreeSet<usize>,
     components: BTreeSet<ComponentId>,
     fired: Fired,
+    /// Whether some state admits more observations than were explored.
+    has_cut: bool,
 }
 
 impl Explorer {
@@ -158,6 +195,7 @@ impl Explorer {
             groups,
             components,
             fired: Fired::default(),
+            has_cut: false,
         }
     }
 
@@ -170,7 +208,7 @@ impl Explorer {
         for (state, probability) in states {
             let differs = |id: &ComponentId| state.mode(*id) != likeliest.mode(*id);
             let modes = self.system.model.component_ids().filter(differs).map(|id| (id, state.mode(id)));
-            let by = Move { modes: modes.collect(), choices: Vec::new() };
+            let by = Move { modes: modes.collect(), ..Move::default() };
             let mut closed = closed.clone().starting_in(&self.system, state);
             closed = closed.with_knowledge(&self.system, knowledge);
             let standing = ProgramExecution::new(&self.system).stepper.standing();
@@ -212,11 +250,6 @@ impl Explorer {
             if closed.enter(&next, commands).is_err() {
                 continue;
             }
-            self.program.stepper.return_to(standing);
-            let programs = &mut [&mut self.program];
-            let observers = std::slice::from_mut(&mut self.fired);
-            let nothing = BTreeMap::new();
-            closed.learn(&system, programs, &mut self.estimator, commands, &nothing, observers)?;
             let mut by = Move::default();
             let mut weights = Vec::new();
             for ((id, targets), target) in system.model.component_ids().zip(&each).zip(&picked) {
@@ -228,10 +261,74 @@ impl Explorer {
                 }
             }
             let faults = picked.iter().filter(|target| target.is_fault).count() as u32;
-            let standing = self.program.stepper.standing();
-            self.choose(Way { standing, closed, by, is_fault: faults > 0, faults, weights }, &mut ways);
+            let entered = Entered { closed, by, faults, weights };
+            for seen in self.seen(&entered, most_faults) {
+                let mut closed = entered.closed.clone();
+                self.program.stepper.return_to(standing);
+                let programs = &mut [&mut self.program];
+                let observers = std::slice::from_mut(&mut self.fired);
+                let observation = seen.observation;
+                closed.learn(&system, programs, &mut self.estimator, commands, observation, observers)?;
+                let by = Move { observed: seen.unusual, ..entered.by.clone() };
+                let faults = entered.faults + seen.errors;
+                let weights = entered.weights.iter().copied().chain(seen.weights).collect();
+                let standing = self.program.stepper.standing();
+                self.choose(Way { standing, closed, by, is_fault: faults > 0, faults, weights }, &mut ways);
+            }
         }
         Ok((ways, commanded.contradiction))
+    }
+
+    /// What may be observed once components have entered their modes. An error of a sensor counts as a fault.
+    fn seen(&mut self, entered: &Entered, most_faults: u32) -> Vec<Seen> {
+        let model = &self.system.model;
+        let state = entered.closed.true_state();
+        let shown = observation_of(model, state);
+        let possible = observations(model, state, &self.components, MAX_OBSERVATIONS);
+        self.has_cut |= possible.is_none();
+        let possible = possible.unwrap_or_else(|| vec![shown.clone()]);
+        let count = possible.len() as u64;
+        let mut all: Vec<Seen> = possible
+            .into_iter()
+            .map(|observation| {
+                let differs = |(id, value): &(&VariableId, &u8)| shown.0.get(id) != Some(value);
+                let unusual = observation.0.iter().filter(differs).map(|(id, value)| (*id, *value)).collect();
+                Seen { observation, unusual, errors: 0, weights: vec![(1, count)] }
+            })
+            .collect();
+        for &variable in
+            self.groups.iter().filter_map(|at| self.system.groups.get(*at)).flat_map(|it| &it.variables)
+        {
+            let Some(data) = model.variables.get(variable.0 as usize) else { continue };
+            let Some((part, of)) = data.error.filter(|_| data.observable) else { continue };
+            let others = data.values.len() as u64 - 1;
+            let mut next = Vec::with_capacity(all.len());
+            for seen in all {
+                let Some(&truth) = seen.observation.0.get(&variable) else {
+                    next.push(seen);
+                    continue;
+                };
+                if entered.faults + seen.errors < most_faults && others > 0 {
+                    for value in (0..data.values.len() as u8).filter(|value| *value != truth) {
+                        let mut wrong = seen.clone();
+                        wrong.observation.0.insert(variable, value);
+                        wrong.unusual.retain(|(id, _)| *id != variable);
+                        if shown.0.get(&variable) != Some(&value) {
+                            wrong.unusual.push((variable, value));
+                        }
+                        wrong.errors += 1;
+                        wrong.weights.push((part, of.saturating_mul(others)));
+                        next.push(wrong);
+                    }
+                }
+                let mut right = seen;
+                right.weights.push((of - part, of));
+                next.push(right);
+            }
+            all = next;
+        }
+        all.sort_by_key(|seen| (seen.errors, !seen.unusual.is_empty()));
+        all
     }
 
     /// Adds a way once for each combination of the alternatives that are open at its end.
@@ -385,6 +482,10 @@ impl Exploration {
                 edges.push(Edge { to, by, is_fault });
             }
             self.product.fired.extend(self.explorer.fired.0.drain(..));
+            if self.explorer.has_cut {
+                let why = || format!("a state admits more than {MAX_OBSERVATIONS} observations");
+                self.product.stopped.get_or_insert_with(why);
+            }
             let node = &mut self.product.nodes[id as usize];
             node.edges = Some(edges);
             node.contradiction = contradiction;
