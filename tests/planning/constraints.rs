@@ -152,6 +152,95 @@ fn a_bound_over_what_nature_chooses_is_a_requirement() {
 }
 
 #[test]
+fn with_a_negative_minimum_either_event_may_come_first() {
+    let network = mission(
+        "scenario S[0,20] = { { delay[6,6]; Drive()[5,5] as Leg }, { delay; Pass()[3,3] as Relay } }
+         constrain Leg.start to Relay.start [-4,9];",
+    );
+    // The drive starts at 6, and the relay ends by 20.
+    expect(&network, &[("Drive#1.start", 6, 6), ("Pass#1.start", 2, 15)]);
+    let plan = &all_plans(&network, Search::Chronological).plans[0];
+    assert!(!plan.instant_order(&network).iter().any(|&[from, to]| {
+        let arc = &network.arcs[network.constraints().next().expect("there is one").index()];
+        (from, to) == (arc.from, arc.to) || (to, from) == (arc.from, arc.to)
+    }));
+}
+
+#[test]
+fn a_bound_that_only_leads_back_is_the_same_bound_forward() {
+    let text = |bound: &str| {
+        format!(
+            "scenario S[0,20] = {{ {{ delay; Drive() as Leg }}, {{ delay; Pass() as Relay }} }} constrain {bound};"
+        )
+    };
+    let (back, forward) = (
+        mission(&text("Leg.start to Relay.start [-7,-3]")),
+        mission(&text("Relay.start to Leg.start [3,7]")),
+    );
+    let ends = |network: &Network| {
+        let arc = &network.arcs[network.constraints().next().expect("there is one").index()];
+        (arc.from, arc.to, arc.lower, arc.upper)
+    };
+    assert_eq!(ends(&back), ends(&forward));
+    expect(&back, &[("Pass#1.start", 0, 12), ("Drive#1.start", 3, 15)]);
+}
+
+#[test]
+fn a_negative_bound_that_cannot_be_kept_is_explained_and_another_is_offered() {
+    let network = mission(
+        "scenario S[0,60] = { Drive()[5,10] as Leg, { delay[2,3]; Pass() as Relay } } constrain Leg.end to Relay.start [-1,9];",
+    );
+    let outcome = kirk::plan(&network, &Options::default(), &mut Unlimited);
+    assert_eq!(outcome.status, Status::NoPlan);
+    let failure = outcome.failure.expect("it is explained");
+    let message = &failure.reasons[0].message;
+    // The drive takes 5, and the relay starts at most 1 before its end.
+    let told =
+        "Drive and the bound from Drive#1.end to Pass#1.start need at least 4, but the delay lasts at most 3";
+    assert_eq!(message, told);
+    let fixes: Vec<&str> = failure.relaxations.iter().map(|fix| fix.label.as_str()).collect();
+    assert!(
+        fixes.contains(&"lower the minimum of the bound from Drive#1.end to Pass#1.start from -1 to -2"),
+        "{fixes:?}"
+    );
+}
+
+/// Times from 0 to 12, tried one by one.
+#[test]
+fn windows_under_negative_bounds_are_those_of_all_schedules() {
+    let mut random = tpn::generate::Rng::new(7);
+    for _ in 0..60 {
+        let mut draw = |low, high| random.between(low, high);
+        let (low, high) = (draw(-8, 4), draw(-2, 8));
+        if low > high {
+            continue;
+        }
+        let (wait, back, forth) = (draw(0, 5), draw(-6, 0), draw(0, 6));
+        let network = mission(&format!(
+            "scenario S[0,12] = {{ {{ delay[{wait},9]; Dig()[2,3] as One }}, {{ delay; Pass()[3,4] as Other }} }}
+             constrain One.start to Other.start [{low},{high}]; constrain Other.end to One.end [{back},{forth}];"
+        ));
+        let mut earliest: Option<i64> = None;
+        for (one, one_end, other, other_end) in (0..=12).flat_map(|one| {
+            (0..=12).flat_map(move |other| {
+                (2..=3).flat_map(move |dig| (3..=4).map(move |pass| (one, one + dig, other, other + pass)))
+            })
+        }) {
+            let is_fine = (wait..=9).contains(&one)
+                && one_end.max(other_end) <= 12
+                && (low..=high).contains(&(other - one))
+                && (back..=forth).contains(&(one_end - other_end));
+            if is_fine {
+                earliest = Some(earliest.map_or(other, |known| known.min(other)));
+            }
+        }
+        let outcome = first_plan(&network, Search::ConflictDirected);
+        let found = outcome.plans.first().map(|plan| window(&network, plan, "Pass#1.start").0);
+        assert_eq!(found, earliest.map(Time::from), "[{low},{high}] [{back},{forth}] after {wait}");
+    }
+}
+
+#[test]
 fn documents_keep_bounds_between_threads() {
     let network = mission(
         "scenario S[0,20] = { { Drive() as Leg }, { delay; Pass() as Relay } } constrain Leg.end to Relay.start [3,7];",

@@ -361,9 +361,10 @@ impl Model {
 
     /// Finds the context of every arc and decision; `false` if its choices are not nested as its blocks say.
     fn find_contexts(&mut self, network: &Network) -> bool {
-        // Arcs back to the start hold what has happened already.
-        let is_fact = |arc: &ModelArc| arc.to == network.start;
-        if self.arcs.iter().any(|arc| arc.lower < 0 && !is_fact(arc)) {
+        // Arcs back to the start hold what has happened already, and of two threads either may be ahead.
+        let is_free =
+            |id: ArcId| self.arcs[id].to == network.start || self.constraints.binary_search(&id).is_ok();
+        if self.arcs.iter_enumerated().any(|(id, arc)| arc.lower < 0 && !is_free(id)) {
             return false;
         }
         let merges = if network.root.is_some() { merges_of_blocks(network) } else { self.found_merges() };

@@ -42,6 +42,9 @@ pub(crate) fn relaxations(
     Ok(found)
 }
 
+/// How far a negative minimum is lowered to see whether that helps: sums with all other bounds still fit.
+const WIDEST: i64 = 1 << 50;
+
 /// Planning without the gap may meet so many conflicts.
 const MAX_CONFLICTS: u64 = 10_000;
 
@@ -142,6 +145,7 @@ impl Trial<'_> {
         let first = &self.model.arcs[arcs[0]];
         let (lower, upper) = (first.lower, first.upper);
         let (old, most) = match (first.is_uncertain, is_lower) {
+            (false, true) if lower < 0 => (lower, -WIDEST),
             (false, true) => (lower, 0),
             (false, false) => (upper, INFINITE),
             (true, true) => (lower, upper),

@@ -218,7 +218,7 @@ impl Told<'_> {
                         );
                     }
                     _ if arc.lower != Time::ZERO => {
-                        push(&mut rest, format!("{name} needs at least {}", arc.lower.readable()));
+                        push(&mut rest, format!("{name} {}", needing(arc)));
                     }
                     _ => {}
                 }
@@ -459,7 +459,7 @@ pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
     let broken = match run.broken {
         Broken::Lower(arc) => {
             let arc = &network.arcs[arc.index()];
-            format!("{} needs at least {}", arc_name(network, arc), arc.lower.readable())
+            format!("{} {}", arc_name(network, arc), needing(arc))
         }
         Broken::Upper(arc) => {
             let arc = &network.arcs[arc.index()];
@@ -533,6 +533,14 @@ fn use_owner(network: &Network, used: &Use) -> String {
     match used.owner {
         Some(owner) => network.occurrences[owner.index()].name.to_string(),
         None => arc_name(network, &network.arcs[used.arc.index()]),
+    }
+}
+
+/// What the minimum of an arc asks for. A negative one is how far its second event may come before the first.
+fn needing(arc: &Arc) -> String {
+    match arc.lower.checked_neg().filter(|ahead| ahead.is_positive()) {
+        Some(ahead) => format!("allows only {} in the other direction", ahead.readable()),
+        None => format!("needs at least {}", arc.lower.readable()),
     }
 }
 

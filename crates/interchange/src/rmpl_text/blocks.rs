@@ -279,18 +279,6 @@ impl Shaping<'_> {
         }
         let (lower, upper) = (arc.lower, arc.upper);
         let (from, to) = (self.event(from), self.event(to));
-        if lower.is_negative() {
-            return match upper {
-                Bound::Finite(upper) if !upper.is_positive() => {
-                    let (Some(least), Some(most)) = (upper.checked_neg(), lower.checked_neg()) else {
-                        return Err(Obstacle::at_arc(id, "has a bound that is too large"));
-                    };
-                    self.constrain(to, from, least, Bound::Finite(most));
-                    Ok(())
-                }
-                _ => Err(Obstacle::at_arc(id, "allows its events in both orders")),
-            };
-        }
         self.constrain(from, to, lower, upper);
         Ok(())
     }

@@ -446,8 +446,9 @@ impl<'m> Problem<'m> {
         let (from, to) = (self.times[arc.from], self.times[arc.to]);
         let (when_from, when_to) = (self.presence(arc.context), self.presence(arc.other_context));
         if from == to {
-            if arc.lower > 0 {
-                solver.tell_from([Member::Bound(Constraint::Lower(id))]);
+            let broken = [(arc.lower > 0, Constraint::Lower(id)), (arc.upper < 0, Constraint::Upper(id))];
+            for (_, bound) in broken.into_iter().filter(|&(is_broken, _)| is_broken) {
+                solver.tell_from([Member::Bound(bound)]);
                 solver.at_least_one([!when_from, !when_to]);
             }
             return;
@@ -667,8 +668,8 @@ const MAX_SHARING: usize = 1_000;
 fn reach(model: &Model) -> Result<(i64, i64), Unencoded> {
     let mut total = i128::from(model.gap) * (model.conditions.labels.len() as i128 + 1) + 1;
     let mut can_precede_start = false;
-    for arc in &model.arcs {
-        can_precede_start |= arc.lower < 0;
+    for (id, arc) in model.arcs.iter_enumerated() {
+        can_precede_start |= arc.lower < 0 && model.constraints.binary_search(&id).is_err();
         if arc.lower != UNBOUNDED_BELOW {
             total += i128::from(arc.lower).abs();
         }

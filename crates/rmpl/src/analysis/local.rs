@@ -11,8 +11,8 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
-    Bounds, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name, ObstacleShape,
-    PrimitiveDecl, Statement, StatementKind, VariableDecl,
+    Bounds, ConstrainDecl, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name,
+    ObstacleShape, PrimitiveDecl, Statement, StatementKind, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
@@ -49,6 +49,15 @@ impl Occurrences {
         }
         names
     }
+}
+
+/// Which bounds there can be.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    /// Durations.
+    NotNegative,
+    /// Of two events either may be the first.
+    Any,
 }
 
 struct Local {
@@ -100,7 +109,10 @@ impl Local {
                 self.statement(&decl.body);
                 self.named(&decl.body, &mut Occurrences::default());
             }
-            Item::Constrain(decl) => self.bounds(Some(&decl.bounds)),
+            Item::Constrain(decl) => {
+                let ConstrainDecl { bounds, .. } = decl;
+                self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span, Sign::Any);
+            }
             Item::Option(decl) => self.option(decl),
             Item::Terrain(decl) => {
                 if decl.cell_m.is_some_and(|cell_m| cell_m <= 0.0) {
@@ -224,25 +236,25 @@ impl Local {
             HeaderBound::Parameter(_) => None,
         };
         let (lower, upper) = (limit(lower), limit(upper));
-        self.sides(lower.as_ref(), upper.as_ref(), *span);
+        self.sides(lower.as_ref(), upper.as_ref(), *span, Sign::NotNegative);
         names
     }
 
     fn bounds(&mut self, bounds: Option<&Bounds>) {
         let Some(bounds) = bounds else { return };
-        self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span);
+        self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span, Sign::NotNegative);
         if bounds.is_contingent && constant::evaluate(&bounds.upper) == Ok(Bound::Infinite) {
             self.found.push(bounds::unlimited(bounds.upper.span));
         }
     }
 
     /// Checks the sides that are constants; one mistake is reported once.
-    fn sides(&mut self, lower: Option<&Expr>, upper: Option<&Expr>, span: Span) {
+    fn sides(&mut self, lower: Option<&Expr>, upper: Option<&Expr>, span: Span, sign: Sign) {
         let mut values = [None, None];
         for (slot, side) in values.iter_mut().zip([lower, upper]) {
             let Some(side) = side else { continue };
             match constant::evaluate(side) {
-                Ok(Bound::Finite(time)) if time.is_negative() => {
+                Ok(Bound::Finite(time)) if time.is_negative() && sign == Sign::NotNegative => {
                     self.found.push(bounds::negative(time, side.span));
                     return;
                 }

@@ -14,7 +14,7 @@ pub const EXPLANATION: Explanation = Explanation {
     severity: Severity::Error,
     title: "invalid bounds",
     meaning: "The minimum must be a finite time of at least 0, and the maximum must not be smaller. Only the maximum may be
-`inf`. The bounds of a call must overlap the declared bounds, because both apply. `contingent` bounds must be finite, and
+`inf`. Only the bounds of `constrain` may be negative. The bounds of a call must overlap the declared bounds, because both apply. `contingent` bounds must be finite, and
 those of a call must lie within the declared ones. Bounds that contain names are checked with the values that the names have
 in the scenario. In a control program, durations and the length of a step are finite and above 0, and the minimum of `WITHIN`
 is at most its maximum.",

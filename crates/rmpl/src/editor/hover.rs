@@ -405,7 +405,8 @@ fn word_in_its_place(word: &str) -> Option<&'static str> {
         }
         "as" => "`A as NAME`: names this occurrence, so that `constrain` can refer to its start and its end.",
         "constrain" | "to" => {
-            "`constrain X.start to Y.end [l,u];`: Y must end at least l and at most u after X starts, if both are selected."
+            "`constrain X.start to Y.end [l,u];`: Y must end at least l and at most u after X starts, if both are selected. \
+             With a negative l, Y may end up to -l before X starts."
         }
         "import" => "`import \"file\";`: includes the declarations of another file of the mission.",
         "model" | "extends" => {

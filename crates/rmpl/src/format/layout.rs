@@ -60,6 +60,7 @@ impl Layout {
             | SyntaxKind::Product
             | SyntaxKind::PercentOf
             | SyntaxKind::Grouped
+            | SyntaxKind::Negation
             | SyntaxKind::Operand => {
                 let first = first_token(node).map(|first| self.place(first));
                 if matches!(first, Some(Place::Bounds | Place::Expression)) {

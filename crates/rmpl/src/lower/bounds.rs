@@ -1,5 +1,6 @@
 //! Bounds and the expressions in them.
 
+use exact::Rational;
 use smol_str::SmolStr;
 
 use crate::parser::CONTINGENT;
@@ -59,6 +60,11 @@ pub(crate) fn expression(node: SyntaxNode<'_>) -> Option<Expr> {
         SyntaxKind::Grouped => {
             let inner = expression(node.children().next()?)?;
             return Some(Expr { span, ..inner });
+        }
+        SyntaxKind::Negation => {
+            let zero = Expr { kind: ExprKind::Number(Rational::ZERO), span };
+            let inner = expression(node.children().next()?)?;
+            ExprKind::Binary(BinaryOp::Subtract, Box::new(zero), Box::new(inner))
         }
         SyntaxKind::PercentOf => ExprKind::Percent(Box::new(expression(node.children().next()?)?)),
         SyntaxKind::Sum | SyntaxKind::Product => return chain(node),

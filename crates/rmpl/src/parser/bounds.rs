@@ -1,6 +1,6 @@
 //! Bounds and the expressions in them, with their arithmetic (SPEC 1.2, 1.5) and units of time (SPEC 14).
 
-use super::{MAX_OPERANDS, Parser};
+use super::{MAX_OPERANDS, Mark, Parser};
 use crate::diagnostics::syntax;
 use crate::program::DurationUnit;
 use crate::span::Span;
@@ -13,8 +13,13 @@ impl Parser<'_> {
     /// `[lower, upper]` or `contingent [lower, upper]`, if one of them stands here.
     pub(super) fn bounds_if_any(&mut self) {
         if self.at(SyntaxKind::LeftBracket) || self.at_contingent() {
-            self.bounds();
+            self.bounds(Self::sum);
         }
+    }
+
+    /// The bounds of a `constrain`, whose sides may be negative.
+    pub(super) fn bounds_between_events(&mut self) {
+        self.bounds(Self::signed_sum);
     }
 
     /// Whether bounds begin with their word, which is a name like any other elsewhere. Where its brackets are still to
@@ -33,7 +38,7 @@ impl Parser<'_> {
             )
     }
 
-    fn bounds(&mut self) {
+    fn bounds(&mut self, side: impl Fn(&mut Self)) {
         let node = self.open();
         self.eat_word(CONTINGENT);
         if !self.at(SyntaxKind::LeftBracket) {
@@ -43,15 +48,15 @@ impl Parser<'_> {
         }
         let bracket = self.span_of(self.current);
         self.bump();
-        self.sum();
+        side(self);
         if self.eat(SyntaxKind::Comma) {
-            self.sum();
+            side(self);
         } else if self.at(SyntaxKind::RightBracket) {
             let diagnostic = syntax::one_bound(self.here());
             self.report(diagnostic);
         } else if self.at_operand() {
             self.report_missing("`,` between the bounds", ",");
-            self.sum();
+            side(self);
         } else {
             self.missing_bracket(bracket);
         }
@@ -107,6 +112,20 @@ impl Parser<'_> {
         self.chain(mark, SyntaxKind::Sum, [SyntaxKind::Plus, SyntaxKind::Minus], Self::product);
     }
 
+    /// A sum that may begin with a minus.
+    fn signed_sum(&mut self) {
+        let mark = self.next_mark();
+        if self.at(SyntaxKind::Minus) {
+            let node = self.open();
+            self.bump();
+            self.product();
+            self.close(node, SyntaxKind::Negation);
+        } else {
+            self.product();
+        }
+        self.chain(mark, SyntaxKind::Sum, [SyntaxKind::Plus, SyntaxKind::Minus], Self::product);
+    }
+
     fn product(&mut self) {
         let mark = self.next_mark();
         self.percent();
@@ -116,7 +135,7 @@ impl Parser<'_> {
     /// Further operands behind the one at `mark`, in one node.
     fn chain(
         &mut self,
-        mark: super::Mark,
+        mark: Mark,
         kind: SyntaxKind,
         operators: [SyntaxKind; 2],
         operand: impl Fn(&mut Self),

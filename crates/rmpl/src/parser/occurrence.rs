@@ -57,7 +57,7 @@ impl Parser<'_> {
             self.report_expected("the name of an occurrence");
         }
         if self.at(SyntaxKind::LeftBracket) || self.at_contingent() {
-            self.bounds_if_any();
+            self.bounds_between_events();
         } else {
             self.report_expected("`[` and the minimum and maximum time between the two");
         }

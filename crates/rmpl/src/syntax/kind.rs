@@ -208,6 +208,8 @@ pub enum SyntaxKind {
     Grouped,
     /// A number, perhaps with a unit of time, `inf` or a name in an expression.
     Operand,
+    /// `-5` at the head of a bound between events.
+    Negation,
 
     /// A core statement with the bounds behind it.
     Statement,

@@ -19,7 +19,7 @@ pub(super) trait Values {
     fn in_mission_units(&self, unit: DurationUnit) -> Option<Rational>;
 }
 
-/// A least and a greatest duration: `0 ≤ lower ≤ upper`.
+/// A minimum and a maximum time: `lower ≤ upper`, of durations `0 ≤ lower`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Interval {
     pub(super) lower: Time,
@@ -37,6 +37,17 @@ impl Interval {
         self.lower <= other.lower && self.upper >= other.upper
     }
 
+    /// Whether it allows no time at all.
+    pub(super) fn allows_zero(self) -> bool {
+        self.lower <= Time::ZERO && self.upper >= Bound::ZERO
+    }
+
+    /// The time back from the second event to the first, if only that is not negative.
+    pub(super) fn reversed(self) -> Option<Self> {
+        let (lower, upper) = (self.upper.finite()?.checked_neg()?, self.lower.checked_neg()?);
+        (upper.is_positive() && !lower.is_negative()).then_some(Self { lower, upper: Bound::Finite(upper) })
+    }
+
     /// What both allow, if there is anything.
     pub(super) fn intersect(self, other: Self) -> Option<Self> {
         let both = Self { lower: self.lower.max(other.lower), upper: self.upper.min(other.upper) };
@@ -50,7 +61,7 @@ impl std::fmt::Display for Interval {
     }
 }
 
-/// Evaluates `bounds`.
+/// Evaluates the bounds of a duration.
 pub(super) fn interval(bounds: &Bounds, values: &dyn Values) -> Result<Interval, Diagnostic> {
     let lower = value(&bounds.lower, values)?;
     let upper = value(&bounds.upper, values)?;
@@ -61,16 +72,26 @@ pub(super) fn interval(bounds: &Bounds, values: &dyn Values) -> Result<Interval,
     Ok(interval)
 }
 
-/// The interval of two evaluated sides, or what is wrong with it.
+/// Evaluates the bounds of the time between two events, which may come in either order.
+pub(super) fn interval_between_events(bounds: &Bounds, values: &dyn Values) -> Result<Interval, Diagnostic> {
+    ordered_interval(value(&bounds.lower, values)?, value(&bounds.upper, values)?, bounds.span)
+}
+
+/// The interval of the two evaluated sides of a duration, or what is wrong with it.
 pub(super) fn checked_interval(lower: Bound, upper: Bound, span: Span) -> Result<Interval, Diagnostic> {
+    let interval = ordered_interval(lower, upper, span)?;
+    if interval.lower.is_negative() {
+        let message = format!("the minimum {lower} is negative: an end cannot come before its start");
+        return Err(Diagnostic::error(E_BOUNDS, span, message));
+    }
+    Ok(interval)
+}
+
+fn ordered_interval(lower: Bound, upper: Bound, span: Span) -> Result<Interval, Diagnostic> {
     let Bound::Finite(least) = lower else {
         return Err(Diagnostic::error(E_BOUNDS, span, "the minimum must be finite")
             .with_hint("only the maximum may be `inf`"));
     };
-    if least.is_negative() {
-        let message = format!("the minimum {lower} is negative: an end cannot come before its start");
-        return Err(Diagnostic::error(E_BOUNDS, span, message));
-    }
     if lower > upper {
         let message = format!("the minimum {lower} is greater than the maximum {upper}");
         return Err(Diagnostic::error(E_BOUNDS, span, message).with_hint("write the smaller bound first"));

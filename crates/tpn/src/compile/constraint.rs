@@ -11,7 +11,7 @@ use rmpl::Span;
 use rmpl::diagnostics::limit;
 use rmpl::program::{EventName, Name};
 
-use super::bounds::Interval;
+use super::bounds::{self, Interval};
 use super::expander::Expander;
 use super::scope::Scope;
 use crate::network::{ArcKind, NodeId};
@@ -74,7 +74,15 @@ impl Expander<'_> {
     /// Adds all bounds between events.
     pub(super) fn constrain(&mut self) {
         for declared in &self.program.constraints {
-            let interval = self.interval(&declared.bounds, &Scope::default());
+            let scope = Scope::default();
+            let evaluated = bounds::interval_between_events(&declared.bounds, &scope.values(&self.constants));
+            let interval = match evaluated {
+                Ok(interval) => interval,
+                Err(error) => {
+                    self.diagnostics.push(error);
+                    continue;
+                }
+            };
             let (from, to) = (self.named.of(&declared.from.name.text), self.named.of(&declared.to.name.text));
             if from.len().saturating_mul(to.len()) > MAX_PAIRS {
                 let what = format!("`{}` and `{}` make", declared.from.name.text, declared.to.name.text);
@@ -91,10 +99,15 @@ impl Expander<'_> {
         }
     }
 
+    /// A bound that lets the second event only come first is the same bound from that event to the other one.
     fn relate(&mut self, (from, to): (NodeId, NodeId), interval: Interval, span: Span) {
-        if from != to || !interval.lower.is_zero() {
-            self.builder.arc(from, to, ArcKind::Constraint, interval, span);
+        if from == to && interval.allows_zero() {
+            return;
         }
+        match interval.reversed() {
+            Some(reversed) => self.builder.arc(to, from, ArcKind::Constraint, reversed, span),
+            None => self.builder.arc(from, to, ArcKind::Constraint, interval, span),
+        };
     }
 }
 

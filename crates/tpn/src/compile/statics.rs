@@ -50,7 +50,11 @@ pub(super) fn check(program: &Program, constants: &Constants<'_>) -> Vec<Diagnos
         });
     }
     for constraint in &program.constraints {
-        check_bounds(&constraint.bounds);
+        if bounds::is_constant(&constraint.bounds)
+            && let Err(error) = bounds::interval_between_events(&constraint.bounds, constants)
+        {
+            found.push(error);
+        }
     }
     found
 }
