@@ -194,6 +194,9 @@ impl AppState {
             let wanted = self.automaton.request(&self.document);
             self.window.post(Request::RunControl(wanted));
         }
+        if self.automaton.proof.is_wanted() {
+            self.automaton.prove_on(&self.document, &mut self.window);
+        }
         if self.terrain.growth.wants_answer()
             && let Some(update) = self.update_with_plan()
             && let Some(wanted) = self.terrain.growth.take_request(update)

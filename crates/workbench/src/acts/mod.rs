@@ -100,7 +100,7 @@ impl AppState {
             Command::Contradict(command) => self.apply_to_contradict(command),
             Command::ProgramChance(command) => self.apply_to_program_chance(command),
             Command::ProgramProof(command) => {
-                self.automaton.apply_to_proof(command, &self.document, &mut self.window);
+                self.automaton.apply_to_proof(command, &self.document);
             }
             Command::Search(command) => self.apply_to_search(command),
 

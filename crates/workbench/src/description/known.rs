@@ -6,6 +6,7 @@ use motion::GrowthStep;
 use snapshot::{Snapshot, Stage};
 use tpn::{Network, NodeId, Plan};
 
+use super::program::ProgramVerdict;
 use super::{Description, PlantState};
 use crate::state::automaton::{Moment, PlantMoment, Program};
 use crate::state::diagnosing::Diagnosing;
@@ -136,6 +137,12 @@ impl<'a> Description<'a> {
 
     pub(super) fn moment(&self) -> Option<&'a Moment> {
         self.state.automaton.moment()
+    }
+
+    /// What the last proof says of a property.
+    pub(super) fn verdict(&self, property: &str) -> Option<&ProgramVerdict> {
+        let proof = self.program()?.proof.as_ref()?;
+        proof.verdicts.iter().find(|verdict| verdict.property == property)
     }
 
     /// The plant at the moment that is looked at, with its model.

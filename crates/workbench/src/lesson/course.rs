@@ -64,7 +64,7 @@ pub const COURSE: &[Chapter] = &[
         ],
     },
     Chapter { title: "A complete mission", lessons: lessons!["20" "whole-mission"] },
-    Chapter { title: "Review", lessons: lessons!["21" "review", "22" "verified"] },
+    Chapter { title: "Review", lessons: lessons!["21" "review", "22" "verified", "23" "proof"] },
 ];
 
 /// The lesson of this name.

@@ -171,6 +171,17 @@ const FACTS: &[Fact] = &[
     fact("observed", Of::Something("EngineA.thrust"), "what was observed of a variable in the last step"),
     fact("conflicts", Of::Nothing, "how many sets of assumptions the last observation contradicts"),
     fact("conflict", Of::Nothing, "the first of them, in words"),
+    fact("proof-states", Of::Nothing, "how many states the last proof has explored"),
+    fact(
+        "verdict",
+        Of::Something("the program ends"),
+        "whether a property of the last proof `holds`, is `broken` or `open`",
+    ),
+    fact(
+        "counterexample",
+        Of::Something("the program ends"),
+        "what is unusual in the run that breaks a property, by step",
+    ),
     fact("diagnoses", Of::Nothing, "how many minimal diagnoses the conflicts of the last step have"),
     fact(
         "likeliest-diagnosis",

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use executive::model_based::{StepOutcome, run_seed};
+use executive::model_based::{StepInput, StepOutcome, run_seed};
 use hca::VariableId;
 use link::{ControlRun, ControlStanding};
 use plant::ComponentId;
@@ -154,7 +154,7 @@ impl AutomatonState {
             return;
         }
         self.chance.give_up();
-        self.proof.give_up();
+        self.proof.follow(document.revision());
         let asked = self.asked;
         if !is_control {
             *self = Self { asked, ..Self::default() };
@@ -338,10 +338,10 @@ impl AutomatonState {
     }
 
     /// Starts again without chance, with what comes from outside in each step, and looks at the moment after the last.
-    pub(crate) fn show_steps(&mut self, inputs: impl Iterator<Item = StepInput>) {
+    pub(crate) fn show_steps(&mut self, inputs: Vec<StepInput>) {
         self.forget_steps();
         self.fault_seed = None;
-        self.log.extend(inputs.map(|plant| Input { plant, ..Input::default() }));
+        self.log.extend(inputs.into_iter().map(|plant| Input { plant, ..Input::default() }));
         self.target = self.log.len();
         self.wants_answer = true;
     }

@@ -19,6 +19,8 @@ pub struct ProgramProofState {
     /// What was asked last, of which revision of the text.
     asked: Option<(u64, ProofQuestion)>,
     is_running: bool,
+    /// Whether the core is to be asked once it has the text.
+    is_wanted: bool,
     states: usize,
     answer: Option<Result<ProofAnswer, String>>,
 }
@@ -77,17 +79,25 @@ impl ProgramProofState {
     /// The core was started again: no more answers come.
     pub(crate) const fn give_up(&mut self) {
         self.is_running = false;
+        self.is_wanted = false;
+    }
+
+    /// The text has this revision now: what was asked of another one is not wanted any more.
+    pub(super) fn follow(&mut self, revision: u64) {
+        if self.asked.as_ref().is_some_and(|(asked, _)| *asked != revision) {
+            self.give_up();
+        }
+    }
+
+    /// Whether the core is to be asked.
+    pub(crate) const fn is_wanted(&self) -> bool {
+        self.is_wanted
     }
 }
 
 impl AutomatonState {
     /// Does what a command about proofs asks for.
-    pub(crate) fn apply_to_proof(
-        &mut self,
-        command: ProgramProofCommand,
-        document: &Document,
-        window: &mut Window,
-    ) {
+    pub(crate) fn apply_to_proof(&mut self, command: ProgramProofCommand, document: &Document) {
         match command {
             ProgramProofCommand::Start => {
                 if !matches!(self.program(), Some(Program::Bound { .. })) {
@@ -104,12 +114,12 @@ impl AutomatonState {
                 };
                 self.proof.asked = Some((document.revision(), question));
                 self.proof.is_running = true;
+                self.proof.is_wanted = true;
                 self.proof.states = 0;
                 self.proof.answer = None;
                 self.part = ProgramPart::Proof;
-                self.prove_on(document, window);
             }
-            ProgramProofCommand::Stop => self.proof.is_running = false,
+            ProgramProofCommand::Stop => self.proof.give_up(),
             ProgramProofCommand::Set(mut settings) => {
                 settings.faults = settings.faults.min(MAX_FAULTS);
                 self.proof.settings = settings;
@@ -122,6 +132,7 @@ impl AutomatonState {
                         injected: by.modes.iter().copied().collect(),
                         observed: by.observed.iter().copied().collect(),
                     });
+                    let inputs: Vec<StepInput> = inputs.collect();
                     self.show_steps(inputs);
                 }
             }
@@ -129,9 +140,10 @@ impl AutomatonState {
     }
 
     /// Asks to explore further, unless the text has changed.
-    fn prove_on(&mut self, document: &Document, window: &mut Window) {
+    pub(crate) fn prove_on(&mut self, document: &Document, window: &mut Window) {
         let revision = document.revision();
         let proof = &mut self.proof;
+        proof.is_wanted = false;
         let asked = proof.asked.clone().filter(|(asked, _)| *asked == revision && proof.is_running);
         match asked {
             Some((_, question)) => {

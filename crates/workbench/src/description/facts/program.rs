@@ -36,6 +36,9 @@ pub(super) const VALUES: &[Row] = &[
     ("observed", |it, name| words(it.plant()?.observations.as_ref()?.get(name)?.as_str())),
     ("conflicts", |it, _| count(it.plant()?.conflicts.as_ref()?.len())),
     ("conflict", |it, _| words(it.plant()?.conflicts.as_ref()?.first()?.as_str())),
+    ("proof-states", |it, _| count(it.program()?.proof.as_ref().filter(|proof| !proof.is_running)?.states)),
+    ("verdict", |it, property| words(it.verdict(property)?.verdict.as_str())),
+    ("counterexample", |it, property| words(it.verdict(property)?.faults.join("; "))),
     ("diagnoses", |it, _| {
         let (model, _) = it.plant_of_moment()?;
         count(it.new_diagnosing()?.finished(model).tree().diagnoses().count())
