@@ -196,10 +196,12 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
         for (name, mode) in by.named(model) {
             flags.push_str(&format!(" --inject {number}:{name}={mode}"));
         }
+        for (name, value) in by.shown(model) {
+            flags.push_str(&format!(" --observe {number}:{name}={value}"));
+        }
     }
     out.push_str(&format!("  end      {}\n", run.ending()));
-    let is_repeatable = run.start == Move::default()
-        && run.moves.iter().all(|by| by.choices.is_empty() && by.observed.is_empty());
+    let is_repeatable = run.start == Move::default() && run.moves.iter().all(|by| by.choices.is_empty());
     if is_repeatable && let Some(active) = active_at_end(args, system, run) {
         out.push_str(&active);
         let file = args.file.display();
@@ -222,7 +224,9 @@ fn active_at_end(args: &Args, system: &Arc<System>, counterexample: &Counterexam
         if run.status() != RunStatus::Running {
             break;
         }
-        let input = StepInput { injected: by.modes.iter().copied().collect(), ..StepInput::default() };
+        let (injected, observed) =
+            (by.modes.iter().copied().collect(), by.observed.iter().copied().collect());
+        let input = StepInput { injected, observed };
         run.step(&input).ok()?;
     }
     Some(run.upcoming().labels.iter().map(|label| format!("  active   {label}\n")).collect())

@@ -33,6 +33,9 @@ pub struct Args {
     /// Put a component into a mode at a step, as in 3:EngineA=Failed. Repeatable.
     #[arg(long, value_name = "STEP:COMPONENT=MODE")]
     inject: Vec<String>,
+    /// Observe a value at a step, as in 3:EngineA.thrust=zero. Repeatable.
+    #[arg(long, value_name = "STEP:VARIABLE=VALUE")]
+    observe: Vec<String>,
     /// Inject random faults, using this seed.
     #[arg(long, alias = "seed", value_name = "SEED")]
     fault_seed: Option<u64>,
@@ -108,7 +111,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         seed: args.fault_seed,
         knowledge: args.knowledge.into(),
     };
-    let inputs = injections(system, &args.inject)?;
+    let inputs = inputs(system, args)?;
     if let Some(runs) = args.monte_carlo {
         let seed = args.fault_seed.unwrap_or(0);
         let trials = Trials { options, seed, most_steps: args.steps, inputs: &inputs };
@@ -130,23 +133,40 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }))
 }
 
-fn injections(system: &System, given: &[String]) -> anyhow::Result<BTreeMap<u32, StepInput>> {
+/// What comes from outside, by step.
+fn inputs(system: &System, args: &Args) -> anyhow::Result<BTreeMap<u32, StepInput>> {
+    let model = &system.model;
     let mut inputs: BTreeMap<u32, StepInput> = BTreeMap::new();
-    for text in given {
-        let parts = text
-            .split_once(':')
-            .and_then(|(step, rest)| Some((step.trim().parse().ok()?, rest.split_once('=')?)));
-        let Some((step, (component, mode))) = parts else {
-            bail!("--inject expects STEP:COMPONENT=MODE, as in 3:EngineA=Failed, not `{text}`");
-        };
-        if step == 0 {
-            bail!("--inject counts steps from 1, so step 0 does not exist");
-        }
-        let (component, mode) =
-            system.model.component_mode(component.trim(), mode.trim()).map_err(|error| anyhow!(error))?;
+    for text in &args.inject {
+        let (step, component, mode) = at_step("--inject STEP:COMPONENT=MODE", "3:EngineA=Failed", text)?;
+        let (component, mode) = model.component_mode(component, mode).map_err(|error| anyhow!(error))?;
         inputs.entry(step).or_default().injected.insert(component, mode);
     }
+    for text in &args.observe {
+        let (step, name, value) = at_step("--observe STEP:VARIABLE=VALUE", "3:EngineA.thrust=zero", text)?;
+        let observed = model.observation_from_names([(name, value)]).map_err(|error| anyhow!(error))?;
+        inputs.entry(step).or_default().observed.extend(observed.0);
+    }
     Ok(inputs)
+}
+
+/// Reads `STEP:NAME=VALUE`.
+fn at_step<'text>(
+    usage: &str,
+    example: &str,
+    text: &'text str,
+) -> anyhow::Result<(u32, &'text str, &'text str)> {
+    let parts = text.split_once(':').and_then(|(step, rest)| {
+        let (name, value) = rest.split_once('=')?;
+        Some((step.trim().parse().ok()?, name.trim(), value.trim()))
+    });
+    let Some((step, name, value)) = parts else {
+        bail!("expected {usage}, as in {example}, not `{text}`");
+    };
+    if step == 0 {
+        bail!("steps count from 1, so step 0 in `{text}` does not exist");
+    }
+    Ok((step, name, value))
 }
 
 fn chance(

@@ -582,16 +582,21 @@ fn check_finds_wrong_thresholds_and_priors_at_their_places() {
 fn check_finds_in_programs_and_plants_what_run_refuses() {
     let plant = "(DEFCLASS Lamp () (COMMAND cmd {none on}) (MODE Off true) (MODE On true) (TRANSITION Off On (cmd = on)))
 (DEFINSTANCE L Lamp INIT Off)\n";
-    let cases: [(&str, String, &[&str]); 6] = [
+    let cases: [(&str, String, &[&str]); 7] = [
         ("a mode", format!("(L = Onn)\n{plant}"), &["Onn", "did you mean `On`?"]),
         ("a component", format!("(M = On)\n{plant}"), &["`M`"]),
         ("a value", plant.replace("(cmd = on)", "(cmd = onn)"), &["onn", "did you mean `on`?"]),
         ("a target", plant.replace("Off On", "Off Onn"), &["Onn", "did you mean `On`?"]),
         ("a class", plant.replace("L Lamp", "L Lapm"), &["Lapm", "did you mean `Lamp`?"]),
         (
+            "a probability",
+            plant.replace("(TRANSITION", "(FAULT Off On 0) (TRANSITION"),
+            &["must be above 0 and at most 1, not `0`"],
+        ),
+        (
             "probabilities",
-            plant.replace("(TRANSITION", "(FAULT Off On 0) (FAULT On Off 0.7) (FAULT On On 0.6) (TRANSITION"),
-            &["`0` is not a probability", "add up to more than 1"],
+            plant.replace("(TRANSITION", "(FAULT On Off 0.7) (FAULT On On 0.6) (TRANSITION"),
+            &["must sum to at most 1"],
         ),
     ];
     for (name, text, parts) in cases {
@@ -702,4 +707,30 @@ fn orbit_insertion_is_proven_to_end_with_one_fault_and_shown_to_wait_forever_wit
     let wrong = prove(&["--property", "never EngineA = Fring"]);
     assert_eq!(wrong.status, 2);
     assert!(wrong.errors.contains("did you mean `Firing`?"), "{}", wrong.errors);
+}
+
+#[test]
+fn an_observation_can_be_set_and_one_that_cannot_be_read_says_how_to_write_it() {
+    let (program, plant) = (case_path("h01_orbit_nominal.rmpl"), case_path("orbit_plant.rmpl"));
+    let run = |more: &[&str]| {
+        let mut call = vec!["run", &program, "--model", &plant];
+        call.extend(more);
+        enroute(&call)
+    };
+    let seen = run(&["--observe", "4:EngineA.thrust=zero"]);
+    assert!(
+        seen.output.contains("conflict  EngineA=Firing contradicts EngineA.thrust=zero"),
+        "{}",
+        seen.output
+    );
+    for (text, part) in [
+        ("EngineA.thrust=zero", "expected --observe STEP:VARIABLE=VALUE"),
+        ("0:EngineA.thrust=zero", "steps count from 1"),
+        ("1:EngineA.thrust=none", "none"),
+        ("1:EngineC.thrust=zero", "EngineC.thrust"),
+    ] {
+        let wrong = run(&["--observe", text]);
+        assert_eq!(wrong.status, 2, "{text}");
+        assert!(wrong.errors.contains(part), "{text}: {}", wrong.errors);
+    }
 }

@@ -116,7 +116,7 @@ fn run(input: &[u8]) -> Outcome {
     };
     let mut random =
         Random::new(input.iter().fold(1, |sum: u64, &byte| sum.wrapping_mul(31) + u64::from(byte)));
-    let options = Options { seed: Some(1), most_states: None };
+    let options = Options { seed: Some(1), ..Options::default() };
     let mut run = Run::new(&system, options);
     let mut led = String::new();
     while run.status() == RunStatus::Running && run.records().len() < MAX_STEPS {
