@@ -326,7 +326,7 @@ fn an_example_that_was_not_edited_is_no_mission_of_the_library() {
     assert!(names(&first).is_empty());
     drop(first);
     world.fragment.borrow_mut().clear();
-    assert_eq!(start_in(world).session.state().mission, "enroute");
+    assert_eq!(start_in(world).session.state().mission, "both-paths");
 }
 
 #[test]
@@ -537,7 +537,7 @@ fn a_slow_shelf_brings_the_missions_later_and_the_last_one_opens_if_nobody_typed
     world.fragment.borrow_mut().clear();
     world.shelf_does.set(Shelf::Slow);
     let mut second = start_in(Rc::clone(&world));
-    assert_eq!(second.session.state().mission, "enroute");
+    assert_eq!(second.session.state().mission, "both-paths");
     world.let_shelf_answer();
     second.step();
     assert_eq!(text_of(&second), EDITED);

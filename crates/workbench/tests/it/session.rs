@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use workbench::host::{HostEvent, RemoteError};
+use workbench::mission_file::EXAMPLES;
 use workbench::outside::Remote as _;
 use workbench::registry::all_commands;
 
@@ -73,7 +74,7 @@ fn a_host_page_sees_resources_and_what_a_plan_is_worth() {
 #[test]
 fn every_mission_that_comes_with_the_app_has_no_errors() {
     let mut app = test_support::start();
-    for example in workbench::mission_file::EXAMPLES {
+    for example in EXAMPLES {
         app.session.open(example.name).expect("it is known");
         app.settle();
         let state = app.json();
@@ -83,6 +84,16 @@ fn every_mission_that_comes_with_the_app_has_no_errors() {
         assert!(!problems.iter().any(|it| is_mistake(&it)), "{}: {problems:?}", example.name);
         assert_ne!(state["status"], "broken", "{}", example.name);
     }
+}
+
+#[test]
+fn what_opens_on_a_first_visit_has_a_plan_and_neither_errors_nor_warnings() {
+    let mut app = test_support::start();
+    app.session.open(EXAMPLES[0].name).expect("it is known");
+    app.settle();
+    let state = app.json();
+    assert_eq!((&state["status"], &state["diagnostics"]), (&json!("plan"), &json!([])));
+    assert_eq!(workbench::state::AppState::new().mission, EXAMPLES[0].name);
 }
 
 #[test]
