@@ -41,6 +41,7 @@ const MAX_COLUMN_CHARS: usize = 60;
 pub fn document(kind: &str, problems: &[Problem], body: Value) -> Value {
     let mut members = Map::new();
     members.insert("format".into(), json!(format!("enroute-{kind}/1")));
+    members.insert("program".into(), json!(review::PROGRAM));
     members.insert("diagnostics".into(), Value::Array(problems.iter().map(problem_json).collect()));
     let unlisted: u64 = problems.iter().map(|problem| u64::from(problem.more)).sum();
     if unlisted > 0 {

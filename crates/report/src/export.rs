@@ -161,6 +161,7 @@ pub fn json(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
     });
     Some(json!({
         "format": "enroute-schedule/1",
+        "program": review::PROGRAM,
         "diagnostics": [],
         "content_hash": about.content_hash,
         "plan_status": about.status(),
@@ -213,9 +214,9 @@ pub fn icalendar(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
     let content_hash = about.content_hash;
     let mut out = String::new();
     let mut write = |line: &str| write_folded(line, &mut out);
-    for line in ["BEGIN:VCALENDAR", "VERSION:2.0", "PRODID:-//Enroute//Mission schedule//EN"] {
-        write(line);
-    }
+    write("BEGIN:VCALENDAR");
+    write("VERSION:2.0");
+    write(&format!("PRODID:-//Enroute//{}//EN", review::PROGRAM));
     write(&format!("X-ENROUTE-CONTENT-HASH:{content_hash}"));
     write(&format!("X-ENROUTE-PLAN-STATUS:{}", about.status_in_words()));
     write(&format!("X-ENROUTE-TIME-UNIT:{}", unit(snapshot)));

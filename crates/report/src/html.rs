@@ -49,10 +49,12 @@ pub fn html(document: &Document<'_>) -> String {
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{1}\">\n\
+         <meta name=\"generator\" content=\"{2}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{0}</title>\n<style>{style}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
         escaped(&title),
-        policy(&style)
+        policy(&style),
+        review::PROGRAM
     );
     out.push_str(&in_content(hash, sheets));
     out.push_str(&content);
@@ -131,12 +133,14 @@ fn facts(document: &Document<'_>, record: &Record) -> String {
          <dt>Times</dt><dd>in {unit} from the start of the mission</dd>\n\
          <dt>Map, seed</dt><dd>{}, {}</dd>\n\
          <dt>Board</dt><dd>{}</dd>\n\
-         <dt>Content hash</dt><dd class=\"hash\">{}</dd>\n</dl>\n",
+         <dt>Content hash</dt><dd class=\"hash\">{}</dd>\n\
+         <dt>Program</dt><dd>{}</dd>\n</dl>\n",
         tables::status(review.status),
         escaped(&map),
         document.seed,
         board::fact(record, review),
-        escaped(&review.content_hash)
+        escaped(&review.content_hash),
+        review::PROGRAM
     )
 }
 

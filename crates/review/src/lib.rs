@@ -46,6 +46,9 @@ pub use rules::{FlightRules, SuccessRate};
 pub use since::{Since, since};
 pub use waivers::{Waiver, WaiverState};
 
+/// Name and version of this program, which files say that it wrote.
+pub const PROGRAM: &str = concat!("Enroute ", env!("CARGO_PKG_VERSION"));
+
 #[cfg(test)]
 mod board_tests;
 #[cfg(test)]

@@ -74,7 +74,7 @@ pub enum RecordError {
         /// What it says of itself.
         found: String,
     },
-    #[error("this review cannot be read: {0}")]
+    #[error("couldn't read this review: {0}")]
     Damaged(String),
     /// Its history has been altered.
     #[error("the history of this review has been altered: {0}")]
@@ -270,6 +270,7 @@ impl Record {
             self.subjects.iter().map(|(digest, subject)| (digest.clone(), subject.raw().clone())).collect();
         let document = json!({
             "format": FORMAT,
+            "program": crate::PROGRAM,
             "diagnostics": [],
             "mission": self.mission,
             "entries": entries.collect::<Vec<Value>>(),

@@ -29,6 +29,27 @@ fn a_report_is_written_and_its_figures_are_data_too() {
 }
 
 #[test]
+fn what_is_written_says_which_version_wrote_it() {
+    let said = enroute(&["--version"]);
+    let version = written(&said).trim().replacen("enroute", "Enroute", 1);
+    assert_eq!(version, format!("Enroute {}", env!("CARGO_PKG_VERSION")));
+    let program = |arguments: &[&str]| {
+        let document: Value = serde_json::from_str(&written(&enroute(arguments))).expect("JSON");
+        document["program"].as_str().map(str::to_owned)
+    };
+    assert_eq!(program(&["check", SMALL, "--format", "json"]), Some(version.clone()));
+    assert_eq!(program(&["export", SMALL, "--as", "json"]), Some(version.clone()));
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("version.html");
+    enroute(&["report", SMALL, "-o", path.to_str().expect("a path in UTF-8")]);
+    let page = std::fs::read_to_string(path).expect("the report");
+    assert!(page.contains(&format!("<meta name=\"generator\" content=\"{version}\">")));
+    let calendar = enroute(&["export", SMALL, "--as", "icalendar", "--epoch", "2004-01-25"]);
+    assert!(written(&calendar).contains(&format!("PRODID:-//Enroute//{version}//EN")));
+    let (_, history, _) = approved_history("version.review.json");
+    assert!(history.contains(&format!("\"program\": \"{version}\"")));
+}
+
+#[test]
 fn a_calendar_needs_to_know_when_the_mission_starts() {
     let without = enroute(&["export", MISSION, "--as", "icalendar"]);
     assert_eq!(without.status.code(), Some(2), "{without:?}");

@@ -162,6 +162,7 @@ pub enum MissionError {
 #[derive(Serialize)]
 struct Written<'a> {
     format: &'static str,
+    program: &'static str,
     #[serde(flatten)]
     mission: &'a Mission,
 }
@@ -191,7 +192,8 @@ impl Mission {
 
     /// The mission as JSON with all that it holds.
     pub fn to_json(&self) -> String {
-        serde_json::to_string(&Written { format: FORMAT, mission: self }).unwrap_or_default()
+        serde_json::to_string(&Written { format: FORMAT, program: review::PROGRAM, mission: self })
+            .unwrap_or_default()
     }
 
     /// The same JSON with a checksum as its last entry, by which [`Mission::from_json`] notices damage: what the library
