@@ -24,7 +24,7 @@ use commands::{
 
 /// Plan, check and explain missions written in RMPL.
 #[derive(Parser)]
-#[command(name = "enroute", version, about, arg_required_else_help = true, max_term_width = 80)]
+#[command(name = "enroute", version, arg_required_else_help = true, max_term_width = 80)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

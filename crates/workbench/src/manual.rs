@@ -11,6 +11,8 @@ use crate::state::no_plan::NO_PLAN;
 /// A page of the manual.
 #[derive(Debug)]
 pub struct Page {
+    /// The heading of the contents that it is listed under.
+    pub group: &'static str,
     /// Its name in addresses, commands and links, without `.md`.
     pub name: &'static str,
     pub title: String,
@@ -29,25 +31,75 @@ pub struct Found {
     pub excerpt: String,
 }
 
-const FILES: &[(&str, &str)] = &[
-    ("tutorial", include_str!("../../../docs/tutorial.md")),
-    ("troubleshooting", include_str!("../../../docs/troubleshooting.md")),
-    ("language", include_str!("../../../docs/language.md")),
-    ("missions", include_str!("../../../docs/missions.md")),
-    ("network", include_str!("../../../docs/network.md")),
-    ("timeline", include_str!("../../../docs/timeline.md")),
-    ("terrain", include_str!("../../../docs/terrain.md")),
-    ("simulation", include_str!("../../../docs/simulation.md")),
-    ("execution", include_str!("../../../docs/execution.md")),
-    ("robustness", include_str!("../../../docs/robustness.md")),
-    ("reviews", include_str!("../../../docs/reviews.md")),
-    ("what-verified-means", include_str!("../../../docs/what-verified-means.md")),
-    ("controllability", include_str!("../../../docs/controllability.md")),
-    ("control-programs", include_str!("../../../docs/control-programs.md")),
-    ("esterel", include_str!("../../../docs/esterel.md")),
-    ("lessons", include_str!("../../../docs/lessons.md")),
-    ("glossary", include_str!("../../../assets/glossary.md")),
-    ("specification", include_str!("../../../docs/specification.md")),
+/// The groups of the contents, with the name and the text of each page. The last one also gets the diagnostics.
+const GROUPS: &[(&str, &[(&str, &str)])] = &[
+    (
+        "Tutorials",
+        &[
+            ("tutorial", include_str!("../../../docs/tutorial.md")),
+            ("first-control-program", include_str!("../../../docs/first-control-program.md")),
+            ("review-tutorial", include_str!("../../../docs/review-tutorial.md")),
+            ("execution", include_str!("../../../docs/execution.md")),
+        ],
+    ),
+    (
+        "How-to guides",
+        &[
+            ("missions", include_str!("../../../docs/missions.md")),
+            ("fix-no-plan", include_str!("../../../docs/fix-no-plan.md")),
+            ("resources-and-objectives", include_str!("../../../docs/resources-and-objectives.md")),
+            ("terrain", include_str!("../../../docs/terrain.md")),
+            ("exchange", include_str!("../../../docs/exchange.md")),
+            ("simulation", include_str!("../../../docs/simulation.md")),
+            ("robustness", include_str!("../../../docs/robustness.md")),
+            ("reviews", include_str!("../../../docs/reviews.md")),
+            ("lessons", include_str!("../../../docs/lessons.md")),
+            ("troubleshooting", include_str!("../../../docs/troubleshooting.md")),
+        ],
+    ),
+    (
+        "Panels",
+        &[
+            ("mission-text-panel", include_str!("../../../docs/panels/mission-text-panel.md")),
+            ("outline-panel", include_str!("../../../docs/panels/outline-panel.md")),
+            ("problems-panel", include_str!("../../../docs/panels/problems-panel.md")),
+            ("network-panel", include_str!("../../../docs/panels/network-panel.md")),
+            ("plan-panel", include_str!("../../../docs/panels/plan-panel.md")),
+            ("timeline-panel", include_str!("../../../docs/panels/timeline-panel.md")),
+            ("terrain-panel", include_str!("../../../docs/panels/terrain-panel.md")),
+            ("search-panel", include_str!("../../../docs/panels/search-panel.md")),
+            ("distances-panel", include_str!("../../../docs/panels/distances-panel.md")),
+            ("controllability-panel", include_str!("../../../docs/panels/controllability-panel.md")),
+            ("automaton-panel", include_str!("../../../docs/panels/automaton-panel.md")),
+            ("review-panel", include_str!("../../../docs/panels/review-panel.md")),
+            ("compare-panel", include_str!("../../../docs/panels/compare-panel.md")),
+            ("execution-panel", include_str!("../../../docs/panels/execution-panel.md")),
+            ("robustness-panel", include_str!("../../../docs/panels/robustness-panel.md")),
+            ("lesson-panel", include_str!("../../../docs/panels/lesson-panel.md")),
+            ("manual-panel", include_str!("../../../docs/panels/manual-panel.md")),
+        ],
+    ),
+    (
+        "Explanation",
+        &[
+            ("how-planning-works", include_str!("../../../docs/how-planning-works.md")),
+            ("flexible-times", include_str!("../../../docs/flexible-times.md")),
+            ("what-verified-means", include_str!("../../../docs/what-verified-means.md")),
+            ("controllability", include_str!("../../../docs/controllability.md")),
+        ],
+    ),
+    (
+        "Reference",
+        &[
+            ("language", include_str!("../../../docs/language.md")),
+            ("control-programs", include_str!("../../../docs/control-programs.md")),
+            ("esterel", include_str!("../../../docs/esterel.md")),
+            ("files", include_str!("../../../docs/files.md")),
+            ("browsers", include_str!("../../../docs/browsers.md")),
+            ("glossary", include_str!("../../../assets/glossary.md")),
+            ("specification", include_str!("../../../docs/specification.md")),
+        ],
+    ),
 ];
 
 /// Places that a search answers with at most.
@@ -56,17 +108,20 @@ const MAX_FOUND: usize = 60;
 const AROUND: usize = 48;
 
 static PAGES: LazyLock<Vec<Page>> = LazyLock::new(|| {
-    let files = FILES.iter().map(|&(name, text)| page(name, text));
-    files.chain([page("diagnostics", &diagnostics())]).collect()
+    let of_group = |&(group, files): &(&'static str, &'static [(&'static str, &'static str)])| {
+        files.iter().map(move |&(name, text)| page(group, name, text))
+    };
+    let files = GROUPS.iter().flat_map(of_group);
+    files.chain([page("Reference", "diagnostics", &diagnostics())]).collect()
 });
 
-fn page(name: &'static str, text: &str) -> Page {
+fn page(group: &'static str, name: &'static str, text: &str) -> Page {
     let document = Document::parse(&with_known_signs(text));
     let title = document.blocks.iter().find_map(|block| match &block.content {
         Content::Heading { level: 1, text } => Some(plain(text)),
         _ => None,
     });
-    Page { name, title: title.unwrap_or_else(|| name.to_owned()), document }
+    Page { group, name, title: title.unwrap_or_else(|| name.to_owned()), document }
 }
 
 /// Signs that the page's fonts lack, with what stands for them on screen.
@@ -135,7 +190,7 @@ pub fn section_of_code(code: &str) -> Option<String> {
 /// The page and the section about a kind of problem, which the app itself may find.
 pub fn about_code(code: &str) -> Option<(&'static str, String)> {
     if code == NO_PLAN {
-        return Some(("specification", "5-planning".to_owned()));
+        return Some(("fix-no-plan", "2-read-the-reason".to_owned()));
     }
     section_of_code(code).map(|section| ("diagnostics", section))
 }
@@ -273,12 +328,8 @@ mod tests {
     #[test]
     fn every_page_of_a_panel_and_every_code_has_its_section() {
         for panel in PanelKind::ALL {
-            let (name, section) = panel.manual();
-            let page = page_named(name).unwrap_or_else(|| panic!("no page {name} for {panel:?}"));
-            assert!(
-                section.is_empty() || page.document.heading(section).is_some(),
-                "{panel:?}: {name}#{section}"
-            );
+            let page = page_named(panel.manual()).unwrap_or_else(|| panic!("no page for {panel:?}"));
+            assert_eq!(page.title, format!("{} panel", panel.title()));
         }
         for topic in Topic::ALL {
             let (name, section) = about_topic(topic);
@@ -289,6 +340,20 @@ mod tests {
         for explanation in rmpl::diagnostics::EXPLANATIONS {
             let section = section_of_code(explanation.code.0).expect("a section");
             assert!(page.document.heading(&section).is_some(), "{section}");
+        }
+    }
+
+    /// Documents for developers, which are not in the manual.
+    const OF_THE_REPOSITORY: [&str; 6] =
+        ["contracts.md", "benchmarks.md", "key-sentences.md", "decisions/", "evidence/", "../tests/suite"];
+
+    #[test]
+    fn links_of_the_manual_stay_in_the_manual() {
+        for page in pages() {
+            let broken = broken_links(&page.document.blocks, page.name);
+            let inside =
+                broken.iter().filter(|link| !OF_THE_REPOSITORY.iter().any(|it| link.starts_with(it)));
+            assert_eq!(inside.collect::<Vec<_>>(), Vec::<&String>::new(), "{}", page.name);
         }
     }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 macro_rules! panel_kinds {
     ($(
         $(#[$comment:meta])*
-        $kind:ident: $name:literal, $title:literal, $page:literal $section:literal $(, $property:ident)*;
+        $kind:ident: $name:literal, $title:literal, $page:literal $(, $property:ident)*;
     )*) => {
         /// The kinds of panel. A layout holds at most one of each.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -24,7 +24,7 @@ macro_rules! panel_kinds {
                     $(Self::$kind => Entry {
                         name: $name,
                         title: $title,
-                        manual: ($page, $section),
+                        manual: $page,
                         properties: &[$(Property::$property),*],
                     },)*
                 }
@@ -37,7 +37,7 @@ macro_rules! panel_kinds {
 struct Entry {
     name: &'static str,
     title: &'static str,
-    manual: (&'static str, &'static str),
+    manual: &'static str,
     properties: &'static [Property],
 }
 
@@ -50,40 +50,40 @@ enum Property {
     MarkedWhenStale,
 }
 
-// Kind: name in commands, title on screen, page and section of the manual, and what else is true of it.
+// Kind: name in commands, title on screen, page of the manual, and what else is true of it.
 panel_kinds! {
-    Editor: "editor", "Mission text", "language" "";
+    Editor: "editor", "Mission text", "mission-text-panel";
     /// What the text declares.
-    Outline: "outline", "Outline", "language" "";
+    Outline: "outline", "Outline", "outline-panel";
     /// What is wrong with it.
-    Problems: "problems", "Problems", "diagnostics" "";
+    Problems: "problems", "Problems", "problems-panel";
     /// The temporal plan network.
-    Network: "network", "Network", "network" "", Zoomable;
+    Network: "network", "Network", "network-panel", Zoomable;
     /// Choices, windows, links, orderings and the verdict, or why there is no plan.
-    Plan: "plan", "Plan", "specification" "5-planning", MarkedWhenStale;
+    Plan: "plan", "Plan", "plan-panel", MarkedWhenStale;
     /// The activities over time.
-    Timeline: "timeline", "Timeline", "timeline" "", Zoomable, MarkedWhenStale;
+    Timeline: "timeline", "Timeline", "timeline-panel", Zoomable, MarkedWhenStale;
     /// The ground and the vehicles.
-    Terrain: "terrain", "Terrain", "terrain" "", Zoomable, MarkedWhenStale;
+    Terrain: "terrain", "Terrain", "terrain-panel", Zoomable, MarkedWhenStale;
     /// The search that found the plan.
-    Search: "search", "Search", "specification" "54-the-order-of-the-search-and-completeness", Zoomable, MarkedWhenStale;
+    Search: "search", "Search", "search-panel", Zoomable, MarkedWhenStale;
     /// The distances between the events of the plan, or of the step that is looked at.
-    Distances: "distances", "Distances", "specification" "61-the-dispatchable-form", Zoomable, MarkedWhenStale;
+    Distances: "distances", "Distances", "distances-panel", Zoomable, MarkedWhenStale;
     /// A run against nature, whose durations are chosen one by one.
-    Strategy: "strategy", "Controllability", "controllability" "on-screen", MarkedWhenStale;
+    Strategy: "strategy", "Controllability", "controllability-panel", MarkedWhenStale;
     /// The run of a control program.
-    Automaton: "automaton", "Automaton", "control-programs" "on-screen", Zoomable;
+    Automaton: "automaton", "Automaton", "automaton-panel", Zoomable;
     /// The checklist of the review, comments and approvals.
-    Review: "review", "Review", "reviews" "";
+    Review: "review", "Review", "review-panel";
     /// Two plans side by side.
-    Compare: "compare", "Compare", "reviews" "";
+    Compare: "compare", "Compare", "compare-panel";
     /// The run of a mission.
-    Execution: "execution", "Execution", "simulation" "";
+    Execution: "execution", "Execution", "execution-panel";
     /// Many runs of it with chance.
-    Robustness: "robustness", "Robustness", "robustness" "", MarkedWhenStale;
+    Robustness: "robustness", "Robustness", "robustness-panel", MarkedWhenStale;
     /// A lesson beside what it is about.
-    Lesson: "lesson", "Lesson", "lessons" "";
-    Manual: "manual", "Manual", "glossary" "";
+    Lesson: "lesson", "Lesson", "lesson-panel";
+    Manual: "manual", "Manual", "manual-panel";
 }
 
 impl PanelKind {
@@ -97,8 +97,8 @@ impl PanelKind {
         self.entry().name
     }
 
-    /// The page of the manual that tells about it, and the section, which is empty for the whole page.
-    pub const fn manual(self) -> (&'static str, &'static str) {
+    /// The page of the manual that explains it.
+    pub const fn manual(self) -> &'static str {
         self.entry().manual
     }
 

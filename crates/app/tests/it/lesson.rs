@@ -144,8 +144,8 @@ fn a_file_becomes_the_lesson_and_its_mistakes_are_told_by_line() {
 fn the_manual_is_searched_and_a_panel_leads_to_its_page() {
     let mut app = opened("mission=enroute&workspace=author", [1280.0, 800.0]);
     click(&mut app, Role::Button, "Help: Timeline");
-    assert_eq!(app.json()["manual"]["page"], "timeline");
-    app.harness.get_by_role_and_label(Role::Heading, "Timeline");
+    assert_eq!(app.json()["manual"]["page"], "timeline-panel");
+    app.harness.get_by_role_and_label(Role::Heading, "Timeline panel");
     app.harness.state_mut().dispatch("help.search", &json!({ "words": "negative cycle" })).expect("a search");
     app.settle();
     let found = app.json()["manual"]["found"][0].as_str().unwrap_or_default().to_owned();
@@ -154,7 +154,7 @@ fn the_manual_is_searched_and_a_panel_leads_to_its_page() {
     app.settle();
     app.harness.get_by_role_and_label(Role::Heading, "Diagnostics");
     click(&mut app, Role::Button, "Back");
-    assert_eq!(app.json()["manual"]["page"], "timeline");
+    assert_eq!(app.json()["manual"]["page"], "timeline-panel");
     // The harness panics over a sign that the fonts lack.
     for page in workbench::manual::pages() {
         app.harness.state_mut().dispatch("help.page", &json!({ "page": page.name })).expect("a page");

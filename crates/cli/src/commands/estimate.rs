@@ -22,7 +22,7 @@ const MAX_NODES: u32 = 1_000_000;
 /// Update the belief about a plant after commands and observations.
 #[derive(clap::Args)]
 #[command(override_usage = "\
-enroute estimate [OPTIONS] --prior <P.json> --commands <C.json>\n                        --observations <O.json> <MODEL>")]
+enroute estimate [OPTIONS] --commands <C.json> --observations <O.json>\n                        <MODEL>")]
 pub struct Args {
     /// Plant model; - reads standard input.
     model: PathBuf,

@@ -402,7 +402,7 @@ fn plan_text(network: &Network, plan: &tpn::Plan) -> String {
         let meters =
             if quality.length_m == 0.0 { String::new() } else { format!(", {:.1} m", quality.length_m) };
         text.push_str(&format!(
-            "worth     cost {}, reward {}, end {}{meters}{optimal}\n",
+            "objective cost {}, reward {}, end {}{meters}{optimal}\n",
             quality.cost,
             quality.reward,
             quality.end.readable()

@@ -379,7 +379,7 @@ fn run_text(system: &System, run: &Run) -> String {
     let mut out = String::new();
     for record in run.records() {
         out.push_str(&format!("step {}\n", record.trace.step));
-        record.trace.labels.iter().for_each(|label| out.push_str(&format!("  marked    {label}\n")));
+        record.trace.labels.iter().for_each(|label| out.push_str(&format!("  active    {label}\n")));
         clocks_text(&system.automaton, &record.trace, &mut out);
         record.trace.locks.iter().for_each(|lock| out.push_str(&format!("  locked    {lock}\n")));
         out.push_str(&format!("  commands  {}\n", listed(model.command_names(&record.commands), ".")));
@@ -390,7 +390,7 @@ fn run_text(system: &System, run: &Run) -> String {
             out.push_str(&format!("  fault     {}\n", failed_text(system, id, mode)));
         }
         for (goal, reason) in &record.unachievable {
-            out.push_str(&format!("  lost      {goal}: {reason}\n"));
+            out.push_str(&format!("  unmet     {goal}: {reason}\n"));
         }
         out.push_str(&format!("  observed  {}\n", listed(model.observation_names(&record.observation), "=")));
         match &record.outcome {

@@ -30,6 +30,9 @@ pub struct Args {
     /// Use worst-case contingent durations.
     #[arg(long)]
     adversary: bool,
+    /// Seed for random durations [default: that of the script, otherwise --seed].
+    #[arg(long, value_name = "SEED")]
+    run_seed: Option<u64>,
     #[command(flatten)]
     options: PlanOptions,
 }
@@ -43,6 +46,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         None => Script::default(),
     };
     script.adversary |= args.adversary;
+    script.run_seed = args.run_seed.or(script.run_seed);
     let mut problems = compiled.problems();
     if compiled.network().is_none() {
         let body = json!({ "status": "error", "log": [] });

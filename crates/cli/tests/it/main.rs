@@ -13,6 +13,7 @@ mod help;
 mod networks;
 mod plandev;
 mod ptpn;
+mod reference;
 mod running;
 mod schema;
 mod time_limit;

@@ -42,6 +42,23 @@ fn a_fault_in_a_script_brings_the_backup_engine_and_the_log_replays() {
 }
 
 #[test]
+fn the_seed_of_a_run_changes_its_durations_and_not_its_plan() {
+    let mission = file(
+        "uncertain.rmpl",
+        "primitive Drive() contingent [20,40]; scenario S[0,100] = { Drive(); delay }",
+    );
+    let log = |arguments: &[&str]| {
+        let output = enroute(&[&["simulate", &mission, "--format", "json"], arguments].concat());
+        let document: Value = serde_json::from_str(&text(&output)).expect("JSON");
+        document["log"].to_string()
+    };
+    let usual = log(&[]);
+    assert_eq!(usual, log(&["--run-seed", "0"]));
+    assert_ne!(usual, log(&["--run-seed", "7"]));
+    assert_eq!(log(&["--seed", "7"]), log(&["--run-seed", "7"]));
+}
+
+#[test]
 fn parts_of_many_runs_add_up_to_the_whole() {
     let mission = orbit().to_string_lossy().into_owned();
     let common = ["robustness", &mission, "--runs", "40", "--seed", "5", "--format", "json"];

@@ -53,7 +53,7 @@ fn rovers_and_a_blimp_explore_from_the_base_to_the_last_report() {
     let ran = run(EXPLORATION, &[]);
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
     assert_eq!(violations(&ran), Vec::<&str>::new());
-    assert_eq!([value(&ran, "RIDGE-IS"), value(&ran, "SHELF-IS")], [Some("ANALYSED"); 2]);
+    assert_eq!([value(&ran, "RIDGE-IS"), value(&ran, "SHELF-IS")], [Some("ANALYZED"); 2]);
     // All five drives and three flights were simulated, to their ends.
     assert_eq!(ran.drives.len(), 8);
     assert!(ran.drives.iter().all(|drive| drive.duration.is_some()));
@@ -68,7 +68,7 @@ fn a_path_that_is_closed_at_100_while_rovers_are_on_it_is_left_for_the_other() {
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
     assert_eq!(violations(&ran), ["Tell(PATH1=OK)#1 was withdrawn at 100, but the plan needs it until 260"]);
     assert!(told(&ran, "Group-Traverse-Path#1").iter().any(|text| text.starts_with("is being ended early")));
-    assert_eq!([value(&ran, "RIDGE-IS"), value(&ran, "SHELF-IS")], [Some("ANALYSED"); 2]);
+    assert_eq!([value(&ran, "RIDGE-IS"), value(&ran, "SHELF-IS")], [Some("ANALYZED"); 2]);
     let named = |name: &str| {
         ran.log
             .iter()

@@ -101,14 +101,17 @@ fn show_page(
 
 fn contents(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     theme::structure::mark_heading(&ui.heading("Manual"), 2);
-    ui.add_space(space::S);
-    for page in manual::pages() {
-        ui.horizontal(|ui| {
-            icon::label(ui, Icon::ChevronRight, context.tokens.text_faint);
-            if ui.add(Button::new(&page.title).frame_when_inactive(false).wrap()).clicked() {
-                commands.send(Command::Manual(ManualCommand::Open(page.name, String::new())));
-            }
-        });
+    for pages in manual::pages().chunk_by(|left, right| left.group == right.group) {
+        ui.add_space(space::M);
+        theme::structure::heading(ui, theme::strong(pages[0].group).color(context.tokens.text), 3);
+        for page in pages {
+            ui.horizontal(|ui| {
+                icon::label(ui, Icon::ChevronRight, context.tokens.text_faint);
+                if ui.add(Button::new(&page.title).frame_when_inactive(false).wrap()).clicked() {
+                    commands.send(Command::Manual(ManualCommand::Open(page.name, String::new())));
+                }
+            });
+        }
     }
 }
 

@@ -75,10 +75,7 @@ impl ManualState {
         match command {
             ManualCommand::Open(page, section) => self.open(page, section),
             ManualCommand::About(panel) => {
-                let (page, section) = about_text.unwrap_or_else(|| {
-                    let (page, section) = panel.manual();
-                    (page, section.to_owned())
-                });
+                let (page, section) = about_text.unwrap_or_else(|| (panel.manual(), String::new()));
                 self.open(page, section);
             }
             ManualCommand::Search(query) => {
