@@ -68,5 +68,5 @@ fn with_pds_label(image: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
 
 /// That a terrain is of no use, as the start of a sentence.
 pub fn cannot_read(name: &str) -> String {
-    format!("the terrain \"{name}\" cannot be used")
+    format!("couldn't use the terrain \"{name}\"")
 }

@@ -121,7 +121,7 @@ impl Opened {
     pub fn ground_or_problem(&mut self, world: &World) -> anyhow::Result<Result<Option<Ground>, Diagnostic>> {
         self.import_map(world)?;
         Ok(self.core.ground(world).map_err(|mut problem| {
-            let beside = "a map file stands in the mission's folder";
+            let beside = "put the map file into the mission's folder";
             let hint = problem.hint.map_or_else(|| beside.to_owned(), |hint| format!("{hint}; {beside}"));
             problem.hint = Some(hint);
             *problem

@@ -471,7 +471,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
             }
             ExpressionKind::ChooseReward(_) => {
                 let message = "CHOOSE-REWARD cannot be run";
-                let hint = "choose by what is known with IF-THENNEXT-ELSENEXT, or by chance with CHOOSE-PROB";
+                let hint = "choose by what is known with IF-THENNEXT-ELSENEXT, or at random with CHOOSE-PROB";
                 self.diagnostics.push(Diagnostic::error(Code("E-FORM"), span, message).with_hint(hint));
                 let constraint = Constraint { kind: ConstraintKind::True, span };
                 Element::Location(self.assertion(&constraint, parent, span))

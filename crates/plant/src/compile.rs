@@ -67,7 +67,7 @@ pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
             Diagnostic::error(
                 Code("E-CONSTRAINT"),
                 span,
-                "the modes in which the components may start contradict each other",
+                "the modes in which the components may start are inconsistent",
             )
             .with_hint(
                 "in at least one combination of these modes, all of their constraints must hold together",

@@ -37,7 +37,7 @@ impl Conflict {
             .collect();
         let verb = if modes.len() == 1 { "contradicts" } else { "contradict" };
         if observations.is_empty() {
-            return format!("{} contradict each other", modes.join(" and "));
+            return format!("{} are inconsistent", modes.join(" and "));
         }
         format!("{} {verb} {}", modes.join(" and "), observations.join(" and "))
     }

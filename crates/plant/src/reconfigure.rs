@@ -128,7 +128,7 @@ impl Planner {
         for (component, (modes, given)) in joined {
             if modes == 0 {
                 let all: Vec<String> = given.iter().map(|goal| goal.describe(&self.model)).collect();
-                let reason = format!("{} contradict each other", all.join(" and "));
+                let reason = format!("{} are inconsistent", all.join(" and "));
                 let failed = given.iter().map(|goal| Unreachable {
                     goal: *goal,
                     reason: reason.clone(),
@@ -167,7 +167,7 @@ impl Planner {
             let all: Vec<Goal> =
                 goals.iter().filter(|goal| culprits.contains(&goal.component)).copied().collect();
             let names: Vec<String> = all.iter().map(|goal| goal.describe(&self.model)).collect();
-            let reason = format!("{} contradict each other", names.join(" and "));
+            let reason = format!("{} are inconsistent", names.join(" and "));
             unreachable.extend(all.iter().map(|goal| Unreachable {
                 goal: *goal,
                 reason: reason.clone(),

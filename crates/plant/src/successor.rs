@@ -29,7 +29,7 @@ pub enum EstimateError {
     #[error("more than {0} states are possible: limit the number of tracked states")]
     TooMany(usize),
     /// The modes that were asked for contradict each other.
-    #[error("these modes contradict each other: {0}")]
+    #[error("these modes are inconsistent: {0}")]
     Impossible(String),
 }
 

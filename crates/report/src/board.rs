@@ -236,7 +236,7 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
 }
 
 fn who(entry: &Entry) -> String {
-    let name = if entry.by.is_empty() { "somebody" } else { entry.by.as_str() };
+    let name = if entry.by.is_empty() { "someone" } else { entry.by.as_str() };
     if entry.role.is_empty() {
         escaped(name)
     } else {

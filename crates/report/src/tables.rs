@@ -353,7 +353,7 @@ pub(crate) fn robustness(review: &Review, found: Option<&Robustness>) -> String 
     };
     let tally = &found.tally;
     let (low, high) = tally.interval();
-    let percent = |part: f64| format!("{:.1} %", part * 100.0);
+    let percent = |part: f64| format!("{:.1}%", part * 100.0);
     out.push_str(&format!(
         "<p>{} of {} runs reached the end: {} (95% confidence: {} to {}). {} of them had to replan.</p>\n",
         tally.succeeded,

@@ -133,7 +133,7 @@ impl Objection {
             (Self::NoReason, Act::Waive { .. }) => "a waiver needs a reason",
             (Self::NoReason, _) => "an acknowledgment needs a reason",
             (Self::NoDate, _) => "a waiver needs a date",
-            (Self::NotSigner, _) => "only the person who signed an entry takes it back",
+            (Self::NotSigner, _) => "only the person who signed an entry can withdraw it",
             (Self::NotConcerned, _) => {
                 "only the author of a comment, or the person to whom it is addressed, resolves or reopens it"
             }

@@ -57,10 +57,9 @@ impl MissionRule {
             Some(Outcome::Undecided) => {
                 (Status::Attention, format!("{name}: not decided, because there are too many cases"))
             }
-            Some(Outcome::Unreadable { column, message }) => (
-                Status::Failed,
-                format!("{name}: cannot be read in this mission: {message} (character {column})"),
-            ),
+            Some(Outcome::Unreadable { column, message }) => {
+                (Status::Failed, format!("{name}: not valid in this mission: {message} (character {column})"))
+            }
             Some(Outcome::NoPlan) => (Status::Failed, format!("{name}: there is no plan to check")),
             None => (Status::Failed, format!("{name}: has not been evaluated yet")),
         };

@@ -144,7 +144,7 @@ pub enum KeyError {
     Name(String),
     /// Somebody else has a name that looks like this one.
     #[error(
-        "“{name}” can be taken for “{known}”, whose key is trusted: people of one board need names that nobody confuses"
+        "“{name}” can be taken for “{known}”, whose key is trusted: choose a name that can't be confused with it"
     )]
     Alike { name: String, known: String },
     /// The key belongs to somebody.

@@ -32,7 +32,7 @@ pub(super) fn default_board() -> Vec<Seat> {
 pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
     let roles: BTreeSet<&str> = board.iter().map(|seat| seat.role.trim()).collect();
     match board {
-        [] => Some("somebody has to approve"),
+        [] => Some("someone must approve"),
         _ if board.len() > MAX_SEATS => Some("a board has at most 12 roles"),
         _ if roles.contains("") => Some("a role has a name"),
         _ if roles.len() < board.len() => Some("each role has a name of its own"),

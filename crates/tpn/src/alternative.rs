@@ -11,7 +11,7 @@ const MAX_NAMED: usize = 2;
 
 impl Network {
     /// What an alternative of a decision does, for people: `Carry(GAP, LANDER)`, or `Group-Traverse-Path#1` where the call is
-    /// long, or `Dig#1, Analyse#1 and 2 more`. `nothing` where it does nothing.
+    /// long, or `Dig#1, Analyze#1 and 2 more`. `nothing` where it does nothing.
     ///
     /// Takes time linear in the network for each alternative of the decision.
     pub fn alternative_name(&self, decision: DecisionId, alternative: u32) -> String {

@@ -209,7 +209,7 @@ fn a_proof_finds_the_faults_under_which_the_program_waits_forever_and_shows_the_
     assert_eq!((&two[0]["verdict"], &two[1]["verdict"]), (&json!("broken"), &json!("holds")));
     assert_eq!(two[0]["faults"], json!(["3: EngineA=Failed, EngineB=Failed"]));
     app.harness.get_by_label("Step 3: EngineA=Failed, EngineB=Failed");
-    app.harness.get_by_label("After 6 steps nothing changes any more.");
+    app.harness.get_by_label("After 6 steps nothing changes.");
     press(&mut app, "Step through counterexample");
     app.settle();
     let hca = app.json()["hca"].clone();

@@ -127,7 +127,7 @@ fn a_click_places_a_location_in_the_text_and_one_step_back_takes_it_away() {
     let line = source.lines().find(|line| line.starts_with("location P1 (")).expect("a declaration");
     let numbers = line.trim_start_matches("location P1 (").trim_end_matches(");");
     let (east, north) = numbers.split_once(", ").expect("two numbers");
-    let (east, north): (f64, f64) = (east.parse().expect("metres"), north.parse().expect("metres"));
+    let (east, north): (f64, f64) = (east.parse().expect("meters"), north.parse().expect("meters"));
     assert!((east - 140.0).abs() < 3.0 && north < 150.0, "{line}");
     assert_eq!(source.replace(&format!("{line}\n"), ""), MISSION);
     assert_eq!(app.json()["selection"]["name"], "P1");

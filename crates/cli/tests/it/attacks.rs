@@ -147,7 +147,7 @@ fn a_terrain_that_cannot_be_read_is_told_whatever_the_mission_does() {
     for (asset, told) in [
         ("/etc/passwd", "unknown terrain \"/etc/passwd\""),
         ("../secret.asc", "unknown terrain \"../secret.asc\""),
-        ("no-map.png", "the terrain \"no-map.png\" cannot be used"),
+        ("no-map.png", "couldn't use the terrain \"no-map.png\""),
     ] {
         for rest in
             ["scenario M[0,10] = { P() }\nprimitive P()[1,2];\n", moves.as_str(), "location A (2, 2);\n"]

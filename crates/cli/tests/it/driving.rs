@@ -84,7 +84,7 @@ fn a_mission_drives_over_a_map_file_that_lies_beside_it() {
     let broken = file("broken.rmpl", &text.replace("valley.pgm", "broken.pgm"));
     let output = enroute(&["simulate", &broken]);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
-    assert!(String::from_utf8_lossy(&output.stderr).contains("the terrain \"broken.pgm\" cannot be used"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("couldn't use the terrain \"broken.pgm\""));
 }
 
 /// A rover with a choice of places on flat ground.

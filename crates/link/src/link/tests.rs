@@ -1,4 +1,4 @@
-//! The link between front end and core on a fake transport: order, superseding, cancelling, silence, crash and retry.
+//! The link between front end and core on a fake transport: order, superseding, canceling, silence, crash and retry.
 
 use rmpl::{Edit, Span};
 

@@ -228,8 +228,10 @@ fn describe(automaton: &Automaton, item: AutomatonItem) -> Option<String> {
                 return match composite.kind {
                     CompositeKind::Parallel => Some("These branches run in parallel".to_owned()),
                     CompositeKind::Sequence => Some("These parts run in sequence".to_owned()),
-                    CompositeKind::Lock => Some("Locked while nothing contradicts the constraint".to_owned()),
-                    CompositeKind::Choice => Some("Starts one of these by a draw".to_owned()),
+                    CompositeKind::Lock => {
+                        Some("Locked while no other lock contradicts the constraint".to_owned())
+                    }
+                    CompositeKind::Choice => Some("Starts one of these at random".to_owned()),
                     CompositeKind::Timeout => Some("Ends its first part when the time is up".to_owned()),
                     _ => None,
                 };

@@ -14,7 +14,7 @@ use crate::Context;
 
 /// Shows what is asked for and what was found.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
-    title(ui, context, "Proof", "explores every run, whatever fails and whatever chance decides");
+    title(ui, context, "Proof", "every run, with all faults and all random choices");
     ask(ui, context, commands);
     let proof = &context.state.automaton.proof;
     if proof.is_running() {

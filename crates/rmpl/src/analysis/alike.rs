@@ -8,7 +8,7 @@ use super::names::{Names, Symbol};
 pub(super) const MAX_LETTERS: usize = 64;
 
 /// How many names are compared on each side of where a written one would stand in an order.
-const NEIGHBOURS: usize = 32;
+const NEIGHBORS: usize = 32;
 
 /// Names ordered by how they begin, and by how they end: a slip of the pen leaves one of the two as it is.
 #[derive(Clone, Debug)]
@@ -26,12 +26,12 @@ impl Alphabet {
         Self { forwards, backwards }
     }
 
-    /// The names that begin or end like `text`, at most eight times [`NEIGHBOURS`]; some may come twice.
+    /// The names that begin or end like `text`, at most eight times [`NEIGHBORS`]; some may come twice.
     pub(super) fn around(&self, names: &Names, text: &str) -> impl Iterator<Item = Symbol> {
         let near = |order: &[Symbol], compare: fn(&str, &str) -> Ordering, text: &str| -> Vec<Symbol> {
             let at = order.partition_point(|&other| compare(names.text(other), text).is_lt());
-            let from = at.saturating_sub(NEIGHBOURS);
-            order.iter().skip(from).take(at - from + NEIGHBOURS).copied().collect()
+            let from = at.saturating_sub(NEIGHBORS);
+            order.iter().skip(from).take(at - from + NEIGHBORS).copied().collect()
         };
         // A letter too much, at the end that is looked at last, must not lead past the name without it.
         let (mut shorter, mut from_second) = (text.chars(), text.chars());
@@ -153,7 +153,7 @@ mod tests {
             (0..10_000).map(|at| names.intern(&SmolStr::from(format!("Activity{at}")))).collect();
         let alphabet = Alphabet::new(&names, known.iter().copied());
         let around: Vec<Symbol> = alphabet.around(&names, "Activty1234").collect();
-        assert!(around.len() <= 8 * NEIGHBOURS);
+        assert!(around.len() <= 8 * NEIGHBORS);
         assert!(around.contains(&known[1234]));
         assert!(alphabet.around(&names, "ctivity77").any(|found| found == known[77]));
         assert!(alphabet.around(&names, "Activity77x").any(|found| found == known[77]));

@@ -1,4 +1,4 @@
-//! Classes with what they inherit: C3 linearisation, then fields merged (SPEC 2.2).
+//! Classes with what they inherit: C3 linearization, then fields merged (SPEC 2.2).
 
 use std::collections::BTreeMap;
 

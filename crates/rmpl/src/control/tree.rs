@@ -10,7 +10,7 @@ use super::lexer::{Token, TokenKind};
 /// Lists nested more deeply than this are refused, so that reading them needs no deep stack.
 const DEEPEST_NESTING: usize = 200;
 
-/// A token or a parenthesised list.
+/// A token or a parenthesized list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Node {
     /// A token that is no parenthesis, blank or comment.

@@ -16,8 +16,8 @@ use crate::repository::{LAYERS, is_test, manifests, sources};
 const MIN_COMMENT_CHARS: usize = 14;
 
 /// What makes a short comment worth its line, besides digits and code: a unit.
-const UNITS: [&str; 9] =
-    ["meters", "metres", "seconds", "milliseconds", "radians", "points", "pixels", "columns", "rows"];
+const UNITS: [&str; 8] =
+    ["meters", "seconds", "milliseconds", "radians", "points", "pixels", "columns", "rows"];
 
 /// Derives whose types keep all comments: these become the text of `--help` or of `web/enroute.d.ts`.
 const PUBLISHED: [&str; 5] = ["Args", "Parser", "Subcommand", "ValueEnum", "TS"];
@@ -155,7 +155,7 @@ fn short_comments_are_filler_unless_they_carry_a_fact() {
     for filler in ["When.", "Its name.", "The network."] {
         assert!(is_filler(filler), "{filler}");
     }
-    for kept in ["", "In seconds.", "From 1.", "`a + b`", "Metres east.", "The whole network."] {
+    for kept in ["", "In seconds.", "From 1.", "`a + b`", "Meters east.", "The whole network."] {
         assert!(!is_filler(kept), "{kept}");
     }
 }

@@ -6,4 +6,5 @@ mod documentation;
 mod names;
 mod policy;
 mod repository;
+mod spelling;
 mod wording;

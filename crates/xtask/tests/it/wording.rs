@@ -1,7 +1,8 @@
 //! The texts of the interface follow the writing guide: no banned words, and no label, tooltip or message that is too long.
 //!
-//! The texts are the string literals of the sources below [`FOLDERS`], outside tests, attributes and reasons of panics. To
-//! check another crate, add its folder. A word that is right in one place goes to [`ALLOWED`], with the reason.
+//! The texts are the string literals of the sources below [`FOLDERS`] and [`MORE_FOLDERS`], outside tests, attributes and
+//! reasons of panics. To check another crate, add its folder. A word that is right in one place goes to [`ALLOWED`], with
+//! the reason.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -23,15 +24,60 @@ const FOLDERS: [&str; 7] = [
     "crates/workbench/src",
 ];
 
+/// Where other texts are that users read: answers of the command line, diagnostics, reports, messages of the planner. These
+/// quote code in backticks, and have sentences such as “there is no plan”.
+const MORE_FOLDERS: [&str; 16] = [
+    "crates/cli/src",
+    "crates/executive/src",
+    "crates/hca/src",
+    "crates/interchange/src",
+    "crates/kirk/src",
+    "crates/link/src",
+    "crates/mission/src",
+    "crates/motion/src",
+    "crates/plant/src",
+    "crates/report/src",
+    "crates/review/src",
+    "crates/rmpl/src",
+    "crates/stnu/src",
+    "crates/terrain/src",
+    "crates/tpn/src",
+    "crates/verify/src",
+];
+
+/// Documents whose prose is not checked, and why.
+const OTHER_DOCUMENTS: [(&str, &str); 6] = [
+    ("accessibility.md", "evidence"),
+    ("attacks.md", "evidence"),
+    ("benchmarks.md", "evidence"),
+    ("command-line.md", "help texts, which are checked in the sources"),
+    ("key-sentences.md", "made of lessons and messages, which are checked in the sources"),
+    ("specification.md", "definitions in the terms of mathematics"),
+];
+
 /// Parts of these folders that are not checked, and why.
-const EXCLUDED: [(&str, &str); 2] = [
+const EXCLUDED: [(&str, &str); 7] = [
+    ("crates/review/src/cheats.rs", "tests"),
+    ("crates/review/src/five_missions.rs", "tests"),
+    ("crates/review/src/mutations.rs", "tests"),
+    ("crates/rmpl/src/editor/completion", "templates of code"),
+    ("crates/tpn/src/families.rs", "names of generated missions, for benchmarks"),
     ("crates/workbench/src/lesson", "messages to authors of lessons, in the terms of the lesson format"),
     ("crates/workbench/src/manual.rs", "headings and addresses of the manual"),
 ];
 
-/// Patterns that no text contains, and what to write instead. They ignore case.
-const BANNED: [(&str, &str); 43] = [
+/// Patterns that no text of the interface contains, and what to write instead. They ignore case.
+const BANNED_IN_THE_INTERFACE: [(&str, &str); 6] = [
     (r"^(What|Who|Where|How|That which)\b[^?]*$", "a label is a noun or a command, not a noun clause"),
+    (r"\b(is|are) no ([^l]|l[^o])", "say is not a"),
+    (r"\bthere is (no|none|nothing)\b", "say unknown …, or no …"),
+    (r"\bnothing is\b|\bnothing has been\b", "name the subject"),
+    (r"\w …", "no space before an ellipsis"),
+    (r"`", "backticks are shown raw"),
+];
+
+/// Patterns that no text contains at all.
+const BANNED: [(&str, &str); 37] = [
     (
         r"^(Shows|Gives|Goes|Hides|Keeps|Opens|Leaves|Brings|Adds|Checks|Marks|Runs|Works|Collapses) ",
         "a tooltip starts with an imperative",
@@ -39,7 +85,6 @@ const BANNED: [(&str, &str); 43] = [
     (r"\bbehind\b", "say after"),
     (r"\bmend", "say fix"),
     (r"\bstands?\b", "say is, or appears"),
-    (r"\b(is|are) no ([^l]|l[^o])", "say is not a"),
     (r"\b(whatever|whoever|whichever)\b", "name the subject"),
     (r"\bwork(s|ed|ing)? out\b|\bwork(s|ed|ing)? the \w+ out\b", "say plan, simulate or calculate"),
     (r"\b(is|are|was|being) looked (for|at)\b", "name who searches or checks"),
@@ -60,8 +105,6 @@ const BANNED: [(&str, &str); 43] = [
     (r"\bcontradict(s|ed)? each other\b", "say inconsistent"),
     (r"\bdoes not suffice\b", "say not enough"),
     (r"\bhand(s|ed)? over\b", "say pass"),
-    (r"\bthere is (no|none|nothing)\b", "say unknown …, or no …"),
-    (r"\bnothing is\b|\bnothing has been\b", "name the subject"),
     (r"\bnobody\b|\bsomebody\b", "say no, or someone"),
     (r"\bcannot be (used|read|opened)\b", "name who fails: Couldn't open …"),
     (r"\bstays as it is\b", "say is unchanged"),
@@ -70,9 +113,7 @@ const BANNED: [(&str, &str); 43] = [
     (r"\bEscape\b", "write Esc"),
     (r"\b(lesson|this|the|next|previous) stop\b", "say step"),
     (r" · \w+ the\b", "a menu path is written File > Save version…"),
-    (r"\w …", "no space before an ellipsis"),
     (r"[\d}] %", "write 95%"),
-    (r"`", "backticks are shown raw"),
     (
         r"\b(colou?rs? of the ground|colours?|behaviours?|centres?|grey|honours?|favours?|neighbours?)\b",
         "American spelling",
@@ -86,7 +127,23 @@ const BANNED: [(&str, &str); 43] = [
 ];
 
 /// Texts in which a banned pattern is right, by the file's end and a part of the text, and why.
-const ALLOWED: [(&str, &str, &str); 2] = [
+const ALLOWED: [(&str, &str, &str); 18] = [
+    ("executive/src/model_based/proof/product.rs", "runs of more than", "a noun, not what a tooltip does"),
+    ("mission/src/repairs/candidates.rs", "gives {}", "a part of a fix: “do Charge(): it gives Battery”"),
+    ("review/src/rules.rs", "{} %", "a part of criteria, which are in signed reviews"),
+    ("rmpl/src/control/expand.rs", "cannot be used as an expression", "what the program says, not a file"),
+    ("rmpl/src/diagnostics/unused.rs", "usual reason", "the most frequent reason, not a default"),
+    ("interchange/src/geojson/projection.rs", "metres", "a unit of the file format"),
+    ("interchange/src/plan_schema/edn.rs", "unknown escape", "an escape sequence, not the key"),
+    ("kirk/src/solver/difference.rs", "it was carried", "the reason of a panic"),
+    ("mission/src/traverse.rs", "per metre", "a keyword of the language"),
+    ("rmpl/src/diagnostics/kind.rs", "stands for", "what a parameter stands for is its argument"),
+    ("rmpl/src/diagnostics/syntax.rs", "per metre", "a keyword of the language"),
+    ("rmpl/src/editor/hover.rs", "per metre", "a keyword of the language"),
+    ("rmpl/src/parser/clause.rs", "metre", "a keyword of the language"),
+    ("rmpl/src/program.rs", "metre", "a keyword of the language"),
+    ("terrain/src/format/pds.rs", "METRE", "a unit of the file format"),
+    ("terrain/src/format/tiff/calibration.rs", "metre", "a unit of the file format"),
     ("description/typescript.rs", "", "declarations for programs, with code in backticks"),
     ("library/template.rs", "// Three activities", "a comment of a mission, which quotes its text"),
 ];
@@ -209,24 +266,31 @@ fn sources_below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Every text of the interface, with its file.
-fn interface() -> Vec<(String, Text)> {
+/// Every text below these folders, with its file.
+fn texts_in(folders: &[&str]) -> Vec<(String, Text)> {
     let root = root();
     let mut paths = Vec::new();
-    for folder in FOLDERS {
+    for folder in folders {
         sources_below(&root.join(folder), &mut paths);
     }
     paths.sort();
     let mut found = Vec::new();
     for path in paths {
         let name = path.strip_prefix(&root).expect("below the root").to_string_lossy().replace('\\', "/");
-        if EXCLUDED.iter().any(|(part, _)| name.starts_with(part)) || name.contains("/tests/") {
+        let is_test = name.contains("/tests/") || name.ends_with("_tests.rs");
+        if is_test || EXCLUDED.iter().any(|(part, _)| name.starts_with(part)) {
             continue;
         }
         let source = fs::read_to_string(&path).expect("sources are UTF-8");
         found.extend(texts_of(&source).into_iter().map(|text| (name.clone(), text)));
     }
     found
+}
+
+fn patterns(of: &[(&str, &'static str)]) -> Vec<(Regex, &'static str)> {
+    of.iter()
+        .map(|(pattern, instead)| (Regex::new(&format!("(?i){pattern}")).expect("a pattern"), *instead))
+        .collect()
 }
 
 #[test]
@@ -256,27 +320,33 @@ fn texts_are_found_with_their_callees() {
 }
 
 #[test]
-fn no_text_of_the_interface_has_a_banned_word() {
-    let patterns: Vec<(Regex, &str)> = BANNED
-        .iter()
-        .map(|(pattern, instead)| (Regex::new(&format!("(?i){pattern}")).expect("a pattern"), *instead))
-        .collect();
-    let texts = interface();
+fn no_text_has_a_banned_word() {
+    let everywhere = patterns(&BANNED);
+    let in_the_interface = patterns(&BANNED_IN_THE_INTERFACE);
+    let (interface, more) = (texts_in(&FOLDERS), texts_in(&MORE_FOLDERS));
+    assert!(interface.len() > 2_000, "only {} texts", interface.len());
+    assert!(more.len() > 2_000, "only {} texts", more.len());
     let mut wrong = Vec::new();
     let mut used = BTreeSet::new();
-    for (file, text) in &texts {
-        for (pattern, instead) in patterns.iter().filter(|(pattern, _)| pattern.is_match(&text.words)) {
-            let allowed =
-                ALLOWED.iter().position(|(end, part, _)| file.ends_with(end) && text.words.contains(part));
-            match allowed {
-                Some(allowed) => {
-                    used.insert(allowed);
+    let (all, some) = ([&everywhere, &in_the_interface], [&everywhere]);
+    for (texts, lists) in [(&interface, all.as_slice()), (&more, some.as_slice())] {
+        for (file, text) in texts {
+            let found = lists.iter().copied().flatten().filter(|(pattern, _)| pattern.is_match(&text.words));
+            for (pattern, instead) in found {
+                let allowed = ALLOWED
+                    .iter()
+                    .position(|(end, part, _)| file.ends_with(end) && text.words.contains(part));
+                match allowed {
+                    Some(allowed) => {
+                        used.insert(allowed);
+                    }
+                    None => {
+                        wrong.push(format!("{file}:{}: {:?} ({pattern}: {instead})", text.line, text.words));
+                    }
                 }
-                None => wrong.push(format!("{file}:{}: {:?} ({pattern}: {instead})", text.line, text.words)),
             }
         }
     }
-    assert!(texts.len() > 2_000, "only {} texts", texts.len());
     assert!(wrong.is_empty(), "{} texts:\n{}", wrong.len(), wrong.join("\n"));
     let idle: Vec<_> = (0..ALLOWED.len()).filter(|it| !used.contains(it)).map(|it| ALLOWED[it]).collect();
     assert!(idle.is_empty(), "these exceptions are not needed: {idle:?}");
@@ -286,7 +356,7 @@ fn no_text_of_the_interface_has_a_banned_word() {
 fn no_label_tooltip_or_toast_is_too_long() {
     let mut wrong = Vec::new();
     let mut count = 0;
-    for (file, text) in interface() {
+    for (file, text) in texts_in(&FOLDERS) {
         let limit = LIMITS.iter().find(|(callees, ..)| callees.contains(&text.callee.as_str()));
         let Some((_, most, kind)) = limit else { continue };
         count += 1;
@@ -301,4 +371,57 @@ fn no_label_tooltip_or_toast_is_too_long() {
     }
     assert!(count > 150, "only {count} texts");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The prose of a Markdown text, line by line, without code and the targets of links.
+fn prose(markdown: &str) -> Vec<(usize, String)> {
+    static CODE_OR_TARGET: LazyLock<Regex> =
+        LazyLock::new(|| Regex::new(r"`[^`]*`|\]\([^)]*\)").expect("a pattern"));
+    let mut is_code = false;
+    let mut found = Vec::new();
+    for (number, line) in markdown.lines().enumerate() {
+        if line.trim_start().starts_with("```") {
+            is_code = !is_code;
+        } else if !is_code {
+            found.push((number + 1, CODE_OR_TARGET.replace_all(line, "").into_owned()));
+        }
+    }
+    found
+}
+
+#[test]
+fn prose_is_what_is_no_code() {
+    let lines = prose("A `behind` [link](behind.md).\n```\nbehind\n```\nEnd\n");
+    assert_eq!(lines, [(1, "A  [link.".to_owned()), (5, "End".to_owned())]);
+}
+
+#[test]
+fn no_document_for_users_has_a_banned_word() {
+    // What is true of labels and tooltips is not true of sentences.
+    let patterns = patterns(&BANNED).into_iter().filter(|(pattern, _)| !pattern.as_str().contains('^'));
+    let patterns: Vec<(Regex, &str)> = patterns.collect();
+    let mut wrong = Vec::new();
+    let mut count = 0;
+    for (path, text) in crate::citations::texts() {
+        let name = path.to_string_lossy().replace('\\', "/");
+        let is_for_users = name == "README.md"
+            || name.starts_with("docs/panels/")
+            || name.strip_prefix("docs/").is_some_and(|name| !name.contains('/'))
+            || name.starts_with("assets/");
+        let is_other = OTHER_DOCUMENTS.iter().any(|(other, _)| name.ends_with(other));
+        if !is_for_users || is_other || path.extension().is_none_or(|extension| extension != "md") {
+            continue;
+        }
+        count += 1;
+        for (line, words) in prose(&text) {
+            for (pattern, instead) in patterns.iter().filter(|(pattern, _)| pattern.is_match(&words)) {
+                // The word is in quotes where its meaning is explained.
+                if !words.contains("“nature”") {
+                    wrong.push(format!("{name}:{line}: {words:?} ({pattern}: {instead})"));
+                }
+            }
+        }
+    }
+    assert!(count > 60, "only {count} documents");
+    assert!(wrong.is_empty(), "{} lines:\n{}", wrong.len(), wrong.join("\n"));
 }

@@ -36,7 +36,7 @@ impl Counterexample {
         shown.collect()
     }
 
-    /// How it ends, such as `after 6 steps nothing changes any more`.
+    /// How it ends, such as `after 6 steps nothing changes`.
     pub fn ending(&self) -> String {
         let steps = self.moves.len();
         let count = |number: usize| format!("{number} step{}", if number == 1 { "" } else { "s" });
@@ -48,7 +48,7 @@ impl Counterexample {
                 "the belief keeps too few states to explain the observation".to_owned()
             }
             (None, Some(from)) if steps - from == 1 => {
-                format!("after {} nothing changes any more", count(from))
+                format!("after {} nothing changes", count(from))
             }
             (None, Some(from)) => {
                 format!("after {} the last {} repeat forever", count(from), count(steps - from))
