@@ -1,11 +1,13 @@
-//! What reviews of random missions have passed, held against schedules of the plan and undisturbed runs: a line that is
-//! contradicted is a defect. No vehicle drives in these missions.
+//! What reviews of random missions have passed, held against schedules of the plan, undisturbed runs and other plans: a line
+//! that is contradicted is a defect.
+
+use std::fmt::Write as _;
 
 use acceptance::lasting_missions::{Kind, lasting_mission};
 use acceptance::random::{crowded_mission, small_mission};
 use link::Update;
 use mission::{Core, Manner};
-use review::contradict::{Effort, Trial, Tried, Verdict};
+use review::contradict::{Effort, Observed, Sight, Trial, Tried, Verdict};
 use review::{FlightRules, Section, review};
 use snapshot::Goal;
 use test_core::Answers;
@@ -16,6 +18,8 @@ type Made = fn(u64) -> String;
 
 /// Missions of each kind.
 const MISSIONS: u64 = 60;
+/// Missions in which vehicles drive.
+const DRIVING_MISSIONS: u64 = 12;
 const EFFORT: Effort = Effort { schedules: 40, runs: 8, seed: 5 };
 
 /// What was tried.
@@ -46,7 +50,8 @@ fn try_mission(text: &str, seed: u64, count: &mut Count) {
     let mut core = Core::default();
     let mut host = Answers::default();
     let compiled = core.compile(&Update::new(1, text), &host);
-    let Some(evaluated) = core.plan(compiled, None, Manner::unexplained(), &mut host) else { return };
+    let ground = core.ground(&compiled.program.world).expect("its ground is known");
+    let Some(evaluated) = core.plan(compiled, ground, Manner::unexplained(), &mut host) else { return };
     let snapshot = evaluated.snapshot();
     let Some(plan) = snapshot.plan() else { return };
     let mut arcs = evaluated.planned.network.arcs.iter().zip(&plan.selected_arcs);
@@ -94,6 +99,127 @@ fn nothing_that_reviews_of_random_missions_have_passed_is_contradicted() {
         assert!(contradicted.is_empty(), "{}: {}", contradicted.len(), contradicted.join("\n"));
         assert!(plans > MISSIONS / 4 && lines > plans && schedules > lines && runs > 0, "{kind}");
     }
+}
+
+/// A mission of one or two vehicles that drive with a battery, which may be charged, among obstacles, on a map or without one.
+fn driving_mission(seed: u64) -> String {
+    let mut rng = Rng::new(seed ^ 0x6472);
+    let mut text = String::new();
+    if rng.chance(60) {
+        text.push_str("terrain \"tai-plain\" cell 0.6 origin (0, 0);\n");
+    }
+    let places = [(20, 24), (58, 30), (26, 70), (72, 66), (44, 48)];
+    for (number, (x, y)) in places.iter().enumerate() {
+        let _ =
+            writeln!(text, "location P{number} ({}, {});", x + rng.between(-4, 4), y + rng.between(-4, 4));
+    }
+    if rng.chance(50) {
+        let _ = writeln!(text, "obstacle O circle ({}, {}, 3);", rng.between(34, 38), rng.between(30, 60));
+    }
+    let vehicles = rng.between(1, 2);
+    for number in 0..vehicles {
+        let _ = writeln!(text, "vehicle V{number} : ATRV-Jr at P{number};");
+    }
+    let (level, charge) = (rng.between(30, 100), rng.between(5, 30));
+    let greatest = rng.between(2, 8);
+    let bounds = ["[1,80]", "contingent [8,40]", "[0,200]"][rng.below(3) as usize];
+    let _ = writeln!(
+        text,
+        "resource Battery 0..100 = {level}; resource Data 0..20 = 0;
+primitive Drive(r, to){bounds} moves r speed (0.005, 0.{greatest}) consumes Battery 0.{} per metre produces Data 0.1 per metre;
+primitive Look(r, at)[1,4] requires r.at=at consumes Battery 2 rewards 3;
+primitive Charge()[5,9] produces Battery {charge}; primitive Send()[1,2] consumes Data 4;
+objective maximize reward, minimize end;",
+        rng.between(1, 5)
+    );
+    let mut branches = Vec::new();
+    for number in 0..vehicles {
+        let steps = (0..rng.between(1, 2)).map(|_| {
+            let place = rng.between(vehicles, 4);
+            let look = if rng.chance(50) { "optional Look" } else { "Look" };
+            format!("Drive(V{number}, P{place}); delay; {look}(V{number}, P{place})")
+        });
+        branches.push(format!("{{ {} }}", steps.collect::<Vec<_>>().join("; delay; ")));
+    }
+    for (more, chance) in [("{ delay; Charge() }", 70), ("{ delay; Send() }", 50)] {
+        if rng.chance(chance) {
+            branches.push(more.to_owned());
+        }
+    }
+    let _ = writeln!(text, "scenario S[0,600] = {{ {} }}", branches.join(", "));
+    text
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "the count is part of the evidence")]
+fn nothing_that_reviews_of_driving_missions_have_passed_is_contradicted() {
+    let mut count = Count::default();
+    for seed in 0..DRIVING_MISSIONS {
+        try_mission(&driving_mission(seed), seed, &mut count);
+    }
+    let Count { plans, lines, runs, contradicted, .. } = count;
+    println!("driving: {plans} plans, {lines} lines, {runs} runs");
+    assert!(contradicted.is_empty(), "{}: {}", contradicted.len(), contradicted.join("\n"));
+    assert!(plans > DRIVING_MISSIONS / 3 && runs > plans, "{plans} plans, {runs} runs");
+}
+
+/// A better plan than the one that is called optimal is found.
+#[test]
+fn another_plan_contradicts_that_none_is_better() {
+    let mut core = Core::default();
+    let mut host = Answers::default();
+    let source = "primitive A()[1,2] costs 3; primitive B()[1,2] costs 5; objective minimize cost;
+scenario S[0,9] = { choose { A(), B() } }";
+    let compiled = core.compile(&Update::new(1, source), &host);
+    let evaluated = core.plan(compiled, None, Manner::default(), &mut host).expect("it is planned");
+    let verdict = |change: &mut dyn FnMut(&mut tpn::Plan)| {
+        let mut snapshot = evaluated.snapshot();
+        let mut planning = snapshot.planning.as_deref().expect("it was planned").clone();
+        change(&mut planning.outcome.plans[0]);
+        snapshot.planning = Some(std::sync::Arc::new(planning));
+        let reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
+        let mut trial = Trial::new(&snapshot, &reviewed, None, EFFORT).expect("a plan");
+        let mut core = Core::default();
+        while core.try_next(&evaluated, &mut trial).expect("its times fit") {}
+        let line =
+            trial.tried().find(|it| it.line.text.starts_with("objective: ")).expect("it has passed").clone();
+        (line.verdict(), line.plans, line.sentence())
+    };
+    let (kept, plans, _) = verdict(&mut |_| {});
+    assert_eq!((kept, plans), (Verdict::Survived, 3), "its own, and one for each choice");
+    let (worse, _, sentence) = verdict(&mut |plan| plan.quality.cost = 4.into());
+    assert_eq!(worse, Verdict::Contradicted);
+    assert_eq!(sentence, "contradicted: another plan has cost 3");
+}
+
+/// What a vehicle sees is looked at from where it is in a run, in the direction that the line says.
+#[test]
+fn what_vehicles_see_is_tried_in_runs() {
+    let source = "terrain \"tai-plain\" cell 0.6 origin (0, 0); location BASE (20, 20); location P (40, 30);
+vehicle R : ATRV at BASE; primitive Drive(to)[1,60] moves R;
+primitive Send()[1,2] requires R.at in visible(BASE), R.at=P; scenario S[0,99] = { Drive(P); Send() }";
+    let mut core = Core::default();
+    let mut host = Answers::default();
+    let compiled = core.compile(&Update::new(1, source), &host);
+    let ground = core.ground(&compiled.program.world).expect("its ground is known");
+    let evaluated = core.plan(compiled, ground, Manner::default(), &mut host).expect("it is planned");
+    let snapshot = evaluated.snapshot();
+    let reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
+    let mut trial = Trial::new(&snapshot, &reviewed, None, EFFORT).expect("a plan");
+    while core.try_next(&evaluated, &mut trial).expect("its times fit") {}
+    let line =
+        trial.tried().find(|it| it.line.text.starts_with("R sees BASE from P")).expect("it has passed");
+    assert_eq!((line.verdict(), line.schedules), (Verdict::Survived, 0), "{line:?}");
+    assert!(line.runs > 0, "{line:?}");
+    // A run in which the vehicle does not see it contradicts the line.
+    let mut trial = Trial::new(&snapshot, &reviewed, None, EFFORT).expect("a plan");
+    let script = trial.next_run().expect("it drives");
+    let ran = core.run(&evaluated, &script).expect("a plan").expect("its times fit").outcome;
+    let hidden = |_: &str, _: &str, _| Some(Sight { is_seen: false, from_m: [40.0, 30.0] });
+    trial.try_run(&script, &Observed { log: &ran.log, ending: ran.ending, sight: &hidden });
+    let line =
+        trial.tried().find(|it| it.line.text.starts_with("R sees BASE from P")).expect("it has passed");
+    assert!(line.sentence().ends_with("R does not see BASE from (40.00, 30.00)"), "{}", line.sentence());
 }
 
 /// The sections whose lines are tried in missions without vehicles.

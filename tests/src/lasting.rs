@@ -77,7 +77,8 @@ struct Variable {
 struct Use {
     start: usize,
     end: usize,
-    amount: Rational,
+    /// At least and at most: drives differ in length.
+    amounts: [Rational; 2],
     is_production: bool,
 }
 
@@ -199,7 +200,7 @@ impl Exhaustive<'_> {
             if arcs[used.arc.index()] {
                 let (start, end) = (leaf.event(used.start), leaf.event(used.end));
                 let is_production = used.change == Change::Produces;
-                let used_here = Use { start, end, amount: used.amount, is_production };
+                let used_here = Use { start, end, amounts: [used.at_least, used.amount], is_production };
                 leaf.pools[used.resource.index()].uses.push(used_here);
             }
         }
@@ -441,20 +442,24 @@ fn is_enough(pool: &Pool, times: &[usize]) -> bool {
             let is_instant = !has_length(counted);
             let around: Vec<Rational> = (pool.uses.iter())
                 .filter(|used| has_length(used) && contains(used, is_instant))
-                .map(|used| used.amount)
+                .map(|used| used.amounts[1])
                 .collect();
-            let own = (is_instant && !around.is_empty()).then_some(counted.amount);
+            let own = (is_instant && !around.is_empty()).then_some(counted.amounts[1]);
             sum(&mut around.into_iter().chain(own)) <= capacity
         }),
         Supply::Reservoir { least, greatest, level } => {
             let moment = |used: &Use| times[if used.is_production { used.end } else { used.start }];
             pool.uses.iter().map(moment).all(|now| {
-                let happened = |is_production: bool| {
-                    let amounts = pool.uses.iter().filter(|it| moment(it) <= now);
-                    sum(&mut amounts.filter(|it| it.is_production == is_production).map(|it| it.amount))
+                let happened = |is_production: bool, end: usize| {
+                    let happened = pool.uses.iter().filter(|it| moment(it) <= now);
+                    let its = happened.filter(|it| it.is_production == is_production);
+                    sum(&mut its.map(|it| it.amounts[end]))
                 };
-                let level = level.checked_add(happened(true)).and_then(|it| it.checked_sub(happened(false)));
-                level.is_some_and(|level| least <= level && level <= greatest)
+                let level = |given: usize, taken: usize| {
+                    level.checked_add(happened(true, given))?.checked_sub(happened(false, taken))
+                };
+                level(0, 1).is_some_and(|low| least <= low)
+                    && level(1, 0).is_some_and(|high| high <= greatest)
             })
         }
     }

@@ -16,10 +16,9 @@ pub struct ActivityExecution {
     /// After how long a traverse passes the vertices of its path, in order; one that is not listed is passed as planned.
     pub passes: Vec<(EventRef, Time)>,
     /// After how long a traverse has driven how many meters more than its path has, or fewer, in order of time: as soon as
-    /// it has driven more, and when it is there.
+    /// it has driven more than the plan counts at most, and when it is there.
     pub extra_meters: Vec<(Time, Rational)>,
-    /// How many meters the plan counts for a traverse, more than its path has, where they are taken from something, and how
-    /// many fewer where they give something.
+    /// How many meters more than its path has the plan counts for a traverse at most, and how many fewer at least.
     pub counted_margins: [Rational; 2],
 }
 

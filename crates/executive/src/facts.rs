@@ -26,6 +26,8 @@ pub struct Facts {
     pub states: Vec<(VariableId, ValueId, Time)>,
     /// By how much levels changed that nobody planned to change, and when.
     pub levels: Vec<(ResourceId, Rational, Time)>,
+    /// Traverses of which is known how far they have driven: `levels` has what that takes less than the most, or more.
+    pub driven: Vec<OccurrenceId>,
     /// What activities that said to set something have brought about instead.
     pub outcomes: Vec<(LabelId, ValueId)>,
     /// The alternatives that were given up while they ran.
@@ -81,6 +83,14 @@ impl Facts {
                 if node.events.contains(&event) {
                     times[index] = Some(time);
                 }
+            }
+        }
+        for used in &mut changed.uses {
+            let is_over = times.get(used.end.index()).is_some_and(Option::is_some);
+            let is_driven = used.owner.is_some_and(|owner| self.driven.contains(&owner));
+            if is_over || (is_driven && used.change == Change::Consumes) {
+                used.amount = used.counted();
+                used.at_least = used.amount;
             }
         }
         for &(occurrence, _) in &self.begins {
@@ -273,9 +283,8 @@ fn add_level(network: &mut Network, resource: ResourceId, by: Rational, at: Time
         resource,
         change,
         amount,
+        at_least: amount,
         per_meter: Rational::ZERO,
-        spread: Rational::ZERO,
-        detour: Rational::ZERO,
         arc,
         start: node,
         end: node,

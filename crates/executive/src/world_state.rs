@@ -200,8 +200,8 @@ impl WorldState {
             for used in own.filter(|used| plan.selected_arcs[used.arc.index()]) {
                 let by = match used.change {
                     Change::Uses if has_happened(used.start) && !has_happened(used.end) => Some(used.amount),
-                    Change::Produces if has_happened(used.end) => Some(used.amount),
-                    Change::Consumes if has_happened(used.start) => used.amount.checked_neg(),
+                    Change::Produces if has_happened(used.end) => Some(used.counted()),
+                    Change::Consumes if has_happened(used.start) => used.counted().checked_neg(),
                     _ => None,
                 };
                 level = by.and_then(|by| level.checked_add(by)).unwrap_or(level);
@@ -273,7 +273,7 @@ impl WorldState {
                         Effect::Frees(_) => false,
                         _ => used.change == Change::Produces,
                     };
-                    let by = if is_more { Some(used.amount) } else { used.amount.checked_neg() };
+                    let by = if is_more { Some(used.counted()) } else { used.counted().checked_neg() };
                     happenings.extend(self.move_level(
                         network,
                         used.resource,

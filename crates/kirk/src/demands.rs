@@ -50,13 +50,30 @@ pub(crate) struct ModelUse {
     pub(crate) start: NodeId,
     pub(crate) end: NodeId,
     pub(crate) change: Change,
+    /// At most.
     pub(crate) amount: i64,
+    pub(crate) at_least: i64,
 }
 
 impl ModelUse {
     /// When a reservoir is consumed from, or produced into.
     pub(crate) fn moment(&self) -> NodeId {
         if self.change == Change::Produces { self.end } else { self.start }
+    }
+
+    /// By how much it changes a reservoir's level, in units: at most if `is_most`, otherwise at least.
+    pub(crate) const fn level_change(&self, is_most: bool) -> i64 {
+        level_change(self.change, [self.at_least, self.amount], is_most)
+    }
+}
+
+/// By how much something that gives or takes between two amounts changes a level: at most if `is_most`, otherwise at least.
+pub(crate) const fn level_change(change: Change, [at_least, amount]: [i64; 2], is_most: bool) -> i64 {
+    match (change, is_most) {
+        (Change::Produces, true) => amount,
+        (Change::Produces, false) => at_least,
+        (_, true) => -at_least,
+        (_, false) => -amount,
     }
 }
 
@@ -219,7 +236,7 @@ fn resources(network: &Network) -> Result<Vec<ResourceDemand>, Unplannable> {
             Supply::Reusable { capacity } => vec![capacity],
             Supply::Reservoir { least, greatest, level } => vec![least, greatest, level],
         };
-        let amounts = used().map(|(_, used)| used.amount);
+        let amounts = used().flat_map(|(_, used)| [used.at_least, used.amount]);
         let Some(unit) = common_unit(supply.into_iter().chain(amounts)) else {
             return Err(Unplannable::at(network.start));
         };
@@ -242,6 +259,7 @@ fn resources(network: &Network) -> Result<Vec<ResourceDemand>, Unplannable> {
                 end: used.end,
                 change: used.change,
                 amount: units(used.amount, used.start)?,
+                at_least: units(used.at_least, used.start)?,
             });
         }
         demands.push(ResourceDemand { supply, uses, unit });

@@ -679,7 +679,7 @@ impl Making<'_> {
                 happens_before(self, then, now)?
             };
             if counts {
-                extreme += if other.change == Change::Produces { other.amount } else { -other.amount };
+                extreme += other.level_change(used.change == Change::Produces);
             }
         }
         Ok(extreme)

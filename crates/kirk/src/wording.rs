@@ -141,10 +141,11 @@ impl Told<'_> {
                 joined(&shared)
             );
         }
-        let sum = |change: Change| {
-            let amounts = uses.iter().filter(|used| used.change == change).map(|used| used.amount);
+        let sum_of = |change: Change, amount: fn(&Use) -> Rational| {
+            let amounts = uses.iter().filter(|used| used.change == change).map(|used| amount(used));
             amounts.fold(Rational::default(), |sum, amount| sum.checked_add(amount).unwrap_or(sum))
         };
+        let sum = |change: Change| sum_of(change, |used| used.amount);
         let verb = if names.len() == 1 { "takes" } else { "together take" };
         let what = match resource.supply {
             Supply::Reusable { capacity } if capacity == Rational::ONE => {
@@ -155,27 +156,36 @@ impl Told<'_> {
                 sum(Change::Uses),
             ),
             Supply::Reservoir { least, greatest, level } => {
+                let after = |taken: Rational, given: Rational| {
+                    let after = level.checked_sub(taken).and_then(|level| level.checked_add(given));
+                    after.unwrap_or(level)
+                };
                 let (taken, given) = (sum(Change::Consumes), sum(Change::Produces));
-                let after = level.checked_sub(taken).and_then(|level| level.checked_add(given));
-                let after = after.unwrap_or(level);
-                if (least..=greatest).contains(&after) {
-                    return format!("no order of {names_joined} keeps {name} between {least} and {greatest}");
+                // Drives take from so much to so much: the plan has to keep the level whatever they take.
+                let low = after(taken, sum_of(Change::Produces, |used| used.at_least));
+                let high = after(sum_of(Change::Consumes, |used| used.at_least), given);
+                if low >= least && high <= greatest {
+                    let text =
+                        format!("no order of {names_joined} keeps {name} between {least} and {greatest}");
+                    return format!("{text}{}", driven(self.network, &uses));
                 }
-                let (verb, amount, beyond, end) = if after < least {
+                let (verb, amount, after, beyond, end) = if low < least {
                     (
                         verb,
                         taken,
-                        least.checked_sub(after),
+                        low,
+                        least.checked_sub(low),
                         format!("below the minimum {least}, and not enough is produced"),
                     )
                 } else {
                     let verb = if names.len() == 1 { "gives" } else { "together give" };
                     let end = format!("above the maximum {greatest}, and not enough is consumed");
-                    (verb, given, after.checked_sub(greatest), end)
+                    (verb, given, high, high.checked_sub(greatest), end)
                 };
                 format!(
-                    "{names_joined} {verb} {amount} of {name}: its level would go from {level} to {after}, which is {} {end} in time",
-                    beyond.unwrap_or_default()
+                    "{names_joined} {verb} {amount} of {name}: its level would go from {level} to {after}, which is {} {end} in time{}",
+                    beyond.unwrap_or_default(),
+                    driven(self.network, &uses)
                 )
             }
         };
@@ -542,6 +552,25 @@ fn needing(arc: &Arc) -> String {
         Some(ahead) => format!("allows only {} in the other direction", ahead.readable()),
         None => format!("needs at least {}", arc.lower.readable()),
     }
+}
+
+/// What drives take of the resource of `uses`, or give to it, where that depends on how far they drive: these uses, and others
+/// that could help them. Empty where none does.
+fn driven(network: &Network, uses: &[&Use]) -> String {
+    let Some(first) = uses.first() else { return String::new() };
+    let ranges = network.uses.iter().filter(|used| {
+        let is_other = used.change != first.change;
+        used.resource == first.resource && used.at_least < used.amount && (is_other || uses.contains(used))
+    });
+    let ranges = ranges.map(|used| {
+        let verb = if used.change == Change::Produces { "gives" } else { "takes" };
+        format!("{} {verb} {}", use_owner(network, used), used.readable_amount())
+    });
+    let ranges: Vec<String> = ranges.collect();
+    if ranges.is_empty() {
+        return String::new();
+    }
+    format!(" (depending on the distance that is really driven, {})", joined(&ranges))
 }
 
 fn allowing_verb(network: &Network, arc: &Arc) -> &'static str {

@@ -1,10 +1,81 @@
-//! The lines of a review under trial.
+//! The lines of a review under trial: what else the mission could do, and what vehicles see where they really are.
 
-use review::contradict::{Effort, Trial};
+use std::sync::Arc;
+
+use exact::Time;
+use kirk::{Options, Search};
+use nalgebra::Point2;
+use review::contradict::{Effort, Sight, Trial};
 use review::record::LineKey;
+use snapshot::SimulatedDrive;
+use tpn::{Network, Plan};
+
+use crate::evaluated::Evaluated;
+use crate::ground::Grounds;
+use crate::planning::{self, Planned, Problem};
+use crate::sight::Seeing;
+use crate::traverse::Paths;
 
 /// A trial, and what it belongs to: the revision of the text, the one line that is tried, and how much is tried.
 pub(crate) struct Trying {
     pub(crate) of: (u64, Option<LineKey>, Effort),
     pub(crate) trial: Trial,
+}
+
+/// Plans with other choices that are looked at, at most.
+const MAX_PLANS: usize = 50;
+/// Alternatives that one search tries, at most.
+const MAX_ALTERNATIVES: u32 = 5_000;
+
+/// Plans of the mission that are found in another way than its own: by the other search, and one for each of its choices.
+pub(crate) fn other_plans(
+    evaluated: &Evaluated,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+) -> Vec<(Arc<Network>, Plan)> {
+    let problem = evaluated.problem();
+    let options = Options { explain: false, relax: false, all: false, best: 1, ..problem.options };
+    let search = match options.search {
+        Search::BestFirst => Search::ConflictDirected,
+        Search::Chronological | Search::ConflictDirected => Search::BestFirst,
+    };
+    let mut found = Vec::new();
+    let all = Options { all: true, max_plans: MAX_PLANS, ..options };
+    for options in [Options { search, ..options }, all] {
+        let mut left = MAX_ALTERNATIVES;
+        let mut stop = || {
+            left = left.saturating_sub(1);
+            left == 0
+        };
+        let planned = planning::plan(&Problem { options, ..problem }, grounds, paths, &mut stop);
+        let Planned { network, planning, others, .. } = planned;
+        found.extend(planning.outcome.plans.iter().map(|plan| (Arc::clone(&network), plan.clone())));
+        found.extend(others.into_iter().map(|listed| (listed.network, listed.plan)));
+    }
+    // What the checker does not accept is no plan.
+    found.retain(|(network, plan)| verify::check_plan(network, plan).valid);
+    found
+}
+
+/// Whether a vehicle sees a location from where it is at a time of a run; `None` without a terrain.
+pub(crate) fn sight(
+    evaluated: &Evaluated,
+    drives: &[SimulatedDrive],
+    (vehicle, location): (&str, &str),
+    at: Time,
+) -> Option<Sight> {
+    let world = &evaluated.compiled.program.world;
+    world.terrain.as_ref()?;
+    let (_, map) = evaluated.ground.as_ref()?;
+    let index = world.vehicles.iter().position(|it| it.name.text == vehicle)?;
+    let frames = drives.iter().rev().flat_map(|drive| &drive.vehicles);
+    let mut frames = frames.filter(|it| it.vehicle as usize == index);
+    let driven = frames.find_map(|it| it.at(at.to_f64()));
+    let place_m = driven.map(|frame| frame.position_m).or_else(|| {
+        let first = &world.vehicles[index].start.text;
+        let place = world.locations.iter().find(|it| it.name.text == *first)?;
+        Some(Point2::from(place.position_m))
+    })?;
+    let is_seen = Seeing::new(world, map).sees(vehicle, place_m, location)?;
+    Some(Sight { is_seen, from_m: place_m.coords.into() })
 }

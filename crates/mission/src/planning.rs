@@ -502,10 +502,8 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
     for (&occurrence, traverse) in inserted {
         match &traverse.legs {
             Ok(legs) => {
-                let followers = traverse.route.vehicles.len().saturating_sub(1);
-                let has_map = problem.program.world.terrain.is_some();
                 let length_m = snapshot::joined(legs).length_m();
-                count_meters(&mut network, occurrence, length_m, followers, has_map);
+                count_meters(&mut network, &traverse.route, length_m, &problem.program.world);
             }
             Err(_) => block(&mut network, occurrence),
         }
@@ -516,35 +514,29 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
     }
 }
 
-/// Adds what a traverse takes, gives and costs for each meter (SPEC 11, 12), rounded up. What a driver takes is counted for
-/// as far as it drives at most along the path, what it gives for as far as it drives at least, and costs for the path itself.
-fn count_meters(
-    network: &mut Network,
-    occurrence: OccurrenceId,
-    length_m: f64,
-    followers: usize,
-    leaves_out_rocks: bool,
-) {
-    let Some(meters) = rounded_up(length_m) else { return };
-    let Some(at_most) = rounded_up(motion::driven_at_most_m(length_m, followers)) else { return };
+/// Adds what a traverse takes, gives and costs for each meter (SPEC 11, 12), rounded up: between what it drives at least along
+/// its path and at most; costs are those of the path itself.
+fn count_meters(network: &mut Network, route: &Route, length_m: f64, world: &World) {
+    let followers = route.vehicles.len().saturating_sub(1);
+    let at_most_m = motion::driven_at_most_m(length_m, followers, leaves_out_rocks(world, route));
+    let (Some(meters), Some(at_most)) = (rounded_up(length_m), rounded_up(at_most_m)) else { return };
     let at_least = rounded_up(motion::driven_at_least_m(length_m, followers)).unwrap_or_default();
     let with = |amount: Rational, per_meter: Rational, meters: Rational| {
         per_meter.checked_mul(meters).and_then(|more| amount.checked_add(more)).unwrap_or(amount)
     };
-    for used in network.uses.iter_mut().filter(|used| used.owner == Some(occurrence)) {
-        let meters = if used.change == Change::Produces { at_least } else { at_most };
-        used.amount = with(used.amount, used.per_meter, meters);
-        let spread_m = at_most.checked_sub(at_least).unwrap_or_default();
-        used.spread = with(Rational::ZERO, used.per_meter, spread_m);
-        if leaves_out_rocks && used.change == Change::Consumes && length_m > 0.0 {
-            let detours_m = rounded_up(motion::detours_at_most_m(followers)).unwrap_or_default();
-            used.detour = with(Rational::ZERO, used.per_meter, detours_m);
-        }
+    for used in network.uses.iter_mut().filter(|used| used.owner == Some(route.occurrence)) {
+        used.at_least = with(used.amount, used.per_meter, at_least);
+        used.amount = with(used.amount, used.per_meter, at_most);
     }
-    let arc = network.occurrences[occurrence.index()].arc;
+    let arc = network.occurrences[route.occurrence.index()].arc;
     for worth in network.worths.iter_mut().filter(|worth| Some(worth.arc) == arc) {
         worth.cost = with(worth.cost, worth.cost_per_meter, meters);
     }
+}
+
+/// Whether a route may meet rocks that its map does not show. What flies is above them.
+pub(crate) fn leaves_out_rocks(world: &World, route: &Route) -> bool {
+    world.terrain.is_some() && route.vehicles.iter().any(|&vehicle| !vehicle::flies(world, vehicle as u32))
 }
 
 fn traverse_path(route: &Route, legs: &[Leg], map: &Terrain) -> Option<TraversePath> {

@@ -2,7 +2,7 @@
 
 use nalgebra::Point2;
 use rmpl::program::{ArgumentValue, Condition, LocationDecl, Program, Statement, StatementKind, World};
-use terrain::Terrain;
+use terrain::{LineOfSight, Terrain};
 use tpn::Hidden;
 
 use crate::evaluated::Ground;
@@ -66,25 +66,40 @@ impl<'a> Seeing<'a> {
         if place.name.text == target.name.text {
             return None;
         }
-        let [from, to] = [place, target].map(|it| Point2::from(it.position_m));
-        let sight = self.map.height_at(from).and_then(|ground_m| {
-            let heights_m = [model.antenna_m(self.map, ground_m), TARGET_M];
-            self.map.line_of_sight(from, to, heights_m)
-        });
-        let blocked_at_m = match sight {
+        let blocked_at_m = match self.line_of_sight(model, place.position_m.into(), target) {
             None => None,
             Some(sight) => Some(sight.blocked_at_m?.into()),
         };
         Some(Hidden { place: place.name.text.clone(), blocked_at_m })
     }
+
+    /// What is between a vehicle at a place and a location; `None` if one of the two has no height.
+    fn line_of_sight(
+        &self,
+        model: &motion::VehicleModel,
+        from_m: Point2<f64>,
+        target: &LocationDecl,
+    ) -> Option<LineOfSight> {
+        let heights_m = [model.antenna_m(self.map, self.map.height_at(from_m)?), TARGET_M];
+        self.map.line_of_sight(from_m, target.position_m.into(), heights_m)
+    }
+
+    /// Whether a vehicle sees a location from a place; `None` if a height or a name is not known.
+    pub(crate) fn sees(&self, vehicle: &str, from_m: Point2<f64>, location: &str) -> Option<bool> {
+        let (model, target) = self.found(vehicle, location)?;
+        Some(self.line_of_sight(&model, from_m, target)?.blocked_at_m.is_none())
+    }
+
+    fn found(&self, vehicle: &str, location: &str) -> Option<(motion::VehicleModel, &LocationDecl)> {
+        let vehicle = self.world.vehicles.iter().find(|it| it.name.text == vehicle)?;
+        let model = snapshot::vehicle::model(self.world, &vehicle.model.text)?;
+        Some((model, self.world.locations.iter().find(|it| it.name.text == location)?))
+    }
 }
 
 impl tpn::Ground for Seeing<'_> {
     fn hidden(&self, vehicle: &str, location: &str) -> Vec<Hidden> {
-        let vehicle = self.world.vehicles.iter().find(|it| it.name.text == vehicle);
-        let model = vehicle.and_then(|it| snapshot::vehicle::model(self.world, &it.model.text));
-        let target = self.world.locations.iter().find(|it| it.name.text == location);
-        let (Some(model), Some(target)) = (model, target) else { return Vec::new() };
+        let Some((model, target)) = self.found(vehicle, location) else { return Vec::new() };
         let places = self.world.locations.iter();
         places.filter_map(|place| self.hidden_from(&model, place, target)).collect()
     }

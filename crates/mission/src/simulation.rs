@@ -239,8 +239,18 @@ impl ActivityExecutor for Driving<'_> {
             trip.entries.push((trip.convoy.time_s(), note));
         }
         let driven_m = trip.driven_m();
-        let Trip { frames, entries, passes, reroutes, least_clearance_m, convoy, extra_meters, seen, .. } =
-            trip;
+        let Trip {
+            frames,
+            entries,
+            passes,
+            reroutes,
+            least_clearance_m,
+            convoy,
+            extra_meters,
+            arrived_m,
+            seen,
+            ..
+        } = trip;
         self.seen.extend(seen);
         let time_s = convoy.time_s();
         let unit_seconds = self.problem.program.options.time_unit.seconds();
@@ -272,7 +282,9 @@ impl ActivityExecutor for Driving<'_> {
         let length_m = course.drive.path.length_m();
         let margin = |meters: f64| Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow);
         let followers = course.drive.vehicles.len().saturating_sub(1);
-        let taken_m = margin(motion::driven_at_most_m(length_m, followers) - length_m)?;
+        let leaves_out_rocks = planning::leaves_out_rocks(&self.problem.program.world, &course.route);
+        let at_most_m = motion::driven_at_most_m(length_m, followers, leaves_out_rocks);
+        let taken_m = margin(at_most_m - length_m)?;
         let given_m = margin(length_m - motion::driven_at_least_m(length_m, followers))?;
         let extra = |(seconds, meters): (f64, f64)| {
             let meters = Rational::from_f64_up(meters, PARTS_PER_METER).ok_or(Overflow)?;
@@ -282,7 +294,11 @@ impl ActivityExecutor for Driving<'_> {
             ends: reached.map_or_else(Ends::Never, |()| Ends::NotBefore(duration)),
             entries: entries.into_iter().map(entry).collect::<Result<_, _>>()?,
             passes: passes.into_iter().map(pass).collect::<Result<_, _>>()?,
-            extra_meters: extra_meters.into_iter().map(extra).collect::<Result<_, _>>()?,
+            extra_meters: (extra_meters.into_iter())
+                .filter(|&(_, extra_m)| extra_m > at_most_m - length_m)
+                .chain(arrived_m)
+                .map(extra)
+                .collect::<Result<_, _>>()?,
             counted_margins: [taken_m, given_m],
         })
     }

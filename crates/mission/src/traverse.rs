@@ -242,13 +242,13 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
             }
         }
     }
-    if world.terrain.is_none() {
+    if world.locations.is_empty() {
         for primitive in &program.primitives {
             let amounts =
                 primitive.uses.iter().filter_map(|used| used.amount.as_ref()).chain(&primitive.costs);
             for amount in amounts.filter(|amount| amount.per == Some(Per::Meter)) {
                 let message =
-                    "amounts per metre count as 0, because the mission has no terrain and so no paths";
+                    "amounts per metre count as 0, because the mission has no locations and so no paths";
                 found.push(rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), amount.span, message));
             }
         }

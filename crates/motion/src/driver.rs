@@ -142,18 +142,14 @@ const STEP_TURN_RAD: f64 = 0.2;
 /// How far the leader of some followers drives at most along a path of some meters where nothing disturbs it and the map shows
 /// everything that stands in its way: where it turns back, it goes around its followers. Measured: see
 /// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
-pub fn driven_at_most_m(length_m: f64, followers: usize) -> f64 {
+pub fn driven_at_most_m(length_m: f64, followers: usize, leaves_out_rocks: bool) -> f64 {
     if length_m > 0.0 {
-        length_m * (1.0 + MORE_SHARE) + MORE_M + MORE_FOR_FOLLOWER_M * followers as f64
+        let followers = followers as f64;
+        let rocks_m = if leaves_out_rocks { DETOUR_M + DETOUR_FOR_FOLLOWER_M * followers } else { 0.0 };
+        length_m * (1.0 + MORE_SHARE) + MORE_M + MORE_FOR_FOLLOWER_M * followers + rocks_m
     } else {
         0.0
     }
-}
-
-/// How much more than that it drives at most to go around rocks that the map does not show, in meters. Measured in the same way,
-/// on maps with rocks of all sizes.
-pub fn detours_at_most_m(followers: usize) -> f64 {
-    DETOUR_M + DETOUR_FOR_FOLLOWER_M * followers as f64
 }
 
 /// How long a drive takes at most that takes some seconds at least by its path, in seconds: it turns before it sets out and at

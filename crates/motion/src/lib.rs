@@ -38,10 +38,7 @@ mod vehicle;
 mod way_around;
 
 pub use convoy::{Convoy, ConvoyMember, OtherVehicle, Surroundings};
-pub use driver::{
-    DriveEvent, Driver, DriverSettings, detours_at_most_m, driven_at_least_m, driven_at_most_m,
-    driven_within_s,
-};
+pub use driver::{DriveEvent, Driver, DriverSettings, driven_at_least_m, driven_at_most_m, driven_within_s};
 pub use fine_world::FineWorld;
 pub use formation::Formation;
 pub use leg::{Leg, find_shortest_path, plan_leg};

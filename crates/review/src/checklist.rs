@@ -176,12 +176,8 @@ pub struct ResourceReview {
     pub name: String,
     /// How much of it there is.
     pub supply: Supply,
-    /// How far the plan uses it, over all schedules.
+    /// How far the plan uses it, over all schedules, and whatever its drives take.
     pub levels: Levels,
-    /// How much more than that a reservoir may hold because drives consume less, or produce more, than is counted.
-    pub spread: Rational,
-    /// How much less it may hold because drives go around rocks that the map leaves out.
-    pub detours: Rational,
     /// What stays free of a reusable resource, and above the minimum level of a reservoir.
     pub spare: Rational,
     /// What stays free below the maximum level of a reservoir.

@@ -5,7 +5,7 @@
 use exact::Rational;
 use rmpl::program::LabelMode;
 use snapshot::Planning;
-use tpn::{Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Use, Variable};
+use tpn::{CausalLink, Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Variable};
 
 use super::lines::Places;
 use super::{Line, ResourceReview, Status};
@@ -36,6 +36,22 @@ pub(super) fn in_any_order(network: &Network, changes: &[LabelId]) -> Vec<Vec<La
 
 fn is_unordered(network: &Network, known: LabelId, label: LabelId) -> bool {
     network.labels[known.index()].extent != Extent::Initial && !network.conflict(known, label)
+}
+
+/// What a vehicle sees where it has to, or does not see where it must not, and from where (SPEC 10.5); empty for a condition
+/// about something else.
+pub(super) fn sight_text(network: &Network, link: CausalLink) -> String {
+    let ask = &network.labels[link.ask.index()];
+    let Some(sight) = network.sight(ask) else { return String::new() };
+    let vehicle = network.variables[sight.variable.index()].name.trim_end_matches(".at");
+    let place = network.value_names(&network.labels[link.tell.index()].literal).join(", ");
+    let verb = if ask.text.starts_with("not(") { "does not see" } else { "sees" };
+    let owner = ask.owner.and_then(|owner| network.occurrences.get(owner.index()));
+    let during = owner.map(|owner| format!(" during {}", owner.name)).unwrap_or_default();
+    format!(
+        "{vehicle} {verb} {} from {place}{during}; rocks and declared obstacles are ignored",
+        sight.location
+    )
 }
 
 /// Whatever the checker examines has passed only where it finds the plan valid.
@@ -73,20 +89,17 @@ impl DemandLines<'_> {
             .collect()
     }
 
-    /// How much more than planned a reservoir may hold, because drives consume less or produce more than is counted, and how
-    /// much less, because drives go around rocks that the map leaves out.
-    fn driven_otherwise(&self, resource: &Resource) -> Option<[Rational; 2]> {
-        let is_its = |used: &&Use| {
+    /// Whether what drives take of a resource depends on how far they really drive.
+    fn is_driven(&self, resource: &Resource) -> bool {
+        self.network.uses.iter().any(|used| {
             self.network.resources[used.resource.index()].name == resource.name
                 && self.plan.selected_arcs.get(used.arc.index()) == Some(&true)
-        };
-        self.network.uses.iter().filter(is_its).try_fold([Rational::ZERO; 2], |[spread, detours], used| {
-            Some([spread.checked_add(used.spread)?, detours.checked_add(used.detour)?])
+                && used.at_least < used.amount
         })
     }
 
     fn requirements(&self) -> Option<Line> {
-        let is_lasting = |link: &&tpn::CausalLink| self.network.is_lasting(link.ask);
+        let is_lasting = |link: &&CausalLink| self.network.is_lasting(link.ask);
         let count = self.plan.causal_links.iter().filter(is_lasting).count();
         let text = match count {
             0 => return None,
@@ -101,14 +114,10 @@ impl DemandLines<'_> {
         let mut lines = Vec::new();
         for link in &self.plan.causal_links {
             let ask = &self.network.labels[link.ask.index()];
-            let Some(sight) = self.network.sight(ask) else { continue };
-            let vehicle = self.network.variables[sight.variable.index()].name.trim_end_matches(".at");
-            let tell = &self.network.labels[link.tell.index()].literal;
-            let place = self.network.value_names(tell).join(", ");
-            let verb = if ask.text.starts_with("not(") { "does not see" } else { "sees" };
-            let owner = self.owner(link.ask).map(|owner| format!(" during {owner}")).unwrap_or_default();
-            let scope = "rocks and declared obstacles are ignored";
-            let text = format!("{vehicle} {verb} {} from {place}{owner}; {scope}", sight.location);
+            if self.network.sight(ask).is_none() {
+                continue;
+            }
+            let text = sight_text(self.network, *link);
             let names = self.owner(link.ask).map(str::to_owned).into_iter().collect();
             let (start, end) = self.network.interval(link.ask);
             lines.push(self.places.line(self.status, text, ask.span, names, vec![start, end]));
@@ -202,7 +211,6 @@ impl DemandLines<'_> {
 
     fn resource(&self, resource: &Resource, levels: Levels) -> Option<ResourceReview> {
         let name = resource.name.as_str();
-        let [spread, detours] = self.driven_otherwise(resource)?;
         let (text, spare, room) = match (resource.supply, levels) {
             (Supply::Reusable { capacity }, Levels::Peak(peak)) => {
                 let spare = capacity.checked_sub(peak)?;
@@ -232,27 +240,17 @@ impl DemandLines<'_> {
                     format!("{} below its maximum {greatest}", room.readable())
                 };
                 let mut text = format!("{name} stays between {low} and {high}: {above}, {below}");
-                if spread.is_positive() {
-                    text.push_str(&format!("; drives may leave up to {} more", spread.readable()));
-                }
-                if detours.is_positive() {
-                    let detours = detours.readable();
-                    text.push_str(&format!("; detours around unmapped rocks may take up to {detours} more"));
+                if self.is_driven(resource) {
+                    text.push_str("; for every distance that drives may take along their paths");
                 }
                 (text, spare, Some(room))
             }
             _ => return None,
         };
         let is_short = spare.is_negative() || room.is_some_and(Rational::is_negative);
-        // Where drives of other lengths leave the range, the plan says nothing sure of what happens.
-        let is_tight = room.is_some_and(|room| detours > spare || spread > room);
-        let status = match (is_short, is_tight) {
-            (true, _) => Status::Failed,
-            (false, true) => self.status.max(Status::Attention),
-            (false, false) => self.status,
-        };
+        let status = if is_short { Status::Failed } else { self.status };
         let line = self.places.line(status, text, resource.span, vec![name.to_owned()], Vec::new());
         let (name, supply) = (name.to_owned(), resource.supply);
-        Some(ResourceReview { line, name, supply, levels, spread, detours, spare, room })
+        Some(ResourceReview { line, name, supply, levels, spare, room })
     }
 }

@@ -10,7 +10,7 @@ use tpn::{ArcKind, Network, NodeId};
 
 use super::demand_lines::status_by_checker;
 use super::place::find_places;
-use super::plan_lines::PlanLines;
+use super::plan_lines::{PlanLines, driven_within_s};
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
 /// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` says so, the alternatives that have
@@ -49,6 +49,7 @@ pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut(
         review.conflicts = lines.conflicts();
         review.states = lines.demands().states();
         review.states.extend(lines.short_of_their_goals());
+        review.separation_violations.extend(lines.scattered_formations());
         review.resources = lines.demands().resources();
         review.overlaps = lines.overlaps();
         review.durations = lines.durations();
@@ -106,6 +107,9 @@ pub(crate) const ACCEPTED: &str = "the independent checker accepts the plan";
 /// How the lines of a plan that the checker finds invalid begin.
 pub(crate) const REJECTED: &str = "the independent checker rejects the plan: ";
 
+/// How the line of what a plan is worth begins.
+pub(crate) const OBJECTIVE: &str = "objective: ";
+
 /// How the line of a dynamically controllable plan begins.
 pub(crate) const DYNAMIC: &str = "dynamically controllable: ";
 
@@ -128,7 +132,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     } else {
         let mut lines = vec![places.plain(Status::Passed, PLAN)];
         lines.extend(emptiness(planning, network, places));
-        lines.extend(controllability(planning, network, places));
+        lines.extend(controllability(snapshot, planning, network, places));
         lines.extend(natures(planning, network, places));
         lines.extend(verdict(planning, places));
         lines.extend(assumptions(snapshot, places));
@@ -150,7 +154,12 @@ fn emptiness(planning: &Planning, network: &Network, places: &Places<'_>) -> Opt
 }
 
 /// Whether the plan withstands what nature chooses, in the checker's word; nothing if nature chooses nothing (SPEC 13.1).
-fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+fn controllability(
+    snapshot: &Snapshot,
+    planning: &Planning,
+    network: &Network,
+    places: &Places<'_>,
+) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
     let natures = network.occurrences.iter().filter_map(|occurrence| {
         let id = occurrence.arc?;
@@ -194,7 +203,28 @@ fn controllability(planning: &Planning, network: &Network, places: &Places<'_>) 
             ),
         ),
     };
-    Some(places.line(status, text, None, names, nodes))
+    let late = late_drives(snapshot, network, &nodes);
+    if late.is_empty() || network.controllability == Controllability::None {
+        return Some(places.line(status, text, None, names, nodes));
+    }
+    let text = format!("{text}; unmapped obstacles may extend {} beyond that", late.join(", "));
+    Some(places.line(status.max(Status::Attention), text, None, names, nodes))
+}
+
+/// The traverses that end at these nodes, and may take longer than their greatest contingent duration.
+fn late_drives<'network>(
+    snapshot: &Snapshot,
+    network: &'network Network,
+    ends: &[NodeId],
+) -> Vec<&'network str> {
+    let unit_s = snapshot.program.options.time_unit.seconds() as f64;
+    let late = snapshot.traverses.iter().filter_map(|traverse| {
+        let occurrence = &network.occurrences[traverse.occurrence.index()];
+        let most = network.arcs[occurrence.arc?.index()].upper.finite()?;
+        let is_late = most.to_f64() * unit_s < driven_within_s(snapshot, network, traverse) - 1e-3;
+        (ends.contains(&occurrence.end) && is_late).then_some(occurrence.name.as_str())
+    });
+    late.collect()
 }
 
 /// Each duration that nature chooses.
@@ -298,7 +328,7 @@ fn worth(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<
     if tpn::worth::measures(network).contains(&Measure::End) {
         text.push_str("; the end is that of the earliest schedule");
     }
-    Some(places.plain(status, format!("objective: {text}")))
+    Some(places.plain(status, format!("{OBJECTIVE}{text}")))
 }
 
 fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {

@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use exact::{Bound, Time};
 use motion::DriveLimits;
 use rmpl::Span;
-use rmpl::program::{Change, LabelMode};
-use snapshot::vehicle::{is_way, model_of, moving};
+use rmpl::program::{Change, LabelMode, VehicleDecl};
+use snapshot::vehicle::{flies, is_way, model_of, moving};
 use snapshot::{Planning, Snapshot, joined, standing};
-use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceKind, Plan};
+use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
 
 use super::alternatives::{Alternative, Examiner};
 use super::demand_lines::{DemandLines, status_by_checker};
@@ -339,7 +339,7 @@ impl<'input> PlanLines<'input> {
         let unit_s = self.snapshot.program.options.time_unit.seconds() as f64;
         let is_too_short =
             needed_s.is_some_and(|needed_s| duration.least.to_f64() * unit_s < needed_s - 1e-3);
-        let driven_s = self.driven_within_s(traverse);
+        let driven_s = driven_within_s(self.snapshot, self.network, traverse);
         let is_tight =
             duration.greatest.finite().is_some_and(|most| most.to_f64() * unit_s < driven_s - 1e-3);
         let status = match clearance_m {
@@ -396,26 +396,6 @@ impl<'input> PlanLines<'input> {
         }
     }
 
-    /// How long the vehicles of a traverse take at most to drive it, by what drivers were measured to need.
-    fn driven_within_s(&self, traverse: &snapshot::Traverse) -> f64 {
-        let program = &self.snapshot.program;
-        let unit_s = program.options.time_unit.seconds() as f64;
-        let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
-        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
-        let said_mps = moving(program, occurrence).and_then(|moving| moving.moves.speed_mps);
-        let models =
-            traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
-        let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
-        let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
-        let followers = traverse.vehicles.len().saturating_sub(1);
-        motion::driven_within_s(
-            least * unit_s,
-            speed_mps,
-            followers,
-            self.snapshot.program.world.terrain.is_some(),
-        )
-    }
-
     /// Vehicles that do not reach the location that they are then said to be at, because others stand there (SPEC 10.3).
     pub(super) fn short_of_their_goals(&self) -> Vec<Line> {
         self.snapshot.traverses.iter().filter_map(|traverse| self.short_of_its_goal(traverse)).collect()
@@ -447,6 +427,46 @@ impl<'input> PlanLines<'input> {
         );
         let names = [leader, occurrence.name.as_str()].into_iter().chain(other).map(str::to_owned).collect();
         Some(self.places.line(Status::Attention, text, occurrence.span, names, vec![occurrence.end]))
+    }
+
+    /// Traverses whose vehicles are to set out in formation, but are at different locations: a run cannot begin as the plan
+    /// says.
+    pub(super) fn scattered_formations(&self) -> Vec<Line> {
+        self.snapshot.traverses.iter().filter_map(|traverse| self.scattered_formation(traverse)).collect()
+    }
+
+    fn scattered_formation(&self, traverse: &snapshot::Traverse) -> Option<Line> {
+        let vehicles = &self.snapshot.program.world.vehicles;
+        let members = traverse.vehicles.iter().filter_map(|&vehicle| vehicles.get(vehicle as usize));
+        let mut places =
+            members.map(|it| (it.name.text.as_str(), self.place_before(traverse.occurrence, it)));
+        let (leader, from) = places.next()?;
+        let (other, there) = places.find(|(_, place)| *place != from)?;
+        let occurrence = &self.network.occurrences[traverse.occurrence.index()];
+        let name = occurrence.name.as_str();
+        let text = format!(
+            "{name} sets out in formation behind {leader} from {from}, but {other} is at {there}; drive it to {from} first"
+        );
+        let names = [name, leader, other].map(str::to_owned).into();
+        Some(self.places.line(Status::Failed, text, occurrence.span, names, vec![occurrence.start]))
+    }
+
+    /// The location where a vehicle is before a traverse that moves it.
+    fn place_before(&self, traverse: OccurrenceId, vehicle: &VehicleDecl) -> String {
+        let is_its = |order: &&tpn::StateOrder| {
+            self.network.variables[order.variable.index()].name.strip_suffix(".at")
+                == Some(vehicle.name.text.as_str())
+        };
+        let before = self.plan.state_order.iter().find(is_its).and_then(|order| {
+            let moved = |&label: &LabelId| self.network.labels[label.index()].owner == Some(traverse);
+            let at = order.producers.iter().position(moved)?;
+            order.producers.get(at.checked_sub(1)?)
+        });
+        let literal = before.map(|&label| &self.network.labels[label.index()].literal);
+        literal.map_or_else(
+            || vehicle.start.text.to_string(),
+            |literal| self.network.value_names(literal).join(", "),
+        )
     }
 
     /// How long the vehicles of a kinodynamic traverse take at least for its way on flat ground, in seconds: driven state by
@@ -539,4 +559,20 @@ pub(super) fn declared_durations<'network>(
         (is_selected && !network.is_uncertain(id)).then_some((occurrence, arc.lower, arc.upper))
     });
     declared.collect()
+}
+
+/// How long the vehicles of a traverse take at most to drive it, by what drivers were measured to need.
+pub(super) fn driven_within_s(snapshot: &Snapshot, network: &Network, traverse: &snapshot::Traverse) -> f64 {
+    let program = &snapshot.program;
+    let unit_s = program.options.time_unit.seconds() as f64;
+    let least: f64 = traverse.leg_figures.iter().map(|leg| leg.least_duration.to_f64()).sum();
+    let occurrence = &network.occurrences[traverse.occurrence.index()];
+    let said_mps = moving(program, occurrence).and_then(|moving| moving.moves.speed_mps);
+    let models = traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
+    let own_mps = models.map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
+    let speed_mps = said_mps.map_or(own_mps, |(_, most)| most.to_f64().min(own_mps));
+    let followers = traverse.vehicles.len().saturating_sub(1);
+    let drives = traverse.vehicles.iter().any(|&vehicle| !flies(&program.world, vehicle));
+    let leaves_out_rocks = drives && program.world.terrain.is_some();
+    motion::driven_within_s(least * unit_s, speed_mps, followers, leaves_out_rocks)
 }

@@ -249,24 +249,31 @@ pub(super) fn refused() -> verify::Verdict {
     verify::Verdict { valid: false, violations: Vec::new() }
 }
 
-/// A drive of 36 m that takes 1 for each meter of a battery with so much.
-fn driving(terrain: &str, level: i64) -> crate::Line {
-    let review = reviewed(&format!(
+/// The review of a drive of 36 m that takes 1 for each meter of a battery with so much.
+fn driving(terrain: &str, level: i64) -> Review {
+    reviewed(&format!(
         "{terrain} location A (30, 60); location B (66, 60); vehicle R : ATRV-Jr at A; resource Battery 0..200 = {level};
         primitive Drive(to)[5,60] moves R speed (0.01, 0.5) consumes Battery 1 per metre; scenario S[0,100] = {{ Drive(B) }}"
-    ));
-    review.resources[0].line.clone()
+    ))
 }
 
 #[test]
-fn a_reservoir_without_room_for_detours_needs_attention_where_the_map_may_leave_out_rocks() {
+fn a_reservoir_has_room_for_detours_where_the_map_may_leave_out_rocks() {
     let terrain = "terrain \"tai-plain\" cell 0.6 origin (0, 0);";
     let tight = driving(terrain, 45);
-    assert_eq!(tight.status, Status::Attention, "{tight:?}");
-    assert!(tight.text.ends_with("detours around unmapped rocks may take up to 10 more"), "{tight:?}");
+    assert!(tight.resources.is_empty() && tight.status == Status::Failed, "{tight:?}");
+    let reasons = format!("{tight:?}");
+    assert!(
+        reasons.contains("depending on the distance that is really driven, Drive#1 takes 33."),
+        "{reasons}"
+    );
     for (terrain, level) in [(terrain, 60), ("", 45)] {
-        let enough = driving(terrain, level);
+        let enough = driving(terrain, level).resources[0].line.clone();
         assert_eq!(enough.status, Status::Passed, "{enough:?}");
+        assert!(
+            enough.text.ends_with("; for every distance that drives may take along their paths"),
+            "{enough:?}"
+        );
     }
 }
 
@@ -290,6 +297,24 @@ fn that_a_plan_withstands_nature_has_not_passed_on_the_planner_s_word() {
         assert_eq!(line.status, status, "{line:?}");
         assert!(line.text.contains("is not verified"), "{line:?}");
     }
+}
+
+#[test]
+fn a_formation_sets_out_from_one_location() {
+    let mission = |first: &str| {
+        reviewed(&format!(
+            "location A (0, 0); location B (30, 0); location C (0, 40); vehicle R1 : ATRV at A; vehicle R2 : ATRV at B;
+             primitive Drive(r, to)[1,60] moves r; primitive Convoy(to)[1,60] moves R1, R2;
+             scenario S[0,200] = {{ {first} Convoy(C) }}"
+        ))
+    };
+    let texts_of = |review: &Review| -> Vec<(Status, String)> {
+        review.separation_violations.iter().map(|line| (line.status, line.text.clone())).collect()
+    };
+    let expected =
+        "Convoy#1 sets out in formation behind R1 from A, but R2 is at B; drive it to A first".to_owned();
+    assert_eq!(texts_of(&mission("")), [(Status::Failed, expected)]);
+    assert_eq!(texts_of(&mission("Drive(R2, A); delay;")), []);
 }
 
 #[test]

@@ -312,16 +312,12 @@ pub struct Use {
     pub resource: ResourceId,
     /// What happens to it.
     pub change: Change,
-    /// How much; not negative.
+    /// How much, at most; not negative.
     pub amount: Rational,
-    /// How much more for each meter of the planned path.
+    /// How much at least. It is less than `amount` only where meters count, because drives along one path differ in length.
+    pub at_least: Rational,
+    /// How much more for each meter that is driven.
     pub per_meter: Rational,
-    /// How much less a drive may consume, or how much more it may produce, than `amount` counts: drives differ in length.
-    #[serde(default)]
-    pub spread: Rational,
-    /// How much more a drive may consume around rocks that the map leaves out.
-    #[serde(default)]
-    pub detour: Rational,
     /// It counts where this arc is selected.
     pub arc: ArcId,
     /// When it begins.
@@ -552,6 +548,31 @@ impl Use {
     /// When a reservoir is consumed from, or produced into.
     pub fn moment(&self) -> NodeId {
         if self.change == Change::Produces { self.end } else { self.start }
+    }
+
+    /// By how much it changes the level of a reservoir: the least change and the greatest.
+    pub fn level_changes(&self) -> [Rational; 2] {
+        let less = |amount: Rational| amount.checked_neg().unwrap_or_default();
+        match self.change {
+            Change::Uses => [Rational::ZERO; 2],
+            Change::Consumes => [less(self.amount), less(self.at_least)],
+            Change::Produces => [self.at_least, self.amount],
+        }
+    }
+
+    /// What is counted until it is known how far something has driven: the most that it takes, and the least that it gives.
+    pub fn counted(&self) -> Rational {
+        if self.change == Change::Produces { self.at_least } else { self.amount }
+    }
+
+    /// How much, for people: `4`, `28.5 to 40`.
+    pub fn readable_amount(&self) -> String {
+        let amount = self.amount.readable();
+        if self.at_least == self.amount {
+            amount
+        } else {
+            format!("{} to {amount}", self.at_least.readable())
+        }
     }
 }
 

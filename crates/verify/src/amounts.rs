@@ -26,7 +26,9 @@ pub(crate) struct Taken {
     pub(crate) used: UseId,
     pub(crate) start: NodeId,
     pub(crate) end: NodeId,
+    /// At most.
     pub(crate) amount: i128,
+    pub(crate) at_least: i128,
     /// It gives instead of taking.
     pub(crate) is_production: bool,
 }
@@ -36,13 +38,18 @@ impl Taken {
     pub(crate) fn moment(&self) -> NodeId {
         if self.is_production { self.end } else { self.start }
     }
+
+    /// The least and the greatest change of a reservoir's level.
+    pub(crate) fn changes(&self) -> [i128; 2] {
+        if self.is_production { [self.at_least, self.amount] } else { [-self.amount, -self.at_least] }
+    }
 }
 
-/// A selected use with its amount not yet scaled: what takes of a reusable resource takes from start to end.
-pub(crate) fn taken(network: &Network, used: UseId, amount: i128) -> Taken {
+/// A selected use with its least and greatest amount: what takes of a reusable resource takes from start to end.
+pub(crate) fn taken(network: &Network, used: UseId, [at_least, amount]: [i128; 2]) -> Taken {
     let of = &network.uses[used.index()];
     let is_production = of.change == rmpl::program::Change::Produces;
-    Taken { used, start: of.start, end: of.end, amount, is_production }
+    Taken { used, start: of.start, end: of.end, amount, at_least, is_production }
 }
 
 /// Whether the plan selects a use.
@@ -63,7 +70,7 @@ impl Shared {
         }
         for used in &network.uses {
             let scale = &mut scales[used.resource.index()];
-            *scale = common_denominator(*scale, used.amount)?;
+            *scale = [used.amount, used.at_least].into_iter().try_fold(*scale, common_denominator)?;
         }
         let mut all: Vec<Self> = (network.resources.iter().zip(scales).enumerate())
             .map(|(index, (resource, scale))| {
@@ -84,7 +91,8 @@ impl Shared {
             if is_selected(network, plan, used) {
                 let of = &network.uses[used.index()];
                 let shared = &mut all[of.resource.index()];
-                shared.uses.push(taken(network, used, scaled(of.amount, shared.scale)));
+                let amounts = [of.at_least, of.amount].map(|amount| scaled(amount, shared.scale));
+                shared.uses.push(taken(network, used, amounts));
             }
         }
         Some(all)
@@ -100,6 +108,12 @@ impl Shared {
         self.unscaled(amount).map_or_else(|| format!("{amount}/{}", self.scale), |amount| amount.to_string())
     }
 
+    /// How much of it a use takes or gives, for people: `4`, `28.5 to 40`.
+    pub(crate) fn show_amount(&self, of: &Taken) -> String {
+        let amount = self.show(of.amount);
+        if of.at_least == of.amount { amount } else { format!("{} to {amount}", self.show(of.at_least)) }
+    }
+
     /// The name of the resource.
     pub(crate) fn name<'network>(&self, network: &'network Network) -> &'network str {
         &network.resources[self.resource.index()].name
@@ -110,7 +124,7 @@ impl Shared {
 pub(crate) fn list(network: &Network, shared: &Shared, uses: &[Taken]) -> String {
     let parts: Vec<String> = uses
         .iter()
-        .map(|it| format!("{} ({})", user_name(network, it.used), shared.show(it.amount)))
+        .map(|it| format!("{} ({})", user_name(network, it.used), shared.show_amount(it)))
         .collect();
     match parts.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),

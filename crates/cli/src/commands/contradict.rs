@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use exact::Time;
+use executive::Script;
 use mission::Manner;
 use review::contradict::{Counterexample, Effort, Trial, Tried, Verdict};
 use review::{FlightRules, Section, review};
@@ -24,7 +25,7 @@ use crate::target::{PlanOptions, Target};
 
 /// Search for counterexamples of the items that passed in a mission's review.
 ///
-/// The search tries schedules of the plan and undisturbed runs. If it contradicts an item, the exit status is 1.
+/// The search tries schedules of the plan, undisturbed runs, and other plans. If it contradicts an item, the exit status is 1.
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -132,7 +133,9 @@ fn table(tried: &[&Tried]) -> String {
         let (verdict, title) = (word(tried.verdict()), tried.line.section.title());
         text.push_str(&format!("{verdict:<12}  {how}  {title}: {}\n", tried.line.text));
         let Some(Counterexample { text: found, script }) = &tried.counterexample else { continue };
-        if script.schedule.is_empty() {
+        if *script == Script::default() {
+            text.push_str(&format!("    {found}\n"));
+        } else if script.schedule.is_empty() {
             text.push_str(&format!("    run: {found}\n"));
             let as_drawn = script.nature.is_empty();
             let how = match (script.run_seed, script.adversary, as_drawn) {
@@ -177,7 +180,7 @@ fn items_json(tried: &[&Tried]) -> Value {
             "id": format!("{}/{number}", json!(section).as_str().unwrap_or_default()),
             "text": tried.line.text,
             "status": tried.verdict(),
-            "tried": { "schedules": tried.schedules, "runs": tried.runs },
+            "tried": { "schedules": tried.schedules, "runs": tried.runs, "plans": tried.plans },
         });
         if let Some(Counterexample { text, script }) = &tried.counterexample {
             item["counterexample"] = json!({ "text": text, "script": script });

@@ -189,8 +189,8 @@ impl Run<'_> {
             }
             let by = match used.change {
                 Change::Uses => None,
-                Change::Produces => Some(used.amount),
-                Change::Consumes => used.amount.checked_neg(),
+                Change::Produces => Some(used.counted()),
+                Change::Consumes => used.counted().checked_neg(),
             };
             if let (Some(by), Some(at)) = (by.filter(|by| *by != Rational::ZERO), times[moment.index()]) {
                 self.news.levels.push((used.resource, by, at));

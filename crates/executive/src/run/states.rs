@@ -92,7 +92,8 @@ impl Run<'_> {
         let network = std::sync::Arc::clone(&self.stage.network);
         let given = self.stage.effects.given_at(node);
         let violations = given.into_iter().map(|label| self.check_effect(&network, label));
-        violations.collect::<Vec<_>>().into_iter().flatten().next()
+        let violation = violations.collect::<Vec<_>>().into_iter().flatten().next();
+        violation.or(self.give_for_meters(&network, node))
     }
 
     /// Checks what an activity has set against the estimate: what it relies on is lost where that says otherwise.
@@ -199,35 +200,47 @@ impl Run<'_> {
         )
     }
 
-    /// A traverse has driven farther than planned, or is there and has driven less: what it takes for each meter counts.
+    /// A traverse has driven farther than the plan counts at most, or is there: what it takes for each meter is known.
     fn count_meters(&mut self) -> Option<Violation> {
         let Odometer { occurrence, extra_m, .. } = self.odometers.pop_front()?;
         let before_m = self.extra_m.insert(occurrence, extra_m);
-        let [taken_m, given_m] = self.counted_margins.get(&occurrence).copied().unwrap_or_default();
+        let [taken_m, _] = self.counted_margins.get(&occurrence).copied().unwrap_or_default();
+        self.news.driven.push(occurrence);
         // What was counted before it set out is part of what it has driven.
-        let since_m = |counted_m: Option<Rational>| extra_m.checked_sub(before_m.or(counted_m)?);
+        let since_m = extra_m.checked_sub(before_m.unwrap_or(taken_m))?;
         let network = std::sync::Arc::clone(&self.stage.network);
-        let cause = format!(
-            "{} has driven {} m {} than its path",
-            network.occurrences[occurrence.index()].name,
-            magnitude(extra_m).readable(),
-            if extra_m.is_negative() { "less" } else { "more" }
-        );
+        let cause = driven(&network, occurrence, extra_m);
         let mut violation = None;
         for used in network.uses.iter().filter(|used| used.owner == Some(occurrence)) {
             let Supply::Reservoir { greatest, .. } = network.resources[used.resource.index()].supply else {
                 continue;
             };
-            let is_gain = used.change == Change::Produces;
-            let more_m = since_m(if is_gain { given_m.checked_neg() } else { Some(taken_m) });
-            let amount = more_m.and_then(|more_m| used.per_meter.checked_mul(more_m));
-            let Some(amount) = amount.filter(|amount| !amount.is_zero()) else { continue };
-            let mut by = if is_gain { amount } else { amount.checked_neg().unwrap_or_default() };
-            if !is_gain && by.is_positive() {
+            let by = used.per_meter.checked_mul(since_m).and_then(Rational::checked_neg);
+            let Some(mut by) = by.filter(|by| !by.is_zero() && used.change == Change::Consumes) else {
+                continue;
+            };
+            if by.is_positive() {
                 // What was not taken after all fills a reservoir, and no more.
                 let room = greatest.checked_sub(self.state.level(used.resource)).unwrap_or_default();
                 by = by.min(room.max(Rational::ZERO));
             }
+            let found = self.move_level(used.resource, by, Some(occurrence), Some(&cause));
+            violation = violation.or(found);
+        }
+        violation
+    }
+
+    /// A traverse is over: what it gives for each meter more than the plan counts at least.
+    fn give_for_meters(&mut self, network: &Network, node: NodeId) -> Option<Violation> {
+        let mut violation = None;
+        let given = |used: &&tpn::Use| used.end == node && used.change == Change::Produces;
+        for used in network.uses.iter().filter(given) {
+            let Some(occurrence) = used.owner else { continue };
+            let Some(&extra_m) = self.extra_m.get(&occurrence) else { continue };
+            let [_, given_m] = self.counted_margins.get(&occurrence).copied().unwrap_or_default();
+            let by = extra_m.checked_add(given_m).and_then(|more_m| used.per_meter.checked_mul(more_m));
+            let Some(by) = by.filter(|by| !by.is_zero()) else { continue };
+            let cause = driven(network, occurrence, extra_m);
             let found = self.move_level(used.resource, by, Some(occurrence), Some(&cause));
             violation = violation.or(found);
         }
@@ -384,7 +397,7 @@ impl Run<'_> {
                     ("gives", "to", format!("above {}", greatest.readable()))
                 };
                 let name = &network.resources[resource.index()].name;
-                let (amount, level, at) = (of.amount.readable(), level.readable(), shown(at));
+                let (amount, level, at) = (of.readable_amount(), level.readable(), shown(at));
                 let taken = format!("which would take it to {level}, {limit}");
                 (of.moment(), format!("{who} {verb} {amount} {with} {name} at {at}, {taken}: {stands}"))
             } else {
@@ -405,6 +418,7 @@ impl Run<'_> {
         let network = &self.stage.network;
         let is_gain = |used: UseId| network.uses[used.index()].change == Change::Produces;
         let moment = |used: UseId| network.uses[used.index()].moment();
+        let Some([now, most]) = self.possible_levels(resource) else { return true };
         coming.iter().all(|&(_, at)| {
             let counts = |&&(_, other): &&(Time, UseId)| {
                 if is_gain(other) == is_gain(at) {
@@ -415,13 +429,32 @@ impl Run<'_> {
                     self.stage.happens_before(moment(other), moment(at))
                 }
             };
-            let level =
-                coming.iter().filter(counts).try_fold(self.state.level(resource), |level, &(_, used)| {
-                    let amount = network.uses[used.index()].amount;
-                    if is_gain(used) { level.checked_add(amount) } else { level.checked_sub(amount) }
-                });
+            let level = coming.iter().filter(counts).try_fold(
+                if is_gain(at) { most } else { now },
+                |level, &(_, used)| {
+                    let [less, more] = network.uses[used.index()].level_changes();
+                    level.checked_add(if is_gain(at) { more } else { less })
+                },
+            );
             level.is_none_or(|level| if is_gain(at) { level <= greatest } else { level >= least })
         })
+    }
+
+    /// The level as it is counted now, and how high it is at most: traverses under way may take less than is counted.
+    fn possible_levels(&self, resource: ResourceId) -> Option<[Rational; 2]> {
+        let network = &self.stage.network;
+        let now = self.state.level(resource);
+        let has_come = |node: NodeId| self.stage.times[node.index()].is_some();
+        let mut most = now;
+        for &used in &self.stage.effects.moves {
+            let of = &network.uses[used.index()];
+            let is_known = of.owner.is_some_and(|owner| self.extra_m.contains_key(&owner));
+            let is_under_way = has_come(of.start) && !has_come(of.end) && !is_known;
+            if of.resource == resource && of.change == Change::Consumes && is_under_way {
+                most = most.checked_add(of.amount.checked_sub(of.at_least)?)?;
+            }
+        }
+        Some([now, most])
     }
 
     /// Where the level first leaves its range if all that is to come comes as early as it may.
@@ -432,15 +465,14 @@ impl Run<'_> {
         (least, greatest): (Rational, Rational),
     ) -> Option<(Time, UseId, Rational)> {
         coming.sort_unstable();
-        let mut level = self.state.level(resource);
+        let [mut low, mut high] = self.possible_levels(resource)?;
         for (index, &(at, used)) in coming.iter().enumerate() {
-            let of = &self.stage.network.uses[used.index()];
-            let by = if of.change == Change::Produces { Some(of.amount) } else { of.amount.checked_neg() };
-            level = level.checked_add(by?)?;
+            let [less, more] = self.stage.network.uses[used.index()].level_changes();
+            (low, high) = (low.checked_add(less)?, high.checked_add(more)?);
             // Only the level after an instant counts.
             let is_last = coming.get(index + 1).is_none_or(|&(next, _)| next > at);
-            if is_last && !(least..=greatest).contains(&level) {
-                return Some((at, used, level));
+            if is_last && (low < least || high > greatest) {
+                return Some((at, used, if low < least { low } else { high }));
             }
         }
         None
@@ -453,6 +485,16 @@ fn named(network: &Network, variable: &str, value: &str) -> Option<(VariableId, 
     let index = network.variables.iter().position(is_named)?;
     let known = network.variables[index].values.iter().position(|known| known == value)?;
     Some((VariableId::from_index(index), ValueId::from_index(known)))
+}
+
+/// How far a traverse has driven, as a cause.
+fn driven(network: &Network, occurrence: OccurrenceId, extra_m: Rational) -> String {
+    format!(
+        "{} has driven {} m {} than its path",
+        network.occurrences[occurrence.index()].name,
+        magnitude(extra_m).readable(),
+        if extra_m.is_negative() { "less" } else { "more" }
+    )
 }
 
 /// A number without its sign.

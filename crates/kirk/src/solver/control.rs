@@ -413,7 +413,7 @@ fn out_of_range(
                 order[then][now]
             };
             if counts {
-                extreme += if other.change == Change::Produces { other.amount } else { -other.amount };
+                extreme += other.level_change(used.change == Change::Produces);
                 if !is_same {
                     mending.push(other.id);
                 } else if then != now {

@@ -134,8 +134,9 @@ fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Vec<Row> {
     // What is not active only gives.
     let parts = |taking: Change| {
         tasks.iter().filter_map(move |task| {
-            let amount = if task.change == taking { task.amount } else { -task.amount };
-            (task.is_active || amount < 0).then_some((task.interval.presence, amount))
+            let is_taking = task.change == taking;
+            let amount = if is_taking { task.amount } else { -task.at_least };
+            (task.is_active || !is_taking).then_some((task.interval.presence, amount))
         })
     };
     let used = level.checked_sub(least).and_then(|most| Row::new(trail, parts(Change::Consumes), most));

@@ -16,7 +16,7 @@ use super::literal::{Literal, Variable};
 use super::premise::Premise;
 use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
-use crate::demands::{ModelSupply, ModelUse};
+use crate::demands::{ModelSupply, ModelUse, level_change};
 use crate::failure::Member;
 use crate::trace::{Event, TreeChoice};
 
@@ -29,7 +29,9 @@ pub(super) struct Task {
     pub(super) id: UseId,
     pub(super) interval: Interval,
     pub(super) change: Change,
+    /// At most.
     pub(super) amount: i64,
+    pub(super) at_least: i64,
     /// Otherwise it takes nothing, but still gives.
     pub(super) is_active: bool,
     pub(super) start: NodeId,
@@ -45,6 +47,11 @@ impl Task {
     /// When it changes a reservoir's level.
     pub(super) fn moment(&self) -> Variable {
         if self.change == Change::Produces { self.interval.end } else { self.interval.start }
+    }
+
+    /// By how much it changes a reservoir's level: at most if `is_most`, otherwise at least.
+    pub(super) const fn level_change(&self, is_most: bool) -> i64 {
+        level_change(self.change, [self.at_least, self.amount], is_most)
     }
 }
 
@@ -107,8 +114,8 @@ impl Problem<'_> {
                     presence: self.presence(arc.context),
                     duration: if (arc.from, arc.to) == (used.start, used.end) { arc.lower.max(0) } else { 0 },
                 };
-                let ModelUse { id, change, amount, start, end, .. } = *used;
-                Task { id, interval, change, amount, is_active, start, end }
+                let ModelUse { id, change, amount, at_least, start, end, .. } = *used;
+                Task { id, interval, change, amount, at_least, is_active, start, end }
             });
             let exists = |task: &Task| {
                 solver.takes_nothing_for_granted() || !solver.trail.fails(task.interval.presence)
@@ -433,9 +440,9 @@ fn out_of_range(
         let event = in_order[from].moment_node();
         let count = in_order[from..].iter().take_while(|task| task.moment_node() == event).count();
         for task in &in_order[from..from + count] {
-            let gain = if task.change == Change::Produces { task.amount } else { -task.amount };
-            low += if task.is_active || gain > 0 { gain } else { 0 };
-            high += if task.is_active || gain < 0 { gain } else { 0 };
+            let gives = task.change == Change::Produces;
+            low += if task.is_active || gives { task.level_change(false) } else { 0 };
+            high += if task.is_active || !gives { task.level_change(true) } else { 0 };
         }
         from += count;
         let (excess, early_change) = if low < least {

@@ -35,6 +35,7 @@ pub struct Taker {
     pub occurrence: Option<OccurrenceId>,
     pub name: SmolStr,
     pub change: Change,
+    /// What is counted: of a drive the most that it takes, or the least that it gives.
     pub amount: Rational,
     /// Its first and its last event.
     pub events: [NodeId; 2],
@@ -86,7 +87,7 @@ impl Profile {
                 occurrence: used.owner,
                 name: owner.map_or_else(|| SmolStr::new_static("a block"), |owner| owner.name.clone()),
                 change: used.change,
-                amount: used.amount,
+                amount: used.counted(),
                 events,
                 span: earliest(plan, events)?,
             })

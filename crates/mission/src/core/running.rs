@@ -2,17 +2,18 @@
 
 use std::sync::Arc;
 
+use exact::Time;
 use executive::{PlanError, Script};
 use link::{ProgramChance, ProofQuestion, Response, Update};
 use review::Review;
-use review::contradict::{Effort, Trial};
+use review::contradict::{Effort, Observed, Trial};
 use review::record::LineKey;
 use snapshot::{RobustnessSettings, Tally};
 
 use super::Core;
-use crate::contradicting::Trying;
+use crate::contradicting::{self, Trying};
 use crate::evaluated::Evaluated;
-use crate::execution;
+use crate::execution::{self, Ran};
 use crate::host::CoreHost;
 use crate::program_chance;
 use crate::program_proof::ProofUnderWay;
@@ -94,15 +95,23 @@ impl Core {
         Ok(tally)
     }
 
-    /// Holds one more schedule or run of the plan against the lines that stand; returns whether there was one to try.
+    /// Holds one more schedule or run of the plan, or other plans, against the lines that stand; returns whether there was
+    /// one to try.
     pub fn try_next(&mut self, evaluated: &Evaluated, trial: &mut Trial) -> Result<bool, PlanError> {
         if trial.try_schedule() {
             return Ok(true);
         }
+        if trial.wants_plans() {
+            trial.try_plans(&contradicting::other_plans(evaluated, &mut self.grounds, &mut self.paths));
+            return Ok(true);
+        }
         let Some(script) = trial.next_run() else { return Ok(false) };
         let Some(ran) = self.run(evaluated, &script) else { return Ok(false) };
-        let outcome = ran?.outcome;
-        trial.try_run(&script, &outcome.log, outcome.ending);
+        let Ran { outcome, drives, .. } = ran?;
+        let sight = |vehicle: &str, location: &str, at: Time| {
+            contradicting::sight(evaluated, &drives, (vehicle, location), at)
+        };
+        trial.try_run(&script, &Observed { log: &outcome.log, ending: outcome.ending, sight: &sight });
         Ok(true)
     }
 

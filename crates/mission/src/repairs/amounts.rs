@@ -148,7 +148,7 @@ fn is_short(uses: &[&Use], lowest: Rational, level: Rational) -> Option<bool> {
     let mut counts_meters = false;
     for used in uses {
         after = match used.change {
-            Change::Produces => after.checked_add(used.amount)?,
+            Change::Produces => after.checked_add(used.at_least)?,
             Change::Consumes => after.checked_sub(used.amount)?,
             Change::Uses => after,
         };

@@ -84,9 +84,10 @@ pub(super) struct Trip<'a> {
     pub(super) reroutes: u32,
     /// How far the leader has driven, in meters.
     driven_m: f64,
-    /// How many meters that is more than its path has, with seconds from the start: every so often,
-    /// and in the end.
+    /// How many meters that is more than its path has, with seconds from the start: every so often.
     pub(super) extra_meters: Vec<(f64, f64)>,
+    /// The same when it is there, or fewer than its path has.
+    pub(super) arrived_m: Option<(f64, f64)>,
     pub(super) least_clearance_m: f64,
     /// What others had seen when it started, and what is seen on the way.
     known: Vec<Point2<f64>>,
@@ -226,6 +227,7 @@ impl<'a> Trip<'a> {
             reroutes: 0,
             driven_m: 0.0,
             extra_meters: Vec::new(),
+            arrived_m: None,
             least_clearance_m: f64::INFINITY,
             known: if is_flight { Vec::new() } else { driving.seen.known_at(start) },
             seen: SeenMap::default(),
@@ -284,7 +286,7 @@ impl<'a> Trip<'a> {
             }
             self.record_all(&steps);
         }
-        self.extra_meters.push((self.convoy.time_s(), self.driven_m - self.course.drive.path.length_m()));
+        self.arrived_m = Some((self.convoy.time_s(), self.driven_m - self.course.drive.path.length_m()));
         Ok(())
     }
 

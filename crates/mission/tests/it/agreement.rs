@@ -170,7 +170,9 @@ fn a_battery_that_is_just_enough_for_the_path_is_not_enough_for_a_driver() {
             scenario S[0,400] = {{ Drive(LEDGE); delay; Drive(OUTCROP) }}"
         )
     };
-    let length_m = planned(&source(100.0), 0).planning.outcome.plans[0].quality.length_m;
+    let ample = planned(&source(100.0), 0);
+    assert!(ample.warnings.is_empty(), "meters count on flat ground, too: {:?}", ample.warnings);
+    let length_m = ample.planning.outcome.plans[0].quality.length_m;
     assert!(planned(&source(length_m + 0.05), 0).planning.outcome.plans.is_empty());
     for level in [length_m + 6.0, length_m + 8.0] {
         for seed in 0..5 {

@@ -59,10 +59,9 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
                 let is_its = |it: &&snapshot::Traverse| it.occurrence == drive.occurrence;
                 let Some(traverse) = planned.traverses.iter().find(is_its) else { continue };
                 let (length_m, followers) = (traverse.length_m, traverse.vehicles.len() - 1);
-                let detours_m = if has_map { motion::detours_at_most_m(followers) } else { 0.0 };
                 let bounds = [
                     motion::driven_at_least_m(length_m, followers),
-                    motion::driven_at_most_m(length_m, followers) + detours_m,
+                    motion::driven_at_most_m(length_m, followers, has_map),
                 ];
                 assert!(
                     (bounds[0]..=bounds[1]).contains(&drive.driven_m),

@@ -247,8 +247,8 @@ impl Instant<'_> {
                         level = level.checked_sub(used.amount)?;
                     }
                 }
-                Change::Consumes if has_started => level = level.checked_sub(used.amount)?,
-                Change::Produces if has_ended => level = level.checked_add(used.amount)?,
+                Change::Consumes if has_started => level = level.checked_sub(used.counted())?,
+                Change::Produces if has_ended => level = level.checked_add(used.counted())?,
                 Change::Consumes | Change::Produces => {}
             }
         }

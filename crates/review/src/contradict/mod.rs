@@ -1,8 +1,8 @@
 //! Looks for counterexamples of the lines of a review that have passed (SPEC 16.1): schedules of the plan, and undisturbed
-//! runs of it, in which something is otherwise than a line says.
+//! runs of it, in which something is otherwise than a line says, and plans that are better than one that is called optimal.
 //!
-//! Nothing is proven by a line that survives; it says how it was tried. Lines that are neither about schedules nor about
-//! runs are not tried, and said to be so.
+//! Nothing is proven by a line that survives; it says how it was tried. Lines that are about none of these are not tried, and
+//! said to be so.
 
 mod instant;
 mod promise;
@@ -32,9 +32,11 @@ use super::{Review, Section, Status};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tried {
     pub line: LineKey,
-    /// How many different schedules were held against it, and how many runs; neither if it cannot be tried that way.
+    /// How many different schedules were held against it, how many runs, and how many other plans; none of these if it cannot
+    /// be tried that way.
     pub schedules: u64,
     pub runs: u64,
+    pub plans: u64,
     /// What contradicts it, if something was found.
     pub counterexample: Option<Counterexample>,
 }
@@ -78,9 +80,9 @@ impl Default for Effort {
 impl Tried {
     /// How it came out.
     pub const fn verdict(&self) -> Verdict {
-        match (&self.counterexample, self.schedules, self.runs) {
+        match (&self.counterexample, self.schedules + self.runs + self.plans) {
             (Some(_), ..) => Verdict::Contradicted,
-            (None, 0, 0) => Verdict::NotTried,
+            (None, 0) => Verdict::NotTried,
             (None, ..) => Verdict::Survived,
         }
     }
@@ -92,7 +94,11 @@ impl Tried {
             1 => Some(format!("1 {one}")),
             count => Some(format!("{count} {several}")),
         };
-        let parts = [counted(self.schedules, "schedule", "schedules"), counted(self.runs, "run", "runs")];
+        let parts = [
+            counted(self.schedules, "schedule", "schedules"),
+            counted(self.runs, "run", "runs"),
+            counted(self.plans, "plan", "plans"),
+        ];
         parts.into_iter().flatten().collect::<Vec<_>>().join(" and ")
     }
 
@@ -107,7 +113,7 @@ impl Tried {
             }
             (Verdict::Contradicted, Some(found)) => format!("contradicted by a schedule: {}", found.text),
             (Verdict::Survived, _) => format!("survived {}", self.how()),
-            _ => "not tried: schedules and runs cannot decide it".to_owned(),
+            _ => "not tried: schedules, runs and other plans cannot decide it".to_owned(),
         }
     }
 }
@@ -124,6 +130,24 @@ pub struct Trial {
     num_schedules: u64,
     runs: Runs,
     num_runs: u64,
+    /// Whether other plans were looked for.
+    has_plans: bool,
+}
+
+/// A run of a plan, as it is held against lines.
+pub struct Observed<'a> {
+    pub log: &'a [Entry],
+    pub ending: Ending,
+    /// Whether a vehicle sees a location at a time from where it then is; `None` if the ground does not tell.
+    pub sight: &'a dyn Fn(&str, &str, Time) -> Option<Sight>,
+}
+
+/// What a vehicle sees of a location.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    pub is_seen: bool,
+    /// Where the vehicle is, in meters.
+    pub from_m: [f64; 2],
 }
 
 impl Trial {
@@ -141,7 +165,10 @@ impl Trial {
             let settled = settled.map(|line| (Promise::of_nothing(section), LineKey::new(section, &line)));
             for (promise, line) in of_lines.chain(settled) {
                 if only.is_none_or(|only| *only == line) {
-                    lines.push((promise, Tried { line, schedules: 0, runs: 0, counterexample: None }));
+                    lines.push((
+                        promise,
+                        Tried { line, schedules: 0, runs: 0, plans: 0, counterexample: None },
+                    ));
                 }
             }
         }
@@ -156,6 +183,7 @@ impl Trial {
             effort,
             num_schedules: 0,
             num_runs: 0,
+            has_plans: false,
         })
     }
 
@@ -235,13 +263,37 @@ impl Trial {
         script
     }
 
+    /// Whether other plans are to be held against a line that stands.
+    pub fn wants_plans(&self) -> bool {
+        let is_of_plans = |(promise, it): &(Promise, Tried)| {
+            it.counterexample.is_none() && matches!(promise, Promise::Optimal)
+        };
+        !self.has_plans && self.lines.iter().any(is_of_plans)
+    }
+
+    /// Holds other plans of the mission, in their networks, against the line that none is better.
+    pub fn try_plans(&mut self, others: &[(Arc<Network>, Plan)]) {
+        self.has_plans = true;
+        let better = others.iter().find(|(network, other)| {
+            tpn::worth::compare(network, other, &self.plan) == std::cmp::Ordering::Less
+        });
+        let found = better.map(|(network, other)| Counterexample {
+            text: format!("another plan has {}", tpn::worth::words(network, other).unwrap_or_default()),
+            script: Script::default(),
+        });
+        for (_, tried) in self.lines.iter_mut().filter(|(promise, _)| matches!(promise, Promise::Optimal)) {
+            tried.plans += others.len() as u64;
+            tried.counterexample = tried.counterexample.take().or_else(|| found.clone());
+        }
+    }
+
     /// Holds an undisturbed run of the plan against the lines that stand; `script` made it.
-    pub fn try_run(&mut self, script: &Script, log: &[Entry], ending: Ending) {
+    pub fn try_run(&mut self, script: &Script, run: &Observed<'_>) {
         for (promise, tried) in &mut self.lines {
             if tried.counterexample.is_some() {
                 continue;
             }
-            let Some(found) = promise.broken_by_run(log, ending) else { continue };
+            let Some(found) = promise.broken_by_run(run) else { continue };
             tried.runs += 1;
             tried.counterexample = found.map(|text| Counterexample { text, script: script.clone() });
         }

@@ -8,8 +8,9 @@ use smol_str::SmolStr;
 use snapshot::Snapshot;
 use tpn::{LabelId, Levels, Network, NodeId, OccurrenceId, Plan};
 
+use super::Observed;
 use super::instant::Scheduled;
-use crate::demand_lines::in_any_order;
+use crate::demand_lines::{in_any_order, sight_text};
 use crate::lines;
 use crate::overlaps::{occupied, owners};
 use crate::{Outcome, Review, Section, TimeRange, flight_rule};
@@ -28,6 +29,10 @@ pub(super) enum Promise {
     Lasts { activity: String, range: TimeRange },
     /// Runs come to the end by this plan.
     Runs,
+    /// No plan is better.
+    Optimal,
+    /// While a condition lasts, the vehicle sees the location, or does not; with the names of its two events.
+    Sees { vehicle: String, location: SmolStr, is_seen: bool, events: [Vec<String>; 2] },
     /// Runs take no other alternative of a decision.
     Chosen { decision: String },
     /// What changes a variable comes in the order of these ranks: the nodes, and by whom.
@@ -70,6 +75,8 @@ impl Promise {
                     Some(Self::Valid)
                 } else if [lines::DYNAMIC, lines::STRONG].iter().any(|it| text.starts_with(it)) {
                     Some(Self::Runs)
+                } else if text.starts_with(lines::OBJECTIVE) && plan.quality.is_optimal == Some(true) {
+                    Some(Self::Optimal)
                 } else {
                     None
                 }
@@ -98,10 +105,7 @@ impl Promise {
             Section::Resources => {
                 let of = &review.resources[index];
                 let (low, high) = match of.levels {
-                    Levels::Range { low, high } => (
-                        low.checked_sub(of.detours).unwrap_or(low),
-                        high.checked_add(of.spread).unwrap_or(high),
-                    ),
+                    Levels::Range { low, high } => (low, high),
                     Levels::Peak(peak) => (Rational::ZERO, peak),
                 };
                 Some(Self::Levels { resource: of.name.clone(), low, high })
@@ -146,6 +150,9 @@ impl Promise {
         if line.nodes.is_empty() {
             return Some(Self::Valid);
         }
+        if let Some(sight) = Self::of_sight(network, plan, line) {
+            return Some(sight);
+        }
         if let [name] = line.names.as_slice() {
             let stays = network.variables.iter().find(|it| it.name == *name && it.is_lasting);
             if let Some(variable) = stays {
@@ -186,17 +193,40 @@ impl Promise {
         Some(Self::InOrder { variable: network.variables[variable].name.clone(), nodes, by })
     }
 
+    /// What a line about what a vehicle sees promises.
+    fn of_sight(network: &Network, plan: &Plan, line: &crate::Line) -> Option<Self> {
+        plan.causal_links.iter().find_map(|link| {
+            let ask = &network.labels[link.ask.index()];
+            let sight = network.sight(ask)?;
+            let (start, end) = network.interval(link.ask);
+            let vehicle = network.variables[sight.variable.index()].name.trim_end_matches(".at").to_owned();
+            let is_its = line.nodes == [start, end] && line.text == sight_text(network, *link);
+            is_its.then(|| Self::Sees {
+                vehicle,
+                location: sight.location.clone(),
+                is_seen: !ask.text.starts_with("not("),
+                events: [start, end].map(|node| names(network, plan, node)),
+            })
+        })
+    }
+
     /// Whether a schedule says something of it.
     pub(super) const fn is_of_schedules(&self) -> bool {
         !matches!(
             self,
-            Self::Lasts { .. } | Self::Runs | Self::NoContact | Self::Chosen { .. } | Self::Nothing
+            Self::Lasts { .. }
+                | Self::Runs
+                | Self::NoContact
+                | Self::Chosen { .. }
+                | Self::Optimal
+                | Self::Sees { .. }
+                | Self::Nothing
         )
     }
 
     /// Whether a run says something of it.
     pub(super) const fn is_of_runs(&self) -> bool {
-        !matches!(self, Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Nothing)
+        !matches!(self, Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Optimal | Self::Nothing)
     }
 
     /// What contradicts it in a schedule, if something does; `None` if the schedule says nothing of it.
@@ -238,13 +268,20 @@ impl Promise {
                 let time = |node: NodeId| of.times.get(node.index()).copied().flatten();
                 Some(overlap(all, |it| Some([time(it.start)?, time(it.end)?])))
             }
-            Self::Lasts { .. } | Self::Runs | Self::NoContact | Self::Chosen { .. } | Self::Nothing => None,
+            Self::Lasts { .. }
+            | Self::Runs
+            | Self::NoContact
+            | Self::Chosen { .. }
+            | Self::Optimal
+            | Self::Sees { .. }
+            | Self::Nothing => None,
         }
     }
 
     /// What contradicts it in an undisturbed run, if something does; `None` if the run says nothing of it.
     #[expect(clippy::option_option, reason = "the outer one is what runs say nothing of")]
-    pub(super) fn broken_by_run(&self, log: &[Entry], ending: Ending) -> Option<Option<String>> {
+    pub(super) fn broken_by_run(&self, run: &Observed<'_>) -> Option<Option<String>> {
+        let Observed { log, ending, sight } = *run;
         let came = |event: &str| {
             let is_it =
                 |entry: &&Entry| matches!(&entry.happening, Happening::Executed { name } if name == event);
@@ -312,7 +349,22 @@ impl Promise {
                 let ended = |it: &Performed| came(&format!("{}.end", it.name)).unwrap_or(end);
                 Some(overlap(all, |it| Some([came(&format!("{}.start", it.name))?, ended(it)])))
             }
-            Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Nothing => None,
+            Self::Sees { vehicle, location, is_seen, events } => {
+                let time = |names: &Vec<String>| names.iter().find_map(|name| came(name));
+                let from = time(&events[0])?;
+                let until = time(&events[1]).or_else(|| log.last().map(|entry| entry.time))?;
+                let middle = from.checked_add(until)?.checked_div(2)?;
+                let seen = [from, middle, until].map(|at| Some((at, sight(vehicle, location, at)?)));
+                let [first, ..] = seen;
+                first?;
+                let broken = seen.into_iter().flatten().find(|(_, sight)| sight.is_seen != *is_seen);
+                Some(broken.map(|(at, sight)| {
+                    let [east, north] = sight.from_m;
+                    let verb = if sight.is_seen { "sees" } else { "does not see" };
+                    format!("at {} {vehicle} {verb} {location} from ({east:.2}, {north:.2})", at.readable())
+                }))
+            }
+            Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Optimal | Self::Nothing => None,
         }
     }
 }

@@ -9,7 +9,7 @@ use test_core::Answers;
 use super::super::tests::{MISSION, SCENARIO, snapshot};
 use super::super::{FlightRules, MissionRule, Outcome, Review, Section, review};
 use super::schedules::{Made, Schedules};
-use super::{Effort, Trial, Tried, Verdict, named_times};
+use super::{Effort, Observed, Trial, Tried, Verdict, named_times};
 
 const SCHEDULES: Effort = Effort { schedules: 100, runs: 0, seed: 1 };
 
@@ -38,6 +38,11 @@ fn evaluated(core: &mut Core, source: &str) -> Evaluated {
     core.plan(compiled, ground, Manner::default(), &mut host).expect("it has no errors")
 }
 
+/// A run that tells nothing of what vehicles see.
+fn observed(log: &[executive::Entry], ending: Ending) -> Observed<'_> {
+    Observed { log, ending, sight: &|_, _, _| None }
+}
+
 /// The lines of a mission as schedules and runs tried them, after `change` has changed its review; and how they are run.
 fn run(source: &str, change: impl FnOnce(&mut Review)) -> (Vec<Tried>, Core, Evaluated) {
     let mut core = Core::default();
@@ -51,7 +56,7 @@ fn run(source: &str, change: impl FnOnce(&mut Review)) -> (Vec<Tried>, Core, Eva
     while trial.try_schedule() {}
     while let Some(script) = trial.next_run() {
         let (log, ending) = replayed(&mut core, &evaluated, &script);
-        trial.try_run(&script, &log, ending);
+        trial.try_run(&script, &observed(&log, ending));
     }
     assert_eq!(trial.progress()[0], trial.progress()[1]);
     (trial.tried().cloned().collect(), core, evaluated)
@@ -136,34 +141,60 @@ primitive Charge()[10,10] produces Battery 15;
 scenario S[0,230] = { Drive(V0, P3), Charge() }";
 
 #[test]
-fn a_drive_that_consumes_less_than_is_counted_leaves_more_than_planned() {
+fn a_drive_that_consumes_less_than_the_most_leaves_no_more_than_planned() {
     let (all, _, evaluated) = run(CHARGED, |_| {});
     let line = all.iter().find(|it| it.line.section == Section::Resources).expect("it has passed");
-    assert!(line.line.text.contains("; drives may leave up to "), "{line:?}");
+    assert!(
+        line.line.text.ends_with("; for every distance that drives may take along their paths"),
+        "{line:?}"
+    );
     assert_eq!((line.verdict(), line.runs), (Verdict::Survived, 8), "{line:?}");
-    // Without what drives may leave, the line is contradicted.
-    let (all, ..) = run(CHARGED, |review| review.resources[0].spread = Rational::ZERO);
+    // Had the plan counted on the most, the line would be contradicted.
+    let network = &evaluated.planned.network;
+    let used = network.uses.iter().find(|used| used.at_least < used.amount).expect("it drives");
+    let spread = used.amount.checked_sub(used.at_least).expect("it fits");
+    let lowered = |high: Rational| high.checked_sub(spread).expect("it fits");
+    let (all, ..) = run(CHARGED, |review| {
+        let tpn::Levels::Range { low, high } = review.resources[0].levels else { panic!("a reservoir") };
+        review.resources[0].levels = tpn::Levels::Range { low, high: lowered(high) };
+    });
     let line = all.iter().find(|it| it.line.section == Section::Resources).expect("it has passed");
     assert_eq!(line.verdict(), Verdict::Contradicted);
-    // Nor does a flight rule hold that only the counted consumption keeps.
+    // Nor does a flight rule hold that only a drive keeps which takes the most.
     let snapshot = evaluated.snapshot();
     let mut reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);
     let tpn::Levels::Range { high, .. } = reviewed.resources[0].levels else { panic!("a reservoir") };
-    let above = high.checked_add(reviewed.resources[0].spread).expect("it fits");
-    let rule = |most: Rational| MissionRule { rule: format!("Battery <= {most}"), ..MissionRule::default() };
-    let rules = vec![
-        MissionRule {
-            name: "counted".to_owned(),
-            ..rule(Rational::from_f64_up(high.to_f64(), 100).expect("it fits"))
-        },
-        MissionRule {
-            name: "driven".to_owned(),
-            ..rule(Rational::from_f64_up(above.to_f64(), 100).expect("it fits"))
-        },
-    ];
+    let rule = |name: &str, most: Rational| {
+        let most = Rational::from_f64_up(most.to_f64(), 100).expect("it fits");
+        MissionRule { name: name.to_owned(), rule: format!("Battery <= {most}"), ..MissionRule::default() }
+    };
+    let rules = vec![rule("most", lowered(high)), rule("least", high)];
     reviewed.hold_against(&snapshot, &FlightRules { rules, ..FlightRules::default() }, None, &mut || false);
     let outcomes: Vec<&Outcome> = reviewed.findings.iter().map(|it| &it.outcome).collect();
     assert!(!matches!(outcomes[0], Outcome::Holds) && matches!(outcomes[1], Outcome::Holds), "{outcomes:?}");
+}
+
+/// A battery that a drive makes room in for a charge: enough, if it drives as far as it does at most.
+#[test]
+fn no_plan_relies_on_a_drive_that_takes_the_most() {
+    let with = |level: &str| {
+        CHARGED
+            .replace("= 54", &format!("= {level}"))
+            .replace("Drive(V0, P3), Charge()", "Drive(V0, P3); Charge()")
+    };
+    // A path of 30 m: from 2.6 to 4.3 of the battery.
+    let tight = snapshot(&with("89"));
+    assert!(tight.plan().is_none(), "there may be no room for 15");
+    let planning = tight.planning.as_ref().expect("it was planned");
+    let failure = planning.outcome.failure.as_ref().expect("it is explained");
+    let told: Vec<&str> = failure.reasons.iter().map(|it| it.message.as_str()).collect();
+    assert!(
+        told.iter().any(|it| it.contains("depending on the distance that is really driven, Drive#1 takes ")),
+        "{told:?}"
+    );
+    let (all, ..) = run(&with("87"), |_| {});
+    let contradicted: Vec<&Tried> = all.iter().filter(|it| it.verdict() == Verdict::Contradicted).collect();
+    assert!(contradicted.is_empty(), "{contradicted:?}");
 }
 
 #[test]
@@ -383,7 +414,7 @@ fn a_contact_in_a_run_contradicts_that_vehicles_keep_apart() {
         let reason = "R1 and R2 touch".to_owned();
         let happening = Happening::Violation { name: "Drive#1.end".into(), reason, is_contact };
         let log = [executive::Entry { time: Time::from(2), happening }];
-        trial.try_run(&Script::default(), &log, Ending::Stopped);
+        trial.try_run(&Script::default(), &observed(&log, Ending::Stopped));
         let line = trial.tried().find(|it| it.line.section == Section::SeparationViolations);
         line.expect("vehicles keep apart").verdict()
     };

@@ -48,10 +48,8 @@ pub(super) struct Resource {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
     pub(super) node: tpn::NodeId,
-    /// How much more there is from then on, as it is counted.
-    pub(super) more: Rational,
-    /// How much that may be exceeded, and undercut.
-    pub(super) spread: [Rational; 2],
+    /// How much more there is from then on, at least and at most.
+    pub(super) more: [Rational; 2],
     /// It is the start of something, which comes behind what ends at the same instant.
     pub(super) is_start: bool,
 }
@@ -62,14 +60,18 @@ impl Change {
     }
 
     /// The change of the level: the greatest possible one if `is_above`, otherwise the least.
-    fn toward(&self, is_above: bool) -> Option<Rational> {
-        let [above, below] = self.spread;
-        if is_above { self.more.checked_add(above) } else { self.more.checked_sub(below) }
+    const fn toward(&self, is_above: bool) -> Rational {
+        self.more[is_above as usize]
+    }
+
+    /// Whether it makes the level higher.
+    pub(super) fn is_gain(&self) -> bool {
+        self.more[1].is_positive()
     }
 
     /// By how much it changes the level, in whichever direction.
     pub(super) fn size(&self, is_above: bool) -> Option<Rational> {
-        let more = self.toward(is_above)?;
+        let more = self.toward(is_above);
         if more.is_negative() { more.checked_neg() } else { Some(more) }
     }
 
@@ -102,7 +104,7 @@ impl Resource {
             }
         }
         // What leads where `wanted` looks is gained, and the rest is lost.
-        let leads = |index: &&usize| self.changes[**index].more.is_positive() == wanted.is_above;
+        let leads = |index: &&usize| self.changes[**index].is_gain() == wanted.is_above;
         let (gains, losses): (Vec<usize>, Vec<usize>) = free.iter().partition(leads);
         let size = |&index: &usize| self.changes[index].size(wanted.is_above);
         let mut flow = Flow {
@@ -139,7 +141,7 @@ impl Resource {
     /// The greatest or least level once these changes have come.
     fn level(&self, has_come: &[bool], is_greatest: bool) -> Option<Rational> {
         let mut come = self.changes.iter().zip(has_come).filter(|(_, has_come)| **has_come);
-        come.try_fold(self.first, |level, (change, _)| level.checked_add(change.toward(is_greatest)?))
+        come.try_fold(self.first, |level, (change, _)| level.checked_add(change.toward(is_greatest)))
     }
 
     /// Whether a level once these changes have come is as all of these want it.

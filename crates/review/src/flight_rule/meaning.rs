@@ -174,21 +174,14 @@ fn resource(network: &Network, plan: &Plan, index: usize) -> Resource {
     });
     let less = |amount: Rational| amount.checked_neg().unwrap_or(Rational::ZERO);
     let mut changes = Vec::new();
-    let none = [Rational::ZERO; 2];
     for used in selected.filter(|used| !used.amount.is_zero()) {
         let (start, end, amount) = (used.start, used.end, used.amount);
-        let spread = [used.spread, used.detour];
-        match used.change {
-            Changes::Uses => {
-                changes.push(Change { node: start, more: amount, spread: none, is_start: true });
-                changes.push(Change { node: end, more: less(amount), spread: none, is_start: false });
-            }
-            Changes::Consumes => {
-                changes.push(Change { node: start, more: less(amount), spread, is_start: true });
-            }
-            Changes::Produces => {
-                changes.push(Change { node: end, more: amount, spread, is_start: false });
-            }
+        if used.change == Changes::Uses {
+            changes.push(Change { node: start, more: [amount; 2], is_start: true });
+            changes.push(Change { node: end, more: [less(amount); 2], is_start: false });
+        } else {
+            let is_start = used.change == Changes::Consumes;
+            changes.push(Change { node: used.moment(), more: used.level_changes(), is_start });
         }
     }
     let first = match supply {

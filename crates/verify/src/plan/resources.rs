@@ -31,7 +31,8 @@ pub(super) fn check_use_orderings(network: &Network, plan: &Plan, violations: &m
 impl Checker<'_> {
     /// The criteria of SPEC 11 for every resource, and what the plan says of them.
     ///
-    /// Amounts are the network's alone: what is counted per metre is part of them once paths are inserted.
+    /// Amounts are the network's alone: what is counted per metre is part of them once paths are inserted, as the range that
+    /// drives along these paths take. The worst case takes the end of the range that is worst for the level.
     pub(super) fn check_resources(&self, violations: &mut Vec<Violation>) {
         let network = self.network;
         let Some(all) = Shared::all(network, self.plan) else {
@@ -120,7 +121,8 @@ impl Checker<'_> {
                     happens_before
                 };
                 if is_counted {
-                    reached += if another.is_production { another.amount } else { -another.amount };
+                    let [least, most] = another.changes();
+                    reached += if event.is_production { most } else { least };
                 }
             }
             let name = shared.name(self.network);
@@ -130,7 +132,7 @@ impl Checker<'_> {
                 if reached > greatest {
                     let message = format!(
                         "when {user} has produced {}, {name} may reach {}, but its maximum is {}",
-                        shared.show(event.amount),
+                        shared.show_amount(event),
                         shared.show(reached),
                         shared.show(greatest)
                     );
@@ -141,7 +143,7 @@ impl Checker<'_> {
                 if reached < least {
                     let message = format!(
                         "when {user} consumes {}, {name} may fall to {}, but its minimum is {}",
-                        shared.show(event.amount),
+                        shared.show_amount(event),
                         shared.show(reached),
                         shared.show(least)
                     );

@@ -78,23 +78,27 @@ impl Schedule<'_> {
         }
     }
 
-    /// The level after each instant.
+    /// The level after each instant, whatever of their range drives take.
     fn check_reservoir(
         &self,
         shared: &Shared,
-        [least, greatest, mut level]: [i128; 3],
+        [least, greatest, level]: [i128; 3],
         violations: &mut Vec<Violation>,
     ) {
+        // Drives take from so much to so much: the level is between these.
+        let [mut low, mut high] = [level; 2];
         let mut events = shared.uses.clone();
         events.sort_by_key(|it| (self.time(it.moment()), it.used));
         for events in events.chunk_by(|one, other| self.time(one.moment()) == self.time(other.moment())) {
             for it in events {
-                level += if it.is_production { it.amount } else { -it.amount };
+                let [less, more] = it.changes();
+                low += less;
+                high += more;
             }
-            let wrong = if level < least {
-                format!("below {}", shared.show(least))
-            } else if level > greatest {
-                format!("above {}", shared.show(greatest))
+            let (level, wrong) = if low < least {
+                (low, format!("below {}", shared.show(least)))
+            } else if high > greatest {
+                (high, format!("above {}", shared.show(greatest)))
             } else {
                 continue;
             };

@@ -195,7 +195,7 @@ mod tests {
     fn more_is_asked_for_until_all_is_tried_or_the_time_is_up() {
         let (mut state, review, line, mut window) = started(false);
         assert_eq!(state.progress(), Some([0, 220]));
-        let tried = Tried { line: line.clone(), schedules: 9, runs: 0, counterexample: None };
+        let tried = Tried { line: line.clone(), schedules: 9, runs: 0, plans: 0, counterexample: None };
         let update = || Some(Update::new(1, MISSION));
         state.take(answer(None, 9, vec![tried.clone()]), update(), 1.0, &mut window);
         assert_eq!(state.progress(), Some([9, 220]));
@@ -215,7 +215,7 @@ mod tests {
         let (mut state, review, line, mut window) = started(true);
         let script = Script { run_seed: Some(3), ..Script::default() };
         let counterexample = Some(Counterexample { text: "it is late".to_owned(), script: script.clone() });
-        let tried = Tried { line: line.clone(), schedules: 1, runs: 1, counterexample };
+        let tried = Tried { line: line.clone(), schedules: 1, runs: 1, plans: 0, counterexample };
         state.take(answer(Some(&line), 220, vec![tried]), None, 1.0, &mut window);
         assert_eq!(state.progress(), None);
         assert_eq!(state.script(&review, &line), Some(script));

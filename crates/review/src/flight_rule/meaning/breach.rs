@@ -126,7 +126,7 @@ fn met(times: &mut Times, resources: &[Resource], case: &Case, pairs: &mut usize
         if !wanted.is_met_by(level) {
             return Met::No;
         }
-        let leads = |change: &Change| change.more.is_positive() == wanted.is_above;
+        let leads = |change: &Change| change.is_gain() == wanted.is_above;
         let come = resource.changes.iter().zip(&has_come);
         let by = come.filter(|(change, has_come)| **has_come && leads(change));
         let by = by.map(|(change, _)| change.node).collect();

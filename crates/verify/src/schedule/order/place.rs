@@ -178,12 +178,12 @@ impl Search<'_> {
     ) -> Result<(), Refusal> {
         let shared = &self.shared[index];
         let counts = |it: &&Taken| it.moment() == node || self.is_over(placed, it.moment());
-        let change = |it: &Taken| if it.is_production { it.amount } else { -it.amount };
-        let level = level + shared.uses.iter().filter(counts).map(change).sum::<i128>();
-        let wrong = if level < least {
-            format!("below {}", shared.show(least))
-        } else if level > greatest {
-            format!("above {}", shared.show(greatest))
+        let changes = shared.uses.iter().filter(counts).map(Taken::changes);
+        let [low, high] = changes.fold([level; 2], |[low, high], [less, more]| [low + less, high + more]);
+        let (level, wrong) = if low < least {
+            (low, format!("below {}", shared.show(least)))
+        } else if high > greatest {
+            (high, format!("above {}", shared.show(greatest)))
         } else {
             return Ok(());
         };
