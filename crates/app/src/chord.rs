@@ -98,6 +98,7 @@ const fn printed(key: chord::Key) -> Option<&'static str> {
 
 const fn key(key: chord::Key) -> Key {
     match key {
+        chord::Key::A => Key::A,
         chord::Key::ArrowDown => Key::ArrowDown,
         chord::Key::ArrowLeft => Key::ArrowLeft,
         chord::Key::ArrowRight => Key::ArrowRight,
@@ -107,6 +108,7 @@ const fn key(key: chord::Key) -> Key {
         chord::Key::CloseBracket => Key::CloseBracket,
         chord::Key::Comma => Key::Comma,
         chord::Key::D => Key::D,
+        chord::Key::Delete => Key::Delete,
         chord::Key::End => Key::End,
         chord::Key::Enter => Key::Enter,
         chord::Key::Equals => Key::Equals,

@@ -71,6 +71,8 @@ impl Layouts {
             PanelEffect::Show(_)
             | PanelEffect::Close(_)
             | PanelEffect::ResetLayout
+            | PanelEffect::SaveLayout(_)
+            | PanelEffect::ShowLayout(_)
             | PanelEffect::Arrange => Some(effect),
             _ => None,
         };
@@ -78,6 +80,16 @@ impl Layouts {
             match effect {
                 PanelEffect::Show(panel) => default_layout::show_panel(self.tree_mut(arrangement), panel),
                 PanelEffect::Close(panel) => default_layout::close_panel(self.tree_mut(arrangement), panel),
+                PanelEffect::SaveLayout(number) => {
+                    let tiles = default_layout::to_text(self.tree_mut(arrangement)).unwrap_or_default();
+                    state.library.set_layout(number, tiles);
+                }
+                PanelEffect::ShowLayout(number) => {
+                    let saved = state.library.open_mission().and_then(|it| it.layouts.get(number));
+                    if let Some(tree) = saved.and_then(|saved| default_layout::from_text(&saved.tiles)) {
+                        self.trees.insert(arrangement, tree);
+                    }
+                }
                 PanelEffect::Arrange => {
                     self.lesson_rows = state.lesson.panels().to_vec();
                     let layout = default_layout::lesson_layout(&self.lesson_rows, self.size);

@@ -14,6 +14,8 @@ use crate::chord::{Press, is_pressed, shortcut};
 enum Focus {
     Editor,
     TextField,
+    /// The network or the terrain as a whole.
+    Drawing,
     Widget,
     Nothing,
 }
@@ -62,6 +64,7 @@ fn focus(context: &Context, editor: egui::Id) -> Focus {
         Some(_) if panels::is_region_focused(context) => Focus::Nothing,
         Some(id) if id == editor => Focus::Editor,
         Some(_) if context.text_edit_focused() => Focus::TextField,
+        Some(_) if panels::is_drawing_focused(context) => Focus::Drawing,
         Some(_) => Focus::Widget,
     }
 }
@@ -143,7 +146,12 @@ fn works(scope: Scope, focus: Focus, keys: KeyboardShortcut) -> bool {
         Scope::Typing => focus == Focus::Editor,
         Scope::NotTyping => match focus {
             Focus::Nothing => true,
-            // A focused button is pressed by Space and left by arrows.
+            // Plain arrows go from one thing to the next in it.
+            Focus::Drawing => {
+                let is_own = matches!(keys.logical_key, egui::Key::Space | egui::Key::Delete);
+                is_own || !is_widget_key(keys.logical_key) || !keys.modifiers.is_none()
+            }
+            // A focused button is pressed by Space and left by arrows, and Delete releases an event that is pinned.
             Focus::Widget => !keys.conflicts_with_text_editing() || !is_widget_key(keys.logical_key),
             Focus::Editor | Focus::TextField => false,
         },
@@ -160,7 +168,16 @@ fn is_letter(keys: KeyboardShortcut) -> bool {
 
 fn is_widget_key(key: egui::Key) -> bool {
     use egui::Key;
-    matches!(key, Key::Space | Key::Enter | Key::ArrowLeft | Key::ArrowRight | Key::ArrowUp | Key::ArrowDown)
+    matches!(
+        key,
+        Key::Space
+            | Key::Enter
+            | Key::Delete
+            | Key::ArrowLeft
+            | Key::ArrowRight
+            | Key::ArrowUp
+            | Key::ArrowDown
+    )
 }
 
 fn specificity(keys: KeyboardShortcut) -> u32 {

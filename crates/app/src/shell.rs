@@ -320,6 +320,7 @@ impl PanelTiles<'_> {
             if icon::button(ui, tokens, Icon::Restore, "Restore panels").clicked() {
                 self.commands.send(Command::Window(WindowCommand::Maximize(None)));
             }
+            panels::show_stale(ui, self.context, panel);
         });
         let place = egui::UiBuilder::new().max_rect(ui.available_rect_before_wrap());
         let mut pane = ui.new_child(place);
@@ -349,9 +350,14 @@ impl PanelTiles<'_> {
         }
         structure::part(ui, Role::Region, &format!("{} panel", kind.title()));
         self.region(ui, kind);
-        panels::show_stale(ui, self.context, kind);
         let place = egui::UiBuilder::new().max_rect(ui.available_rect_before_wrap());
-        let mut inside = ui.new_child(place.id_salt(kind.name()));
+        // Another mission is looked at from its beginning. Lessons and the manual outlast missions.
+        let mission = if matches!(kind, PanelKind::Lesson | PanelKind::Manual) {
+            0
+        } else {
+            self.context.state.missions_opened
+        };
+        let mut inside = ui.new_child(place.id_salt((kind.name(), mission)));
         self.panels.show(kind, &mut inside, self.context, self.commands);
     }
 
@@ -426,13 +432,11 @@ impl Behavior<PanelKind> for PanelTiles<'_> {
         if icon::button(ui, self.context.tokens, Icon::Maximize, &name).clicked() {
             self.commands.send(Command::Window(WindowCommand::Maximize(Some(panel))));
         }
-        if panel == PanelKind::Manual {
-            return;
-        }
         let name = format!("Help: {}", panel.title());
-        if icon::button(ui, self.context.tokens, Icon::Help, &name).clicked() {
+        if panel != PanelKind::Manual && icon::button(ui, self.context.tokens, Icon::Help, &name).clicked() {
             self.commands.send(Command::Manual(ManualCommand::About(panel)));
         }
+        panels::show_stale(ui, self.context, panel);
     }
 
     fn is_tab_closable(&self, _tiles: &Tiles<PanelKind>, _tile: TileId) -> bool {

@@ -1,13 +1,14 @@
 //! Says that there is nothing to show, and why.
 
 use egui::text::LayoutJob;
-use egui::{Align, Frame, Label, Margin, RichText, TextStyle, Ui};
+use egui::{Align, RichText, Role, Sense, TextStyle, Ui, WidgetInfo, vec2};
 use text_editing::EditKind;
 use theme::icon::{self, Icon};
 use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Status;
+use workbench::state::drawing::DrawCommand;
 
 use crate::Context;
 
@@ -24,8 +25,9 @@ pub fn show_empty(ui: &mut Ui, context: &Context<'_>, text: &str) {
     });
 }
 
-/// Says above a panel that draws a mission that this is not the mission which is written now. While that is worked out,
-/// which mostly is a moment, nothing is said.
+/// Says beside the tab of a panel that draws a mission that this is not the mission which is written now: there it takes no
+/// room from the panel, whose drawing stays where it is. While the mission is worked out, which mostly is a moment, nothing
+/// is said.
 pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
     let now = match context.state.status() {
         Status::Broken => "the current text has errors",
@@ -36,15 +38,11 @@ pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
     if !panel.is_marked_when_stale() || !context.is_stale || context.snapshot.is_none() {
         return;
     }
-    let color = context.tokens.warning;
-    let margin = Margin::symmetric(10, 2);
-    Frame::new().fill(context.tokens.soft[1]).inner_margin(margin).show(ui, |ui| {
-        ui.set_min_width(ui.available_width());
-        ui.horizontal(|ui| {
-            icon::label(ui, Icon::Warning, color);
-            ui.add(Label::new(RichText::new(format!("Out of date: {now}")).color(color)).truncate());
-        });
-    });
+    let (rect, mark) = ui.allocate_exact_size(vec2(space::ROW, space::ROW), Sense::hover());
+    let text = format!("Out of date: {now}");
+    mark.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+    icon::paint(ui.painter(), Icon::Warning, rect, 14.0, context.tokens.warning);
+    mark.on_hover_text(&text);
 }
 
 /// What is missing, where nothing is planned yet; `then` is what comes of it once it is there, as a main clause.
@@ -63,7 +61,8 @@ pub(crate) fn missing(context: &Context<'_>, then: &str) -> String {
 pub(crate) fn show_missing(ui: &mut Ui, context: &Context<'_>, then: &str, commands: &mut CommandSender) {
     const SCENARIO: &str = "scenario Mission[0,60] = {\n  delay[1,5]\n}\n";
     let is_code = context.state.automaton.program().is_none();
-    if !is_code || !context.state.snapshots.lacks_a_scenario() {
+    let is_begun = context.state.snapshots.lacks_a_scenario() || context.state.status() == Status::Empty;
+    if !is_code || !is_begun {
         show_empty(ui, context, &missing(context, then));
         return;
     }
@@ -72,6 +71,10 @@ pub(crate) fn show_missing(ui: &mut Ui, context: &Context<'_>, then: &str, comma
         ui.set_max_width(ui.available_width().min(380.0));
         ui.label(RichText::new(missing(context, then)).color(context.tokens.text_muted));
         ui.add_space(space::M);
+        if ui.button("Add activity").clicked() {
+            commands.send(Command::Draw(DrawCommand::Add));
+        }
+        ui.add_space(space::S);
         if ui.button("Add scenario").clicked() {
             // At the end of the mission's first file.
             let document = &context.state.document;

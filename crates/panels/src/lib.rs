@@ -1,8 +1,10 @@
 //! The panels: each shows one aspect of the workbench's state and sends commands; none changes anything else.
 
 mod automaton;
+mod carry;
 mod compare;
 mod distances;
+mod draw_menu;
 mod empty;
 mod execution;
 mod inline_code;
@@ -45,6 +47,23 @@ pub(crate) fn is_pressed(response: &egui::Response) -> bool {
 /// The widget id of a panel as a whole: who has the keyboard while somebody has turned to it and to nothing in it.
 pub fn region_id(panel: workbench::PanelKind) -> egui::Id {
     egui::Id::unique(("panel", panel.name()))
+}
+
+/// Notes that a drawing has the keyboard, if it has: it does nothing of its own with Space, which plays there as elsewhere.
+pub(crate) fn note_drawing(response: &egui::Response) {
+    if response.has_focus() {
+        response.ctx.data_mut(|data| data.insert_temp(focused_drawing(), response.id));
+    }
+}
+
+/// Whether a drawing has the keyboard.
+pub fn is_drawing_focused(context: &egui::Context) -> bool {
+    let focused = context.memory(egui::Memory::focused);
+    focused.is_some() && focused == context.data(|data| data.get_temp(focused_drawing()))
+}
+
+fn focused_drawing() -> egui::Id {
+    egui::Id::unique("the drawing that has the keyboard")
 }
 
 /// Whether a panel as a whole has the keyboard.

@@ -60,6 +60,8 @@ pub enum Dialog {
         /// Whether the file at the caret gets it; otherwise a new one does.
         renames: bool,
     },
+    /// All settings.
+    Settings,
     /// Lists all keys.
     Keys,
     /// What this program is.
@@ -79,6 +81,7 @@ impl Dialog {
             Self::MissionName { .. } => "mission-name",
             Self::VersionName { .. } => "version-name",
             Self::FileName { .. } => "file-name",
+            Self::Settings => "settings",
             Self::Keys => "keys",
             Self::About => "about",
         }
@@ -97,6 +100,7 @@ impl Dialog {
             Self::VersionName { .. } => "Version name",
             Self::FileName { renames: true, .. } => "Rename file",
             Self::FileName { renames: false, .. } => "Add file",
+            Self::Settings => "Settings",
             Self::Keys => "Keyboard shortcuts",
             Self::About => "About Enroute",
         }

@@ -48,6 +48,10 @@ pub enum PanelEffect {
     Close(PanelKind),
     /// The layout of the present workspace goes back to its default.
     ResetLayout,
+    /// The layout of the present workspace is saved with the open mission, under this number.
+    SaveLayout(usize),
+    /// The layout of the present workspace becomes the one that the open mission has under this number.
+    ShowLayout(usize),
     /// The layout of lessons becomes what the stop wants.
     Arrange,
     /// A panel moves its view.

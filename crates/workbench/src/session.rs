@@ -217,10 +217,12 @@ impl Session {
                 Effect::OpenFile(kind) => self.host.open_file(kind),
                 Effect::Save(save, _) if self.host.saves_in_place() => self.host.save_in_place(save),
                 Effect::Save(_, downloads) => {
+                    let names: Vec<String> = downloads.iter().map(|(name, _)| name.clone()).collect();
                     for (name, bytes) in downloads {
                         self.host.save_file(&name, bytes);
                     }
                     self.state.document.mark_saved();
+                    self.state.window.done(format!("Saved {}", names.join(", ")));
                 }
                 Effect::KeepFile(id, token) => self.host.keep_file(&id.0, token),
                 Effect::SaveFile { name, bytes } => self.host.save_file(&name, bytes),

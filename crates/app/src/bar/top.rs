@@ -86,7 +86,7 @@ const ROOM_FOR_WORKSPACES: f32 = 880.0;
 /// Kept free between the workspaces and the sign of the plan, whose words change.
 const STATUS_ROOM: f32 = 70.0;
 /// A bar narrower than this has its menus in one.
-const ROOM_FOR_MENUS: f32 = 1_240.0;
+const ROOM_FOR_MENUS: f32 = 1_290.0;
 
 fn menus(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let color = context.tokens.text_muted;
@@ -121,19 +121,30 @@ fn is_narrow(ui: &Ui) -> bool {
 fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut CommandSender) {
     ui.set_min_width(220.0);
     structure::part(ui, accesskit::Role::Menu, group.title());
-    for spec in all_commands().filter(|spec| spec.group == group && spec.is_plain()) {
-        menu_item(ui, context, spec, commands);
-    }
     if group == Group::View {
+        let opener = ui.menu_button("Panels", |ui| panel_items(ui, context, commands)).response;
+        structure::role(&opener, accesskit::Role::MenuItem);
         ui.separator();
-        for panel in PanelKind::ALL {
-            let is_on_screen = context.state.window.panels_on_screen.contains(&panel);
-            let item = ui.selectable_label(is_on_screen, panel.title());
-            structure::role(&item, accesskit::Role::MenuItemCheckBox);
-            if item.clicked() {
-                commands.send(Command::Window(WindowCommand::ShowPanel(panel)));
-                ui.close();
-            }
+    }
+    // What does not fit into the window is scrolled to.
+    let height = ui.ctx().content_rect().height() - 2.0 * space::BAR;
+    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        for spec in all_commands().filter(|spec| spec.group == group && spec.is_plain()) {
+            menu_item(ui, context, spec, commands);
+        }
+    });
+}
+
+/// All panels, each to be shown.
+fn panel_items(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
+    structure::part(ui, accesskit::Role::Menu, "Panels");
+    for panel in PanelKind::ALL {
+        let is_on_screen = context.state.window.panels_on_screen.contains(&panel);
+        let item = ui.selectable_label(is_on_screen, panel.title());
+        structure::role(&item, accesskit::Role::MenuItemCheckBox);
+        if item.clicked() {
+            commands.send(Command::Window(WindowCommand::ShowPanel(panel)));
+            ui.close();
         }
     }
 }

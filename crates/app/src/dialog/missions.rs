@@ -1,7 +1,8 @@
 //! The list of missions: to open, begin, name, copy, delete and bring back.
 
 use egui::{
-    Align, Button, Key, Layout, Rect, RichText, Role, ScrollArea, Sense, TextEdit, Ui, Vec2, WidgetInfo,
+    Align, Key, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2,
+    WidgetInfo,
 };
 use panels::{Context, counted};
 use theme::space;
@@ -10,12 +11,17 @@ use workbench::command::{Command, CommandSender};
 use workbench::host::FileKind;
 use workbench::library::LibraryCommand;
 use workbench::library::{Keeping, Mission, MissionId, TEMPLATES};
-use workbench::mission_file::EXAMPLES;
+use workbench::mission_file::{self, EXAMPLES, Example};
 use workbench::state::window::WindowCommand;
 
 const WIDTH: f32 = 720.0;
 const ROW: f32 = 48.0;
 const PICTURE: Vec2 = Vec2::new(72.0, 36.0);
+/// The least width of an example, and its height.
+const CARD: Vec2 = Vec2::new(210.0, 132.0);
+const CARD_PICTURE: f32 = 44.0;
+/// The time of a picture runs through in so many seconds.
+const CARD_SECS: f64 = 4.0;
 
 /// What the list asks for; it is sent when everything is shown.
 type Renaming = Option<(MissionId, String)>;
@@ -33,7 +39,7 @@ pub(super) fn show(
     let mut query = query.to_owned();
     let mut renaming = renaming.clone();
     let before = (query.clone(), renaming.clone());
-    heading(ui, &mut query, commands);
+    heading(ui, context, &mut query, commands);
     keeping(ui, context, commands);
     ui.add_space(space::S);
     let found = |name: &str| name.to_lowercase().contains(&query.trim().to_lowercase());
@@ -59,7 +65,9 @@ pub(super) fn show(
     }
 }
 
-fn heading(ui: &mut Ui, query: &mut String, commands: &mut CommandSender) {
+fn heading(ui: &mut Ui, context: &Context<'_>, query: &mut String, commands: &mut CommandSender) {
+    let library = &context.state.library;
+    let last = library.missions().into_iter().next().filter(|last| library.open_id() != Some(&last.id));
     ui.horizontal(|ui| {
         theme::structure::mark_heading(&ui.heading("Missions"), 2);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -70,6 +78,11 @@ fn heading(ui: &mut Ui, query: &mut String, commands: &mut CommandSender) {
     });
     ui.add_space(space::S);
     ui.horizontal(|ui| {
+        if let Some(last) = last
+            && ui.button("Continue").on_hover_text(format!("Open {}, modified last", last.name)).clicked()
+        {
+            commands.send(Command::Library(LibraryCommand::Open(last.id.clone())));
+        }
         if ui.button("New mission").clicked() {
             commands.send(Command::Library(LibraryCommand::New(&TEMPLATES[0])));
         }
@@ -257,15 +270,60 @@ fn versions(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 
 fn examples(ui: &mut Ui, context: &Context<'_>, found: &dyn Fn(&str) -> bool, commands: &mut CommandSender) {
     section(ui, context, "Examples");
-    let library = &context.state.library;
+    let room = ui.available_width();
+    let columns = (room / CARD.x).floor().max(1.0);
+    let width = (room - (columns - 1.0) * space::M) / columns;
     ui.horizontal_wrapped(|ui| {
-        for example in EXAMPLES.iter().filter(|example| found(example.title)) {
-            let is_open = library.open_id().is_none() && context.state.mission == example.name;
-            if ui.add(Button::new(example.title).selected(is_open)).clicked() {
-                commands.send(Command::OpenExample(example.name.into()));
-            }
+        ui.spacing_mut().item_spacing = Vec2::splat(space::M);
+        let is_found = |example: &&Example| found(example.title) || found(example.about);
+        for example in EXAMPLES.iter().filter(is_found) {
+            card(ui, context, example, width - 0.5, commands);
         }
     });
+}
+
+/// An example: its plan, its title, and what it shows. While the pointer is over it, its time runs.
+fn card(ui: &mut Ui, context: &Context<'_>, example: &Example, width: f32, commands: &mut CommandSender) {
+    let tokens = context.tokens;
+    let is_open = context.state.library.open_id().is_none() && context.state.mission == example.name;
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(width, CARD.y), Sense::click());
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, example.title));
+    let is_pointed = response.hovered() || response.has_focus();
+    let fill = match (is_open, is_pointed) {
+        (true, _) => tokens.selection,
+        (false, true) => tokens.hover,
+        (false, false) => tokens.raised,
+    };
+    let line = if is_pointed { tokens.accent } else { tokens.line };
+    ui.painter().rect(rect, 6.0, fill, Stroke::new(1.0, line), StrokeKind::Inside);
+    let inner = rect.shrink(space::M);
+    let place = inner.with_max_y(inner.top() + CARD_PICTURE);
+    let bars = mission_file::example_picture(example.name);
+    picture(ui, context, place, bars);
+    if bars.is_empty() {
+        let is_control = rmpl::control::is_control_text(example.source);
+        let text = if is_control { "control program" } else { "no plan" };
+        let font = egui::TextStyle::Small.resolve(ui.style());
+        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, text, font, tokens.text_muted);
+    } else if is_pointed && !context.state.system.reduces_motion {
+        let share = (context.now_secs / CARD_SECS).fract() as f32;
+        let x = place.left() + 3.0 + (place.width() - 6.0) * share;
+        ui.painter().rect_filled(place.with_min_x(x), 3.0, fill.gamma_multiply(0.6));
+        ui.painter().vline(x, place.y_range(), Stroke::new(1.5, tokens.accent));
+        ui.ctx().request_repaint();
+    }
+    let text = inner.with_min_y(place.bottom() + space::S);
+    let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(text).layout(Layout::top_down(Align::Min)));
+    ui.shrink_clip_rect(text.expand(1.0));
+    ui.spacing_mut().item_spacing.y = 2.0;
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let (title, _) = ui.allocate_exact_size(egui::vec2(text.width(), font.size * 1.3), Sense::hover());
+    ui.painter().text(title.left_top(), egui::Align2::LEFT_TOP, example.title, font, tokens.text);
+    let about = RichText::new(example.about).small().color(tokens.text_muted);
+    ui.add(egui::Label::new(about).wrap().selectable(false));
+    if response.clicked() {
+        commands.send(Command::OpenExample(example.name.into()));
+    }
 }
 
 fn deleted(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

@@ -9,6 +9,7 @@ mod missions;
 mod name;
 mod palette;
 mod rename;
+mod settings;
 
 use egui::{Align2, Area, Frame, Id, Order};
 use panels::Context;
@@ -62,6 +63,7 @@ fn show_content(ui: &mut egui::Ui, context: &Context<'_>, dialog: &Dialog, comma
             let named = if *renames { name::Named::File } else { name::Named::NewFile };
             name::show(ui, named, name, commands);
         }
+        Dialog::Settings => settings::show(ui, context, commands),
         Dialog::Keys => keys::show(ui, context, commands),
         Dialog::About => about::show(ui, context, commands),
     }

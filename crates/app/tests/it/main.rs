@@ -1,6 +1,8 @@
 //! The integration tests of `app`, in one program: each module is about one thing.
 
 mod automaton;
+mod desk;
+mod drawing;
 mod editor;
 mod execution;
 mod lesson;

@@ -278,6 +278,11 @@ fn two_searches_are_one_tree_with_the_share_of_each_and_apart_where_that_is_want
             assert!(!place.intersects(*at), "{one} covers {other}");
         }
     }
+    let columns = tree(&app).x_range();
+    let menus = app.harness.query_all_by_role_and_label(egui::Role::Button, "Show");
+    let menus = menus.filter(|menu| columns.contains(menu.rect().center().x));
+    menus.min_by(|one, other| one.rect().top().total_cmp(&other.rect().top())).expect("a menu").click();
+    app.settle();
     app.harness.get_by_label("Merge trees").click();
     app.settle();
     assert_eq!(trees(&app).len(), 2, "{:?}", trees(&app));

@@ -32,6 +32,9 @@ struct Shown<'a> {
     network: &'a tpn::Network,
 }
 
+/// The part of the panel that the log has at first: what may go wrong has to be in sight above it.
+const LOG_SHARE: f32 = 0.25;
+
 impl Panel for ExecutionPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let state = &context.state.execution;
@@ -46,7 +49,8 @@ impl Panel for ExecutionPanel {
         bar(ui, context, commands);
         now::banner(ui, context, shown);
         let frame = Frame::new().fill(context.tokens.surface).inner_margin(Margin::symmetric(8, 2));
-        egui::Panel::bottom("execution-log").resizable(true).default_size(220.0).frame(frame).show(
+        let height = (ui.available_height() * LOG_SHARE).min(220.0);
+        egui::Panel::bottom("execution-log").resizable(true).default_size(height).frame(frame).show(
             ui,
             |ui| {
                 log::show(ui, context, shown, commands);
@@ -56,6 +60,7 @@ impl Panel for ExecutionPanel {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 now::show(ui, context, shown, commands);
                 self.disturb.show(ui, context, shown, commands);
+                now::upcoming(ui, context, shown, commands);
                 ui.add_space(space::L);
             });
         });

@@ -13,7 +13,7 @@ use workbench::time_text;
 
 use super::Shown;
 use crate::Context;
-use crate::plan::{section, selectable_row};
+use crate::plan::{counted, section, selectable_row};
 
 /// So many of the things to come are listed.
 const MAX_LISTED: usize = 5;
@@ -25,11 +25,13 @@ pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     let seen = shown.run.log.iter().filter(|entry| has_come(entry.time, time));
     let mut sign = (Icon::Play, tokens.info, tokens.soft[3], "In progress".to_owned());
     let mut because = None;
+    let mut replans = 0;
     for entry in seen {
         let at = time_text::short(entry.time);
         match &entry.happening {
             Happening::Violation { reason, .. } => because = Some(reason.clone()),
             Happening::Replanned { changes } => {
+                replans += 1;
                 let how = if changes.is_empty() { "same choices".to_owned() } else { changes.join(", ") };
                 sign = (Icon::Warning, tokens.warning, tokens.soft[1], format!("Replanned at {at}: {how}"));
             }
@@ -38,11 +40,20 @@ pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
                     (Icon::Error, tokens.error, tokens.soft[2], format!("Stopped safely at {at}: {reason}"));
             }
             Happening::Finished => {
-                let text = format!("Mission completed at {at}");
+                let after = match replans {
+                    0 => "as planned".to_owned(),
+                    count => format!("after {}", counted(count, "replan")),
+                };
+                let text = format!("Mission completed at {at}, {after}");
                 sign = (Icon::Check, tokens.good, tokens.soft[0], text);
             }
             _ => {}
         }
+    }
+    if context.state.execution.is_working() {
+        // What is drawn does not have the last disturbance yet.
+        let text = "Simulating the change…".to_owned();
+        (sign, because) = ((Icon::Working, tokens.info, tokens.soft[3], text), None);
     }
     let (icon, color, fill, text) = sign;
     let frame = Frame::new()
@@ -62,13 +73,19 @@ pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     });
 }
 
-pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+/// Whether the mission has come to its end at the time shown.
+fn is_finished(context: &Context<'_>, shown: Shown<'_>) -> bool {
     let is_over = shown.run.log.last().is_some_and(|last| {
         has_come(last.time, context.state.playback.time)
             && (shown.run.ending == Ending::Stopped || shown.moment.to_come.is_empty())
             && shown.moment.deadline.is_none_or(|_| shown.run.ending == Ending::Stopped)
     });
-    if is_over && shown.run.ending == Ending::Finished {
+    is_over && shown.run.ending == Ending::Finished
+}
+
+/// What is due and what is under way.
+pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+    if is_finished(context, shown) {
         return;
     }
     due(ui, context, shown, commands);
@@ -82,7 +99,12 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, command
         let since = pending.since.map(time_text::short).unwrap_or_default();
         row(ui, context, shown, pending, &format!("since {since}, ends {window}"), commands);
     }
-    if moment.to_come.is_empty() {
+}
+
+/// What comes next.
+pub(super) fn upcoming(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
+    let moment = shown.moment;
+    if is_finished(context, shown) || moment.to_come.is_empty() {
         return;
     }
     section(ui, context, "Upcoming", "with start windows");

@@ -4,11 +4,13 @@ use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 use layout::{BlockForm, Item, TextRole};
 use smol_str::SmolStr;
 use tpn::{BlockId, Network};
+use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 
 use super::data::Drawn;
 use super::highlight::selection_of;
 use super::view::View;
+use crate::{Context, draw_menu};
 
 /// With more in view, a list helps nobody.
 const MOST: usize = 150;
@@ -32,8 +34,9 @@ pub(super) fn show(
     view: &View,
     drawn: &Drawn,
     network: &Network,
-    chosen: &Selection,
+    (context, commands): (&Context<'_>, &mut CommandSender),
 ) -> Option<Act> {
+    let chosen = &*context.state.selection;
     let mut found = in_view(panel, view, drawn, network);
     if found.len() > MOST {
         return None;
@@ -56,6 +59,10 @@ pub(super) fn show(
             let stroke = egui::Stroke::new(1.5, ui.visuals().selection.stroke.color);
             ui.painter_at(panel).rect_stroke(rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
         }
+        if response.secondary_clicked() {
+            commands.send(Command::Select(selection.clone()));
+        }
+        draw_menu::activities(&response, context, commands);
         if response.clicked() {
             let is_double = response.double_clicked();
             let by_key = !response.clicked_by(egui::PointerButton::Primary) || is_double;

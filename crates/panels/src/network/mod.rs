@@ -41,7 +41,8 @@ use self::paint::{Scene, badge};
 use self::search::Search;
 use self::toolbar::Asked;
 use self::view::View;
-use super::{Context, Panel};
+use super::{Context, Panel, draw_menu};
+use crate::carry::{self, Carried};
 use crate::painter::DisplayPainter;
 
 /// The network panel.
@@ -199,12 +200,14 @@ impl NetworkPanel {
         let progress = plan.filter(|_| is_timed).map(|plan| Progress::at(network, plan, now));
         self.save_picture(context, (snapshot, network), plan, progress.as_ref(), options, commands);
         let (panel, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        crate::note_drawing(&response);
         let summary = describe::summary(network, plan);
         response
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{}. {summary}", title(context))));
+        self.carry(ui, context, panel, &response, (network, plan), commands);
         self.move_view(ui, context, panel, &response, (snapshot, network));
 
-        let act = landmarks::show(ui, panel, &self.view, &self.drawn, network, &context.state.selection);
+        let act = landmarks::show(ui, panel, &self.view, &self.drawn, network, (context, commands));
         let overview = if options.minimap { minimap::place(panel, &self.view, &self.drawn) } else { None };
         let pointer =
             pointer_over(ui, &response).filter(|at| overview.is_none_or(|overview| !overview.contains(*at)));
@@ -219,6 +222,13 @@ impl NetworkPanel {
             }
             None => self.click(&response, pointed.as_ref(), panel, network, commands),
         }
+
+        if response.secondary_clicked() {
+            let selection = pointed.as_ref().map(|pointed| pointed.selection().clone()).unwrap_or_default();
+            self.followed_selection = selection.clone();
+            commands.send(Command::Select(selection));
+        }
+        draw_menu::activities(&response, context, commands);
 
         let painter = ui.painter_at(panel);
         let selected = Highlight::of(&context.state.selection, network);
@@ -313,6 +323,8 @@ impl NetworkPanel {
         }
         if let (true, Some(place), Some(at)) = (self.is_dragging_overview, overview, pointer) {
             self.view.look_at(minimap::point_at(place, &self.drawn, at));
+        } else if carry::carried(ui.ctx()).is_some() {
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         } else if response.dragged_by(PointerButton::Primary) || response.dragged_by(PointerButton::Middle) {
             self.view.pan(response.drag_delta());
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
@@ -415,6 +427,42 @@ impl NetworkPanel {
         let area = Highlight::of_focus(&focus, network).bounds(&self.drawn.drawing);
         if let Some(area) = area.filter(|area| !self.view.visible(panel).overlaps(area.expanded(1.0))) {
             self.view.look_at(area.center());
+        }
+    }
+
+    /// Carries the selected activity to another one.
+    fn carry(
+        &self,
+        ui: &Ui,
+        context: &Context<'_>,
+        panel: Rect,
+        response: &Response,
+        (network, plan): (&Network, Option<&Plan>),
+        commands: &mut CommandSender,
+    ) {
+        let options = &context.state.settings.views.network;
+        let over = |at| {
+            let pointed = self.pointed(panel, at, network, plan, options)?;
+            let selection = pointed.selection().clone();
+            let span = network.occurrences.get(selection.occurrence(network)?.index())?.span?;
+            Some((selection, span))
+        };
+        if response.drag_started_by(PointerButton::Primary) {
+            let begun = ui.input(|input| input.pointer.press_origin());
+            let pressed = begun.and_then(over).map(|(_, span)| span);
+            if let Some(span) = pressed.filter(|span| context.state.drawn_statement() == Some(*span)) {
+                carry::take(ui.ctx(), Carried::Activity(span));
+            }
+        }
+        if carry::carried(ui.ctx()).is_none() {
+            return;
+        }
+        if let Some(at) = pointer_over(ui, response)
+            && let Some((selection, span)) = over(at)
+            && let Some(bounds) = Highlight::of(&selection, network).bounds(&self.drawn.drawing)
+        {
+            let is_left = self.view.drawing_point(panel, at).x < bounds.center().x;
+            carry::over_activity(ui, context, span, is_left, commands);
         }
     }
 

@@ -1,12 +1,12 @@
-//! The switches above the drawing, and the search field.
+//! The row above the drawing: the search field, what is shown, and how much detail.
 
 use egui::{RichText, TextEdit, Ui};
 use theme::space;
 use workbench::PanelKind;
+use workbench::ViewAction;
 use workbench::command::{Command, CommandSender};
 use workbench::state::settings::NetworkView;
 use workbench::state::window::WindowCommand;
-use workbench::{PictureFormat, ViewAction};
 
 use super::search::Search;
 use crate::Context;
@@ -58,29 +58,15 @@ pub(super) fn show(
             ui.label(RichText::new(text).small().color(context.tokens.text_muted));
         }
         ui.add_space(space::S);
-        if ui.available_size_before_wrap().x < ROOM_FOR_SWITCHES {
-            ui.menu_button(RichText::new("Show").small(), |ui| {
-                for (value, name, help) in switches(view) {
-                    ui.checkbox(value, name).on_hover_text(help);
-                }
-            });
-        } else {
+        ui.menu_button(RichText::new("Show").small(), |ui| {
             for (value, name, help) in switches(view) {
-                ui.toggle_value(value, RichText::new(name).small()).on_hover_text(help);
+                ui.checkbox(value, name).on_hover_text(help);
             }
-        }
+        });
         let small = |name: &str| egui::Button::new(RichText::new(name).small());
         if ui.add(small("Fit")).on_hover_text("Zoom to fit (F)").clicked() {
             commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Network, ViewAction::Fit)));
         }
-        ui.menu_button(RichText::new("Save").small(), |ui| {
-            for (format, name) in [(PictureFormat::Svg, "Save as SVG"), (PictureFormat::Png, "Save as PNG")] {
-                if ui.button(name).clicked() {
-                    commands.send(Command::Window(WindowCommand::SaveNetwork(format)));
-                    ui.close();
-                }
-            }
-        });
         let buttons = [
             (has_boxes, "Expand all", "Show all details", Asked::OpenAll),
             (is_changed, "Overview", "Fit as much detail as is readable", Asked::FitAll),
@@ -94,9 +80,6 @@ pub(super) fn show(
     });
     asked
 }
-
-/// Narrower toolbars have their switches in a menu.
-const ROOM_FOR_SWITCHES: f32 = 880.0;
 
 /// What can be switched on and off, with its name and what it means.
 fn switches(view: &mut NetworkView) -> [(&mut bool, &'static str, &'static str); 12] {
@@ -112,6 +95,6 @@ fn switches(view: &mut NetworkView) -> [(&mut bool, &'static str, &'static str);
         (&mut view.lanes, "Lanes", "A named band for each parallel branch"),
         (&mut view.now, "Time", "Past and ongoing activities at the current time"),
         (&mut view.problems, "Problems", "Errors and warnings"),
-        (&mut view.minimap, "Overview", "Minimap"),
+        (&mut view.minimap, "Minimap", "The whole network in a corner"),
     ]
 }

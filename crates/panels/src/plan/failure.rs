@@ -1,7 +1,8 @@
-//! Why there is no plan: a reason per group of choices, and the smallest changes that would give one.
+//! Why there is no plan: the smallest changes that would give one, and a reason per group of choices.
 
 use egui::{Frame, Margin, RichText, Stroke, Ui};
-use kirk::{FailureKind, GAP_LABEL, Reason, Status};
+use kirk::{Failure, FailureKind, GAP_LABEL, Reason, Status};
+use rmpl::{Edit, Span};
 use snapshot::Planning;
 use text_editing::EditKind;
 use theme::icon::{self, Icon};
@@ -9,7 +10,6 @@ use theme::space;
 use tpn::Network;
 use workbench::command::{Command, CommandSender};
 use workbench::state::editor::EditorCommand;
-use workbench::state::selection::alternative_text;
 
 use crate::Context;
 use crate::plan::section;
@@ -36,6 +36,7 @@ pub(crate) fn show(
         ui.label(RichText::new(message).color(tokens.text_muted));
     }
     let Some(failure) = &planning.outcome.failure else { return };
+    show_fixes(ui, context, planning, failure, commands);
     for (index, reason) in failure.reasons.iter().enumerate() {
         ui.push_id(index, |ui| show_reason(ui, context, network, (index, reason), commands));
     }
@@ -43,51 +44,61 @@ pub(crate) fn show(
         let note = "All combinations of choices fail (too many to list).";
         ui.label(RichText::new(note).color(tokens.text_muted));
     }
-    if planning.ways_out().is_empty() {
+}
+
+/// A change of the text that gives a plan.
+struct Offer<'a> {
+    label: &'a str,
+    /// What it changes; `None` for what is worked out from the whole text once it is wanted, or cannot be done.
+    edits: Option<Vec<Edit>>,
+    /// Where the text shows what it is about.
+    span: Option<Span>,
+    is_of_gap: bool,
+}
+
+/// The fixes, above all reasons: first those of what was edited last.
+fn show_fixes(
+    ui: &mut Ui,
+    context: &Context<'_>,
+    planning: &Planning,
+    failure: &Failure,
+    commands: &mut CommandSender,
+) {
+    let source = context.snapshot.map(|snapshot| snapshot.source.as_ref()).unwrap_or_default();
+    let gap = Offer { label: GAP_LABEL, edits: None, span: None, is_of_gap: true };
+    let repairs = planning.repairs.iter().map(|repair| Offer {
+        label: &repair.label,
+        edits: Some(repair.edits.clone()),
+        span: repair.edits.first().map(|edit| edit.span),
+        is_of_gap: false,
+    });
+    let relaxations = failure.relaxations.iter().map(|relaxation| Offer {
+        label: &relaxation.label,
+        edits: relaxation.fix(source).map(|fix| fix.edits),
+        span: relaxation.span,
+        is_of_gap: false,
+    });
+    let mut offers: Vec<Offer<'_>> =
+        failure.is_of_gap.then_some(gap).into_iter().chain(repairs).chain(relaxations).collect();
+    if offers.is_empty() {
         return;
     }
+    let edited = last_edited(context);
+    offers.sort_by_key(|offer| !offer.span.zip(edited).is_some_and(|(span, edited)| meet(span, edited)));
     section(ui, context, "Suggested fixes", "any one of these works; each has been verified");
-    let source = context.snapshot.map(|snapshot| snapshot.source.as_ref()).unwrap_or_default();
-    if failure.is_of_gap {
+    for offer in offers {
         ui.horizontal(|ui| {
-            icon::label(ui, Icon::Fix, tokens.accent);
-            let button = ui.add_enabled(!context.is_stale, egui::Button::new(GAP_LABEL).wrap());
-            // The fix reads the whole text: only once it is wanted.
-            if button.accessible_name(format!("Fix: {GAP_LABEL}")).clicked()
-                && let Some(fix) = failure.gap_fix(source)
-            {
-                commands.send(Command::Edit { edits: fix.edits, kind: EditKind::Single });
-            }
-        });
-    }
-    for repair in &planning.repairs {
-        ui.horizontal(|ui| {
-            icon::label(ui, Icon::Fix, tokens.accent);
-            let button = ui.add_enabled(!context.is_stale, egui::Button::new(&repair.label).wrap());
-            if button.accessible_name(format!("Fix: {}", repair.label)).clicked() {
-                commands.send(Command::Edit { edits: repair.edits.clone(), kind: EditKind::Single });
-            }
-            if let Some(edit) = repair.edits.first()
-                && ui.add(egui::Button::new("Show").frame_when_inactive(false)).clicked()
-            {
-                commands.send(Command::Reveal(edit.span));
-                commands.send(Command::Editor(EditorCommand::Focus));
-            }
-        });
-    }
-    for relaxation in &failure.relaxations {
-        let fix = relaxation.fix(source);
-        ui.horizontal(|ui| {
-            icon::label(ui, Icon::Fix, tokens.accent);
-            let can_apply = fix.is_some() && !context.is_stale;
-            let button = ui.add_enabled(can_apply, egui::Button::new(&relaxation.label).wrap());
-            let button = button.accessible_name(format!("Fix: {}", relaxation.label));
+            icon::label(ui, Icon::Fix, context.tokens.accent);
+            let can_apply = (offer.is_of_gap || offer.edits.is_some()) && !context.is_stale;
+            let button = ui.add_enabled(can_apply, egui::Button::new(offer.label).wrap());
+            let button = button.accessible_name(format!("Fix: {}", offer.label));
+            // The gap's fix reads the whole text: only once it is wanted.
             if button.clicked()
-                && let Some(fix) = fix
+                && let Some(edits) = offer.edits.or_else(|| failure.gap_fix(source).map(|fix| fix.edits))
             {
-                commands.send(Command::Edit { edits: fix.edits, kind: EditKind::Single });
+                commands.send(Command::Edit { edits, kind: EditKind::Single });
             }
-            if let Some(span) = relaxation.span
+            if let Some(span) = offer.span
                 && ui.add(egui::Button::new("Show").frame_when_inactive(false)).clicked()
             {
                 commands.send(Command::Reveal(span));
@@ -95,6 +106,17 @@ pub(crate) fn show(
             }
         });
     }
+}
+
+/// Where the present text was edited last.
+fn last_edited(context: &Context<'_>) -> Option<Span> {
+    let document = &context.state.document;
+    let last = document.edits_since(document.revision().checked_sub(1)?)?.last()?;
+    Some(Span::new(last.span.start, last.span.start + last.text.len() as u32))
+}
+
+fn meet(one: Span, other: Span) -> bool {
+    one.start <= other.end && other.start <= one.end
 }
 
 fn show_reason(
@@ -123,10 +145,7 @@ fn show_reason(
         let choices: Vec<String> = reason
             .choices
             .iter()
-            .map(|choice| {
-                let name = Network::decision_name(choice.decision);
-                format!("{name} = {}", alternative_text(network, choice.decision, choice.alternative))
-            })
+            .map(|choice| network.alternative_name(choice.decision, choice.alternative))
             .collect();
         let heading = if choices.is_empty() {
             format!("{kind}, for every choice")

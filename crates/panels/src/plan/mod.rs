@@ -9,7 +9,6 @@ use theme::icon::{self, Icon};
 use theme::space;
 use tpn::{Network, Plan};
 use workbench::command::{Command, CommandSender};
-use workbench::state::selection::alternative_text;
 use workbench::state::{Selection, Status};
 
 use crate::{Context, Panel, show_empty};
@@ -231,20 +230,21 @@ fn show_choices(
         let Some(decision) = network.decisions.get(choice.decision.index()) else { return };
         ui.horizontal(|ui| {
             let name = Network::decision_name(choice.decision);
-            let text = RichText::new(&name).color(context.tokens.decision);
-            selectable_row(ui, context, &Selection::Decision(choice.decision), text, commands);
-            for alternative in 0..decision.alternatives.len() as u32 {
+            icon::label(ui, Icon::Check, context.tokens.good);
+            let others = (0..decision.alternatives.len() as u32).filter(|&it| it != choice.alternative);
+            for alternative in std::iter::once(choice.alternative).chain(others) {
                 let is_taken = alternative == choice.alternative;
-                let text = alternative_text(network, choice.decision, alternative);
-                let color = if is_taken { context.tokens.text } else { context.tokens.text_faint };
-                let text = RichText::new(text).color(color);
-                let text = if is_taken { text } else { text.strikethrough() };
+                let text = network.alternative_name(choice.decision, alternative);
+                let text = if is_taken {
+                    RichText::new(text).color(context.tokens.text)
+                } else {
+                    RichText::new(format!("instead of {text}")).color(context.tokens.text_muted)
+                };
                 let selection = Selection::Alternative(choice.decision, alternative);
-                if is_taken {
-                    icon::label(ui, Icon::Check, context.tokens.good);
-                }
                 selectable_row(ui, context, &selection, text, commands);
             }
+            let text = RichText::new(&name).small().color(context.tokens.decision);
+            selectable_row(ui, context, &Selection::Decision(choice.decision), text, commands);
         });
     });
 }

@@ -1,6 +1,6 @@
 //! The rows of controls above the search tree: stepping, playing, breakpoints, and which search runs.
 
-use egui::{Button, ComboBox, RichText, Slider, Ui};
+use egui::{ComboBox, Slider, Ui};
 use kirk::Search as SearchKind;
 use theme::icon::{self, Icon};
 use theme::space;
@@ -101,46 +101,46 @@ fn show_choices(
     commands: &mut CommandSender,
 ) {
     let search = &context.state.search;
-    let mut only_key = search.only_key();
-    ui.toggle_value(&mut only_key, "Key steps only").on_hover_text("Step only through choices and failures");
-    if only_key != search.only_key() {
-        commands.send(Command::Search(SearchCommand::OnlyKey(only_key)));
-    }
-    let mut compares = search.compares();
-    if compares {
-        let mut is_linked = search.is_linked();
-        ui.toggle_value(&mut is_linked, "Step together").on_hover_text("Step both searches together");
-        if is_linked != search.is_linked() {
-            commands.send(Command::Search(SearchCommand::Link(is_linked)));
-        }
-        ui.toggle_value(merges, "Merge trees")
-            .on_hover_text("Draw both trees as one; shared states appear once");
-    } else {
+    if !search.compares() {
         show_kind(ui, context, commands);
     }
-    ui.toggle_value(&mut compares, "Compare").on_hover_text("Show both searches side by side");
-    if compares != search.compares() {
-        commands.send(Command::Search(SearchCommand::Compare(compares)));
-    }
-    ui.toggle_value(folds_failed, "Collapse failed branches").on_hover_text("Collapse branches that fail");
+    ui.menu_button("Show", |ui| {
+        let mut only_key = search.only_key();
+        ui.checkbox(&mut only_key, "Key steps only").on_hover_text("Step only through choices and failures");
+        if only_key != search.only_key() {
+            commands.send(Command::Search(SearchCommand::OnlyKey(only_key)));
+        }
+        ui.checkbox(folds_failed, "Collapse failed branches").on_hover_text("Collapse branches that fail");
+        let mut compares = search.compares();
+        ui.checkbox(&mut compares, "Compare").on_hover_text("Show both searches side by side");
+        if compares != search.compares() {
+            commands.send(Command::Search(SearchCommand::Compare(compares)));
+        }
+        if search.compares() {
+            let mut is_linked = search.is_linked();
+            ui.checkbox(&mut is_linked, "Step together").on_hover_text("Step both searches together");
+            if is_linked != search.is_linked() {
+                commands.send(Command::Search(SearchCommand::Link(is_linked)));
+            }
+            let help = "Draw both trees as one; shared states appear once";
+            ui.checkbox(merges, "Merge trees").on_hover_text(help);
+        }
+    });
 }
 
 fn show_breakpoints(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let search = &context.state.search;
-    ui.add_space(space::XS);
-    ui.label(RichText::new("Stop at").color(context.tokens.text_muted));
     let mut breakpoints = search.breakpoints;
-    for (value, name, help) in [
-        (&mut breakpoints.decision, "decisions", "Stop at decisions"),
-        (&mut breakpoints.failure, "failures", "Stop at failures"),
-        (&mut breakpoints.threat, "threats", "Stop at threats (conflicting intervals that may overlap)"),
-        (&mut breakpoints.solution, "plans", "Stop at plans"),
-    ] {
-        let button = ui.add(Button::selectable(*value, name)).on_hover_text(help);
-        if button.accessible_name(format!("Stop at {name}")).clicked() {
-            *value = !*value;
+    ui.menu_button("Stop at", |ui| {
+        for (value, name, help) in [
+            (&mut breakpoints.decision, "Decisions", "Stop at decisions"),
+            (&mut breakpoints.failure, "Failures", "Stop at failures"),
+            (&mut breakpoints.threat, "Threats", "Stop at threats (conflicting intervals that may overlap)"),
+            (&mut breakpoints.solution, "Plans", "Stop at plans"),
+        ] {
+            ui.checkbox(value, name).on_hover_text(help);
         }
-    }
+    });
     if breakpoints != search.breakpoints {
         commands.send(Command::Search(SearchCommand::SetBreakpoints(breakpoints)));
     }

@@ -8,11 +8,13 @@ use rmpl::program::{ObstacleShape, Program};
 use smol_str::SmolStr;
 use terrain_view::pick::Scene;
 use terrain_view::scene;
-use text_editing::EditKind;
+use text_editing::{EditKind, TextCommand};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::placing::{VehicleStart, place};
 use workbench::state::terrain::TerrainCommand;
+
+use crate::carry::{self, Carried};
 
 /// A drag under way.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,6 +101,19 @@ pub fn update(
             drop_vehicle(vehicle, pointer, scene, commands);
         }
         return None;
+    }
+    if let Dragged::Location(name, _) = &drag.what {
+        if scene.rect.contains(pointer) {
+            carry::put_site_back(&response.ctx);
+        } else {
+            // Outside, its name is carried, and the location is where it was.
+            if drag.last_m != drag.begun_m {
+                commands.send(Command::Text(TextCommand::Undo));
+                drag.last_m = drag.begun_m;
+            }
+            carry::take(&response.ctx, Carried::Site(name.clone()));
+            return Some(drag);
+        }
     }
     let Some(now_m) = scene.ground_at(pointer).filter(|&now_m| now_m.distance(drag.last_m) > 0.05) else {
         return Some(drag);

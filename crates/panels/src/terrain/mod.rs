@@ -35,7 +35,7 @@ use workbench::state::settings::SettingsCommand;
 use workbench::state::settings::TerrainView;
 use workbench::state::terrain::{TerrainCommand, Tool};
 
-use crate::{Context, Panel, show_empty};
+use crate::{Context, Panel, draw_menu, show_empty};
 use clearance::Clearance;
 use drag::Drag;
 use measure::Measurement;
@@ -65,6 +65,8 @@ pub struct TerrainPanel {
     /// The plates with names in the last frame.
     plates: Vec<(Rect, Selection)>,
     told_hover: Selection,
+    /// The ground under the last right click.
+    menu_m: Option<nalgebra::Point2<f64>>,
 }
 
 /// The margin between the image's border and what is written on it.
@@ -115,6 +117,7 @@ impl TerrainPanel {
         commands: &mut CommandSender,
     ) {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        crate::note_drawing(&response);
         let measured = map.and_then(|map| measurement(context, map));
         let described = describe(context, snapshot, measured.as_ref());
         response.widget_info(|| {
@@ -262,6 +265,13 @@ impl TerrainPanel {
         if response.clicked() {
             self.clicked = clicked;
         }
+        if response.secondary_clicked()
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            self.menu_m = scene.ground_at(pointer).map(tool::meters);
+            commands.send(Command::Select(scene.pick(pointer)));
+        }
+        draw_menu::terrain(response, context, self.menu_m, commands);
         self.tell_hover(context, pointed, commands);
         if let Some((selection, hit)) = flies_to {
             self.fly_to(context, snapshot, &selection, hit);

@@ -206,6 +206,7 @@ pub fn hint(tool: &Tool, points: usize) -> Option<String> {
     })
 }
 
-fn meters(place: Vec2) -> Point2<f64> {
+/// A place on the ground, east and north.
+pub(super) fn meters(place: Vec2) -> Point2<f64> {
     Point2::new(f64::from(place.x), f64::from(place.y))
 }

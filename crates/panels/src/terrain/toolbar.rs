@@ -26,17 +26,6 @@ pub fn show(
     ui.horizontal_wrapped(|ui| {
         ui.add_space(space::S);
         ui.spacing_mut().item_spacing.x = space::S;
-        egui::ComboBox::from_id_salt("terrain-coloring")
-            .selected_text(coloring_name(view.coloring))
-            .width(76.0)
-            .show_ui(ui, |ui| {
-                for coloring in [Coloring::Natural, Coloring::Height, Coloring::Slope] {
-                    ui.selectable_value(&mut view.coloring, coloring, coloring_name(coloring));
-                }
-            })
-            .response
-            .accessible_name("Terrain colors")
-            .on_hover_text("Color the terrain by height or slope");
         ui.menu_button("Show", |ui| show_menu(ui, view));
         ui.menu_button("Camera", |ui| camera_menu(ui, context, snapshot, follow, commands));
         tools(ui, context, commands);
@@ -52,6 +41,11 @@ pub fn show(
 }
 
 fn show_menu(ui: &mut Ui, view: &mut TerrainView) {
+    for coloring in [Coloring::Natural, Coloring::Height, Coloring::Slope] {
+        let choice = ui.radio_value(&mut view.coloring, coloring, coloring_name(coloring));
+        choice.on_hover_text("Color the terrain naturally, by height or by slope");
+    }
+    ui.separator();
     for (value, name, help) in [
         (&mut view.paths, "Paths", "Paths of the plan's traverses"),
         (&mut view.trees, "Search trees", "Search trees of the paths"),
@@ -143,8 +137,8 @@ fn tools(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 
 const fn coloring_name(coloring: Coloring) -> &'static str {
     match coloring {
-        Coloring::Natural => "Natural",
-        Coloring::Height => "Height",
-        Coloring::Slope => "Slope",
+        Coloring::Natural => "Natural colors",
+        Coloring::Height => "Colors by height",
+        Coloring::Slope => "Colors by slope",
     }
 }

@@ -1,6 +1,6 @@
 //! The row of buttons above the timeline: playing, the time, what is shown, zoom.
 
-use egui::{Button, ComboBox, Frame, Margin, RichText, Ui};
+use egui::{ComboBox, Frame, Margin, RichText, Ui};
 
 use layout::timeline::Grouping;
 use rmpl::program::TimeUnit;
@@ -12,7 +12,7 @@ use workbench::ViewAction;
 use workbench::command::{Command, CommandSender};
 use workbench::state::PinCommand;
 use workbench::state::playback::TransportCommand;
-use workbench::state::settings::SettingsCommand;
+use workbench::state::settings::{SettingsCommand, TimelineView};
 use workbench::state::window::WindowCommand;
 use workbench::time_text;
 use workbench::workspace::Workspace;
@@ -20,13 +20,9 @@ use workbench::workspace::Workspace;
 use super::handle;
 use crate::Context;
 
-/// Narrower timelines have their switches in a menu.
-const ROOM_FOR_SWITCHES: f32 = 1_040.0;
-
 /// Shows the row.
 pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, commands: &mut CommandSender) {
     let frame = Frame::new().inner_margin(Margin::symmetric(8, 3));
-    let has_room = ui.available_width() >= ROOM_FOR_SWITCHES;
     frame.show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
@@ -37,7 +33,7 @@ pub(crate) fn show(ui: &mut Ui, context: &Context<'_>, network: &Network, comman
             rate(ui, context, commands);
             ui.add_space(space::M);
             grouping(ui, context, commands);
-            switches(ui, context, has_room, commands);
+            switches(ui, context, commands);
             ui.add_space(space::M);
             zoom(ui, context, commands);
             ui.add_space(space::M);
@@ -146,44 +142,35 @@ pub(crate) fn rate(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         .accessible_name("Speed");
 }
 
-fn switches(ui: &mut Ui, context: &Context<'_>, has_room: bool, commands: &mut CommandSender) {
+fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let mut views = context.state.settings.views.clone();
     let view = &mut views.timeline;
     let mut changed = false;
     let has_approved = context.state.window.workspace == Workspace::Review
         && context.state.review.record().last_approval().is_some();
-    if has_approved {
-        let button = Button::selectable(view.approved, RichText::new("Approved").small());
-        if ui.add(button).on_hover_text("Show the last approved plan here and on the network").clicked() {
-            view.approved = !view.approved;
-            changed = true;
+    ui.menu_button(RichText::new("Show").small(), |ui| {
+        if has_approved {
+            let help = "Show the last approved plan here and on the network";
+            changed |= ui.checkbox(&mut view.approved, "Approved plan").on_hover_text(help).changed();
         }
+        for (value, name, help) in all(view) {
+            changed |= ui.checkbox(value, name).on_hover_text(help).changed();
+        }
+    });
+    if changed {
+        commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));
     }
-    let all = [
+}
+
+/// What can be switched on and off, with its name and what it means.
+fn all(view: &mut TimelineView) -> [(&mut bool, &'static str, &'static str); 5] {
+    [
         (&mut view.delays, "Delays", "Delays as bars"),
         (&mut view.conditions, "Conditions", "Required and asserted conditions"),
         (&mut view.states, "States", "Values of state variables"),
         (&mut view.resources, "Resources", "Use of resources"),
         (&mut view.links, "Links", "All causal links and orderings; otherwise those of the selection"),
-    ];
-    if has_room {
-        for (value, name, help) in all {
-            let toggle = ui.add(Button::selectable(*value, RichText::new(name).small()));
-            if toggle.on_hover_text(help).clicked() {
-                *value = !*value;
-                changed = true;
-            }
-        }
-    } else {
-        ui.menu_button(RichText::new("Show").small(), |ui| {
-            for (value, name, help) in all {
-                changed |= ui.checkbox(value, name).on_hover_text(help).changed();
-            }
-        });
-    }
-    if changed {
-        commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));
-    }
+    ]
 }
 
 fn zoom(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {

@@ -41,7 +41,8 @@ use self::handle::Pinned;
 use self::overview::Silhouette;
 use self::paint::{LEGEND_HEIGHT, Painting, ROW_HEIGHT};
 use self::view::TimeView;
-use crate::{Context, Panel, show_empty};
+use crate::carry::{self, Carried};
+use crate::{Context, Panel, draw_menu, show_empty};
 
 pub(crate) use self::paint::drawn;
 
@@ -112,11 +113,13 @@ impl Default for TimelinePanel {
 impl Panel for TimelinePanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let (Some(snapshot), Some((network, plan))) = (context.snapshot, context.plan()) else {
+            let area = ui.available_rect_before_wrap();
             let text = match context.state.status() {
                 Status::Broken | Status::Empty => crate::empty::missing(context, "its timeline appears here"),
                 _ => "No plan to show. The Plan panel explains why.".to_owned(),
             };
             show_empty(ui, context, &text);
+            carry::over_timeline(ui, context, area, &[], commands);
             return;
         };
         self.prepare(context, snapshot, network, plan);
@@ -237,6 +240,7 @@ impl TimelinePanel {
             let last = ((viewport.bottom() / ROW_HEIGHT).ceil().max(0.0) as usize).min(chart.rows.len());
             self.show_rows(ui, &painting, plan, first..last, &links, commands);
             self.follow_selection(ui, &painting, &mut moved);
+            carry::over_timeline(ui, context, below, &lanes(&painting), commands);
             view = moved;
         });
         if let Some(column) = column {
@@ -359,8 +363,9 @@ impl TimelinePanel {
         let bar = painting.chart.bars.get(shown.bars.clone()).and_then(<[Bar]>::first);
         let mut is_hovered = false;
         if let (RowKind::Single, Some(bar)) = (shown.kind, bar) {
-            let response = ui.interact(row, ui.scope_id().with(("row", index)), Sense::click());
-            is_hovered = respond(&response, painting, plan, bar, is_selected, commands);
+            let id = ui.scope_id().with(("row", index));
+            let response = ui.interact(row, id, sense(is_selected));
+            is_hovered = respond(ui, &response, painting, plan, (index, bar), is_selected, commands);
         }
         let Some(key) = &shown.key else { return is_hovered };
         let area = match shown.kind {
@@ -494,6 +499,10 @@ impl TimelinePanel {
                 pointed.map_or(Selection::None, |link| link::selection(link.kind, painting.network));
             commands.send(Command::Select(selection));
         }
+        if response.secondary_clicked() {
+            commands.send(Command::Select(Selection::None));
+        }
+        draw_menu::activities(&response, painting.context, commands);
         if response.double_clicked() {
             commands.send(Command::Window(WindowCommand::ViewOf(PanelKind::Timeline, ViewAction::Fit)));
         }
@@ -558,6 +567,19 @@ impl TimelinePanel {
     }
 }
 
+/// The vehicles, each with the rows of the lane that it is named by.
+fn lanes(painting: &Painting<'_>) -> Vec<(SmolStr, Rect)> {
+    let vehicles = painting.context.snapshot.map_or(&[][..], |it| &it.program.world.vehicles);
+    let rows = &painting.chart.rows;
+    let mut found = Vec::new();
+    for head in rows.iter().filter(|row| row.key.is_some()) {
+        let Some(vehicle) = vehicles.iter().find(|it| it.name.text == head.name) else { continue };
+        let own = rows.iter().enumerate().filter(|(_, row)| row.lane == head.lane);
+        found.extend(own.map(|(index, _)| (vehicle.name.text.clone(), painting.row(index))));
+    }
+    found
+}
+
 /// What colors and lines mean, in one line.
 fn show_legend(ui: &Ui, context: &Context<'_>, chart: &Chart, place: Rect) {
     paint::show(ui, context, &legend_list(chart, paint::drawn(place)));
@@ -600,20 +622,49 @@ fn show_bar(
     if !area.is_positive() {
         return false;
     }
-    let response = ui.interact(area, ui.scope_id().with(("bar", at)), Sense::click());
-    respond(&response, painting, plan, bar, is_selected, commands)
+    let response = ui.interact(area, ui.scope_id().with(("bar", at)), sense(is_selected));
+    respond(ui, &response, painting, plan, (row, bar), is_selected, commands)
+}
+
+/// What is selected can be carried to another activity; a drag of anything else moves the view.
+fn sense(is_selected: bool) -> Sense {
+    if is_selected { Sense::click_and_drag() } else { Sense::click() }
+}
+
+/// Carries the bar, or what is carried over it.
+fn carry(
+    ui: &Ui,
+    response: &Response,
+    painting: &Painting<'_>,
+    place: Rect,
+    bar: &Bar,
+    commands: &mut CommandSender,
+) {
+    let occurrence = bar.occurrence.and_then(|id| painting.network.occurrences.get(id.index()));
+    let Some(span) = occurrence.and_then(|it| it.span).filter(|_| bar.label.is_none()) else { return };
+    if response.drag_started_by(PointerButton::Primary)
+        && painting.context.state.drawn_statement() == Some(span)
+    {
+        carry::take(ui.ctx(), Carried::Activity(span));
+    }
+    let pointer = ui.input(|input| input.pointer.interact_pos());
+    if let Some(at) = pointer.filter(|_| response.contains_pointer()) {
+        carry::over_activity(ui, painting.context, span, at.x < place.center().x, commands);
+    }
 }
 
 /// What pointing at a bar and clicking it does. Returns whether it is pointed at, here or in another panel.
 fn respond(
+    ui: &Ui,
     response: &Response,
     painting: &Painting<'_>,
     plan: &Plan,
-    bar: &Bar,
+    (row, bar): (usize, &Bar),
     is_selected: bool,
     commands: &mut CommandSender,
 ) -> bool {
     let context = painting.context;
+    carry(ui, response, painting, painting.bar_rect(bar, row), bar, commands);
     let selection = bar::selection(bar, painting.network);
     response.widget_info(|| {
         let owner = bar.occurrence.and_then(|it| painting.network.occurrences.get(it.index()));
@@ -637,9 +688,10 @@ fn respond(
     }
     if response.double_clicked() {
         commands.send(Command::SelectAndReveal(selection.clone()));
-    } else if response.clicked() {
+    } else if response.clicked() || response.secondary_clicked() {
         commands.send(Command::Select(selection.clone()));
     }
+    draw_menu::activities(response, context, commands);
     let is_hovered = response.hovered() || is_chosen(bar, &context.state.hovered, painting.network);
     response.clone().on_hover_ui_at_pointer(|ui| {
         if bar.label.is_none() {

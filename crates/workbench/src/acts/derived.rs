@@ -148,8 +148,11 @@ impl AppState {
             self.reason = 0;
         }
         if let Some(before) = before {
-            *self.selection = self.selection.carried(&before, &after);
+            self.carry_selection(&before, &after);
             self.hovered = Selection::None;
+        }
+        if let Some((_, at)) = self.derived.made.take_if(|(revision, _)| *revision <= after.revision) {
+            *self.selection = Selection::at_offset(&after, at, &self.selection);
         }
         let input = self.maps.growth_input(&self.snapshots, &self.selection);
         self.terrain.growth.follow(input);
@@ -158,6 +161,24 @@ impl AppState {
         {
             self.library.take_picture(picture);
         }
+    }
+
+    /// Selects in a newer snapshot what is selected in the one before. What an edit takes away is selected again once it is
+    /// there again, as after an undo, unless something else has been selected meanwhile.
+    fn carry_selection(&mut self, before: &Snapshot, after: &Snapshot) {
+        if self.selection.is_none() {
+            let lost = self.derived.lost_selection.as_deref();
+            let again = lost.and_then(|name| Selection::by_name(after, name));
+            if let Some(again) = again {
+                self.derived.lost_selection = None;
+                *self.selection = again;
+            }
+            return;
+        }
+        let carried = self.selection.carried(before, after);
+        let name = self.selection.name(before.network.as_deref());
+        self.derived.lost_selection = (carried.is_none() && !name.is_empty()).then_some(name);
+        *self.selection = carried;
     }
 
     /// Lets time end where the run does, or where the plan does when none is watched.

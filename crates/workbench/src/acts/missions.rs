@@ -5,13 +5,16 @@ use link::Request;
 use smol_str::SmolStr;
 use terrain::format::{FileFormat, refusal};
 
+use crate::command::Command;
 use crate::dialog::Dialog;
 use crate::effect::{Aside, Effect};
 use crate::host::{FileKind, Save};
 use crate::library::{LibraryCommand, MapFile, Mission, MissionError, MissionId, MissionKind, Open, joined};
 use crate::limits::{MAX_TEXT_BYTES, too_large};
 use crate::mission_file;
+use crate::panel_effect::PanelEffect;
 use crate::state::AppState;
+use crate::workspace::Workspace;
 
 /// What the whole of a mission is called as a file.
 const WHOLE_EXTENSION: &str = "enroute";
@@ -59,6 +62,24 @@ impl AppState {
                 self.window.done(format!("Saved version “{name}”"));
             }
             LibraryCommand::RestoreVersion(index) => self.restore_version(index),
+            LibraryCommand::SaveLayout(name) => {
+                self.mission_of_its_own();
+                let workspace = self.window.workspace.name();
+                if let Some(number) = self.library.add_layout(name.trim(), workspace, now_millis) {
+                    self.window.panel_effects.push(PanelEffect::SaveLayout(number));
+                    self.window.done(format!("Saved layout “{}” with the mission", name.trim()));
+                }
+            }
+            LibraryCommand::ShowLayout(number) => {
+                let layout = self.library.open_mission().and_then(|it| it.layouts.get(number));
+                let workspace = layout.and_then(|layout| Workspace::by_name(&layout.workspace));
+                if let Some(workspace) = workspace {
+                    self.window.dialog = None;
+                    self.apply(Command::ShowWorkspace(workspace));
+                    self.window.panel_effects.push(PanelEffect::ShowLayout(number));
+                }
+            }
+            LibraryCommand::DeleteLayout(number) => self.library.remove_layout(number, now_millis),
             LibraryCommand::TurnIntoRmpl => self.turn_into_rmpl(),
             LibraryCommand::SaveWhole => self.save(true),
             LibraryCommand::SaveUnreadable(index) => {

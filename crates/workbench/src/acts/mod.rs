@@ -6,6 +6,7 @@
 mod answers;
 mod derived;
 mod documents;
+mod drawing;
 mod lesson;
 mod missions;
 mod opening;
@@ -68,6 +69,7 @@ impl AppState {
                 }
             }
             Command::Edit { edits, kind } => self.document.edit(&edits, kind, None),
+            Command::Draw(command) => self.apply_to_drawing(command),
             Command::Reveal(span) => {
                 let mut text = self.writing();
                 text.reveal(span);

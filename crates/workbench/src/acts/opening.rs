@@ -25,6 +25,7 @@ impl AppState {
     /// Opens a text under a name: what belongs to the one before goes.
     pub(super) fn open(&mut self, name: SmolStr, source: &str) {
         self.document.open(source);
+        self.missions_opened += 1;
         self.editor.popup = None;
         self.editor.folding.unfold_all();
         self.mission = name;
@@ -37,6 +38,7 @@ impl AppState {
         self.turn_to_notation(source);
         self.language.follow(&self.document);
         *self.selection = Selection::None;
+        self.derived.lost_selection = None;
         self.hovered = Selection::None;
         *self.terrain = TerrainState::default();
         *self.pins = Pins::default();

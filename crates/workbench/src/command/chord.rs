@@ -30,6 +30,7 @@ impl Modifiers {
 /// The keys that commands have, by what they mean on the user's keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Key {
+    A,
     ArrowDown,
     ArrowLeft,
     ArrowRight,
@@ -39,6 +40,7 @@ pub enum Key {
     CloseBracket,
     Comma,
     D,
+    Delete,
     End,
     Enter,
     Equals,

@@ -12,6 +12,7 @@ use crate::state::chance::ChanceCommand;
 use crate::state::compare::CompareCommand;
 use crate::state::contradict::ContradictCommand;
 use crate::state::documents::ScheduleForm;
+use crate::state::drawing::DrawCommand;
 use crate::state::editor::EditorCommand;
 use crate::state::execution::ExecutionCommand;
 use crate::state::files::FileCommand;
@@ -59,6 +60,8 @@ pub enum Command {
         /// How they join the history.
         kind: EditKind,
     },
+    /// Something that is drawn of the mission's activities.
+    Draw(DrawCommand),
     /// Puts the caret at a place of the text and shows the editor there.
     Reveal(Span),
     /// Something that concerns only the editor.

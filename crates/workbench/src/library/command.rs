@@ -27,6 +27,12 @@ pub enum LibraryCommand {
     KeepVersion(String),
     /// Makes the text what it was in a version, as an edit that can be undone.
     RestoreVersion(usize),
+    /// Saves the layout of the present workspace with the open mission, under this name.
+    SaveLayout(String),
+    /// Shows a saved layout of the open mission, by its number.
+    ShowLayout(usize),
+    /// Deletes a saved layout of the open mission.
+    DeleteLayout(usize),
     /// Writes the open network of another tool in RMPL.
     TurnIntoRmpl,
     /// Lets the user save the whole open mission as one file.

@@ -89,6 +89,17 @@ pub struct Version {
     pub texts: Vec<TextFile>,
 }
 
+/// A layout of panels that was saved with a mission.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SavedLayout {
+    /// What its author called it.
+    pub name: String,
+    /// The workspace that it is a layout of.
+    pub workspace: String,
+    /// The panels with their places, as the front end writes them; empty until it has.
+    pub tiles: String,
+}
+
 /// A mission that the library keeps: texts, maps and versions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mission {
@@ -119,6 +130,9 @@ pub struct Mission {
     /// A small picture of its plan: bars by start, end and row, in thousandths of the picture.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub picture: Vec<[u16; 3]>,
+    /// Layouts that were saved with it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layouts: Vec<SavedLayout>,
 }
 
 /// The name of the main text of a mission that has no other.

@@ -18,10 +18,10 @@ use text_editing::Document;
 
 pub use command::LibraryCommand;
 pub use mission::{
-    FORMAT, MAIN_TEXT, MapFile, Mission, MissionError, MissionId, MissionKind, TextFile, Version,
+    FORMAT, MAIN_TEXT, MapFile, Mission, MissionError, MissionId, MissionKind, SavedLayout, TextFile, Version,
 };
 pub(crate) use mission::{joined, print};
-pub(crate) use picture::picture;
+pub use picture::picture;
 pub use template::{TEMPLATES, Template, template};
 
 use mission::split;
@@ -195,6 +195,7 @@ impl Library {
             versions: Vec::new(),
             review: None,
             picture: Vec::new(),
+            layouts: Vec::new(),
         };
         self.missions.push(mission);
         self.changes.insert(Change::Kept(id.clone()));
@@ -351,6 +352,36 @@ impl Library {
             && let Some(map) = mission.maps.iter_mut().find(|map| map.name == name)
         {
             map.bytes = Some(bytes.into());
+        }
+    }
+
+    /// The open mission has a layout of this name, in place of one that it has. Returns its number.
+    pub fn add_layout(&mut self, name: &str, workspace: &str, now_millis: i64) -> Option<usize> {
+        let id = self.open_id().cloned()?;
+        let mission = self.mission_mut(&id)?;
+        mission.layouts.retain(|layout| layout.name != name);
+        let (name, workspace) = (name.to_owned(), workspace.to_owned());
+        mission.layouts.push(SavedLayout { name, workspace, tiles: String::new() });
+        let number = mission.layouts.len() - 1;
+        self.touch(&id, now_millis);
+        Some(number)
+    }
+
+    /// The front end has written where the panels of a layout are.
+    pub fn set_layout(&mut self, number: usize, tiles: String) {
+        let Some(id) = self.open_id().cloned() else { return };
+        if let Some(layout) = self.mission_mut(&id).and_then(|it| it.layouts.get_mut(number)) {
+            layout.tiles = tiles;
+            self.changes.insert(Change::Kept(id));
+        }
+    }
+
+    /// The open mission has a layout no longer.
+    pub fn remove_layout(&mut self, number: usize, now_millis: i64) {
+        let Some(id) = self.open_id().cloned() else { return };
+        if let Some(mission) = self.mission_mut(&id).filter(|mission| number < mission.layouts.len()) {
+            mission.layouts.remove(number);
+            self.touch(&id, now_millis);
         }
     }
 

@@ -6,7 +6,7 @@ use snapshot::Snapshot;
 const MAX_BARS: usize = 40;
 
 /// The activities of a plan in its earliest schedule, each as start, end and row; no two in a row overlap.
-pub(crate) fn picture(shown: &Snapshot) -> Option<Vec<[u16; 3]>> {
+pub fn picture(shown: &Snapshot) -> Option<Vec<[u16; 3]>> {
     let (network, plan) = (shown.network.as_deref()?, shown.plan()?);
     let earliest = |node: tpn::NodeId| Some(plan.windows.get(node.index())?.as_ref()?.earliest.to_f64());
     let whole = earliest(network.end).filter(|&whole| whole > 0.0)?;

@@ -1,5 +1,6 @@
 //! When commands can be used, and what they wait for otherwise.
 
+use crate::panel_kind::PanelKind;
 use crate::registry::spec::Availability;
 use crate::state::AppState;
 use crate::state::automaton::Program;
@@ -21,6 +22,22 @@ pub(super) fn while_working(state: &AppState) -> Availability {
 /// Whether the caret is in a file beside the main text.
 pub(super) fn with_file_at_caret(state: &AppState) -> Availability {
     if state.file_at_caret() > 0 { Ok(()) } else { Err("the cursor is in the main file") }
+}
+
+/// Whether activities can be drawn: in a mission, in a panel that draws them.
+pub(super) fn with_activities(state: &AppState) -> Availability {
+    let is_drawing = matches!(state.window.active_panel, PanelKind::Network | PanelKind::Timeline);
+    match state.language.parse() {
+        None => Err("control programs cannot be drawn"),
+        Some(_) if !is_drawing => Err("click the network or the timeline first"),
+        Some(_) => Ok(()),
+    }
+}
+
+/// Whether an activity is selected that can be changed in a drawing.
+pub(super) fn with_statement(state: &AppState) -> Availability {
+    with_activities(state)?;
+    if state.drawn_statement().is_some() { Ok(()) } else { Err("select an activity first") }
 }
 
 pub(super) fn with_network(state: &AppState) -> Availability {

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod available;
+mod draw;
 mod edit;
 mod file;
 mod go;
@@ -34,6 +35,7 @@ pub fn all_commands() -> impl Iterator<Item = &'static CommandSpec> {
     let areas = [
         file::COMMANDS,
         edit::COMMANDS,
+        draw::COMMANDS,
         go::COMMANDS,
         view::COMMANDS,
         terrain::COMMANDS,

@@ -31,6 +31,8 @@ pub enum Group {
     /// Missions and files.
     File,
     Edit,
+    /// The mission's activities.
+    Draw,
     /// Going to places.
     Go,
     /// Panels, zoom, appearance.
@@ -46,9 +48,10 @@ pub enum Group {
 
 impl Group {
     /// All of them, as the menu bar lists them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::File,
         Self::Edit,
+        Self::Draw,
         Self::Go,
         Self::View,
         Self::Terrain,
@@ -63,6 +66,7 @@ impl Group {
         match self {
             Self::File => "File",
             Self::Edit => "Edit",
+            Self::Draw => "Draw",
             Self::Go => "Go",
             Self::View => "View",
             Self::Terrain => "Terrain",

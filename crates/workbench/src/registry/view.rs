@@ -8,6 +8,8 @@ use super::available::with_selection;
 use super::spec::{ALT, CTRL, PLAIN, SHIFT, called, keys, plain, when};
 use crate::command::Command;
 use crate::command::chord::Key;
+use crate::dialog::Dialog;
+use crate::library::LibraryCommand;
 use crate::panel_effect::ViewAction;
 use crate::registry::spec::{CommandSpec, Group, Scope};
 use crate::state::settings::SettingsCommand;
@@ -48,6 +50,14 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         &[keys(CTRL, Key::Num4)],
         Scope::Everywhere,
         |_| Command::ShowWorkspace(Workspace::Execute),
+    ),
+    plain(
+        "view.settings",
+        "Show settings…",
+        Group::View,
+        &[keys(CTRL, Key::Comma)],
+        Scope::Everywhere,
+        |_| Command::Window(WindowCommand::ShowDialog(Dialog::Settings)),
     ),
     plain("view.resetWorkspace", "Reset layout", Group::View, &[], Scope::Everywhere, |_| {
         Command::Window(WindowCommand::ResetWorkspace)
@@ -145,6 +155,17 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Scope::Everywhere,
         |_| Command::Window(WindowCommand::Maximize(None)),
     ),
+    called("view.saveLayout", "Save layout with mission", Group::View, |_, arguments| {
+        let name = text_argument(arguments, "name")?.to_owned();
+        Ok(Command::Library(LibraryCommand::SaveLayout(name)))
+    }),
+    called("view.showLayout", "Show saved layout", Group::View, |state, arguments| {
+        let name = text_argument(arguments, "name")?;
+        let saved = state.library.open_mission().map_or(&[][..], |mission| &mission.layouts);
+        let number = saved.iter().position(|layout| layout.name == name);
+        let number = number.ok_or_else(|| format!("the mission has no layout \"{name}\""))?;
+        Ok(Command::Library(LibraryCommand::ShowLayout(number)))
+    }),
     called("view.panel", "Show panel", Group::View, |_, arguments| {
         panel_argument(arguments).map(|panel| Command::Window(WindowCommand::ShowPanel(panel)))
     }),

@@ -37,6 +37,10 @@ pub struct Derived {
     pub(crate) latest: Vec<Derivation>,
     /// The snapshot that selection, pins, search and trees belong to.
     pub(crate) shown: Option<Arc<Snapshot>>,
+    /// The name of what was selected until an edit took it away.
+    pub(crate) lost_selection: Option<String>,
+    /// Where something was drawn into the text of a revision: it is selected once that is planned.
+    pub(crate) made: Option<(u64, u32)>,
 }
 
 impl Derived {

@@ -62,6 +62,7 @@ impl Writing<'_> {
         self.document.replace_all(&files::joined(known));
         let start = self.document.text().len() - text.len();
         self.document.set_caret(Caret::at(start));
+        self.window.scroll_to(Span::new(start as u32, start as u32), true);
         self.window.done(format!("Added {name} to this mission"));
         Ok(())
     }

@@ -10,6 +10,7 @@ pub mod contradict;
 pub mod derived;
 pub mod diagnosing;
 pub mod documents;
+pub mod drawing;
 pub(crate) mod editing;
 pub mod editor;
 pub mod execution;
@@ -73,6 +74,8 @@ pub struct AppState {
     pub editor: EditorState,
     /// The name of the open mission, without extension.
     pub mission: SmolStr,
+    /// How many missions were opened so far: tells the views of one from those of the next.
+    pub missions_opened: u64,
     /// The missions that the user has.
     pub library: Library,
     /// The ground of the missions opened so far.
@@ -182,6 +185,7 @@ impl AppState {
             document: Part::new(document),
             editor: EditorState::default(),
             mission: example.name.into(),
+            missions_opened: 0,
             library: Library::new(MissionKind::Example, example.source),
             maps: maps::Maps::default(),
             snapshots: Part::default(),

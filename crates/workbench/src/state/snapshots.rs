@@ -62,6 +62,11 @@ impl Snapshots {
             self.latest_secs = now_secs;
         }
         self.problems = snapshot.problems.iter().cloned().chain(no_plan::problems(&snapshot)).collect();
+        if lacks_a_scenario(&snapshot) {
+            // A mission that is being written has nothing wrong with it.
+            let missing = self.problems.iter_mut().filter(|problem| problem.code == NO_SCENARIO);
+            missing.for_each(|problem| problem.severity = Severity::Note);
+        }
         offer_files(&mut self.problems, &snapshot.source, &snapshot.program.imports);
         self.problems.sort_by_key(|problem| problem.span.start);
         self.latest = Some(snapshot);

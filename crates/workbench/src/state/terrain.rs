@@ -143,6 +143,10 @@ impl TerrainState {
     fn place(&mut self, thing: &NewThing, again: bool, text: &mut Writing<'_>) {
         if text.place(thing) && !again {
             self.tool = Tool::Look;
+            // What is typed next is its name.
+            if text.window.panels_on_screen.contains(&PanelKind::Editor) {
+                text.window.focus_panel(PanelKind::Editor);
+            }
         }
     }
 

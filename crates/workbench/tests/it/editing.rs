@@ -181,3 +181,49 @@ fn the_manual_is_asked_about_the_word_at_the_caret_and_about_the_place_under_the
     app.run(Command::Manual(ManualCommand::About(PanelKind::Timeline)));
     assert_eq!(place(&app), "timeline#");
 }
+
+#[test]
+fn what_an_edit_takes_away_is_selected_again_when_it_is_back() {
+    let mut app = showing("primitive Dig()[1,2];\nprimitive Rest()[1,2];\nscenario S = { Dig(); Rest() }\n");
+    app.dispatch("go.select", &serde_json::json!("Rest#1"));
+    let name = |app: &App| app.json()["selection"]["name"].clone();
+    app.run(Command::SetSource("primitive Dig()[1,2];\nscenario S = { Dig() }\n".to_owned()));
+    assert_eq!(name(&app), serde_json::Value::Null);
+    app.run(Command::Text(TextCommand::Undo));
+    assert_eq!(name(&app), "Rest#1");
+}
+
+#[test]
+fn saving_without_a_file_of_its_own_says_what_was_saved() {
+    let mut app = test_support::start();
+    app.run(Command::SaveMission);
+    assert!(app.json()["toasts"].to_string().contains("Saved enroute.rmpl"), "{}", app.json()["toasts"]);
+}
+
+#[test]
+fn a_file_that_is_added_is_shown_and_typed_into() {
+    let mut app = showing("scenario S = { delay[1,2] }\n");
+    app.dispatch("file.addFileNamed", &serde_json::json!({ "name": "world" }));
+    assert_eq!(app.session.state().file_at_caret(), 1);
+    let reveals = app.session.state().window.panel_effects.waiting().iter();
+    let end = app.session.state().document.text().len() as u32;
+    let shows_it = |effect: &&workbench::PanelEffect| matches!(effect, workbench::PanelEffect::Reveal(reveal) if reveal.span.start == end && reveal.center);
+    assert_eq!(reveals.filter(shows_it).count(), 1);
+    type_text(&mut app, "// places");
+    assert!(app.session.source().ends_with("world.rmpl\n// places"), "{}", app.session.source());
+}
+
+#[test]
+fn the_name_of_a_placed_location_is_typed_over_it() {
+    let mut app = showing("location BASE (0, 0);\n");
+    app.session.state_mut().window.panels_on_screen = vec![PanelKind::Editor, PanelKind::Terrain];
+    app.session.state_mut().window.active_panel = PanelKind::Terrain;
+    let thing = workbench::state::placing::NewThing::Location(nalgebra::Point2::new(3.0, 4.0));
+    let place = workbench::state::terrain::TerrainCommand::Place { thing, again: false };
+    app.run(Command::Terrain(place));
+    assert_eq!(app.session.state().window.active_panel, PanelKind::Editor);
+    let focus = workbench::PanelEffect::FocusEditor;
+    assert!(app.session.state().window.panel_effects.waiting().contains(&focus));
+    type_text(&mut app, "CRATER");
+    assert!(app.session.source().contains("location CRATER (3, 4);"), "{}", app.session.source());
+}

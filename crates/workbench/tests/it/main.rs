@@ -11,6 +11,7 @@ mod edits;
 mod effects;
 mod esterel;
 mod files;
+mod gallery;
 mod key_sentences;
 mod key_steps;
 mod library;

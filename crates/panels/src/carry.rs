@@ -1,0 +1,132 @@
+//! What is carried from one place of the drawings to another: an activity to another one, or a site to a vehicle.
+//!
+//! What a drop would do to the text is shown beside the pointer before it is done.
+
+use egui::{
+    Align2, Context as Egui, DragAndDrop, FontId, Id, LayerId, Order, Rect, Role, Sense, Stroke, StrokeKind,
+    Ui, WidgetInfo, pos2, vec2,
+};
+use rmpl::Span;
+use smol_str::SmolStr;
+use theme::size;
+use workbench::command::{Command, CommandSender};
+use workbench::state::drawing::{Change, DrawCommand, Place};
+
+use crate::Context;
+
+/// Something that is carried.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Carried {
+    /// The activity that is written here.
+    Activity(Span),
+    /// The location of this name.
+    Site(SmolStr),
+}
+
+/// How high the box of a vehicle is that has no lane.
+const BOX_HEIGHT: f32 = 26.0;
+
+/// Takes something along with the pointer, until its button is let go.
+pub(crate) fn take(egui: &Egui, carried: Carried) {
+    DragAndDrop::set_payload(egui, carried);
+}
+
+/// Carries no site any more: it is over its own ground again.
+pub(crate) fn put_site_back(egui: &Egui) {
+    if matches!(carried(egui), Some(Carried::Site(_))) {
+        DragAndDrop::clear_payload(egui);
+    }
+}
+
+/// What is carried.
+pub(crate) fn carried(egui: &Egui) -> Option<Carried> {
+    DragAndDrop::payload::<Carried>(egui).map(|carried| (*carried).clone())
+}
+
+/// Carries an activity over another one: before it in its left half, after it in its right half, and at the same time with
+/// Alt.
+pub(crate) fn over_activity(
+    ui: &Ui,
+    context: &Context<'_>,
+    other: Span,
+    is_left: bool,
+    commands: &mut CommandSender,
+) {
+    let Some(Carried::Activity(what)) = carried(ui.ctx()).filter(|_| !context.is_stale) else { return };
+    if what == other {
+        return;
+    }
+    let at = match (ui.input(|input| input.modifiers.alt), is_left) {
+        (true, _) => Place::Beside(other),
+        (false, true) => Place::Before(other),
+        (false, false) => Place::After(other),
+    };
+    offer(ui, context, Change::Move { what, at }, commands);
+}
+
+/// Carries a site over the timeline: each vehicle has its lane, or a box at the bottom where it has none.
+pub(crate) fn over_timeline(
+    ui: &Ui,
+    context: &Context<'_>,
+    area: Rect,
+    lanes: &[(SmolStr, Rect)],
+    commands: &mut CommandSender,
+) {
+    let Some(Carried::Site(location)) = carried(ui.ctx()).filter(|_| !context.is_stale) else { return };
+    let Some(snapshot) = context.snapshot else { return };
+    let pointer = ui.input(|input| input.pointer.interact_pos());
+    let painter = ui.ctx().layer_painter(layer("sites")).with_clip_rect(area);
+    let mut bottom = area.bottom();
+    for vehicle in &snapshot.program.world.vehicles {
+        let name = &vehicle.name.text;
+        let own = lanes.iter().filter(|(of, _)| of == name).map(|(_, rect)| *rect).reduce(Rect::union);
+        let place = own.map(|rect| rect.intersect(area)).filter(Rect::is_positive).unwrap_or_else(|| {
+            bottom -= BOX_HEIGHT;
+            Rect::from_min_max(pos2(area.left(), bottom), pos2(area.right(), bottom + BOX_HEIGHT))
+        });
+        let is_over = pointer.is_some_and(|at| place.contains(at));
+        let tokens = context.tokens;
+        if own.is_none() || is_over {
+            painter.rect_filled(place, 2.0, if is_over { tokens.accent_soft } else { tokens.raised });
+        }
+        painter.rect_stroke(place.shrink(1.0), 2.0, Stroke::new(1.0, tokens.accent), StrokeKind::Inside);
+        let font = FontId::proportional(size::SMALL);
+        let text = format!("Send {name} to {location}");
+        let node = ui.interact(place, Id::unique(("send", name)), Sense::hover());
+        node.widget_info(|| WidgetInfo::labeled(Role::Label, true, &text));
+        painter.text(place.left_top() + vec2(8.0, 6.0), Align2::LEFT_TOP, text, font, tokens.text);
+        if is_over {
+            let change = Change::Visit { vehicle: name.to_string(), location: location.to_string() };
+            offer(ui, context, change, commands);
+        }
+    }
+}
+
+/// Shows what a drop here would do to the text, and does it when the button is let go.
+fn offer(ui: &Ui, context: &Context<'_>, change: Change, commands: &mut CommandSender) {
+    let (pointer, is_dropped) =
+        ui.input(|input| (input.pointer.interact_pos(), input.pointer.any_released()));
+    let preview = context.state.drawing_preview(&change);
+    if let Some(at) = pointer {
+        let text = preview.as_ref().unwrap_or_else(|reason| reason);
+        let color = if preview.is_ok() { context.tokens.accent } else { context.tokens.warning };
+        let painter = ui.ctx().layer_painter(layer("preview"));
+        let font = FontId::monospace(size::SMALL);
+        let galley = painter.layout_no_wrap(text.clone(), font, context.tokens.text);
+        let screen = ui.ctx().content_rect();
+        let wanted = galley.size() + vec2(12.0, 8.0);
+        let left = (at.x + 14.0).min(screen.right() - wanted.x).max(screen.left());
+        let top = (at.y + 18.0).min(screen.bottom() - wanted.y).max(screen.top());
+        let rect = Rect::from_min_size(pos2(left, top), wanted);
+        painter.rect(rect, 4.0, context.tokens.raised, Stroke::new(1.0, color), StrokeKind::Inside);
+        painter.galley(rect.min + vec2(6.0, 4.0), galley, context.tokens.text);
+    }
+    if is_dropped && preview.is_ok() {
+        DragAndDrop::clear_payload(ui.ctx());
+        commands.send(Command::Draw(DrawCommand::Make(change)));
+    }
+}
+
+fn layer(name: &'static str) -> LayerId {
+    LayerId::new(Order::Tooltip, Id::unique(("carried", name)))
+}
