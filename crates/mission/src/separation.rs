@@ -90,12 +90,17 @@ pub(crate) fn meetings(
         return Vec::new();
     };
     let mut found = Vec::new();
+    // Once for each vehicle, and not for each pair.
+    let bodies: BTreeMap<u32, (bool, f64)> =
+        parts.keys().map(|&vehicle| (vehicle, (flies(world, vehicle), radius_m(world, vehicle)))).collect();
     for (&one, own) in &parts {
+        let (one_flies, one_radius_m) = bodies[&one];
         for (&other, others) in parts.range(one + 1..) {
-            if flies(world, one) != flies(world, other) {
+            let (other_flies, other_radius_m) = bodies[&other];
+            if one_flies != other_flies {
                 continue;
             }
-            let safety_m = radius_m(world, one) + radius_m(world, other) + GAP_M;
+            let safety_m = one_radius_m + other_radius_m + GAP_M;
             for (index, part) in own.iter().enumerate() {
                 for (other_index, other_part) in others.iter().enumerate() {
                     let is_together = part.movement.is_some() && part.movement == other_part.movement;

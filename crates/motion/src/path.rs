@@ -60,7 +60,8 @@ impl Path {
 
 /// The length of a polyline in meters.
 pub fn length_m(points_m: &[Point2<f64>]) -> f64 {
-    points_m.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
+    // The sum of no numbers is -0.
+    points_m.windows(2).map(|pair| distance(&pair[0], &pair[1])).fold(0.0, |sum, length| sum + length)
 }
 
 /// The point at a share of the way from one point to another; exactly the ends at 0 and 1.

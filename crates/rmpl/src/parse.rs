@@ -93,7 +93,7 @@ impl Parse {
         let place = |(start, declaration)| Place {
             start,
             key: parse.index.new_key(),
-            declaration: Arc::new(declaration),
+            declaration,
             checked: Arc::clone(&checked),
         };
         parse.places = fresh.into_iter().map(place).collect();
@@ -157,7 +157,7 @@ impl Parse {
         &mut self,
         start: u32,
         mut meets: impl FnMut(&[Place], u32) -> bool,
-    ) -> Vec<(u32, Declaration)> {
+    ) -> Vec<(u32, Arc<Declaration>)> {
         let mut found = Vec::new();
         let mut scratch = Scratch::default();
         let (mut at, mut file_end) = (start, 0);
@@ -168,7 +168,7 @@ impl Parse {
             let rest = self.text.get(at as usize..file_end).unwrap_or("");
             let declaration = Declaration::read(rest, &mut scratch, &mut self.names);
             let length = declaration.tree.len().max(1);
-            found.push((at, declaration));
+            found.push((at, Arc::new(declaration)));
             self.declarations_read += 1;
             at += length;
         }
@@ -183,7 +183,7 @@ impl Parse {
     }
 
     /// Puts fresh declarations in place of old ones and brings the diagnostics of the whole file up to date.
-    fn exchange(&mut self, old: Range<usize>, fresh: Vec<(u32, Declaration)>) {
+    fn exchange(&mut self, old: Range<usize>, fresh: Vec<(u32, Arc<Declaration>)>) {
         let removed: Vec<Place> = self.places.get(old.clone()).unwrap_or_default().to_vec();
         let mut keys: Vec<DeclarationKey> = removed.iter().rev().map(|place| place.key).collect();
         let unchecked = Arc::new(Checked::default());
@@ -192,7 +192,7 @@ impl Parse {
             .map(|(start, declaration)| Place {
                 start,
                 key: keys.pop().unwrap_or_else(|| self.index.new_key()),
-                declaration: Arc::new(declaration),
+                declaration,
                 checked: Arc::clone(&unchecked),
             })
             .collect();
@@ -393,11 +393,11 @@ fn add(program: &mut Program, item: Item) {
     match item {
         Item::Constant(decl) => program.constants.push(decl),
         Item::Variable(decl) => program.variables.push(decl),
-        Item::Resource(decl) => program.resources.push(decl),
+        Item::Resource(decl) => program.resources.push(*decl),
         Item::Objective(decl) => program.objectives.push(decl),
-        Item::Primitive(decl) => program.primitives.push(decl),
-        Item::Activity(decl) => program.activities.push(decl),
-        Item::Scenario(decl) => program.scenarios.push(decl),
+        Item::Primitive(decl) => program.primitives.push(*decl),
+        Item::Activity(decl) => program.activities.push(*decl),
+        Item::Scenario(decl) => program.scenarios.push(*decl),
         Item::Option(decl) => match (decl.name.text.as_str(), decl.value) {
             ("threat_gap", OptionValue::Number(gap)) => program.options.threat_gap = Time::from_units(gap),
             ("control_step", OptionValue::Number(step)) if step.is_positive() => {
@@ -416,17 +416,17 @@ fn add(program: &mut Program, item: Item) {
             }
             _ => {}
         },
-        Item::Constrain(decl) => program.constraints.push(decl),
+        Item::Constrain(decl) => program.constraints.push(*decl),
         Item::Import(decl) => program.imports.push(decl),
         Item::Control(decl) => program.control.push(decl),
-        Item::Terrain(decl) => program.world.terrain = program.world.terrain.take().or(Some(decl)),
+        Item::Terrain(decl) => program.world.terrain = program.world.terrain.take().or(Some(*decl)),
         Item::Location(decl) => program.world.locations.push(decl),
         Item::Obstacle(decl) => program.world.obstacles.push(decl),
         Item::Vehicles(decl) => {
             program.world.vehicles.extend(decl.vehicles);
             program.fleets.extend(decl.fleets);
         }
-        Item::Model(decl) => program.world.models.push(decl),
+        Item::Model(decl) => program.world.models.push(*decl),
         Item::Group(decl) => program.groups.push(decl),
     }
 }
@@ -471,5 +471,17 @@ impl Diagnostic {
             edit.span = shift(edit.span);
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_declaration_takes_little_room_of_its_own() {
+        // A mission may have a million of them.
+        let sizes = [size_of::<Item>(), size_of::<Summary>(), size_of::<Declaration>()];
+        assert!(sizes[0] <= 128 && sizes[2] <= 512, "{sizes:?}");
     }
 }

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use rmpl::diagnostics::fleet;
 use rmpl::program::{ArgumentValue, Condition, Program, Statement, StatementKind};
@@ -94,7 +95,7 @@ pub(super) struct Vocabulary<'program> {
     /// stand (SPEC 10.3).
     initial: Vec<(SmolStr, SmolStr, Span)>,
     /// The places that vehicles can be at, by `V.at`.
-    places: BTreeMap<SmolStr, Vec<&'program str>>,
+    places: BTreeMap<SmolStr, Rc<[&'program str]>>,
     /// The models of vehicles.
     models: BTreeMap<&'program str, &'program str>,
     ground: &'program dyn Ground,
@@ -121,15 +122,19 @@ impl<'program> Vocabulary<'program> {
                 initial.push((declared.name.text.clone(), value.text.clone(), declared.name.span));
             }
         }
-        let locations: Vec<&str> =
+        // One list for all vehicles: each may have as many places as there are.
+        let locations: Rc<[&str]> =
             program.world.locations.iter().map(|location| location.name.text.as_str()).collect();
+        let known: BTreeSet<&str> = locations.iter().copied().collect();
         let mut places = BTreeMap::new();
         for vehicle in &program.world.vehicles {
             let variable = format_smolstr!("{}.at", vehicle.name.text);
-            let mut domain = locations.clone();
-            if !domain.contains(&vehicle.start.text.as_str()) {
-                domain.push(vehicle.start.text.as_str());
-            }
+            let start = vehicle.start.text.as_str();
+            let domain = if known.contains(start) {
+                Rc::clone(&locations)
+            } else {
+                locations.iter().copied().chain([start]).collect()
+            };
             initial.push((variable.clone(), vehicle.start.text.clone(), vehicle.name.span));
             places.entry(variable).or_insert(domain);
         }
@@ -162,8 +167,9 @@ impl<'program> Vocabulary<'program> {
         self.initial.iter().map(|(variable, value, span)| (Fact::is(variable.clone(), value.clone()), *span))
     }
 
-    fn domain(&self, variable: &str) -> Option<&Vec<&'program str>> {
-        self.domains.get(variable).or_else(|| self.places.get(variable))
+    fn domain(&self, variable: &str) -> Option<&[&'program str]> {
+        let declared = self.domains.get(variable).map(Vec::as_slice);
+        declared.or_else(|| self.places.get(variable).map(|places| &**places))
     }
 
     /// What `condition` says where `substitute` gives the arguments of formals.
@@ -323,7 +329,7 @@ struct Table {
 }
 
 impl Table {
-    fn new(name: &SmolStr, domain: Option<&Vec<&str>>, is_lasting: bool) -> Self {
+    fn new(name: &SmolStr, domain: Option<&[&str]>, is_lasting: bool) -> Self {
         let variable =
             Variable { name: name.clone(), values: Vec::new(), closed: domain.is_some(), is_lasting };
         let mut table = Self { variable, values: BTreeMap::new(), has_atom: false };
