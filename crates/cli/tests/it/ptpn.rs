@@ -70,7 +70,8 @@ fn what_nature_decides_is_said_at_the_verdict() {
     for what in [
         "a choice that is not controllable",
         "a duration that is not controllable (2 times)",
-        "a probability (2 times)",
+        "the probability `foundC: yes 0.3, no 0.7`",
+        "the probability `NORMAL(5.0, 2.0) of (scan)`",
         "a state constraint",
     ] {
         assert!(said.contains(what), "{what}: {said}");

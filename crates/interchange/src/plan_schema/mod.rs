@@ -150,7 +150,9 @@ fn said_in_vain(object: &Value) -> Vec<String> {
     if holds("guard") || holds("guards") {
         said.push("a guard".to_owned());
     }
-    if holds("probability") || holds("probabilities") {
+    if let Some(named) = object.get("probability").and_then(Value::as_str) {
+        said.push(format!("the probability `{named}`"));
+    } else if holds("probability") || holds("probabilities") {
         said.push("a probability".to_owned());
     }
     said

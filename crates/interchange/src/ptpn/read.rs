@@ -43,7 +43,8 @@ struct Decision {
     event: String,
     values: Vec<String>,
     utilities: Vec<Option<f64>>,
-    is_chance: bool,
+    /// How likely each value is, where the file says it: `foundC: yes 0.3, no 0.7`.
+    probability: Option<String>,
     is_controllable: bool,
 }
 
@@ -108,7 +109,7 @@ impl Reader {
             reader.decisions.push(Decision {
                 event: text_of(decision, "at-event")?,
                 utilities: domain.iter().map(|value| number(value, "utility")).collect(),
-                is_chance: domain.iter().any(|value| number(value, "probability").is_some()),
+                probability: probability(decision, &id, &domain),
                 is_controllable: kind.is_empty() || kind == "controllable",
                 id,
                 values,
@@ -139,8 +140,8 @@ impl Reader {
             if !decision.is_controllable {
                 object["controllable"] = false.into();
             }
-            if decision.is_chance {
-                object["probability"] = true.into();
+            if let Some(probability) = &decision.probability {
+                object["probability"] = probability.as_str().into();
             }
             let way = format!("to {}", decision.id);
             let arc = json!({ "tpn-type": "null-activity", "end-node": decision.id });
@@ -438,10 +439,14 @@ fn duration(
             Ok((lower(&text_of(kind, "lower-bound")?, id)?, upper(&text_of(kind, "upper-bound")?, id)?))
         }
         "probabilistic-uncertain-duration" => {
-            object.insert("probability".to_owned(), true.into());
             let parameters = children(kind, "parameters").flat_map(|it| children(it, "parameter"));
             let parameters: Vec<&str> = parameters.filter_map(|it| it.text()).map(str::trim).collect();
-            match (text_of(kind, "distribution-type")?.to_ascii_uppercase().as_str(), parameters.as_slice()) {
+            let distribution = text_of(kind, "distribution-type")?.to_ascii_uppercase();
+            let of =
+                text_of(xml, "dispatch").or_else(|_| text_of(xml, "name")).unwrap_or_else(|_| id.to_owned());
+            let said = format!("{distribution}({}) of {of}", parameters.join(", "));
+            object.insert("probability".to_owned(), said.into());
+            match (distribution.as_str(), parameters.as_slice()) {
                 ("UNIFORM", &[from, to]) => Ok((lower(from, id)?, upper(to, id)?)),
                 // Any time is possible, if not likely.
                 _ => Ok((Some(Time::ZERO), Bound::Infinite)),
@@ -449,6 +454,17 @@ fn duration(
         }
         other => Err(PtpnError::Shape(format!("`{id}` has a duration of the unknown kind `{other}`"))),
     }
+}
+
+/// What a decision variable says of how likely its values are, by its name.
+fn probability(decision: Node<'_, '_>, id: &str, domain: &[Node<'_, '_>]) -> Option<String> {
+    let name = text_of(decision, "name").unwrap_or_else(|_| id.to_owned());
+    let said = |value: &Node<'_, '_>| {
+        let probability = text_of(*value, "probability").ok()?;
+        Some(format!("{} {probability}", text_of(*value, "value").ok()?))
+    };
+    let said: Vec<String> = domain.iter().filter_map(said).collect();
+    (!said.is_empty()).then(|| format!("{name}: {}", said.join(", ")))
 }
 
 fn lower(text: &str, id: &str) -> Result<Option<Time>, PtpnError> {

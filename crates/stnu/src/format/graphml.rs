@@ -192,10 +192,24 @@ impl<'a, 'input> Reader<'a, 'input> {
     }
 
     fn refuse_conditions(&self, node: Node<'a, 'input>) -> Result<(), ParseError> {
-        if self.data(node, "Obs").is_some() || self.data(node, "Label").is_some_and(|label| label != "⊡") {
-            return Err(self.error(node, "conditional networks are not supported"));
+        let name = node.attribute("id").unwrap_or_default();
+        if let Some(proposition) = self.data(node, "Obs") {
+            return Err(self.conditional(node, &format!("{name} observes {proposition}")));
         }
-        Ok(())
+        match self.data(node, "Label").filter(|label| *label != "⊡") {
+            Some(label) => {
+                Err(self.conditional(node, &format!("{name} exists only under the condition {label}")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// What makes the file a conditional network.
+    fn conditional(&self, node: Node<'a, 'input>, what: &str) -> ParseError {
+        let message = format!(
+            "{what}, so this is a conditional network (CSTN or CSTNU), which is not supported; only STN and STNU are"
+        );
+        self.error(node, message)
     }
 
     fn time(&self, node: Node<'a, 'input>, text: &str) -> Result<Time, ParseError> {
@@ -247,7 +261,8 @@ impl<'a, 'input> Reader<'a, 'input> {
             let mut words: Vec<&str> = tuple.split(',').map(str::trim).collect();
             let label = words.pop().unwrap_or_default();
             if !label.is_empty() && label != "⊡" {
-                return Err(self.error(edge, "conditional networks are not supported"));
+                let what = format!("a value of the edge holds only under the condition {label}");
+                return Err(self.conditional(edge, &what));
             }
             let words = words.try_into();
             tuples.push(words.map_err(|_| self.error(edge, format!("{name} are not as expected: {text}")))?);

@@ -152,7 +152,14 @@ fn what_is_wrong_with_graphml_is_told_with_its_line() {
     let one_side = GRAPHML.replace("LC(C):20", "");
     assert_eq!(refused(&one_side).1, "the contingent link between A and C needs a minimum and a maximum");
     let observing = GRAPHML.replace("<node id=\"A\"/>", "<node id=\"A\"><data key=\"Obs\">p</data></node>");
-    assert_eq!(refused(&observing), (7, "conditional networks are not supported".into()));
+    let conditional = |what: &str| {
+        format!(
+            "{what}, so this is a conditional network (CSTN or CSTNU), which is not supported; only STN and STNU are"
+        )
+    };
+    assert_eq!(refused(&observing), (7, conditional("A observes p")));
+    let labeled = GRAPHML.replace("<node id=\"A\"/>", "<node id=\"A\"><data key=\"Label\">p¬q</data></node>");
+    assert_eq!(refused(&labeled), (7, conditional("A exists only under the condition p¬q")));
 }
 
 #[test]
@@ -168,7 +175,11 @@ fn other_ways_to_write_a_contingent_link_in_graphml_are_read() {
         .replace("Value\">35", "LabeledValues\">{(35, ⊡) }");
     assert_eq!(Document::parse(&labeled), Ok(plain.clone()));
     let conditional = labeled.replace("(35, ⊡)", "(35, p)");
-    assert_eq!(refused(&conditional), (11, "conditional networks are not supported".into()));
+    let (line, told) = refused(&conditional);
+    assert!(
+        line == 11 && told.contains("holds only under the condition p, so this is a conditional network"),
+        "{told}"
+    );
     let keyed = GRAPHML
         .replace("<key id=\"Type\"", "<key id=\"d1\" for=\"edge\" attr.name=\"Value\"/>\n<key id=\"Type\"")
         .replace("key=\"Value\"", "key=\"d1\"");
