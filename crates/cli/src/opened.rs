@@ -43,6 +43,11 @@ impl Target {
         if is_network(&self.file.to_string_lossy(), &text) {
             return Ok(Opened { must_be_network: true, ..Opened::new(&self.file, text, Goal::Default) });
         }
+        anyhow::ensure!(
+            !interchange::pddl::is_pddl(&text),
+            "{} is PDDL; write it as a mission with enroute import DOMAIN PROBLEM",
+            self.file.display()
+        );
         Ok(Opened::new(&self.file, mission_of(&self.file, &text)?, self.goal()?))
     }
 }

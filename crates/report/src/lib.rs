@@ -10,6 +10,7 @@ mod figure;
 pub mod geojson;
 mod html;
 mod listing;
+pub mod pddl;
 pub mod plandev;
 mod style;
 mod tables;

@@ -20,7 +20,7 @@ use crate::save::{refuse_input, save};
 use crate::target::{PlanOptions, Target};
 use crate::trust::Trusted;
 
-/// Export a schedule (CSV, JSON, Open MCT, iCalendar, PlanDev, GeoJSON).
+/// Export a schedule (CSV, JSON, Open MCT, iCalendar, PlanDev, GeoJSON, PDDL).
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
@@ -79,6 +79,9 @@ enum Form {
     /// Places, obstacles and paths in GeoJSON.
     #[value(name = "geojson")]
     GeoJson,
+    /// PDDL plan.
+    #[value(name = "pddl")]
+    Pddl,
 }
 
 /// Runs the command.
@@ -140,6 +143,7 @@ impl Args {
                 let radius_m = self.radius.unwrap_or(EARTH_RADIUS_M);
                 written(report::geojson::geojson(snapshot, &Projection::Degrees { origin_deg, radius_m }))
             }
+            Form::Pddl => report::pddl::pddl(snapshot, &about).context(beyond),
             Form::Icalendar => export::icalendar(snapshot, &about).context(beyond),
         }
     }

@@ -1,4 +1,5 @@
-//! `enroute import`: a network that another tool wrote, as one of ours; places and obstacles as lines of a mission.
+//! `enroute import`: a network that another tool wrote, as one of ours; places and obstacles as lines of a mission; a problem
+//! in PDDL as a mission.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -6,18 +7,27 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use interchange::Source;
 use interchange::geojson::{self, Frame};
+use interchange::pddl;
 use serde_json::{Value, json};
 
 use crate::input::read_text;
-use crate::output::{Format, YES, document, exit, print_json, print_text, print_verbatim};
+use crate::output::{Format, YES, document, exit, print_error, print_json, print_text, print_verbatim};
 
 /// Convert a file of another tool.
 ///
-/// A network is printed as enroute tpn prints it. Places and obstacles in GeoJSON are printed as declarations, for a file that a mission imports.
+/// A network is printed as enroute tpn prints it. Places and obstacles in GeoJSON are printed as declarations, for a file that a mission imports. A PDDL domain and a problem of it are printed as a mission.
 #[derive(clap::Args)]
 pub struct Args {
-    /// plan-schema (JSON or EDN), enroute-tpn document, pTPN, PlanDev (Aerie) plan, or GeoJSON; - reads standard input.
+    /// plan-schema (JSON or EDN), enroute-tpn document, pTPN, PlanDev (Aerie) plan, GeoJSON, or PDDL domain; - reads standard input.
     file: PathBuf,
+    /// Problem of the PDDL domain.
+    problem: Option<PathBuf>,
+    /// How often each action may happen (PDDL).
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=i64::from(pddl::MAX_TIMES)))]
+    times: u32,
+    /// Leave out the metric: any plan counts, which is found sooner (PDDL).
+    #[arg(long)]
+    any_plan: bool,
     /// Longitude and latitude of the mission origin in degrees (GeoJSON) [default: south-west corner].
     #[arg(long, value_name = "LON,LAT", value_parser = parse_degrees, allow_hyphen_values = true)]
     origin: Option<[f64; 2]>,
@@ -36,6 +46,10 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let text = read_text(&args.file)?;
     let name = args.file.display().to_string();
+    if pddl::is_pddl(&text) {
+        return import_pddl(args, (&name, &text));
+    }
+    anyhow::ensure!(args.problem.is_none(), "{name} is not a PDDL domain; give one file only");
     if is_places(&name, &text) {
         let frame = Frame { is_meters: args.meters, origin_deg: args.origin, radius_m: args.radius };
         let lines =
@@ -67,6 +81,31 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             if !not_planned.is_empty() {
                 print_text(&format!("ignored (no effect on planning): {}\n", not_planned.join(", ")))?;
             }
+        }
+    }
+    Ok(exit(YES))
+}
+
+/// Prints a problem in PDDL as a mission, with what the mission does not say on standard error.
+fn import_pddl(args: &Args, domain: (&str, &str)) -> anyhow::Result<ExitCode> {
+    let Some(path) = &args.problem else {
+        anyhow::bail!(
+            "{} is PDDL; give the domain and the problem, as in enroute import DOMAIN PROBLEM",
+            domain.0
+        )
+    };
+    let problem = (path.display().to_string(), read_text(path)?);
+    let settings = pddl::Settings { times: args.times, has_metric: !args.any_plan };
+    let read = pddl::translate(domain, (&problem.0, &problem.1), settings);
+    let read = read.context("cannot read the problem as a mission")?;
+    match args.format {
+        Format::Json => {
+            let body = json!({ "rmpl": read.mission, "remarks": read.remarks });
+            print_json(&document("rmpl", &[], body))?;
+        }
+        Format::Text => {
+            print_verbatim(&read.mission)?;
+            read.remarks.iter().for_each(|remark| print_error(&format!("note: {remark}")));
         }
     }
     Ok(exit(YES))

@@ -11,6 +11,8 @@ mod files;
 mod geojson;
 mod help;
 mod networks;
+mod pddl;
+mod pddl_rules;
 mod plandev;
 mod ptpn;
 mod reference;
