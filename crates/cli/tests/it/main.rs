@@ -15,6 +15,7 @@ mod pddl;
 mod pddl_rules;
 mod plandev;
 mod ptpn;
+mod public_files;
 mod reference;
 mod running;
 mod schema;
