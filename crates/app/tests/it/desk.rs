@@ -37,21 +37,6 @@ fn a_text_with_errors_moves_no_panel() {
 }
 
 #[test]
-fn menus_fit_into_a_small_window() {
-    for (menu, last) in [("View", "Maximize or restore panel"), ("Edit", "Unfold all")] {
-        let mut app = sized([1440.0, 700.0]);
-        app.harness.get_by_role_and_label(Role::MenuItem, menu).click();
-        app.settle();
-        app.settle();
-        app.harness.get_by_role_and_label(Role::MenuItem, last).scroll_to_me();
-        app.settle();
-        app.settle();
-        let place = app.harness.get_by_role_and_label(Role::MenuItem, last).rect();
-        assert!(place.bottom() <= 700.0, "{menu} has {last} at {place:?}");
-    }
-}
-
-#[test]
 fn space_plays_after_a_click_on_the_network() {
     let mut app = sized([1920.0, 1200.0]);
     let network = app.harness.query_all_by_role(Role::Image).find_map(|image| {
@@ -156,16 +141,6 @@ fn toolbars_show_at_most_five_things_in_every_workspace() {
         let buttons = app.harness.query_all_by_role(Role::Button).filter(|it| is_there(it.rect())).count();
         assert!(buttons <= 4, "{workspace}: the field and {buttons} buttons");
     }
-}
-
-#[test]
-fn what_may_go_wrong_is_in_sight_when_a_mission_is_executed() {
-    let mut app = sized([1280.0, 720.0]);
-    dispatch(&mut app, "view.workspace", &json!("execute"));
-    app.settle();
-    let withdraw = app.harness.get_by_label("Withdraw Tell(PATH1=OK)#1").rect();
-    let log = app.harness.get_by_label("Log").rect();
-    assert!(withdraw.bottom() < log.top(), "{withdraw:?} {log:?}");
 }
 
 #[test]

@@ -279,18 +279,3 @@ fn runs_with_chance_are_made_in_the_background_and_end_in_a_probability() {
     let high = robustness["interval"][1].as_f64().expect("a number");
     assert!(low <= share && share <= high && high - low < 0.07, "{robustness}");
 }
-
-#[test]
-fn the_end_says_whether_the_mission_was_replanned() {
-    let mut app = executing("both-paths");
-    dispatch(&mut app, "play.end", &Value::Null);
-    let says = |app: &support::App, end: &str| {
-        let all = app.harness.query_all_by_label_contains("Mission completed at ");
-        all.filter(|it| it.accesskit_node().label().is_some_and(|label| label.ends_with(end))).count()
-    };
-    assert_eq!(says(&app, ", as planned"), 1);
-    dispatch(&mut app, "play.seek", &json!({ "time": 0 }));
-    press(&mut app, "Withdraw Tell(PATH1=OK)#1");
-    dispatch(&mut app, "play.end", &Value::Null);
-    assert_eq!(says(&app, ", after 1 replan"), 1);
-}

@@ -98,6 +98,8 @@ fn the_list_opens_renames_duplicates_deletes_and_brings_back() {
         (app.json()["dialog"].clone(), app.json()["mission"].clone()),
         (json!("missions"), json!("Enroute (copy)"))
     );
+    app.harness.get_by_label("Restore Twin").scroll_to_me();
+    app.settle();
     click(&mut app, "Restore Twin");
     assert_eq!(names(&app).len(), 2);
     list(&mut app);
