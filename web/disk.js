@@ -33,7 +33,7 @@ export function openDisk() {
     /** Lets the user choose a mission: its name, bytes, and a token by which `keepFile` knows it; null if none. */
     async openMission(extensions, most) {
       const accept = { "text/plain": extensions.map((extension) => `.${extension}`) };
-      const [handle] = await unlessCancelled(showOpenFilePicker({ types: [{ accept }] }), []);
+      const [handle] = await unlessCanceled(showOpenFilePicker({ types: [{ accept }] }), []);
       if (!handle) return null;
       try {
         const file = await handle.getFile();
@@ -73,7 +73,7 @@ async function save(handles, mission, asks, forms) {
       accept: { "text/plain": [name.slice(name.lastIndexOf("."))] },
     }));
     const chosen = showSaveFilePicker({ id: "missions", suggestedName: forms[0].name, types });
-    const handle = await unlessCancelled(chosen, null);
+    const handle = await unlessCanceled(chosen, null);
     if (!handle) return null;
     file = { handle };
   }
@@ -115,7 +115,7 @@ function plain(error, fileName) {
 }
 
 /** A promise that gives `none` where the user chooses no file. */
-async function unlessCancelled(promise, none) {
+async function unlessCanceled(promise, none) {
   try {
     return await promise;
   } catch (error) {

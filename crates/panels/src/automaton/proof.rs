@@ -46,7 +46,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let edit = TextEdit::singleline(&mut settings.properties).hint_text(hint).desired_width(f32::INFINITY);
     let edited = ui.add(edit).labelled_by(label);
     let is_entered = edited.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
-    edited.on_hover_text("always C, never C, eventually C, C leads to D, ends; separate by ;");
+    edited.on_hover_text("always C; never C; eventually C; C leads to D; ends");
     ui.horizontal_wrapped(|ui| {
         let label = ui.label(muted("Maximum faults")).id;
         ui.add(DragValue::new(&mut settings.faults).range(0..=MAX_FAULTS).speed(0.05)).labelled_by(label);

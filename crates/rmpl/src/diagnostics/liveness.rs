@@ -10,8 +10,8 @@ pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
     title: "control program waits forever after faults",
-    meaning: "The program ends if no component fails. After one or two faults that no command can repair, nothing changes
-any more: the program waits for a goal or a condition that never becomes true.",
+    meaning: "The program ends if no component fails. After one or two faults that no command can repair, the
+program waits for a goal or a condition that never becomes true.",
     example: "(PARALLEL (Engine = Firing))
 (DEFCLASS Engine () (COMMAND cmd {none fire}) (MODE Off true) (MODE Firing true) (MODE Failed true)
   (TRANSITION Off Firing (cmd = fire)) (FAULT Off Failed 0.01))

@@ -70,14 +70,14 @@ pub(super) fn knowledge(state: &AppState, arguments: &Value) -> Result<Command, 
 pub(super) fn proof(state: &AppState, arguments: &Value) -> Result<Command, String> {
     let mut settings = state.automaton.proof.settings.clone();
     if let Some(properties) = arguments.get("properties") {
-        properties.as_str().ok_or("`properties` is a text")?.clone_into(&mut settings.properties);
+        properties.as_str().ok_or("\"properties\" must be a text")?.clone_into(&mut settings.properties);
     }
     if arguments.get("faults").is_some() {
         settings.faults = number_argument(arguments, "faults")?.max(0.0) as u32;
     }
     if let Some(knowledge) = arguments.get("knowledge") {
         settings.knowledge = serde_json::from_value(knowledge.clone())
-            .map_err(|_| "`knowledge` is \"estimated\" or \"perfect\"")?;
+            .map_err(|_| "\"knowledge\" must be \"estimated\" or \"perfect\"")?;
     }
     Ok(Command::ProgramProof(ProgramProofCommand::Set(settings)))
 }

@@ -49,7 +49,7 @@ fn british(text: &str) -> Vec<(usize, String)> {
 fn british_spellings_are_found_also_in_names() {
     let found = |text: &str| british(text).into_iter().map(|(_, word)| word).collect::<Vec<_>>();
     assert_eq!(found("NEIGHBOURS and a cell_centre"), ["NEIGHBOUR", "centre"]);
-    assert_eq!(found("normalised, labelled\nand cancelled"), ["normalised", "labelled", "cancelled"]);
+    assert_eq!(found("normalised, labelled\nand cancelled"), ["normalise", "labelled", "cancelled"]);
     assert_eq!(british("a\n\nin metres"), [(3, "metre".to_owned())]);
     for right in
         ["`per\nmetre`", "\"metres\"", ".labelled_by(name)", "canceled, color, cancellation, ModelLabel"]
