@@ -193,11 +193,6 @@ impl<'ground> Writer<'ground> {
             self.primitive(&snap, self.epsilon, Some(self.epsilon), &clauses);
             return Ok(Some(format!("{snap}()")));
         };
-        if greatest.is_some_and(Rational::is_zero) {
-            // PDDL has its end after its start.
-            self.remarks.push(format!("{place} has the duration 0 and never happens"));
-            return Ok(None);
-        }
         if greatest.is_some_and(|greatest| greatest < self.epsilon) {
             return Err(PddlError::Said { place, what: "a duration shorter than 0.02" });
         }
