@@ -110,7 +110,7 @@ impl Local {
                 self.named(&decl.body, &mut Occurrences::default());
             }
             Item::Constrain(decl) => {
-                let ConstrainDecl { bounds, .. } = decl;
+                let ConstrainDecl { bounds, .. } = &**decl;
                 self.sides(Some(&bounds.lower), Some(&bounds.upper), bounds.span, Sign::Any);
             }
             Item::Option(decl) => self.option(decl),
