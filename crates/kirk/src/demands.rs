@@ -50,7 +50,7 @@ pub(crate) struct ModelUse {
     pub(crate) start: NodeId,
     pub(crate) end: NodeId,
     pub(crate) change: Change,
-    /// At most.
+    /// The maximum of it.
     pub(crate) amount: i64,
     pub(crate) at_least: i64,
 }

@@ -24,7 +24,7 @@ struct Sensor {
     observed: u8,
     /// If that is the true value.
     right: BigUint,
-    /// If it is not.
+    /// If another value is the true one.
     wrong: BigUint,
     /// What a probability of 1 weighs.
     unit: BigUint,

@@ -26,7 +26,7 @@ pub(crate) struct Taken {
     pub(crate) used: UseId,
     pub(crate) start: NodeId,
     pub(crate) end: NodeId,
-    /// At most.
+    /// The maximum of it.
     pub(crate) amount: i128,
     pub(crate) at_least: i128,
     /// It gives instead of taking.

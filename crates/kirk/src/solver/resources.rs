@@ -29,7 +29,7 @@ pub(super) struct Task {
     pub(super) id: UseId,
     pub(super) interval: Interval,
     pub(super) change: Change,
-    /// At most.
+    /// The maximum of it.
     pub(super) amount: i64,
     pub(super) at_least: i64,
     /// Otherwise it takes nothing, but still gives.

@@ -54,7 +54,7 @@ impl Occurrences {
 /// Which bounds there can be.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sign {
-    /// Durations.
+    /// Of durations, which are never negative.
     NotNegative,
     /// Of two events either may be the first.
     Any,

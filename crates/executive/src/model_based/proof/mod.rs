@@ -46,7 +46,7 @@ impl Default for Scope {
 /// Whether a property holds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Verdict {
-    /// In all runs.
+    /// It is true in all runs.
     Holds,
     /// Not in this run.
     Broken(Box<Counterexample>),
