@@ -176,14 +176,12 @@ fn apply(before: &State, state: &mut State, effect: &Tree, bindings: &Bindings, 
         "not" if !is_added => {
             state.facts.remove(&effect.list()[1].put(bindings));
         }
-        "not" => {}
-        head @ ("increase" | "decrease") => {
-            if !is_added {
-                let amount = number(before, &effect.list()[2], bindings);
-                let amount = if head == "increase" { amount } else { -amount };
-                *state.numbers.get_mut(&effect.list()[1].put(bindings)).expect("a number") += amount;
-            }
+        head @ ("increase" | "decrease") if !is_added => {
+            let amount = number(before, &effect.list()[2], bindings);
+            let amount = if head == "increase" { amount } else { -amount };
+            *state.numbers.get_mut(&effect.list()[1].put(bindings)).expect("a number") += amount;
         }
+        "not" | "increase" | "decrease" => {}
         _ if is_added => {
             state.facts.insert(effect.put(bindings));
         }
@@ -379,11 +377,8 @@ impl Task {
         }
         for effect in parts(":effect") {
             let part = (effect.list()[2].clone(), bindings.clone());
-            if effect.list()[1].word() == "start" {
-                first.effects.push(part)
-            } else {
-                last.effects.push(part)
-            }
+            let happening = if effect.list()[1].word() == "start" { &mut first } else { &mut last };
+            happening.effects.push(part);
         }
         happenings.extend([first, last]);
     }

@@ -91,6 +91,11 @@ fn table(answers: &Answers) -> String {
 }
 
 #[test]
+#[expect(
+    clippy::print_stderr,
+    clippy::print_stdout,
+    reason = "a table that is asked for, or that there are no files"
+)]
 fn public_files_are_read_as_the_table_says() {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let named = std::env::var_os("ENROUTE_PUBLIC_FILES").map(PathBuf::from);
