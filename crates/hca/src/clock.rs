@@ -91,6 +91,12 @@ impl Ends {
         }
     }
 
+    /// In how many steps something is up, as ranges.
+    pub(crate) fn left(&self, now: u64) -> Vec<(u64, u64)> {
+        let left = |&(first, last): &(u64, u64)| (first.saturating_sub(now), last.saturating_sub(now));
+        self.ranges.iter().map(left).collect()
+    }
+
     /// Takes the end out that is now, and returns whether there was one.
     pub(crate) fn take(&mut self, now: u64) -> bool {
         let Some((first, last)) = self.ranges.front_mut().filter(|(first, _)| *first == now) else {

@@ -26,6 +26,6 @@ pub use compile::{Compilation, compile, compile_text};
 pub use knowledge::Estimate;
 pub use locks::{Lock, LockId};
 pub use marking::Marking;
-pub use step::{Standing, StepObserver, Stepper, Unobserved};
+pub use step::{Position, Standing, StepObserver, Stepper, Unobserved};
 pub use trace::{Trace, TraceStep, trace};
 pub use vocabulary::{Variable, VariableId, Vocabulary};

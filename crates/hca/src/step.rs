@@ -93,6 +93,16 @@ impl Standing {
     }
 }
 
+/// Where a run stands, whatever the number of its step: two runs that stand alike go on alike.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Position {
+    marking: Marking,
+    /// Of each running clock, in how many steps it is up; of a time of the program, also if nothing waits for it.
+    clocks: Vec<Vec<(u64, u64)>>,
+    /// For how many steps each condition that has to last has lasted, up to what it has to.
+    lasted: Vec<u64>,
+}
+
 /// A marking of an automaton and the room to compute the next one.
 #[derive(Clone, Debug)]
 pub struct Stepper {
@@ -192,6 +202,30 @@ impl Stepper {
     pub fn standing(&self) -> Standing {
         let (marking, aside) = (self.marking.clone(), self.aside.clone());
         Standing { marking, aside, times: self.times.clone() }
+    }
+
+    /// Where a program without locks stands when its choices are made.
+    pub fn position(&self) -> Position {
+        let numbered = (0..).map(ClockId).zip(&self.automaton.clocks);
+        let clocks = numbered.map(|(id, clock)| match clock.kind {
+            ClockKind::At => vec![(clock.steps.saturating_sub(self.times.step), 0)],
+            _ if !self.is_running(clock.owner) => Vec::new(),
+            _ => self.times.ends.get(id.0 as usize).map_or_else(Vec::new, |ends| ends.left(self.times.step)),
+        });
+        let held = self.automaton.held.iter().zip(&self.times.unsatisfied);
+        let lasted = held.map(|(held, unsatisfied)| (self.times.step - unsatisfied).min(held.steps));
+        Position { marking: self.marking.clone(), clocks: clocks.collect(), lasted: lasted.collect() }
+    }
+
+    /// Whether the clock of an element runs: the element is marked, or the first part of a composite is.
+    fn is_running(&self, owner: Element) -> bool {
+        let first = match owner {
+            Element::Location(_) => Some(owner),
+            Element::Composite(composite) => {
+                self.automaton.composite(composite).and_then(|composite| composite.children.first().copied())
+            }
+        };
+        first.is_some_and(|first| self.marking.intersects(&self.automaton.locations_of(first)))
     }
 
     /// Goes to where the same automaton stood before, as when stepping back.
@@ -294,11 +328,7 @@ impl Stepper {
     pub fn running_clocks(&self) -> Vec<(ClockId, u64)> {
         let numbered = (0..).map(ClockId).zip(&self.automaton.clocks);
         let left = numbered.filter_map(|(id, clock)| {
-            let first = match clock.owner {
-                Element::Location(_) => clock.owner,
-                Element::Composite(composite) => *self.automaton.composite(composite)?.children.first()?,
-            };
-            let is_running = self.marking.intersects(&self.automaton.locations_of(first));
+            let is_running = self.is_running(clock.owner);
             let end = match clock.kind {
                 ClockKind::At => clock.steps,
                 _ => self.times.ends.get(id.0 as usize)?.first()?,

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use rmpl::control::{Constraint, ConstraintKind, ControlFile, Instance, Name, nearest};
+use rmpl::control::{
+    Constraint, ConstraintKind, ControlFile, Initial, MAX_COMPONENTS, Name, PlantComponents, nearest,
+};
 use rmpl::{Code, Diagnostic, Span, diagnostics};
 use smol_str::SmolStr;
 
@@ -21,8 +23,15 @@ pub(crate) fn check(
     let mut checker = Checker { file, classes, diagnostics };
     for class in &file.classes {
         checker.check_class(&class.name.text);
+        checker.check_parts(&class.name.text);
     }
-    checker.check_instances();
+    let mut nested = Vec::new();
+    for class in &file.classes {
+        checker.check_nesting(&class.name.text, &mut Vec::new(), &mut nested);
+    }
+    let components = PlantComponents::new(file, classes);
+    checker.check_instances(&components);
+    checker.check_components(&components);
 }
 
 /// What a name in a constraint of a class stands for.
@@ -155,19 +164,25 @@ impl Checker<'_, '_> {
         let fields = |class: &MergedClass<'_>, name: &str| {
             of(&class.variables, name, false).or_else(|| of(&class.commands, name, true))
         };
-        let at_port = |port: &str| {
-            let (_, target) = class.ports.iter().find(|(known, _)| known.text == port)?;
-            self.classes.get(&target.text)
-        };
         fields(class, name)
             .or_else(|| {
-                let modes = at_port(name)?.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
+                let modes =
+                    self.behind(class, name)?.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
                 Some(Meaning { values: modes, is_command: false })
             })
             .or_else(|| {
-                let (port, field) = name.split_once('.')?;
-                fields(at_port(port)?, field)
+                let (path, field) = name.rsplit_once('.')?;
+                fields(self.behind(class, path)?, field)
             })
+    }
+
+    /// The class of what a path of ports and parts leads to.
+    fn behind<'class>(
+        &'class self,
+        class: &'class MergedClass<'_>,
+        path: &str,
+    ) -> Option<&'class MergedClass<'class>> {
+        path.split('.').try_fold(class, |class, step| self.classes.get(&class.neighbor(step)?.text))
     }
 
     fn check_constraint(&mut self, class: &MergedClass<'_>, constraint: &Constraint, is_guard: bool) {
@@ -185,23 +200,21 @@ impl Checker<'_, '_> {
             ConstraintKind::Equals { variable, value } => {
                 let class_name = class.lineage.first().cloned().unwrap_or_default();
                 let Some(meaning) = self.meaning(class, &variable.text) else {
-                    // A port to an unknown class has been reported.
-                    let port = variable.text.split('.').next().unwrap_or("");
-                    if class
-                        .ports
-                        .iter()
-                        .any(|(known, target)| known.text == port && !self.classes.contains_key(&target.text))
-                    {
+                    // A port or part of an unknown class has been reported.
+                    let first = variable.text.split('.').next().unwrap_or("");
+                    if class.neighbor(first).is_some_and(|target| !self.classes.contains_key(&target.text)) {
                         return;
                     }
                     let names =
                         class.variables.iter().chain(&class.commands).map(|known| known.name.text.as_str());
                     let hint = did_you_mean(
                         &variable.text,
-                        names.chain(class.ports.iter().map(|(port, _)| port.text.as_str())),
+                        names
+                            .chain(class.ports.iter().map(|(port, _)| port.text.as_str()))
+                            .chain(class.parts.iter().map(|part| part.name.text.as_str())),
                     );
                     let message =
-                        format!("`{class_name}` has no variable, command or port `{}`", variable.text);
+                        format!("`{class_name}` has no variable, command, port or part `{}`", variable.text);
                     self.error("E-UNDEF", variable.span, message, hint);
                     return;
                 };
@@ -249,7 +262,7 @@ impl Checker<'_, '_> {
         self.error("E-CONSTRAINT", command.span, message, Some(hint));
     }
 
-    fn check_instances(&mut self) {
+    fn check_instances(&mut self, components: &PlantComponents<'_>) {
         let file = self.file;
         for (at, instance) in file.instances.iter().enumerate() {
             if file.instances.iter().take(at).any(|earlier| earlier.name.text == instance.name.text) {
@@ -260,90 +273,144 @@ impl Checker<'_, '_> {
                     None,
                 );
             }
-            if !file.classes.iter().any(|class| class.name.text == instance.class.text) {
-                let hint = did_you_mean(
-                    &instance.class.text,
-                    file.classes.iter().map(|class| class.name.text.as_str()),
-                );
-                self.error(
-                    "E-UNDEF",
-                    instance.class.span,
-                    format!("unknown class `{}`", instance.class.text),
-                    hint,
-                );
-            }
-            let Some(class) = self.classes.get(&instance.class.text) else { continue };
-            if class.modes.is_empty() {
-                let message = format!("the class `{}` needs at least one mode", instance.class.text);
-                self.error(
-                    "E-FORM",
-                    instance.class.span,
-                    message,
-                    Some("add one, such as `(MODE Present true)`".into()),
-                );
-            }
-            for initial in instance.initial.modes() {
-                self.check_mode(class, &instance.class.text, initial);
-            }
-            self.check_ports(instance, class);
+            let names: Vec<&str> = components.all().iter().map(|known| known.name.as_str()).collect();
+            let class_of = |name: &str| components.named(name).map(|component| component.class.text.clone());
+            self.check_component(
+                &instance.name,
+                &instance.class,
+                &instance.ports,
+                &instance.initial,
+                &Surroundings { names, class_of: &class_of },
+            );
         }
     }
 
-    fn check_ports(&mut self, instance: &Instance, class: &MergedClass<'_>) {
-        for (at, (port, component)) in instance.ports.iter().enumerate() {
+    /// Checks the parts of a class, with the components that it does not have yet in its own names.
+    fn check_parts(&mut self, name: &SmolStr) {
+        let classes = self.classes;
+        let Some(class) = classes.get(name) else { return };
+        for part in &class.parts {
+            let own = class.ports.iter().map(|(port, _)| port.text.as_str());
+            let parts = class.parts.iter().map(|part| part.name.text.as_str());
+            let class_of = |path: &str| {
+                if path == "self" {
+                    return Some(name.clone());
+                }
+                let path = path.strip_prefix("self.").unwrap_or(path);
+                let mut found = name.clone();
+                for step in path.split('.') {
+                    found = classes.get(&found)?.neighbor(step)?.text.clone();
+                }
+                Some(found)
+            };
+            let names = own.chain(parts).chain(["self"]).collect();
+            self.check_component(
+                part.name,
+                part.class,
+                part.ports,
+                part.initial,
+                &Surroundings { names, class_of: &class_of },
+            );
+        }
+    }
+
+    /// One diagnostic per part that closes a cycle of classes inside each other.
+    fn check_nesting(&mut self, name: &SmolStr, path: &mut Vec<SmolStr>, nested: &mut Vec<SmolStr>) {
+        let classes = self.classes;
+        let Some(class) = classes.get(name).filter(|_| !nested.contains(name)) else { return };
+        path.push(name.clone());
+        for part in &class.parts {
+            if path.contains(&part.class.text) {
+                let message =
+                    format!("a class cannot be inside itself: `{}` is a part of `{name}`", part.class.text);
+                let hint = "to refer to another component of the class, use a PORT".to_owned();
+                self.error("E-RECURSION", part.class.span, message, Some(hint));
+                nested.extend(path.iter().cloned());
+            } else {
+                self.check_nesting(&part.class.text, path, nested);
+            }
+        }
+        path.pop();
+    }
+
+    /// Checks what only all components with their parts show.
+    fn check_components(&mut self, components: &PlantComponents<'_>) {
+        if let Some(last) = components.all().get(MAX_COMPONENTS) {
+            let message = format!("the plant has more than {MAX_COMPONENTS} components with their parts");
+            self.error("E-RECURSION", last.class.span, message, None);
+        }
+        for component in components.all() {
+            let first = components.named(&component.name);
+            if first.is_some_and(|first| !std::ptr::eq(first, component)) {
+                let message = format!("the component `{}` is already declared", component.name);
+                self.error("E-DUP", component.span, message, None);
+            }
+        }
+    }
+
+    fn check_component(
+        &mut self,
+        name: &Name,
+        class_name: &Name,
+        ports: &[(Name, Name)],
+        initial: &Initial,
+        surroundings: &Surroundings<'_>,
+    ) {
+        if !self.file.classes.iter().any(|class| class.name.text == class_name.text) {
+            let known = self.file.classes.iter().map(|class| class.name.text.as_str());
+            let hint = did_you_mean(&class_name.text, known);
+            let message = format!("unknown class `{}`", class_name.text);
+            self.error("E-UNDEF", class_name.span, message, hint);
+        }
+        let classes = self.classes;
+        let Some(class) = classes.get(&class_name.text) else { return };
+        if class.modes.is_empty() {
+            let message = format!("the class `{}` needs at least one mode", class_name.text);
+            let hint = "add one, such as `(MODE Present true)`".to_owned();
+            self.error("E-FORM", class_name.span, message, Some(hint));
+        }
+        for mode in initial.modes() {
+            self.check_mode(class, &class_name.text, mode);
+        }
+        for (at, (port, component)) in ports.iter().enumerate() {
             let Some((_, wanted)) = class.ports.iter().find(|(known, _)| known.text == port.text) else {
                 let hint = did_you_mean(&port.text, class.ports.iter().map(|(known, _)| known.text.as_str()));
-                self.error(
-                    "E-UNDEF",
-                    port.span,
-                    format!("`{}` has no port `{}`", instance.class.text, port.text),
-                    hint,
-                );
+                let message = format!("`{}` has no port `{}`", class_name.text, port.text);
+                self.error("E-UNDEF", port.span, message, hint);
                 continue;
             };
-            if instance.ports.iter().take(at).any(|(earlier, _)| earlier.text == port.text) {
-                self.error(
-                    "E-DUP",
-                    port.span,
-                    format!("the port `{}` is already connected", port.text),
-                    None,
-                );
+            if ports.iter().take(at).any(|(earlier, _)| earlier.text == port.text) {
+                let message = format!("the port `{}` is already connected", port.text);
+                self.error("E-DUP", port.span, message, None);
             }
-            let Some(other) = self.file.instances.iter().find(|known| known.name.text == component.text)
-            else {
-                let known = self.file.instances.iter().map(|known| known.name.text.as_str());
-                let hint = did_you_mean(&component.text, known);
-                self.error(
-                    "E-UNDEF",
-                    component.span,
-                    format!("unknown component `{}`", component.text),
-                    hint,
-                );
+            let Some(other) = (surroundings.class_of)(&component.text) else {
+                let hint = did_you_mean(&component.text, surroundings.names.iter().copied());
+                let message = format!("unknown component `{}`", component.text);
+                self.error("E-UNDEF", component.span, message, hint);
                 continue;
             };
-            let fits =
-                self.classes.get(&other.class.text).is_none_or(|class| class.lineage.contains(&wanted.text));
-            if !fits {
+            if !classes.get(&other).is_none_or(|class| class.lineage.contains(&wanted.text)) {
                 let message = format!(
-                    "the port `{}` takes a {}, but `{}` is a {}",
-                    port.text, wanted.text, component.text, other.class.text
+                    "the port `{}` takes a {}, but `{}` is a {other}",
+                    port.text, wanted.text, component.text
                 );
                 self.error("E-VALUE", component.span, message, None);
             }
         }
         for (port, wanted) in &class.ports {
-            if !instance.ports.iter().any(|(known, _)| known.text == port.text) {
-                let message =
-                    format!("the port `{}` of `{}` is not connected", port.text, instance.name.text);
-                self.error(
-                    "E-ARITY",
-                    instance.name.span,
-                    message,
-                    Some(format!("connect a {}: `({} …)`", wanted.text, port.text)),
-                );
+            if !ports.iter().any(|(known, _)| known.text == port.text) {
+                let message = format!("the port `{}` of `{}` is not connected", port.text, name.text);
+                let hint = format!("connect a {}: `({} …)`", wanted.text, port.text);
+                self.error("E-ARITY", name.span, message, Some(hint));
             }
         }
     }
+}
+
+/// What a component may be connected to.
+struct Surroundings<'check> {
+    names: Vec<&'check str>,
+    class_of: &'check dyn Fn(&str) -> Option<SmolStr>,
 }
 
 fn did_you_mean<'name>(word: &str, known: impl IntoIterator<Item = &'name str> + Clone) -> Option<String> {

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use num_integer::gcd;
 use rmpl::control::{
-    Constraint, ConstraintKind, ControlFile, Initial, Instance, MergedClass, MergedTransition, Name,
-    merge_all,
+    Constraint, ConstraintKind, ControlFile, Initial, MergedClass, MergedTransition, Name, PlantComponent,
+    PlantComponents, merge_all,
 };
 use rmpl::diagnostics::constraint::impossible_guard;
 use rmpl::diagnostics::{ambiguous, probability as probabilities};
@@ -14,6 +14,7 @@ use smol_str::{SmolStr, ToSmolStr as _, format_smolstr};
 
 use crate::arc_check::{check_arcs, check_reach};
 use crate::assignment::{Found, are_equal, describe, satisfying};
+use crate::behavior::written_out;
 use crate::belief::Belief;
 use crate::check::check;
 use crate::formula::Formula;
@@ -32,22 +33,37 @@ const CHECKED_STATES: usize = 1000;
 ///
 /// The model is `None` when there are errors or no components.
 pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
+    let (classes, found) = merge_all(file);
+    if has_errors(&found) {
+        return compile_modes(file);
+    }
+    match written_out(file, &classes) {
+        None => compile_modes(file),
+        Some((_, diagnostics)) if has_errors(&diagnostics) => (None, diagnostics),
+        Some((written, _)) => compile_modes(&written),
+    }
+}
+
+fn has_errors(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
+}
+
+/// The same where all classes have modes.
+fn compile_modes(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
     let (classes, mut diagnostics) = merge_all(file);
     check(file, &classes, &mut diagnostics);
-    let has_errors = |diagnostics: &[Diagnostic]| {
-        diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
-    };
     if has_errors(&diagnostics) {
         diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
         return (None, diagnostics);
     }
-    let mut model = assembled(&classes, &units(file, &classes), &mut diagnostics);
+    let components = PlantComponents::new(file, &classes);
+    let mut model = assembled(&classes, &units(&components, &classes), &mut diagnostics);
     for id in model.component_ids() {
         check_arcs(&model, id, &mut diagnostics);
     }
     // Classes that nothing is an instance of are checked by themselves, with components of their ports' classes.
     for class in file.classes.iter().map(|class| &class.name.text) {
-        if !file.instances.iter().any(|instance| instance.class.text == *class) {
+        if !components.all().iter().any(|component| component.class.text == *class) {
             let alone = assembled(&classes, &units_of_class(class, &classes), &mut diagnostics);
             check_arcs(&alone, ComponentId(0), &mut diagnostics);
         }
@@ -104,41 +120,62 @@ struct Unit {
     span: Span,
 }
 
-/// The components of a file, in their order.
-fn units(file: &ControlFile, classes: &Classes<'_>) -> Vec<Unit> {
-    let unit = |instance: &Instance| {
-        let ports = instance.ports.iter().filter_map(|(port, component)| {
-            let at = file.instances.iter().position(|known| known.name.text == component.text)?;
-            Some((port.text.clone(), at))
-        });
+/// The components of a plant, in their order.
+fn units(components: &PlantComponents<'_>, classes: &Classes<'_>) -> Vec<Unit> {
+    let unit = |component: &PlantComponent<'_>| {
+        let class = classes.get(&component.class.text);
         Unit {
-            name: instance.name.text.clone(),
-            class: instance.class.text.clone(),
-            ports: ports.collect(),
-            prior: classes.get(&instance.class.text).map_or_else(Vec::new, |class| prior(instance, class)),
-            span: instance.span,
+            name: component.name.clone(),
+            class: component.class.text.clone(),
+            ports: component.neighbors.iter().map(|(name, at)| ((*name).clone(), *at)).collect(),
+            prior: class.map_or_else(Vec::new, |class| prior(component.initial, class)),
+            span: component.span,
         }
     };
-    file.instances.iter().map(unit).collect()
+    components.all().iter().map(unit).collect()
 }
+
+/// Names in the constraints of a class that nothing is an instance of lead over at most so many ports and parts.
+const MAX_PATH: usize = 3;
 
 /// A component of a class that nothing is an instance of, with components at its ports.
 fn units_of_class(name: &SmolStr, classes: &Classes<'_>) -> Vec<Unit> {
-    let ports = classes.get(name).map_or(&[][..], |class| class.ports.as_slice());
-    let bare = |name: &SmolStr, class: &SmolStr| Unit {
-        name: name.clone(),
+    let mut units = Vec::new();
+    add_unit(name.clone(), name, classes, MAX_PATH, &mut units);
+    units
+}
+
+fn add_unit(
+    name: SmolStr,
+    class: &SmolStr,
+    classes: &Classes<'_>,
+    depth: usize,
+    units: &mut Vec<Unit>,
+) -> usize {
+    let at = units.len();
+    units.push(Unit {
+        name,
         class: class.clone(),
         ports: Vec::new(),
         prior: vec![(0, 1)],
         span: Span::default(),
-    };
-    let mut units = vec![bare(name, name)];
-    for (port, class) in ports {
-        let at = units.len();
-        units[0].ports.push((port.text.clone(), at));
-        units.push(bare(&port.text, &class.text));
+    });
+    if depth == 0 {
+        return at;
     }
-    units
+    let Some(merged) = classes.get(class) else { return at };
+    let ports = merged.ports.iter().map(|(port, class)| (port, class));
+    let neighbors = ports.chain(merged.parts.iter().map(|part| (&part.name, &part.class)));
+    for (neighbor, class) in neighbors {
+        let name = if at == 0 {
+            neighbor.text.clone()
+        } else {
+            format_smolstr!("{}.{}", units[at].name, neighbor.text)
+        };
+        let number = add_unit(name, &class.text, classes, depth - 1, units);
+        units[at].ports.push((neighbor.text.clone(), number));
+    }
+    at
 }
 
 /// Classes with what they inherit, by name.
@@ -171,13 +208,13 @@ const fn empty() -> Model {
 }
 
 /// The modes in which a component may start, in the order of its class, with their weights.
-fn prior(instance: &Instance, class: &MergedClass<'_>) -> Vec<(u8, u64)> {
-    let mut prior: Vec<(u8, u64)> = match &instance.initial {
+fn prior(initial: &Initial, class: &MergedClass<'_>) -> Vec<(u8, u64)> {
+    let mut prior: Vec<(u8, u64)> = match initial {
         Initial::FirstMode => vec![(0, 1)],
         Initial::Mode(mode) => vec![(class.mode(&mode.text).unwrap_or(0) as u8, 1)],
         Initial::AnyMode => (0..class.modes.len() as u8).map(|mode| (mode, 1)).collect(),
         Initial::Prior(_) => {
-            let weights = instance.prior().into_iter();
+            let weights = initial.prior().into_iter();
             weights.filter_map(|(mode, weight)| Some((class.mode(mode)? as u8, weight))).collect()
         }
     };
@@ -475,16 +512,21 @@ impl Compiler<'_, '_> {
     /// What a name stands for in the constraints of a component.
     fn named(&self, id: ComponentId, name: &str) -> Option<Named<'_>> {
         self.field(id, name).or_else(|| {
-            let component = self.model.component(id)?;
-            let at_port =
-                |port: &str| component.ports.iter().find(|(known, _)| known == port).map(|(_, other)| *other);
-            if let Some(other) = at_port(name) {
+            if let Some(other) = self.reached(id, name) {
                 let class = self.classes.get(&self.model.component(other)?.class)?;
                 let values = class.modes.iter().map(|(mode, _)| &mode.text).collect();
                 return Some(Named { symbol: Model::mode_symbol(other), values });
             }
-            let (port, field) = name.split_once('.')?;
-            self.field(at_port(port)?, field)
+            let (path, field) = name.rsplit_once('.')?;
+            self.field(self.reached(id, path)?, field)
+        })
+    }
+
+    /// The component that a path of ports and parts leads to.
+    fn reached(&self, from: ComponentId, path: &str) -> Option<ComponentId> {
+        path.split('.').try_fold(from, |at, step| {
+            let ports = &self.model.component(at)?.ports;
+            ports.iter().find(|(known, _)| known == step).map(|(_, other)| *other)
         })
     }
 

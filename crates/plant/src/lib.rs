@@ -5,6 +5,7 @@
 
 mod arc_check;
 mod assignment;
+mod behavior;
 pub mod belief;
 pub mod best_first;
 pub mod bounded;

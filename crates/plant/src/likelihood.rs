@@ -286,14 +286,13 @@ impl<'model> Likelihoods<'model> {
 
     /// The same as a machine number, at most 1.
     pub(crate) fn chance(&mut self, at: usize, state: &[u8]) -> f64 {
+        if self.sensors[at].is_empty() {
+            let likelihood = self.of(at, state);
+            let divisor = likelihood.divisor.to_f64().unwrap_or(f64::MAX);
+            return if likelihood.is_zero() { 0.0 } else { 1.0 / divisor };
+        }
         let unit = self.sensors[at].values().fold(BigUint::one(), |unit, sensor| unit * &sensor.unit);
         let likelihood = self.of(at, state);
-        if likelihood.is_zero() {
-            return 0.0;
-        }
-        if likelihood.weight.is_one() && unit.is_one() {
-            return 1.0 / likelihood.divisor.to_f64().unwrap_or(f64::MAX);
-        }
         let unit = &likelihood.divisor * unit;
         BigRational::new(likelihood.weight.clone().into(), unit.into()).to_f64().unwrap_or(0.0)
     }

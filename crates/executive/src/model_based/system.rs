@@ -10,7 +10,7 @@ use plant::{
 };
 use rmpl::control::{
     Argument, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Name,
-    expand_main, nearest,
+    expand_main, nearest, without_places,
 };
 use rmpl::{Code, Diagnostic, Severity};
 use smol_str::SmolStr;
@@ -84,6 +84,7 @@ impl System {
         let parsed = rmpl::control::parse(program);
         let mut program_diagnostics = parsed.diagnostics.clone();
         let mut model_diagnostics = Vec::new();
+        let mut file = parsed.file.clone();
         let plant = match model {
             None => {
                 let (plant, found) =
@@ -94,6 +95,7 @@ impl System {
             Some(text) => {
                 let parsed = rmpl::control::parse(text);
                 let has_errors = parsed.has_errors();
+                file.methods = without_places(parsed.file.methods.clone());
                 model_diagnostics.extend(parsed.diagnostics);
                 let (plant, found) =
                     if has_errors { (None, Vec::new()) } else { plant::compile(&parsed.file) };
@@ -122,7 +124,7 @@ impl System {
                     }
                 }
                 Some(plant) => {
-                    let (bound, found) = bind(&parsed.file, &ControlledPlant::new(plant));
+                    let (bound, found) = bind(&file, &ControlledPlant::new(plant));
                     program_diagnostics.extend(found);
                     system = bound;
                 }

@@ -21,11 +21,21 @@ pub(super) fn check(file: &ControlFile) -> Vec<Diagnostic> {
             checker.diagnostics.push(Diagnostic::error(Code("E-DUP"), definition.name.span, message));
         }
     }
-    for definition in &file.definitions {
+    for method in &file.methods {
+        checker.known.entry(method.name.text.as_str()).or_insert(method);
+    }
+    for definition in file.definitions.iter().chain(&file.methods) {
         checker.expression(&definition.body, definition);
     }
     checker.recursion();
-    checker.diagnostics
+    // Components of one class share their methods' mistakes.
+    let mut diagnostics: Vec<Diagnostic> = Vec::with_capacity(checker.diagnostics.len());
+    for found in checker.diagnostics {
+        if !diagnostics.iter().any(|known| known.span == found.span && known.code == found.code) {
+            diagnostics.push(found);
+        }
+    }
+    diagnostics
 }
 
 struct Checker<'file> {
@@ -130,6 +140,10 @@ impl<'file> Checker<'file> {
     }
 
     fn unknown(&mut self, name: &Name, arguments: &[Argument]) {
+        // The plant, and with it what it has for methods, may be another text.
+        if name.text.contains('.') && self.file.instances.is_empty() {
+            return;
+        }
         if let Some(hint) = Reader::keyword_hint(&name.text) {
             return self.error("E-FORM", name, format!("unknown construct `{}`", name.text), Some(hint));
         }
@@ -151,7 +165,7 @@ impl<'file> Checker<'file> {
 
     /// One diagnostic per cycle of calls, at the call that closes it.
     fn recursion(&mut self) {
-        let definitions = &self.file.definitions;
+        let definitions: Vec<&Definition> = self.file.definitions.iter().chain(&self.file.methods).collect();
         let mut positions = BTreeMap::new();
         for (position, definition) in definitions.iter().enumerate() {
             positions.entry(definition.name.text.as_str()).or_insert(position);

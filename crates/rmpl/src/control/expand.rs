@@ -220,7 +220,8 @@ impl Expander<'_> {
     ) -> Expression {
         let unreadable = Expression { kind: ExpressionKind::Unreadable, span };
         let file = self.file;
-        let called: Option<&Definition> = file.definitions.iter().find(|known| known.name.text == name.text);
+        let called: Option<&Definition> =
+            file.definitions.iter().chain(&file.methods).find(|known| known.name.text == name.text);
         let Some(called) = called.filter(|called| called.parameters.len() == arguments.len()) else {
             self.error("E-UNDEF", name.span, format!("`{}` cannot be used as an expression here", name.text));
             return unreadable;

@@ -278,7 +278,7 @@ fn kept_on_first_line(inner: &[Piece]) -> usize {
         "PARALLEL" | "SEQUENCE" | "ALWAYS" | "AND" | "OR" | "CHOOSE-PROB" | "CHOOSE-REWARD" => 0,
         "WITHIN" => 2,
         _ if keyword::EXPRESSION_KEYWORDS.contains(&upper.as_str()) => 1,
-        "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" | "VAR" | "TRANSITION" => 2,
+        "DEFCLASS" | "DEFINSTANCE" | "DEFOPTION" | "VAR" | "PART" | "METHOD" | "TRANSITION" => 2,
         "FAULT" => 3,
         "MODE" | "COMMAND" | "PORT" | "HELD" | "DEFSTEP" => 1,
         _ => 0,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use smol_str::SmolStr;
 
 use super::suggest::nearest;
-use super::syntax::{Class, Constraint, ControlFile, FieldKind, Initial, Instance, Name};
+use super::syntax::{Class, Constraint, ControlFile, Expression, FieldKind, Initial, Name};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::span::Span;
 
@@ -44,6 +44,28 @@ pub struct MergedFault<'file> {
     pub guard: Option<&'file Constraint>,
 }
 
+/// A part after inheritance.
+#[derive(Clone, Debug)]
+pub struct MergedPart<'file> {
+    pub name: &'file Name,
+    pub class: &'file Name,
+    /// What stands at its ports, in the names of the class that declares it.
+    pub ports: &'file [(Name, Name)],
+    pub initial: &'file Initial,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A method after inheritance.
+#[derive(Clone, Debug)]
+pub struct MergedMethod<'file> {
+    pub name: &'file Name,
+    pub parameters: &'file [Name],
+    pub body: &'file Expression,
+    /// Where it is declared.
+    pub span: Span,
+}
+
 /// A class with all its fields.
 #[derive(Clone, Debug, Default)]
 pub struct MergedClass<'file> {
@@ -54,6 +76,8 @@ pub struct MergedClass<'file> {
     pub commands: Vec<MergedVariable>,
     /// Its ports, each with the class of what stands there.
     pub ports: Vec<(&'file Name, &'file Name)>,
+    pub parts: Vec<MergedPart<'file>>,
+    pub methods: Vec<MergedMethod<'file>>,
     /// Each mode with the constraints that all hold in it.
     pub modes: Vec<(&'file Name, Vec<&'file Constraint>)>,
     pub transitions: Vec<MergedTransition<'file>>,
@@ -61,6 +85,12 @@ pub struct MergedClass<'file> {
 }
 
 impl MergedClass<'_> {
+    /// The class of what a port or part of this name is.
+    pub fn neighbor(&self, name: &str) -> Option<&Name> {
+        let port = self.ports.iter().find(|(port, _)| port.text == name).map(|(_, class)| *class);
+        port.or_else(|| self.parts.iter().find(|part| part.name.text == name).map(|part| part.class))
+    }
+
     /// The place of a mode.
     pub fn mode(&self, name: &str) -> Option<usize> {
         self.modes.iter().position(|(mode, _)| mode.text == name)
@@ -88,45 +118,6 @@ pub fn merge_all(file: &ControlFile) -> (BTreeMap<SmolStr, MergedClass<'_>>, Vec
         }
     }
     (merged, merger.diagnostics)
-}
-
-/// A component of a plant, with what it can be.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ComponentModes {
-    /// The component.
-    pub name: SmolStr,
-    /// Its modes, in the order of its class.
-    pub modes: Vec<SmolStr>,
-    /// The mode that it begins in; of a prior the most likely one, and of those that are equally likely the first.
-    pub initial: SmolStr,
-}
-
-/// The components of a plant whose classes have modes, in textual order.
-pub fn component_modes(file: &ControlFile) -> Vec<ComponentModes> {
-    let (classes, _) = merge_all(file);
-    let of = |instance: &Instance| {
-        let class = classes.get(&instance.class.text)?;
-        let modes: Vec<SmolStr> = class.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
-        let initial = likeliest(instance, &modes)?;
-        Some(ComponentModes { name: instance.name.text.clone(), modes, initial })
-    };
-    file.instances.iter().filter_map(of).collect()
-}
-
-/// The most likely first mode of a component, of equally likely ones the first; `modes` are those of its class.
-fn likeliest(instance: &Instance, modes: &[SmolStr]) -> Option<SmolStr> {
-    let named = match &instance.initial {
-        Initial::Mode(mode) => modes.iter().find(|known| **known == mode.text),
-        Initial::FirstMode | Initial::AnyMode => None,
-        Initial::Prior(_) => {
-            let prior = instance.prior();
-            let weight =
-                |mode: &SmolStr| prior.iter().find(|(known, _)| known == mode).map(|(_, weight)| *weight);
-            // Of several greatest ones the last is taken.
-            modes.iter().rev().filter(|mode| weight(mode).is_some()).max_by_key(|mode| weight(mode))
-        }
-    };
-    named.or_else(|| modes.first()).cloned()
 }
 
 struct Merger<'file> {
@@ -159,9 +150,11 @@ impl<'file> Merger<'file> {
             let (kind, name) = match &field.kind {
                 FieldKind::Variable { name, .. }
                 | FieldKind::Command { name, .. }
-                | FieldKind::Port { name, .. } => ("name", name),
+                | FieldKind::Port { name, .. }
+                | FieldKind::Part { name, .. } => ("name", name),
+                FieldKind::Method { name, .. } => ("method", name),
                 FieldKind::Mode { name, .. } => ("mode", name),
-                FieldKind::Transition { .. } | FieldKind::Fault { .. } => continue,
+                FieldKind::Transition { .. } | FieldKind::Fault { .. } | FieldKind::Behavior(_) => continue,
             };
             if names.contains(&(kind, name.text.as_str())) {
                 self.error(
@@ -266,6 +259,20 @@ impl<'file> Merger<'file> {
                         merged.ports.retain(|(known, _)| known.text != name.text);
                         merged.ports.push((name, class));
                     }
+                    FieldKind::Part { name, class, ports, initial } => {
+                        let part = MergedPart { name, class, ports, initial, span: field.span };
+                        match merged.parts.iter_mut().find(|known| known.name.text == name.text) {
+                            Some(known) => *known = part,
+                            None => merged.parts.push(part),
+                        }
+                    }
+                    FieldKind::Method { name, parameters, body } => {
+                        let method = MergedMethod { name, parameters, body, span: field.span };
+                        match merged.methods.iter_mut().find(|known| known.name.text == name.text) {
+                            Some(known) => *known = method,
+                            None => merged.methods.push(method),
+                        }
+                    }
                     FieldKind::Mode { name, constraint } => {
                         match merged.modes.iter_mut().find(|(known, _)| known.text == name.text) {
                             Some((_, constraints)) => constraints.push(constraint),
@@ -273,6 +280,8 @@ impl<'file> Merger<'file> {
                         }
                     }
                     FieldKind::Transition { .. } | FieldKind::Fault { .. } => overridden = true,
+                    // What it means is written out before classes are merged.
+                    FieldKind::Behavior(_) => {}
                 }
             }
             if overridden {

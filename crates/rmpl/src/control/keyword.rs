@@ -32,7 +32,7 @@ pub const EXPRESSION_KEYWORDS: [&str; 19] = [
 pub(super) const TIMED_KEYWORDS: &[&str] = EXPRESSION_KEYWORDS.split_at(9).1;
 
 /// The heads of options and of the model part, and the words inside its fields.
-pub const MODEL_KEYWORDS: [&str; 14] = [
+pub const MODEL_KEYWORDS: [&str; 17] = [
     "DEFSTEP",
     "DEFOPTION",
     "DEFCLASS",
@@ -40,6 +40,9 @@ pub const MODEL_KEYWORDS: [&str; 14] = [
     "VAR",
     "COMMAND",
     "PORT",
+    "PART",
+    "METHOD",
+    "BEHAVIOR",
     "MODE",
     "TRANSITION",
     "FAULT",

@@ -4,6 +4,7 @@
 
 mod check;
 mod check_timed;
+mod components;
 mod detect;
 mod display;
 mod duration;
@@ -13,6 +14,7 @@ mod highlight;
 mod inherit;
 mod keyword;
 mod lexer;
+mod methods;
 mod probabilities;
 mod read_constraint;
 mod read_model;
@@ -24,16 +26,18 @@ mod syntax;
 mod tree;
 mod visit;
 
+pub use components::{ComponentModes, MAX_COMPONENTS, PlantComponent, PlantComponents, component_modes};
 pub use detect::is_control_text;
 pub use duration::{Duration, DurationError};
 pub use expand::expand_main;
 pub use format::format;
 pub use highlight::{Highlight, HighlightKind, highlight};
 pub use inherit::{
-    ComponentModes, MergedClass, MergedFault, MergedTransition, MergedVariable, component_modes, merge_all,
+    MergedClass, MergedFault, MergedMethod, MergedPart, MergedTransition, MergedVariable, merge_all,
 };
 pub use keyword::{EXPRESSION_KEYWORDS, MODEL_KEYWORDS};
 pub use lexer::{Token, TokenKind, lex};
+pub use methods::without_places;
 pub use probabilities::weights as probability_weights;
 pub use suggest::nearest;
 pub use syntax::{
@@ -68,13 +72,24 @@ impl ParsedControl {
 pub fn parse(text: &str) -> ParsedControl {
     let tokens = lex(text);
     let (tree, mut diagnostics) = tree::build(text, &tokens);
-    let (file, found) = read_program::read(text, &tree);
+    let (mut file, found) = read_program::read(text, &tree);
+    file.methods = methods_of(&file);
     diagnostics.extend(found);
     diagnostics.extend(check::check(&file));
     diagnostics.extend(check_timed::check_steps(&file));
     diagnostics.extend(probabilities::check(&file));
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
     ParsedControl { tokens, tree, file, diagnostics: crate::diagnostic::listed(diagnostics) }
+}
+
+/// The methods of all components of a file.
+fn methods_of(file: &ControlFile) -> Vec<Definition> {
+    let fields = file.classes.iter().flat_map(|class| &class.fields);
+    if !fields.into_iter().any(|field| matches!(field.kind, FieldKind::Method { .. })) {
+        return Vec::new();
+    }
+    let (classes, _) = merge_all(file);
+    methods::definitions(&PlantComponents::new(file, &classes), &classes)
 }
 
 #[cfg(test)]

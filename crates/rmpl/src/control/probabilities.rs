@@ -5,7 +5,7 @@ use exact::Rational;
 use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{duplicate, option, probability};
 
-use super::syntax::{ControlFile, Initial, Instance, Name};
+use super::syntax::{ControlFile, FieldKind, Initial, Name};
 
 /// The one option that a control program has.
 const ENTAILMENT: &str = "entailment";
@@ -18,11 +18,11 @@ impl ControlFile {
     }
 }
 
-impl Instance {
+impl Initial {
     /// The modes that its prior names with their weights, which sum to what a probability of 1 weighs; empty without a
     /// prior, or with one that is wrong.
     pub fn prior(&self) -> Vec<(&str, u64)> {
-        let Initial::Prior(prior) = &self.initial else { return Vec::new() };
+        let Self::Prior(prior) = self else { return Vec::new() };
         let sums = |(weights, common): &(Vec<u64>, u64)| {
             weights.iter().map(|weight| u128::from(*weight)).sum::<u128>() == u128::from(*common)
         };
@@ -66,12 +66,19 @@ pub(super) fn check(file: &ControlFile) -> Vec<Diagnostic> {
             diagnostics.push(probability::not_an_entailment(&option.value.text, option.value.span));
         }
     }
-    file.instances.iter().for_each(|instance| check_prior(instance, &mut diagnostics));
+    for instance in &file.instances {
+        check_prior(&instance.name, &instance.initial, &mut diagnostics);
+    }
+    for field in file.classes.iter().flat_map(|class| &class.fields) {
+        if let FieldKind::Part { name, initial, .. } = &field.kind {
+            check_prior(name, initial, &mut diagnostics);
+        }
+    }
     diagnostics
 }
 
-fn check_prior(instance: &Instance, diagnostics: &mut Vec<Diagnostic>) {
-    let Initial::Prior(prior) = &instance.initial else { return };
+fn check_prior(component: &Name, initial: &Initial, diagnostics: &mut Vec<Diagnostic>) {
+    let Initial::Prior(prior) = initial else { return };
     let before = diagnostics.len();
     for (at, (mode, given)) in prior.iter().enumerate() {
         if prior.iter().take(at).any(|(earlier, _)| earlier.text == mode.text) {
@@ -91,7 +98,7 @@ fn check_prior(instance: &Instance, diagnostics: &mut Vec<Diagnostic>) {
     });
     if sum != Some(Rational::ONE) {
         let sum = sum.map(|sum| sum.to_string());
-        diagnostics.push(probability::sum(&instance.name.text, sum.as_deref(), first.span.cover(last.span)));
+        diagnostics.push(probability::sum(&component.text, sum.as_deref(), first.span.cover(last.span)));
     }
 }
 

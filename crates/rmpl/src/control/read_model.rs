@@ -9,7 +9,8 @@ use super::suggest::nearest;
 use super::syntax::{Class, Field, FieldKind, Initial, Instance, Name, ProgramOption};
 use super::tree::{List, Node};
 
-const FIELD_KEYWORDS: [&str; 6] = ["VAR", "COMMAND", "PORT", "MODE", "TRANSITION", "FAULT"];
+const FIELD_KEYWORDS: [&str; 9] =
+    ["VAR", "COMMAND", "PORT", "PART", "METHOD", "MODE", "TRANSITION", "FAULT", "BEHAVIOR"];
 
 impl Reader<'_> {
     /// Reads `(DEFCLASS name (supers) fields)`.
@@ -42,8 +43,13 @@ impl Reader<'_> {
         };
         let name = self.required_name(name, "the name of a component")?;
         let class = self.required_name(class, "the name of a class")?;
-        let mut instance =
-            Instance { name, class, ports: Vec::new(), initial: Initial::FirstMode, span: list.span };
+        let (ports, initial) = self.connections(rest)?;
+        Some(Instance { name, class, ports, initial, span: list.span })
+    }
+
+    /// Reads what follows the class of a component: `(port component)… [INIT initial]`.
+    fn connections(&mut self, rest: &[Node]) -> Option<(Vec<(Name, Name)>, Initial)> {
+        let (mut ports, mut initial) = (Vec::new(), Initial::FirstMode);
         let mut rest = rest;
         while let [node, after @ ..] = rest {
             rest = after;
@@ -52,7 +58,7 @@ impl Reader<'_> {
                     if let [port, component] = port.items.as_slice() {
                         let port = self.required_name(port, "the name of a port")?;
                         let component = self.required_name(component, "the name of a component")?;
-                        instance.ports.push((port, component));
+                        ports.push((port, component));
                     } else {
                         self.shape(
                             "E-ARITY",
@@ -65,7 +71,7 @@ impl Reader<'_> {
                 Node::Leaf(_) if self.is_word(node, "INIT") => {
                     let length = rest.iter().take_while(|node| matches!(node, Node::Leaf(_))).count();
                     let (given, after) = rest.split_at(length);
-                    instance.initial = self.initial(node, given);
+                    initial = self.initial(node, given);
                     rest = after;
                 }
                 Node::Leaf(_) => {
@@ -73,7 +79,7 @@ impl Reader<'_> {
                 }
             }
         }
-        Some(instance)
+        Some((ports, initial))
     }
 
     /// Reads what stands after `INIT`: a mode, `*`, or modes with their probabilities.
@@ -128,6 +134,9 @@ impl Reader<'_> {
             "VAR" => self.variable(list),
             "COMMAND" => self.command(list),
             "PORT" => self.port(list),
+            "PART" => self.component_part(list),
+            "METHOD" => self.method(list),
+            "BEHAVIOR" => self.behavior(list),
             "MODE" => self.mode(list),
             "TRANSITION" => self.transition(list),
             "FAULT" => self.fault(list),
@@ -206,6 +215,64 @@ impl Reader<'_> {
         };
         let name = self.required_name(name, "the name of a port")?;
         Some(FieldKind::Port { name, class: self.required_name(class, "the name of a class")? })
+    }
+
+    fn component_part(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, name, class, rest @ ..] = list.items.as_slice() else {
+            self.shape(
+                "E-ARITY",
+                list,
+                "PART takes a name, a class, and the components at its ports",
+                "(PART valve Valve (driver driver) INIT Closed)",
+            );
+            return None;
+        };
+        let name = self.required_name(name, "the name of a part")?;
+        let class = self.required_name(class, "the name of a class")?;
+        let (ports, initial) = self.connections(rest)?;
+        Some(FieldKind::Part { name, class, ports, initial })
+    }
+
+    fn method(&mut self, list: &List) -> Option<FieldKind> {
+        let [_, name, Node::List(parameters), body @ ..] = list.items.as_slice() else {
+            self.method_shape(list);
+            return None;
+        };
+        let [body] = Self::parts_of(body)[..] else {
+            self.method_shape(list);
+            return None;
+        };
+        let name = self.required_name(name, "the name of a method")?;
+        let parameters = self.names(&parameters.items, "the name of a parameter");
+        for (at, parameter) in parameters.iter().enumerate() {
+            if parameters.iter().take(at).any(|earlier| earlier.text == parameter.text) {
+                let message = format!("`{}` has two parameters `{}`", name.text, parameter.text);
+                self.error("E-DUP", parameter.span, message);
+            }
+        }
+        self.parameters = parameters.iter().map(|parameter| parameter.text.clone()).collect();
+        let body = self.part(body);
+        self.parameters.clear();
+        Some(FieldKind::Method { name, parameters, body })
+    }
+
+    fn behavior(&mut self, list: &List) -> Option<FieldKind> {
+        if let Some((_, body)) = list.items.split_first()
+            && let [body] = Self::parts_of(body)[..]
+        {
+            return Some(FieldKind::Behavior(self.part(body)));
+        }
+        self.shape("E-ARITY", list, "BEHAVIOR takes one expression", "(BEHAVIOR (ALWAYS (light = lit)))");
+        None
+    }
+
+    fn method_shape(&mut self, list: &List) {
+        self.shape(
+            "E-ARITY",
+            list,
+            "METHOD takes a name, parameters in parentheses, and one expression",
+            "(METHOD shut () (self = Closed))",
+        );
     }
 
     fn mode(&mut self, list: &List) -> Option<FieldKind> {

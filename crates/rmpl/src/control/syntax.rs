@@ -24,6 +24,8 @@ pub struct ControlFile {
     pub classes: Vec<Class>,
     /// The components in textual order.
     pub instances: Vec<Instance>,
+    /// The methods of the components' classes, each as a definition for its component.
+    pub methods: Vec<Definition>,
     /// The options in textual order.
     pub options: Vec<ProgramOption>,
     /// The lengths of a step that the text names, in textual order: one at most is right.
@@ -377,6 +379,25 @@ pub enum FieldKind {
         /// The class of what is connected there.
         class: Name,
     },
+    /// `(PART name class (port component)… [INIT initial])`.
+    Part {
+        /// What it is called.
+        name: Name,
+        class: Name,
+        /// What stands at its ports, in the names of the class.
+        ports: Vec<(Name, Name)>,
+        /// The modes in which it may start.
+        initial: Initial,
+    },
+    /// `(METHOD name (parameters) expression)`.
+    Method {
+        /// What it is called.
+        name: Name,
+        parameters: Vec<Name>,
+        body: Expression,
+    },
+    /// `(BEHAVIOR expression)`.
+    Behavior(Expression),
     /// `(MODE name constraint)`.
     Mode {
         /// What it is called.

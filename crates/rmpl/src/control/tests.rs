@@ -202,7 +202,8 @@ fn a_prior_and_a_threshold_are_read_exactly_wherever_they_stand() {
     assert_eq!(parsed.diagnostics, []);
     assert_eq!(parsed.file.entailment().map(|threshold| threshold.to_string()).as_deref(), Some("0.95"));
     let [p, q, r, s] = parsed.file.instances.as_slice() else { panic!("four components") };
-    let prior: Vec<String> = p.prior().into_iter().map(|(mode, weight)| format!("{mode} {weight}")).collect();
+    let prior: Vec<String> =
+        p.initial.prior().into_iter().map(|(mode, weight)| format!("{mode} {weight}")).collect();
     assert_eq!(prior, ["Off 9", "Idle 1"]);
     assert_eq!(p.ports[0].1.text, "Q", "a port may stand after the prior");
     assert_eq!((&q.initial, &s.initial), (&Initial::AnyMode, &Initial::FirstMode));
@@ -271,4 +272,65 @@ fn words_of_time_alone_do_not_make_a_mission_a_control_program() {
     assert!(!is_control_text("scenario S = { Drive(at), Move(wait); }"));
     assert!(is_control_text("(WAIT 3)"));
     assert!(is_control_text("(TIMEOUT 3 (x = a))"));
+}
+
+const METHODS: &str = "(DEFCLASS Driver () (MODE Off true) (MODE On true) (METHOD on () (self = On)))
+(DEFCLASS Valve () (PORT driver Driver) (PART seat Seat) (VAR flow {no yes})
+  (MODE Closed true) (MODE Open true)
+  (METHOD open (d c) (SEQUENCE (driver.on) (WAIT d) (seat.press) (PARALLEL (self = Open) c (flow = yes) (seat = Dry))))
+  (METHOD shut () (WHEN-DONEXT ~(driver = Off) (DO-WATCHING (flow = no) (self = Closed)))))
+(DEFCLASS Quick (Valve) (METHOD shut () (self = Closed)))
+(DEFCLASS Seat () (MODE Dry true) (METHOD press () (self = Dry)))
+(DEFINSTANCE D Driver) (DEFINSTANCE V Valve (driver D)) (DEFINSTANCE Q Quick (driver D))
+";
+
+/// A program laid out in one line, after its calls are expanded.
+fn expanded(program: &str) -> Result<String, Vec<&'static str>> {
+    let parsed = parse(&format!("{METHODS}{program}"));
+    let (body, found) = expand_main(&parsed.file);
+    let codes: Vec<&str> = parsed.diagnostics.iter().chain(&found).map(|found| found.code.0).collect();
+    if codes.is_empty() { Ok(shown(&body.expect("a program"))) } else { Err(codes) }
+}
+
+fn shown(expression: &Expression) -> String {
+    let parts: Vec<String> = expression.parts().into_iter().map(shown).collect();
+    let own = match &expression.kind {
+        ExpressionKind::Assert(constraint) => constraint.to_string(),
+        ExpressionKind::Wait(duration) => format!("wait {}", duration.text),
+        _ => expression.guard().map(ToString::to_string).unwrap_or_default(),
+    };
+    if parts.is_empty() { own } else { format!("{own}[{}]", parts.join(" ")) }
+}
+
+#[test]
+fn a_method_means_its_component_and_what_is_at_its_ports_and_inside_it() {
+    assert_eq!(
+        expanded("Main ():: (V.open 3s (X = y))").as_deref(),
+        Ok("[D=On wait 3s V.seat=Dry [V=Open X=y V.flow=yes V.seat=Dry]]")
+    );
+    assert_eq!(expanded("Main ():: (V.shut)").as_deref(), Ok("~D=Off[V.flow=no[V=Closed]]"));
+    assert_eq!(expanded("Main ():: (Q.shut)").as_deref(), Ok("Q=Closed"), "the most specific method counts");
+    assert_eq!(expanded("Main ():: (V.open 3s)"), Err(vec!["E-ARITY", "E-UNDEF"]));
+    assert_eq!(expanded("Main ():: (V.turn)"), Err(vec!["E-UNDEF", "E-UNDEF"]));
+    // Without a plant, methods may be those of another text.
+    assert_eq!(parse("Main ():: (V.turn)").diagnostics, []);
+}
+
+#[test]
+fn methods_that_call_each_other_in_a_cycle_are_one_mistake() {
+    let text = "(DEFCLASS A () (MODE M true) (METHOD one () (two)) (METHOD two () (self.one)))
+(DEFINSTANCE a A) (DEFINSTANCE b A)
+Main ():: (a.one)";
+    let codes: Vec<&str> = parse(text).diagnostics.iter().map(|found| found.code.0).collect();
+    assert_eq!(codes, ["E-RECURSION"]);
+}
+
+#[test]
+fn parts_and_methods_are_laid_out_like_other_fields() {
+    let text = "(DEFCLASS V () (PART seat Seat (owner self) INIT Dry 0.5 Wet 0.5) (METHOD open (d) (SEQUENCE (WAIT d) (self = Open)))\n  (TRANSITION * Open (cmd = open) 0.5) (FAULT * Stuck 0.001 (cmd = open)) (VAR v {x y} OBSERVABLE ERROR 0.1))\n";
+    let laid_out = format(text);
+    assert_eq!(format(&laid_out), laid_out);
+    assert!(laid_out.contains("(METHOD open (d) (SEQUENCE (WAIT d) (self = Open)))"), "{laid_out}");
+    assert!(laid_out.contains("(FAULT * Stuck 0.001 (cmd = open))"), "{laid_out}");
+    assert_eq!(parse(&laid_out).diagnostics, []);
 }

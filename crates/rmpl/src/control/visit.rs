@@ -71,7 +71,7 @@ impl Expression {
 
 impl Constraint {
     /// Changes it and all of its parts, parts first.
-    fn change(&mut self, change: &mut dyn FnMut(&mut Self)) {
+    pub(super) fn change(&mut self, change: &mut dyn FnMut(&mut Self)) {
         match &mut self.kind {
             ConstraintKind::Not(inner) => inner.change(change),
             ConstraintKind::And(parts) | ConstraintKind::Or(parts) => {

@@ -26,6 +26,7 @@ pub mod probability;
 pub mod recursion;
 pub mod resource;
 pub mod similar;
+pub mod size;
 pub mod slack;
 pub mod support;
 pub mod syntax;
@@ -57,6 +58,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &recursion::EXPLANATION,
     &no_scenario::EXPLANATION,
     &limit::EXPLANATION,
+    &size::EXPLANATION,
     &resource::EXPLANATION,
     &kind::EXPLANATION,
     &model::EXPLANATION,

@@ -12,8 +12,9 @@ fn codes(text: &str) -> Vec<&'static str> {
 }
 
 /// Kinds that only compiling or planning can report.
-const LATER: [&str; 13] = [
+const LATER: [&str; 14] = [
     "E-AMBIGUOUS",
+    "E-SIZE",
     "E-KIND",
     "E-MODEL",
     "E-NOSCENARIO",

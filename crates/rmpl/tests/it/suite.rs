@@ -128,6 +128,7 @@ fn every_kind_of_diagnostic_occurs_in_the_manual() {
         "E-CONSTRAINT",
         "E-PROBABILITY",
         "E-AMBIGUOUS",
+        "E-SIZE",
         "W-ENCOUNTER",
         "W-EXOGENOUS",
         "W-PLANT",

@@ -27,7 +27,7 @@ pub(crate) const LAYERS: &[(&str, &[&str])] = &[
     ("verify", &["tpn"]),
     ("motion", &["terrain"]),
     ("hca", &["rmpl", "markup"]),
-    ("plant", &["rmpl"]),
+    ("plant", &["hca"]),
     ("executive", &["kirk", "controllability", "motion", "hca", "plant"]),
     ("snapshot", &["executive", "verify"]),
     ("review", &["snapshot"]),
