@@ -128,5 +128,5 @@ fn offer(ui: &Ui, context: &Context<'_>, change: Change, commands: &mut CommandS
 }
 
 fn layer(name: &'static str) -> LayerId {
-    LayerId::new(Order::Tooltip, Id::unique(("carried", name)))
+    LayerId::new(Order::Tooltip, Id::unique(("dragged", name)))
 }

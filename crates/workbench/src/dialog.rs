@@ -60,7 +60,6 @@ pub enum Dialog {
         /// Whether the file at the caret gets it; otherwise a new one does.
         renames: bool,
     },
-    /// All settings.
     Settings,
     /// Lists all keys.
     Keys,

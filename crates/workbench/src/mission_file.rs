@@ -26,7 +26,7 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         name: "enroute",
         title: "Enroute",
-        about: "Two rovers drive together by whichever path is open, report, and wait for permission to proceed.",
+        about: "Two rovers drive together along the path that is open, report, and wait for permission to proceed.",
         source: include_str!("../../../assets/missions/enroute.rmpl"),
     },
     Example {
@@ -122,7 +122,7 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         name: "flyby",
         title: "Camera failover",
-        about: "A probe looks at a comet through whichever of its two cameras starts.",
+        about: "A probe looks at a comet through the first of its two cameras that starts.",
         source: include_str!("../../../assets/missions/flyby.rmpl"),
     },
     Example {

@@ -130,7 +130,7 @@ fn text_and_terrain(ui: &mut Ui, context: &Context<'_>, views: &mut Views) {
     let [least, most] = HEIGHT_SCALES;
     let scale = &mut views.terrain.height_scale;
     ui.add(Slider::new(scale, least..=most).step_by(0.5).text("Vertical exaggeration"));
-    ui.checkbox(&mut views.terrain.names, "Names of places and vehicles");
+    ui.checkbox(&mut views.terrain.names, "Place and vehicle names");
     ui.checkbox(&mut views.terrain.grid, "Grid in mission coordinates");
     ui.add_space(space::S);
     let note = "Each panel has more under Show.";

@@ -103,6 +103,8 @@ fn the_list_opens_renames_duplicates_deletes_and_brings_back() {
     click(&mut app, "Restore Twin");
     assert_eq!(names(&app).len(), 2);
     list(&mut app);
+    app.harness.get_by_label("Open Enroute (copy)").scroll_to_me();
+    app.settle();
     click(&mut app, "Open Enroute (copy)");
     assert_eq!(app.json()["dialog"], json!(null));
     assert_eq!(app.json()["mission"], "Enroute (copy)");

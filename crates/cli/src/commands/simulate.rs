@@ -30,7 +30,7 @@ pub struct Args {
     /// Use worst-case contingent durations.
     #[arg(long)]
     adversary: bool,
-    /// Seed for random durations [default: that of the script, otherwise --seed].
+    /// Seed for random durations [default: that of the script or of --seed].
     #[arg(long, value_name = "SEED")]
     run_seed: Option<u64>,
     #[command(flatten)]

@@ -133,7 +133,7 @@ fn a_map_is_read_from_the_missions_own_folder_only() {
         let refused = plan(outside);
         assert_eq!(refused.status.code(), Some(2), "{outside}: {refused:?}");
         let told = String::from_utf8_lossy(&refused.stderr);
-        assert!(told.contains("in the mission's folder"), "{told}");
+        assert!(told.contains("into the mission's folder"), "{told}");
     }
 }
 

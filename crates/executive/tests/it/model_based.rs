@@ -181,7 +181,7 @@ fn contradicting_and_impossible_goals_are_reported_and_the_others_still_pursued(
     let record = &run.records()[0];
     let goals: Vec<&str> = record.unachievable.iter().map(|(goal, _)| goal.as_str()).collect();
     assert_eq!(goals, ["EngineA=Firing", "EngineA=Standby", "EngineB=Failed", "false"]);
-    assert!(record.unachievable[0].1.contains("contradict"), "{:?}", record.unachievable);
+    assert!(record.unachievable[0].1.contains("inconsistent"), "{:?}", record.unachievable);
     assert_eq!(record.unachievable[2].1, "no commanded transition of `EngineB` leads from Off to Failed");
     let commands = system.model.command_names(&record.commands);
     assert_eq!(commands, BTreeMap::from([("Camera".to_owned(), "turn-off".to_owned())]));

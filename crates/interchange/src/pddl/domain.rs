@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use exact::Rational;
 
-use super::PddlError;
+use super::error::PddlError;
 use super::tree::Tree;
 
 /// What `:constraints` are called.
@@ -515,7 +515,7 @@ impl Reader<'_> {
             };
             all.extend(untyped.drain(..).map(|name| (name, kinds.clone())));
         }
-        all.extend(untyped.into_iter().map(|name| (name, vec![super::OBJECT.to_owned()])));
+        all.extend(untyped.into_iter().map(|name| (name, vec![super::names::OBJECT.to_owned()])));
         Ok(all)
     }
 }

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use exact::Rational;
 
 use super::domain::{Application, Comparison, Effect, Expr, Formula, Metric, Schema, Task, Typed, When};
-use super::{OBJECT, PddlError};
+use super::error::PddlError;
+use super::names::OBJECT;
 
 /// How many times an object may be put in the place of a parameter.
 const MAX_BINDINGS: usize = 2_000_000;

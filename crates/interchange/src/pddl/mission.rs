@@ -6,15 +6,11 @@ use std::fmt::Write as _;
 use exact::Rational;
 
 use super::domain::Task;
+use super::error::PddlError;
 use super::ground::{Action, Atom, Conditions, Fluent, Ground, Linear, Names, Snap};
 use super::groups::Groups;
+use super::names::{BEFORE_PART, BETWEEN_WORDS, EPSILON, INSTANT, body_of};
 use super::numbers::{Range, Side, ranges};
-use super::{BEFORE_PART, BETWEEN_WORDS, EPSILON, PddlError};
-
-/// What the activity of an action that takes no time is called, behind its name.
-pub(super) const INSTANT: &str = "instant";
-/// What the conditions of an action are called that its own start makes true.
-pub(super) const BODY: &str = "body";
 
 /// What the state of an object's group is called, behind the object.
 const IS: &str = "is";
@@ -219,7 +215,7 @@ impl<'ground> Writer<'ground> {
         let end = self.snap(&action.end, None, &format!("{name}{BEFORE_PART}end"), &place)?;
         if rests_on_start {
             let shorter = |time: Rational| time.checked_sub(self.epsilon).ok_or(PddlError::Number);
-            let body = super::body_of(&name);
+            let body = body_of(&name);
             let (shortest, longest) = (shorter(least)?, greatest.map(shorter).transpose()?);
             self.primitive(&body, shortest, longest, &(clauses + &worth));
             let steps = start.into_iter().chain([format!("{body}()")]).collect::<Vec<_>>().join("; ");

@@ -6,7 +6,7 @@ use std::collections::btree_map::Entry;
 
 use exact::Rational;
 
-use super::PddlError;
+use super::error::PddlError;
 use super::ground::{Action, Conditions, Fluent, Ground, Need, Snap};
 
 /// The range of a number, whatever the plan is.

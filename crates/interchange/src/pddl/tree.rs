@@ -1,6 +1,6 @@
 //! Lists in parentheses, as PDDL is written: words in lower case, since PDDL does not tell cases apart.
 
-use super::PddlError;
+use super::error::PddlError;
 
 /// How deep lists may nest.
 const MAX_DEPTH: usize = 200;

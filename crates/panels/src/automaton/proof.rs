@@ -42,7 +42,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let mut settings = proof.settings.clone();
     let muted = |text: &str| RichText::new(text).color(context.tokens.text_muted);
     let label = ui.label(muted("Properties")).id;
-    let hint = "never A = On; A = Failed leads to B = On within 5 s";
+    let hint = "ends; never A = On";
     let edit = TextEdit::singleline(&mut settings.properties).hint_text(hint).desired_width(f32::INFINITY);
     let edited = ui.add(edit).labelled_by(label);
     let is_entered = edited.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));

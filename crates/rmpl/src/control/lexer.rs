@@ -42,6 +42,7 @@ impl TokenKind {
     }
 }
 
+/// A piece of the text, of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Token {
     pub kind: TokenKind,

@@ -22,7 +22,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     when(
         plain(
             "draw.addBeside",
-            "Add activity at the same time",
+            "Add parallel activity",
             Group::Draw,
             &[keys(SHIFT, Key::A)],
             Scope::NotTyping,

@@ -385,6 +385,7 @@ fn a_review_of_a_later_version_is_never_written_over() {
     let world = Rc::<test_support::World>::default();
     let newer = json!({ "format": "enroute-review/4", "votes": [1, 2] }).to_string();
     world.storage.borrow_mut().insert(KEY.into(), newer.clone());
+    "mission=enroute".clone_into(&mut world.fragment.borrow_mut());
     let mut app = test_support::start_in(Rc::clone(&world));
     app.settle();
     app.sign_as("Ada");

@@ -179,7 +179,7 @@ fn the_manual_is_asked_about_the_word_at_the_caret_and_about_the_place_under_the
     }
     app.run(Command::Editor(EditorCommand::Hover(None)));
     app.run(Command::Manual(ManualCommand::About(PanelKind::Timeline)));
-    assert_eq!(place(&app), "timeline#");
+    assert_eq!(place(&app), "timeline-panel#");
 }
 
 #[test]

@@ -409,7 +409,7 @@ fn missions_are_begun_named_copied_deleted_and_brought_back() {
     // What was before it is open again.
     assert_eq!((names(&app), text_of(&app)), (vec!["Sol 12".to_owned()], EDITED.to_owned()));
     app.dispatch("file.delete", &Value::Null);
-    assert_eq!(app.session.state().mission, "enroute");
+    assert_eq!(app.session.state().mission, "both-paths");
     app.dispatch("file.restore", &Value::Null);
     app.dispatch("file.restore", &Value::Null);
     assert_eq!(names(&app).len(), 2);

@@ -64,7 +64,7 @@ pub(super) fn wrap(parse: &Parse, site: &Site<'_>, wrapping: &Wrapping) -> Resul
 pub(super) fn unwrap(parse: &Parse, site: &Site<'_>) -> Result<Vec<Edit>, String> {
     let own = unwrapped(parse.text(), site.node);
     let outer = || site.outer(parse).and_then(|outer| unwrapped(parse.text(), outer.node));
-    let edit = own.or_else(outer).ok_or("There is nothing around it that can be taken away")?;
+    let edit = own.or_else(outer).ok_or("No surrounding construct to remove")?;
     Ok(vec![edit])
 }
 

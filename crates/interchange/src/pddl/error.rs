@@ -1,0 +1,29 @@
+//! What keeps a problem from becoming a mission.
+
+/// Why a domain and a problem are no mission.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PddlError {
+    /// It is not PDDL, or not well formed.
+    #[error("{file}, line {line}: {what}")]
+    Shape { file: String, line: u32, what: String },
+    /// It is PDDL that no mission can say.
+    #[error("{file}, line {line}: {what} is not supported")]
+    Unsupported { file: String, line: u32, what: String },
+    /// The same, of an action on objects or of the goal.
+    #[error("{place}: {what} is not supported")]
+    Said { place: String, what: &'static str },
+    #[error("{place} speaks of `{name}`, which is not an object; declare it in :objects or :constants")]
+    Unknown { place: String, name: String },
+    #[error("`{name}` is not a name in RMPL; rename it: letters, digits, and single `-` and `_` inside")]
+    Name { name: String },
+    #[error("the problem belongs to the domain `{wanted}`, but the domain is called `{found}`")]
+    OtherDomain { wanted: String, found: String },
+    #[error("the problem has no :goal")]
+    NoGoal,
+    #[error("the goal can never be true")]
+    NeverTrue,
+    #[error("there are more than {most} {what}; use a smaller problem")]
+    TooMany { what: &'static str, most: usize },
+    #[error("a number is too large to represent exactly")]
+    Number,
+}
