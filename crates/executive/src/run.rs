@@ -131,7 +131,7 @@ struct Run<'a> {
     odometers: VecDeque<Odometer>,
     /// How many meters more than their paths have traverses have driven so far.
     extra_m: BTreeMap<OccurrenceId, Rational>,
-    /// How many meters more, or fewer, than their paths have the plan has counted for traverses.
+    /// How many meters more than their paths have the plan counts for traverses at most, and how many fewer at least.
     counted_margins: BTreeMap<OccurrenceId, [Rational; 2]>,
     /// How many of the world's changes have happened.
     num_changes: usize,
@@ -316,13 +316,12 @@ impl Run<'_> {
                 continue;
             }
             // What the world reports comes whether it is its turn or not.
-            let is_driven = self.is_driven(point)?;
-            if !is_driven && !self.stage.is_next(node) {
+            if !self.stage.is_next(node) && !self.is_reported(point)? {
                 continue;
             }
             // What comes together with a report waits for it.
             let waits = driven.contains(&self.stage.dispatch.component(point));
-            if !is_settled && waits && !is_driven {
+            if !is_settled && waits && !self.is_driven(point)? {
                 continue;
             }
             let Some(next) = self.candidate(point, node)? else { continue };
@@ -416,8 +415,25 @@ impl Run<'_> {
         Ok(driven)
     }
 
-    /// Whether the world has decided when a point happens, or that it does not.
+    /// Whether the world has decided when a point happens at the earliest, or that it does not.
     fn is_driven(&self, point: PointId) -> Result<bool, PlanError> {
+        self.is_decided(point, |_| true)
+    }
+
+    /// Whether the world has decided when a point happens, or that it does not, and nobody can hold it until its turn: what is
+    /// early and waits, such as a vehicle that has arrived, is over when the plan lets it be.
+    fn is_reported(&self, point: PointId) -> Result<bool, PlanError> {
+        self.is_decided(point, |decider| match decider {
+            Decider::Nature(_) => true,
+            Decider::Event(event) => {
+                let ends = self.executions.get(&event.occurrence).filter(|_| event.end == EventEnd::End);
+                !matches!(ends, Some(Ends::NotBefore(_)))
+            }
+        })
+    }
+
+    /// Whether one of these deciders has decided when a point happens, or that it does not.
+    fn is_decided(&self, point: PointId, counts: impl Fn(&Decider) -> bool) -> Result<bool, PlanError> {
         let planned = self.stage.window(point).0.max(self.now);
         let node = self.stage.made.node(point);
         if self.is_natures(node) {
@@ -428,7 +444,7 @@ impl Run<'_> {
             };
             return Ok(self.stage.natures.get(&node).is_some_and(|arcs| arcs.iter().all(began)));
         }
-        for decider in self.deciders(node) {
+        for decider in self.deciders(node).into_iter().filter(counts) {
             let decided = self.decision(&decider, planned).map_err(|_| self.too_large(node))?;
             if decided.is_some_and(|decided| !matches!(decided, ByWorld::Free)) {
                 return Ok(true);

@@ -81,7 +81,7 @@ impl Run<'_> {
         if is_over || !self.stage.dispatch.is_enabled(point) {
             return Ok(None);
         }
-        if frontier.missing[node.index()] > 0 && !self.is_driven(point)? {
+        if frontier.missing[node.index()] > 0 && !self.is_reported(point)? {
             return Ok(None);
         }
         self.candidate(point, node)
@@ -91,9 +91,12 @@ impl Run<'_> {
     /// it has to come earlier at once.
     fn look_at(&mut self, point: PointId) -> Result<(), PlanError> {
         let Some(next) = self.waiting_point(point)? else {
-            // Only the adversary knows when, and nobody goes on before.
-            if self.is_natures(self.stage.made.node(point)) && self.is_driven(point)? {
-                self.stage.dispatch.expect(point, i64::MAX);
+            let node = self.stage.made.node(point);
+            if self.stage.times[node.index()].is_none() && self.is_driven(point)? {
+                // Only the adversary knows when nature ends, and nobody goes on before. Nor before what waits for its turn.
+                let next = if self.is_natures(node) { None } else { self.candidate(point, node)? };
+                let ticks = next.and_then(|next| self.stage.made.scale().ticks(next.time).ok());
+                self.stage.dispatch.expect(point, ticks.unwrap_or(i64::MAX));
             }
             return Ok(());
         };

@@ -206,3 +206,20 @@ fn clearance_is_that_of_all_vehicles_of_a_formation() {
     let drives = run("R1, R2, R3");
     assert!(drives[0].least_clearance_m > together_m - 0.5, "{} m", drives[0].least_clearance_m);
 }
+
+#[test]
+fn who_is_there_early_waits_for_what_its_next_step_follows() {
+    let source = "location A (0, 0); location B (60, 0); location C (0, 40); location D (30, 40);
+        vehicle V0 : ATRV at A; vehicle V1 : ATRV at C; state Arm : {IN, OUT} = IN;
+        primitive Drive(r, to)[0,200] moves r speed (0.02, 0.5) requires Arm=IN;
+        primitive Stretch()[1,3] sets Arm=OUT; primitive Look() contingent [2,6];
+        scenario S[0,300] = { Drive(V0, B), { Drive(V1, D); Stretch() }, LOOK }";
+    // With and without a duration that nature chooses, plans are dispatched in different ways.
+    for look in ["delay", "{ Look(); delay }"] {
+        for seed in 0..4 {
+            let execution = executed(&source.replace("LOOK", look), seed);
+            let outcome = (execution.ending, violations(&execution));
+            assert_eq!(outcome, (Ending::Finished, Vec::new()), "{look}, seed {seed}");
+        }
+    }
+}
