@@ -71,14 +71,9 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         with_statement,
     ),
     when(
-        plain(
-            "draw.unordered",
-            "Allow any order with next activity",
-            Group::Draw,
-            &[],
-            Scope::Everywhere,
-            |state| make(state, |what| Change::Wrap(what, Wrapping::Unordered)),
-        ),
+        plain("draw.unordered", "Allow any order with next", Group::Draw, &[], Scope::Everywhere, |state| {
+            make(state, |what| Change::Wrap(what, Wrapping::Unordered))
+        }),
         with_statement,
     ),
     when(
