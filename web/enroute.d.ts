@@ -497,7 +497,7 @@ export type Review = {
   status: "information" | "passed" | "attention" | "failed" | null;
   counts: ReviewCounts | null;
   /** What the mission is held against: see section 16 of the specification. */
-  rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; rules: { name: string; rule: string; source: string; waivable: boolean }[]; board: { role: string; approvals: number }[] };
+  rules: { margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; rules: { name: string; rule: string; source: string; waivable: boolean }[]; board: { role: string; approvals: number; people: string[] }[] };
   items: Array<ReviewItem>;
   /** How the plan stands with its board. */
   planStatus: "draft" | "in-review" | "approved" | "approved-with-comments" | "lapsed" | null;

@@ -39,7 +39,7 @@ pub struct FreeSpace {
 const ROOM_M: [f64; 2] = [1.5, 0.5];
 
 struct Imported {
-    version: u32,
+    version: [u8; 32],
     map: Terrain,
 }
 
@@ -55,7 +55,7 @@ impl Grounds {
     pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<&Terrain, String> {
         let map = terrain::format::read_terrain(bytes, &ImportOptions::default())
             .map_err(|error| error.to_string())?;
-        let version = version(bytes);
+        let version = Sha256::digest(bytes).into();
         self.maps.retain(|key, _| key.asset != name);
         let name = SmolStr::new(name);
         self.imported.insert(name.clone(), Imported { version, map });
@@ -69,7 +69,7 @@ impl Grounds {
             return (self.flat(world), Vec::new());
         };
         let imported = self.imported.get(&declared.asset);
-        let version = imported.map_or(0, |imported| imported.version);
+        let version = imported.map(|imported| imported.version);
         // A map of a file has its own scale and place, unless the mission says others.
         let of_file = imported.map(|imported| imported.map.frame());
         let cell_m = declared.cell_m.or(of_file.map(|frame| frame.cell_size_m));
@@ -133,7 +133,7 @@ impl Grounds {
             asset: SmolStr::default(),
             cell_mm: (cell_m * 1000.0).ceil() as u32,
             origin_mm: origin_m.map(|meters| (meters * 1000.0).floor() as i64).into(),
-            version: 0,
+            version: None,
         };
         let frame = GridFrame {
             width: FLAT_CELLS,
@@ -152,13 +152,6 @@ impl Grounds {
         Diagnostic::error(Code("E-UNDEF"), declared.asset_span, message)
             .with_hint(format!("import a map file with this name, or use one of: {}", known.join(", ")))
     }
-}
-
-/// Tells files apart that are imported under the same name, in this run or another; never 0.
-fn version(bytes: &[u8]) -> u32 {
-    let hash = Sha256::digest(bytes);
-    let first = [hash[0], hash[1], hash[2], hash[3]];
-    u32::from_le_bytes(first).max(1)
 }
 
 /// The least and greatest coordinates of the places of a world.

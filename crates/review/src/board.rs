@@ -83,9 +83,7 @@ impl<'a> Present<'a> {
             _ if approval.content_hash != self.content_hash => Some("text, map, goal or seed are others"),
             Some(plan_hash) if is_known && approval.plan_hash != plan_hash => Some("the plan is another one"),
             _ if subject.rules != *self.rules => Some("the flight rules are others"),
-            _ if self.review.is_some_and(|review| !accepted.are_signed(approval, review)) => {
-                Some("the acknowledgments are others")
-            }
+            _ if !accepted.hold_for(approval, self.review) => Some("the acknowledgments are others"),
             _ => None,
         }
     }
@@ -113,9 +111,13 @@ impl<'a> Accepted<'a> {
     }
 
     /// Whether an approval has signed an acknowledgment or a waiver that still holds for each line for attention that
-    /// somebody has accepted.
-    fn are_signed(&self, approval: &Entry, review: &Review) -> bool {
+    /// somebody has accepted. Without a review nobody knows the lines: all that it has signed has to hold.
+    fn hold_for(&self, approval: &Entry, review: Option<&Review>) -> bool {
         let signed: BTreeSet<&str> = approval.acknowledged.iter().map(String::as_str).collect();
+        let Some(review) = review else {
+            let known: BTreeSet<&str> = self.0.values().flatten().map(|entry| entry.digest()).collect();
+            return signed.is_subset(&known);
+        };
         for_attention(review).all(|(section, line)| {
             let accepted = self.of(section, line);
             accepted.is_empty() || accepted.iter().any(|entry| signed.contains(entry.digest()))
@@ -159,6 +161,8 @@ pub struct Approvals<'a> {
     pub role: &'a str,
     /// How many people have to approve.
     pub wanted: usize,
+    /// The role in the flight rules.
+    pub seat: &'a Seat,
     /// The approvals of the present plan, one of each person.
     pub given: Vec<&'a Entry>,
 }
@@ -218,12 +222,17 @@ pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
 
 /// The approvals of each role; a key counts once, by its first approval in a role of the board.
 fn seats<'a>(board: &'a [Seat], approvals: &[&'a Entry]) -> Vec<Approvals<'a>> {
-    let empty =
-        |seat: &'a Seat| Approvals { role: &seat.role, wanted: seat.approvals as usize, given: Vec::new() };
+    let empty = |seat: &'a Seat| {
+        let (role, wanted) = (seat.role.as_str(), seat.approvals as usize);
+        Approvals { role, wanted, seat, given: Vec::new() }
+    };
     let mut seats: Vec<Approvals<'a>> = board.iter().map(empty).collect();
     let mut keys = BTreeSet::new();
     for &entry in approvals {
-        let seat = seats.iter_mut().find(|seat| entry.role == seat.role);
+        let is_of = |it: &&mut Approvals<'_>| {
+            entry.role == it.role && entry.key.as_ref().is_some_and(|key| it.seat.admits(key))
+        };
+        let seat = seats.iter_mut().find(is_of);
         if let Some(seat) = seat.filter(|_| keys.insert(&entry.key)) {
             seat.given.push(entry);
         }
@@ -303,8 +312,14 @@ impl Standing<'_> {
     /// Whether the owner of a key may approve in a role; `Err` says why not.
     pub fn may_approve(&self, key: &PublicKey, role: &str) -> Result<(), String> {
         let blockers = self.blockers();
-        if !self.seats.iter().any(|seat| seat.role == role) {
+        let Some(wanted) = self.seats.iter().find(|seat| seat.role == role) else {
             return Err(format!("the board has no role \"{role}\""));
+        };
+        if !wanted.seat.admits(key) {
+            return Err(format!(
+                "the key {} does not approve as {role}: the flight rules name who does",
+                key.fingerprint()
+            ));
         }
         let is_own = |entry: &&&Entry| entry.key.as_ref() == Some(key);
         let given = self.seats.iter().find_map(|seat| Some((seat, seat.given.iter().find(is_own)?)));

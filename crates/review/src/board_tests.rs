@@ -21,7 +21,7 @@ fn who(by: &str, role: &str, review: &Review, time: &str) -> Who {
 
 /// A board of two in Science and one in Mobility.
 fn rules() -> FlightRules {
-    let seat = |role: &str, approvals| Seat { role: role.to_owned(), approvals };
+    let seat = |role: &str, approvals| Seat::new(role, approvals);
     FlightRules { board: vec![seat("Science", 2), seat("Mobility", 1)], ..FlightRules::default() }
 }
 
@@ -223,8 +223,7 @@ fn what_has_failed_or_has_no_plan_is_not_approved() {
 #[test]
 fn a_board_has_roles_with_names_of_their_own() {
     let board = |seats: &[(&str, u32)]| {
-        let seats =
-            seats.iter().map(|(role, approvals)| Seat { role: (*role).to_owned(), approvals: *approvals });
+        let seats = seats.iter().map(|(role, approvals)| Seat::new(role, *approvals));
         FlightRules { board: seats.collect(), ..FlightRules::default() }
     };
     assert_eq!(rules().problem(), None);

@@ -1,12 +1,12 @@
 //! Each way to cheat a board, tried: what is forged, moved, dropped, replayed or said by somebody else counts for nothing.
 
 use serde_json::{Value, json};
-use snapshot::Goal;
+use snapshot::{Goal, Robustness, RobustnessSettings, Tally, Uncertainty};
 
 use super::board::{PlanStatus, Present, standing};
 use super::check::Signature;
 use super::keys::{KeyError, KeyRing, Person, PublicKey, SecretKey};
-use super::record::{Act, Entry, LineKey, Record, RecordError, Said, Subject, Who};
+use super::record::{Act, Entry, LineKey, Record, RecordError, Runs, Said, Subject, Who};
 use super::record_tests::{NOW, judged, key, trust};
 use super::seat::Seat;
 use super::tests::{LASTING, SCENARIO, reviewed};
@@ -24,11 +24,15 @@ struct Board {
 
 impl Board {
     fn new(source: &str) -> Self {
-        let seat = Seat { role: "Reviewer".to_owned(), approvals: 2 };
+        Self::of_mission("enroute", source)
+    }
+
+    fn of_mission(mission: &str, source: &str) -> Self {
+        let seat = Seat::new("Reviewer", 2);
         let rules = FlightRules { board: vec![seat], ..FlightRules::default() };
         let mut review = reviewed(source);
         review.judge(&rules, None);
-        let record = judged(Record::new("enroute"));
+        let record = judged(Record::new(mission));
         let mut board = Self { review, source: source.to_owned(), record, minute: 0 };
         board.say("Chair", Act::Rules { rules });
         board
@@ -167,8 +171,7 @@ fn a_key_has_one_name_and_its_two_halves_belong_together() {
 fn rules_that_change_lapse_approvals_and_rules_of_nobody_are_none() {
     let mut board = approved();
     let rules = board.record.rules().clone();
-    let one =
-        FlightRules { board: vec![Seat { role: "Reviewer".to_owned(), approvals: 1 }], ..rules.clone() };
+    let one = FlightRules { board: vec![Seat::new("Reviewer", 1)], ..rules.clone() };
     let flat = FlightRules { slope_deg: Some(1.0), ..rules.clone() };
     // An outsider asks for less: nobody heeds it.
     board.say_with("Eve", Act::Rules { rules: one.clone() }, &key("Eve"));
@@ -195,8 +198,9 @@ fn rules_that_change_lapse_approvals_and_rules_of_nobody_are_none() {
 fn said(who: Who) -> Said {
     let Who { by, role, time, content_hash, plan_hash } = who;
     let act = Act::Comment { about: None, to: None, text: "Fine.".to_owned() };
-    let (rules, acknowledged, former) = (String::new(), Vec::new(), Vec::new());
-    Said { by, key: None, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
+    let (mission, rules) = ("enroute".to_owned(), String::new());
+    let (acknowledged, former) = (Vec::new(), Vec::new());
+    Said { by, mission, key: None, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
 }
 
 /// A record to which somebody has written an entry by other means than this program.
@@ -206,6 +210,33 @@ fn with_entry(record: &Record, entry: &Entry) -> Record {
     document["entries"].as_array_mut().expect("a list").push(written);
     document["heads"] = json!([entry.digest()]);
     judged(Record::from_json(&document.to_string()).expect("it is whole"))
+}
+
+#[test]
+fn nobody_approves_in_the_role_of_somebody_else() {
+    let mut board = Board::new(LASTING);
+    let safety = Seat { people: vec![key("Grace").public()], ..Seat::new("Safety", 1) };
+    let board_of = |seat: Seat| FlightRules { board: vec![seat], ..FlightRules::default() };
+    board.say("Chair", Act::Rules { rules: board_of(safety.clone()) });
+    board.review.judge(board.record.rules(), None);
+    let may = |board: &Board, by: &str| {
+        standing(&board.record, &Present::of_review(&board.review)).may_approve(&key(by).public(), "Safety")
+    };
+    assert!(may(&board, "Ada").is_err_and(|why| why.contains("does not approve as Safety")));
+    assert_eq!(may(&board, "Grace"), Ok(()));
+    // Signed by other means, it is no approval of the role.
+    for by in ["Ada", "Grace"] {
+        let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, None);
+        let who = Who { role: "Safety".to_owned(), ..board.who(by) };
+        board.record.approve(who, subject, String::new(), Vec::new(), &key(by));
+        assert_eq!(board.status().is_approved(), by == "Grace", "{by}");
+    }
+    // A role cannot name fewer people than have to approve, or somebody twice.
+    for people in [vec![key("Ada")], vec![key("Ada"), key("Ada")]] {
+        let people = people.iter().map(SecretKey::public).collect();
+        assert!(board_of(Seat { people, ..Seat::new("Safety", 2) }).problem().is_some());
+    }
+    assert_eq!(board_of(safety).problem(), None);
 }
 
 #[test]
@@ -477,6 +508,134 @@ fn an_acknowledgment_is_of_a_place_and_not_only_of_words() {
 }
 
 #[test]
+fn acknowledgments_and_rules_of_another_mission_count_for_nothing() {
+    let mut theirs = Board::of_mission("elsewhere", SCENARIO);
+    let lax = FlightRules {
+        slope_deg: None,
+        board: vec![Seat::new("Reviewer", 1)],
+        ..theirs.record.rules().clone()
+    };
+    theirs.say("Chair", Act::Rules { rules: lax });
+    for line in unacknowledged(&theirs) {
+        theirs.say("Ada", Act::Acknowledge { line, text: "As meant there.".to_owned() });
+    }
+    assert!(unacknowledged(&theirs).is_empty());
+    // The same items at the same places, in a mission of the same text.
+    let mut mine = Board::new(SCENARIO);
+    let (open, rules) = (unacknowledged(&mine), mine.record.rules().clone());
+    assert!(!open.is_empty());
+    mine.record.merge(theirs.record.clone());
+    assert_eq!((unacknowledged(&mine), mine.record.rules()), (open.clone(), &rules));
+    assert!(
+        last_check(&mine.record).1.contains("the history of “elsewhere”"),
+        "{:?}",
+        last_check(&mine.record)
+    );
+    // The document says that it is of this mission, and the signatures say otherwise.
+    let renamed = theirs.read(|it| it["mission"] = json!("enroute")).expect("it is whole");
+    assert_eq!(renamed.counted().count(), 0);
+    let forged = forge(&theirs, |_, said| said["mission"] = json!("enroute"));
+    assert!(forged.checked().all(|(_, check)| check.signature == Signature::Broken));
+    mine.record.merge(renamed);
+    assert_eq!((unacknowledged(&mine), mine.record.rules()), (open, &rules));
+}
+
+/// The lines for attention that nobody has acknowledged.
+fn unacknowledged(board: &Board) -> Vec<LineKey> {
+    let mut review = board.review.clone();
+    review.judge(board.record.rules(), None);
+    let standing = standing(&board.record, &Present::of_review(&review));
+    standing.unacknowledged.iter().map(|(section, line)| LineKey::new(*section, line)).collect()
+}
+
+#[test]
+fn an_entry_from_the_future_keeps_nobody_from_taking_an_approval_back() {
+    for (by, secret) in [("Grace", key("Grace")), ("Eve", key("Eve"))] {
+        let mut board = approved();
+        let of = board.record.entries()[1].digest().to_owned();
+        let said = Said {
+            time: "2026-03-01T00:00:00Z".to_owned(),
+            former: board.record.heads().map(str::to_owned).collect(),
+            ..said(board.who(by))
+        };
+        board.record = with_entry(&board.record, &Entry::signed(said, &secret));
+        assert!(last_check(&board.record).1.contains("in the future"), "{:?}", last_check(&board.record));
+        board.say("Ada", Act::Withdraw { of, text: "Not read.".to_owned() });
+        assert_eq!(last_check(&board.record), (Signature::Valid, String::new()));
+        assert_eq!(board.status(), PlanStatus::InReview, "{by}");
+        // Not even when its day has come.
+        board.record.judge(&trust(&PEOPLE), "2026-04-01T00:00:00Z");
+        assert!(!board.status().is_approved());
+        let read = Record::from_json(&board.record.to_json()).map(judged).expect("it is whole");
+        assert_eq!(board.status_of(&read), PlanStatus::InReview);
+    }
+}
+
+#[test]
+fn an_approval_that_was_taken_back_is_not_handed_in_again() {
+    let mut board = approved();
+    let before = board.record.clone();
+    let of = board.record.entries()[1].digest().to_owned();
+    board.say("Ada", Act::Withdraw { of, text: "Not read.".to_owned() });
+    board.record.merge(before.clone());
+    assert_eq!(board.status(), PlanStatus::InReview);
+    let mut theirs = before;
+    theirs.merge(board.record.clone());
+    assert_eq!(board.status_of(&theirs), PlanStatus::InReview);
+}
+
+#[test]
+fn rules_and_resolutions_stay_and_an_entry_that_takes_them_back_does_not_count() {
+    let mut board = approved();
+    let to = Some(key("Grace").public());
+    let asked = board.say("Ada", Act::Comment { about: None, to, text: "Why so late?".to_owned() });
+    let resolved = board.say("Grace", Act::Resolve { of: asked, text: "It waits for light.".to_owned() });
+    let rules = board.record.entries()[0].digest().to_owned();
+    for (by, of) in [("Chair", rules), ("Grace", resolved)] {
+        board.say(by, Act::Withdraw { of: of.clone(), text: "No.".to_owned() });
+        assert!(last_check(&board.record).1.contains("can be withdrawn"), "{:?}", last_check(&board.record));
+        assert!(!board.record.withdrawn().contains_key(of.as_str()));
+    }
+    assert_eq!(board.status(), PlanStatus::Approved);
+}
+
+#[test]
+fn runs_with_chance_count_only_as_an_approval_has_signed_them() {
+    let mut board = Board::new(LASTING);
+    let content = board.review.content_hash.clone();
+    let found = tallied(90);
+    board.record.keep_runs(Runs::new(&content, &found));
+    // Nobody has signed them: whoever reads the document makes them again.
+    let mut read = board.read(|_| ()).expect("it is whole");
+    assert_eq!((read.drop_unsigned_runs(), read.runs_of(&content)), (1, None));
+    let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, Some(&found));
+    let who = board.who("Ada");
+    board.record.approve(who, subject, String::new(), Vec::new(), &key("Ada"));
+    let mut read = board.read(|_| ()).expect("it is whole");
+    assert_eq!(read.drop_unsigned_runs(), 0);
+    // Better figures with a digest that fits, and more of them, are not what was signed.
+    let mut more = tallied(1000);
+    (more.settings.runs, more.tally.runs) = (1000, 1000);
+    for forged in [tallied(100), more] {
+        let mut better = board.record.clone();
+        better.keep_runs(Runs::new(&content, &forged));
+        let mut read = Record::from_json(&better.to_json()).map(judged).expect("its digests fit");
+        assert_eq!(read.drop_unsigned_runs(), 1);
+        assert_eq!(read.runs_of(&content), None);
+    }
+    // An approval of somebody unknown signs nothing.
+    let mut read = Record::from_json(&board.record.to_json()).expect("it is whole");
+    read.judge(&trust(&["Chair"]), NOW);
+    assert_eq!(read.drop_unsigned_runs(), 1);
+}
+
+/// Of 100 runs, so many reached the end.
+fn tallied(succeeded: u64) -> Robustness {
+    let settings = RobustnessSettings { runs: 100, seed: 1, uncertainty: Uncertainty::default() };
+    Robustness { settings, tally: Tally { runs: 100, succeeded, ..Tally::default() } }
+}
+
+#[test]
 fn a_waiver_lapses_on_its_date() {
     let mut board = Board::new(SCENARIO);
     let lines: Vec<LineKey> = standing(&board.record, &Present::of_review(&board.review))
@@ -500,6 +659,15 @@ fn a_waiver_lapses_on_its_date() {
     assert_eq!(at(&board, "2026-01-29T00:00:00Z"), (PlanStatus::Approved, WaiverState::AboutToLapse));
     assert_eq!(at(&board, "2026-02-04T23:59:59Z"), (PlanStatus::Approved, WaiverState::AboutToLapse));
     assert_eq!(at(&board, "2026-02-05T00:00:00Z"), (PlanStatus::InReview, WaiverState::Lapsed));
+    // Whoever does not look at the lines again knows by the signatures that a waiver has lapsed.
+    let unseen = |now: &str| {
+        let mut record = board.record.clone();
+        record.judge(&trust(&PEOPLE), now);
+        let present = Present { review: None, ..Present::of_review(&board.review) };
+        standing(&record, &present).status
+    };
+    assert_eq!(unseen("2026-02-04T23:59:59Z"), PlanStatus::Approved);
+    assert!(!unseen("2026-02-05T00:00:00Z").is_approved());
     // Without a reason or a date there is no waiver.
     let line = board.record.waivers()[0].line.clone();
     for (text, until) in [(" ", "2026-02-05"), ("Fine.", "soon"), ("Fine.", "")] {

@@ -71,6 +71,7 @@ pub(super) fn check(record: &Record, entry: &Entry, trust: &Trust, now: Option<T
         None => Signature::Unknown,
     };
     let problem = problem_of_name(entry, known, trust)
+        .or_else(|| problem_of_mission(record, entry))
         .or_else(|| problem_of_time(record, entry, now))
         .or_else(|| problem_of_act(record, entry));
     Check { signature, problem }
@@ -87,10 +88,15 @@ fn problem_of_name(entry: &Entry, known: Option<&str>, trust: &Trust) -> Option<
     }
 }
 
+fn problem_of_mission(record: &Record, entry: &Entry) -> Option<String> {
+    let is_elsewhere = entry.key.is_some() && entry.mission != record.mission;
+    is_elsewhere.then(|| format!("it belongs to the history of “{}”", entry.mission))
+}
+
 fn problem_of_time(record: &Record, entry: &Entry, now: Option<Timestamp>) -> Option<String> {
     let Some(time) = moment(&entry.time) else { return Some("its date is malformed".to_owned()) };
-    let mut former = entry.former.iter().filter_map(|former| moment(&record.entry(former)?.time));
-    if former.any(|former| time.duration_until(former) > CLOCK_TOLERANCE) {
+    let mut former = entry.former.iter().filter_map(|former| record.entry(former));
+    if former.any(|former| is_after(&former.time, &entry.time)) {
         return Some("it is dated before an entry that it follows".to_owned());
     }
     let is_future = now.is_none_or(|now| now.duration_until(time) > CLOCK_TOLERANCE);
@@ -121,6 +127,8 @@ pub enum Objection {
     NoDate,
     /// Only the person who signed an entry withdraws it.
     NotSigner,
+    /// Only comments, acknowledgments, waivers and approvals are withdrawn.
+    Permanent,
     /// Only the author of a comment, or the person to whom it is addressed, resolves or reopens it.
     NotConcerned,
 }
@@ -134,6 +142,7 @@ impl Objection {
             (Self::NoReason, _) => "an acknowledgment needs a reason",
             (Self::NoDate, _) => "a waiver needs a date",
             (Self::NotSigner, _) => "only the person who signed an entry can withdraw it",
+            (Self::Permanent, _) => "only comments, acknowledgments, waivers and approvals can be withdrawn",
             (Self::NotConcerned, _) => {
                 "only the author of a comment, or the person to whom it is addressed, resolves or reopens it"
             }
@@ -153,9 +162,15 @@ pub fn objection(record: &Record, key: Option<&PublicKey>, act: &Act) -> Option<
         }
         Act::Waive { until, .. } if day(until).is_none() => Some(Objection::NoDate),
         Act::Withdraw { .. } if !is_signer() => Some(Objection::NotSigner),
+        Act::Withdraw { .. } if of().is_some_and(|of| is_permanent(&of.act)) => Some(Objection::Permanent),
         Act::Resolve { .. } | Act::Reopen { .. } if !is_concerned() => Some(Objection::NotConcerned),
         _ => None,
     }
+}
+
+/// Whether nothing takes this back. Flight rules are replaced, and comments are reopened.
+const fn is_permanent(act: &Act) -> bool {
+    matches!(act, Act::Rules { .. } | Act::Resolve { .. } | Act::Reopen { .. } | Act::Withdraw { .. })
 }
 
 /// Whether the owner of a key wrote the comment `of`, or is the person to whom it is addressed.
@@ -164,6 +179,12 @@ pub fn is_concerned(key: &PublicKey, of: &Entry) -> bool {
         Act::Comment { to, .. } => of.key.as_ref() == Some(key) || to.as_ref() == Some(key),
         _ => false,
     }
+}
+
+/// Whether the first of two times is later by more than clocks may be apart.
+pub(super) fn is_after(later: &str, earlier: &str) -> bool {
+    let times = moment(earlier).zip(moment(later));
+    times.is_some_and(|(earlier, later)| earlier.duration_until(later) > CLOCK_TOLERANCE)
 }
 
 /// Reads a time in UTC such as `2026-01-02T03:04:05Z`, and nothing else: times of one shape are in order when their texts

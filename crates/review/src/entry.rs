@@ -80,6 +80,9 @@ fn signed_bytes(digest: &str) -> String {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Said {
     pub by: String,
+    /// The mission in whose history it is; empty in histories of earlier versions.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub mission: String,
     /// Whose signature it has; none in histories of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub key: Option<PublicKey>,
@@ -230,6 +233,9 @@ pub struct Subject {
     /// What runs with chance had come to, if any had been made.
     #[serde(default)]
     pub robustness: Option<Rate>,
+    /// The digest of these runs: see [`Runs::digest`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub runs: Option<String>,
 }
 
 /// A line of a checklist as it was seen.
@@ -278,6 +284,7 @@ impl Subject {
             lines: seen_lines(review),
             plan,
             robustness: found.map(Rate::new),
+            runs: found.map(|found| Runs::new(&review.content_hash, found).digest()),
         }
     }
 }
@@ -314,6 +321,11 @@ impl Runs {
     pub fn new(content_hash: &str, found: &Robustness) -> Self {
         let Robustness { settings: RobustnessSettings { runs, seed, uncertainty }, tally } = found.clone();
         Self { content_hash: content_hash.to_owned(), runs, seed, uncertainty, tally }
+    }
+
+    /// The SHA-256 of the runs in hexadecimal, with their settings and their content.
+    pub fn digest(&self) -> String {
+        Sealed::new(self.clone()).digest().to_owned()
     }
 
     /// What is known of the content's robustness.

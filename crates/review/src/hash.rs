@@ -26,7 +26,10 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, goal: &Goal, seed: u64) 
         part(&map.cell_mm.to_le_bytes());
         part(&map.origin_mm[0].to_le_bytes());
         part(&map.origin_mm[1].to_le_bytes());
-        part(&map.version.to_le_bytes());
+        match &map.version {
+            Some(digest) => part(digest),
+            None => part(&[0; 4]),
+        }
     }
     match goal {
         Goal::Default | Goal::FirstScenario => {}

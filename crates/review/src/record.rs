@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 use jiff::Timestamp;
 use serde_json::{Map, Value, json};
 
-use super::check::{Check, check, moment};
+use super::check::{Check, check, is_after, moment};
 pub use super::entry::{Act, Entry, LineKey, Rate, Runs, Said, SeenLine, Subject, Who, seen_lines};
 use super::keys::{SecretKey, Trust};
 use super::sealed::Sealed;
@@ -21,7 +21,7 @@ use super::{FlightRules, former_record};
 /// The history of one mission's review, with what was approved and the runs that were made.
 #[derive(Clone, Debug, Default)]
 pub struct Record {
-    /// The mission's name.
+    /// The name of the mission whose history this is. Every entry signs it, so it stays when the mission gets another name.
     pub mission: String,
     /// Each entry after those that it was made after.
     entries: Vec<Entry>,
@@ -37,8 +37,8 @@ pub struct Record {
     heads: BTreeSet<String>,
     /// What approvals are about, by its digest.
     subjects: BTreeMap<String, Sealed<Subject>>,
-    /// What runs with chance came to, the latest content last. Anybody can make them again; in the document each has its
-    /// digest, so that figures that were altered are noticed.
+    /// What runs with chance came to, the latest content last. Anybody can make them again; an approval signs their digest
+    /// ([`Record::drop_unsigned_runs`]).
     pub runs: Vec<Runs>,
 }
 
@@ -220,9 +220,26 @@ impl Record {
 
     fn said(&self, who: Who, act: Act) -> Said {
         let Who { by, role, time, content_hash, plan_hash } = who;
-        let former = self.heads.iter().cloned().collect();
-        let (key, rules, acknowledged) = (None, String::new(), Vec::new());
-        Said { by, key, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
+        let former = self.last_before(&time);
+        let (mission, key, rules, acknowledged) = (self.mission.clone(), None, String::new(), Vec::new());
+        Said { by, mission, key, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
+    }
+
+    /// The last entries that an entry of this `time` can follow. What is dated later is passed over: nothing that follows it
+    /// would count, so whoever adds such an entry would keep everybody else from taking an approval back.
+    fn last_before(&self, time: &str) -> Vec<String> {
+        let mut last = BTreeSet::new();
+        let mut open: Vec<&str> = self.heads.iter().map(String::as_str).collect();
+        let mut seen = BTreeSet::new();
+        while let Some(digest) = open.pop() {
+            let Some(entry) = self.entry(digest).filter(|_| seen.insert(digest)) else { continue };
+            if is_after(&entry.time, time) {
+                open.extend(entry.former.iter().map(String::as_str));
+            } else {
+                last.insert(digest.to_owned());
+            }
+        }
+        last.into_iter().collect()
     }
 
     /// Adds an approval of `subject`, signed; `acknowledged` are the digests of what it relies on: see
@@ -255,6 +272,16 @@ impl Record {
         self.runs.push(runs);
         let more = self.runs.len().saturating_sub(MAX_RUNS_KEPT);
         self.runs.drain(..more);
+    }
+
+    /// Leaves out the runs that no approval that counts has signed: whoever hands over a document can write any figures into
+    /// it. Returns how many were left out.
+    pub fn drop_unsigned_runs(&mut self) -> usize {
+        let approved = self.standing_entries().filter_map(|entry| self.subject(entry)?.runs.clone());
+        let signed: BTreeSet<String> = approved.collect();
+        let before = self.runs.len();
+        self.runs.retain(|runs| signed.contains(&runs.digest()));
+        before - self.runs.len()
     }
 
     /// What runs of this content came to.
@@ -397,7 +424,8 @@ impl Record {
     }
 }
 
-/// Entries in order of time, each after those that it was made after: one order, whatever order they come in.
+/// Entries in order of time, each after those that it was made after and the one that it is about: one order, whatever
+/// order they come in.
 fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
     let all: BTreeSet<&str> = entries.iter().map(Entry::digest).collect();
     let mut waits_for: Vec<usize> = Vec::with_capacity(entries.len());
@@ -406,8 +434,8 @@ fn in_order(entries: Vec<Entry>) -> Vec<Entry> {
     // Times in UTC and of one shape are in order when their texts are.
     let key = |index: usize| (entries[index].time.as_str(), entries[index].digest(), index);
     for (index, entry) in entries.iter().enumerate() {
-        let former: BTreeSet<&str> =
-            entry.former.iter().map(String::as_str).filter(|former| all.contains(former)).collect();
+        let former = entry.former.iter().map(String::as_str).chain(entry.act.of());
+        let former: BTreeSet<&str> = former.filter(|former| all.contains(former)).collect();
         waits_for.push(former.len());
         if former.is_empty() {
             ready.insert(key(index));

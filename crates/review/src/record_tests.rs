@@ -53,6 +53,7 @@ pub(super) fn subject() -> Subject {
         lines: Vec::new(),
         plan: Value::Null,
         robustness: None,
+        runs: None,
     }
 }
 
@@ -231,8 +232,8 @@ fn entries_stay_after_those_that_they_were_made_after_whatever_their_clocks_say(
     let mut mine = Record::default();
     mine.add(who("Ada", "2026-01-05T00:00:00Z"), comment("first"), &key("Ada"));
     let mut theirs = mine.clone();
-    // Grace's clock is slow.
-    theirs.add(who("Grace", "2026-01-01T00:00:00Z"), comment("second"), &key("Grace"));
+    // Grace's clock is slow by minutes.
+    theirs.add(who("Grace", "2026-01-04T23:55:00Z"), comment("second"), &key("Grace"));
     mine.add(who("Ada", "2026-01-06T00:00:00Z"), comment("third"), &key("Ada"));
     mine.merge(theirs);
     let texts: Vec<&str> = mine.entries().iter().map(|entry| entry.act.text()).collect();

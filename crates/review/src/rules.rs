@@ -10,6 +10,7 @@ use serde_json::Value;
 use smol_str::SmolStr;
 
 use super::flight_rule::MissionRule;
+use super::keys::PublicKey;
 use super::sealed::Sealed;
 use super::seat::{self, Seat};
 
@@ -182,7 +183,11 @@ impl FlightRules {
             let waivable = if rule.waivable { ", may be waived" } else { "" };
             format!("{}: {}{source}{waivable}", rule.name, rule.rule)
         }));
-        let seats = self.board.iter().map(|seat| format!("{} {}", seat.approvals, seat.role));
+        let seats = self.board.iter().map(|seat| {
+            let people: Vec<String> = seat.people.iter().map(PublicKey::fingerprint).collect();
+            let of = if people.is_empty() { String::new() } else { format!(" (of {})", people.join(", ")) };
+            format!("{} {}{of}", seat.approvals, seat.role)
+        });
         words.push(format!("required approvals: {}", seats.collect::<Vec<_>>().join(", ")));
         words
     }

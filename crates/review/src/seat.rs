@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
+use super::keys::PublicKey;
+
 /// A role of the board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -12,6 +14,21 @@ pub struct Seat {
     pub role: String,
     /// How many people in this role have to approve.
     pub approvals: u32,
+    /// Whose approvals count in this role; if nobody is named, those of everybody whose key is trusted.
+    #[serde(default)]
+    pub people: Vec<PublicKey>,
+}
+
+impl Seat {
+    /// A role of anybody.
+    pub fn new(role: &str, approvals: u32) -> Self {
+        Self { role: role.to_owned(), approvals, people: Vec::new() }
+    }
+
+    /// Whether the owner of a key approves in this role.
+    pub fn admits(&self, key: &PublicKey) -> bool {
+        self.people.is_empty() || self.people.contains(key)
+    }
 }
 
 /// The role of a board that nobody has set up.
@@ -25,7 +42,7 @@ pub const MAX_APPROVALS: u32 = 9;
 
 /// The board that nobody has set up: one reviewer.
 pub(super) fn default_board() -> Vec<Seat> {
-    vec![Seat { role: DEFAULT_ROLE.to_owned(), approvals: 1 }]
+    vec![Seat::new(DEFAULT_ROLE, 1)]
 }
 
 /// What is wrong with a board, if something is.
@@ -39,6 +56,14 @@ pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
         _ if board.iter().any(|seat| !(1..=MAX_APPROVALS).contains(&seat.approvals)) => {
             Some("a role needs 1 to 9 approvals")
         }
+        _ if board.iter().any(has_too_few_people) => {
+            Some("a role that names people names as many as have to approve, each once")
+        }
         _ => None,
     }
+}
+
+fn has_too_few_people(seat: &Seat) -> bool {
+    let people: BTreeSet<&PublicKey> = seat.people.iter().collect();
+    people.len() < seat.people.len() || (1..seat.approvals as usize).contains(&people.len())
 }

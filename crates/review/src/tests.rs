@@ -182,9 +182,16 @@ fn every_line_of_the_plan_leads_to_its_place() {
 
 #[test]
 fn the_hash_follows_text_map_and_seed() {
-    let map = snapshot::MapKey { asset: "a".into(), cell_mm: 600, origin_mm: [0, 0], version: 0 };
+    let map = snapshot::MapKey { asset: "a".into(), cell_mm: 600, origin_mm: [0, 0], version: None };
     let moved = snapshot::MapKey { origin_mm: [1, 0], ..map.clone() };
+    let mut digest = [0; 32];
+    let imported = [0, 1].map(|last| {
+        digest[31] = last;
+        snapshot::MapKey { version: Some(digest), ..map.clone() }
+    });
     let hashes = [
+        content_hash("text", Some(&imported[0]), &Goal::Default, 0),
+        content_hash("text", Some(&imported[1]), &Goal::Default, 0),
         content_hash("text", Some(&map), &Goal::Default, 0),
         content_hash("text ", Some(&map), &Goal::Default, 0),
         content_hash("text", Some(&moved), &Goal::Default, 0),

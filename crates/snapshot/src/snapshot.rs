@@ -98,8 +98,9 @@ pub struct MapKey {
     pub cell_mm: u32,
     /// Mission coordinates of the south-west corner in millimeters.
     pub origin_mm: [i64; 2],
-    /// Tells files apart that were imported under the same name; 0 for what comes with the program.
-    pub version: u32,
+    /// The SHA-256 of the file that was imported under this name; nothing for what comes with the program. All of it counts:
+    /// of a part, somebody could find another file with the same, and an approval would hold for that one, too.
+    pub version: Option<[u8; 32]>,
 }
 
 /// A traverse of the plan with its path.

@@ -199,6 +199,7 @@ fn approved_history(name: &str) -> (String, String, String) {
         lines: Vec::new(),
         plan: Value::Null,
         robustness: None,
+        runs: None,
     };
     let relied_on = record.entries().iter().map(|entry| entry.digest().to_owned()).collect();
     record.approve(who(), subject, String::new(), relied_on, &secret);

@@ -111,7 +111,7 @@ fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
         rules.success_rate = is_held.then_some(rate);
     }
     mission_rules(ui, context, &mut rules.rules);
-    board(ui, &mut rules.board);
+    board(ui, context, &mut rules.board);
 }
 
 /// What the mission has to keep to in its own language.
@@ -179,7 +179,7 @@ fn problem_of(context: &Context<'_>, rule: &str) -> Option<String> {
 }
 
 /// Who has to approve, and how many of them.
-fn board(ui: &mut Ui, board: &mut Vec<Seat>) {
+fn board(ui: &mut Ui, context: &Context<'_>, board: &mut Vec<Seat>) {
     ui.add_space(space::S);
     row::quiet_word(ui, "Required approvals");
     let mut gone = None;
@@ -192,6 +192,7 @@ fn board(ui: &mut Ui, board: &mut Vec<Seat>) {
                 ui.add(count).accessible_name(format!("Approvals of role {number}"));
                 let role = TextEdit::singleline(&mut seat.role).hint_text("Role").desired_width(160.0);
                 ui.add(role).accessible_name(format!("Role {number}"));
+                people_of(ui, context, seat, number);
                 let remove = ui.add_enabled(!is_only, Button::new("Remove"));
                 if remove.accessible_name(format!("Remove role {number}")).clicked() {
                     gone = Some(index);
@@ -203,8 +204,31 @@ fn board(ui: &mut Ui, board: &mut Vec<Seat>) {
         board.remove(index);
     }
     if ui.add_enabled(board.len() < MAX_SEATS, Button::new("Add role")).clicked() {
-        board.push(Seat { role: String::new(), approvals: 1 });
+        board.push(Seat::new("", 1));
     }
+}
+
+/// Whose approvals count in a role: anybody's, or those of some whose keys are trusted.
+fn people_of(ui: &mut Ui, context: &Context<'_>, seat: &mut Seat, number: usize) {
+    let ring = context.state.keys.ring();
+    let text = match seat.people.len() {
+        0 => "Anybody".to_owned(),
+        1 => "1 person".to_owned(),
+        count => format!("{count} people"),
+    };
+    let menu = ui.menu_button(text, |ui| {
+        for person in ring.people() {
+            let mut is_named = seat.people.contains(&person.key);
+            if ui.checkbox(&mut is_named, &person.name).changed() {
+                seat.people.retain(|key| *key != person.key);
+                seat.people.extend(is_named.then(|| person.key.clone()));
+            }
+        }
+        if ui.button("Anybody").clicked() {
+            seat.people.clear();
+        }
+    });
+    menu.response.accessible_name(format!("People of role {number}"));
 }
 
 /// A threshold that may be absent. Returns whether it has been changed.

@@ -31,7 +31,7 @@ pub struct Review {
     #[cfg_attr(
         test,
         ts(
-            type = "{ margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; rules: { name: string; rule: string; source: string; waivable: boolean }[]; board: { role: string; approvals: number }[] }"
+            type = "{ margin: number | string | null; clearance_m: number | null; slope_deg: number | null; reserve: number | string | null; reserves: Record<string, number | string>; success_rate: { wanted: number; least: number } | null; rules: { name: string; rule: string; source: string; waivable: boolean }[]; board: { role: string; approvals: number; people: string[] }[] }"
         )
     )]
     pub rules: FlightRules,

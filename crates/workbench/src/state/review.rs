@@ -221,6 +221,9 @@ impl ReviewState {
 
     /// Adds what is kept of the record elsewhere, such as in another tab.
     pub(crate) fn join(&mut self, kept: Record) {
+        if self.record.entries().is_empty() {
+            self.record.mission.clone_from(&kept.mission);
+        }
         self.record.merge(kept);
     }
 
@@ -369,24 +372,53 @@ impl Reviewing<'_> {
                 self.window.failed(words);
             }
             Ok(record) => {
-                let count = self.review.record.merge(record);
-                self.judge_record();
-                self.learn_runs();
+                let (count, left_out) = self.merge_foreign(record);
                 let entries = if count == 1 { "entry" } else { "entries" };
-                match self.review.record.checked().filter(|(_, check)| !check.counts()).count() {
-                    0 => self.window.done(format!("Added {count} new {entries} from {name}")),
-                    doubtful => {
-                        let words = format!(
-                            "Added {count} new {entries} from {name}. {doubtful} of all entries do not count: see History."
-                        );
-                        self.window.failed(words);
-                    }
+                let mut parts = vec![format!("Added {count} new {entries} from {name}")];
+                let doubtful = self.review.record.checked().filter(|(_, check)| !check.counts()).count();
+                if doubtful > 0 {
+                    parts.push(format!("{doubtful} of all entries do not count: see History"));
                 }
-                self.keep();
+                if left_out > 0 {
+                    parts.push(
+                        "Monte Carlo results without a valid approval were left out: run them again"
+                            .to_owned(),
+                    );
+                }
+                match parts.as_slice() {
+                    [added] => self.window.done(added.clone()),
+                    parts => self.window.failed(format!("{}.", parts.join(". "))),
+                }
             }
             Err(reason) => {
                 self.window.failed(format!("Couldn't add {name}: {reason}. No entries added."));
             }
+        }
+    }
+
+    /// Adds what came from elsewhere. Returns how many entries are new, and of how many contents runs were left out.
+    fn merge_foreign(&mut self, mut record: Record) -> (usize, usize) {
+        self.name_record();
+        record.judge(&self.keys.ring().trust(), &self.utc_now());
+        // Who has no history yet continues that of somebody else who has reviewed the very content under another name.
+        let is_present = |content: &str| self.review.hash() == Some(content);
+        if self.review.record.entries().is_empty()
+            && record.counted().any(|entry| is_present(&entry.content_hash))
+        {
+            self.review.record.mission.clone_from(&record.mission);
+        }
+        let left_out = record.drop_unsigned_runs();
+        let count = self.review.record.merge(record);
+        self.judge_record();
+        self.learn_runs();
+        self.keep();
+        (count, left_out)
+    }
+
+    /// A history that nobody has said anything in yet is of the open mission, whatever it is called by then.
+    pub(super) fn name_record(&mut self) {
+        if self.review.record.entries().is_empty() && self.review.record.mission != self.mission {
+            self.review.record.mission = self.mission.to_string();
         }
     }
 
@@ -397,6 +429,7 @@ impl Reviewing<'_> {
         let is_present = |content: &str| hash.is_some_and(|hash| hash == content);
         record.mission.is_empty()
             || record.mission == self.mission
+            || record.mission == self.review.record.mission
             || record.entries().iter().any(|entry| {
                 is_present(&entry.content_hash) || self.review.record.entry(entry.digest()).is_some()
             })
@@ -404,7 +437,7 @@ impl Reviewing<'_> {
     }
 
     fn keep(&mut self) {
-        self.review.record.mission = self.mission.to_string();
+        self.name_record();
         self.window.ask(Effect::KeepReview { joins: true });
     }
 
@@ -426,7 +459,7 @@ impl Reviewing<'_> {
             None => Record::default(),
         };
         self.review.record = record;
-        self.review.record.mission = self.mission.to_string();
+        self.name_record();
         self.judge_record();
         if let Some(set_aside) = set_aside {
             self.review.record.merge(set_aside);
@@ -445,10 +478,7 @@ impl Reviewing<'_> {
 
     /// Adds what came with a mission.
     pub(crate) fn join(&mut self, record: Record) {
-        self.review.record.merge(record);
-        self.judge_record();
-        self.learn_runs();
-        self.keep();
+        self.merge_foreign(record);
     }
 
     /// Another mission is open now.

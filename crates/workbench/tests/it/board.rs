@@ -352,6 +352,37 @@ fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
     share_keys(&author, &mut app);
     open_json(&mut app, &renamed.to_string());
     assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
+    // In the other mission nothing of it counts, whatever the file says that it is of.
+    renamed["mission"] = json!("both-paths");
+    let mut app = test_support::start();
+    app.run(Command::OpenExample("both-paths".into()));
+    share_keys(&author, &mut app);
+    open_json(&mut app, &renamed.to_string());
+    let history = app.json()["review"]["history"].as_array().expect("a list").clone();
+    assert!(!history.is_empty());
+    for entry in history {
+        let problem = entry["problem"].as_str().unwrap_or_default();
+        assert!(entry["counts"] == false && problem.contains("the history of “enroute”"), "{entry}");
+    }
+    assert_eq!(*app.session.state().review.record().rules(), rules);
+}
+
+#[test]
+fn a_mission_with_another_name_keeps_its_history() {
+    let mut app = before_the_board();
+    app.acknowledge_all("Ada");
+    app.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    app.dispatch("review.approve", &json!({ "name": "Grace", "role": "Mobility" }));
+    app.dispatch("file.renameTo", &json!({ "name": "Survey of the ridge" }));
+    assert_eq!(status(&app), "approved");
+    assert_eq!(app.json()["mission"], "Survey of the ridge");
+    // Who has the very content under another name, and no history, takes this one over.
+    let mut other = test_support::start();
+    other.dispatch("file.renameTo", &json!({ "name": "Mine" }));
+    share_keys(&app, &mut other);
+    other.run(Command::Review(ReviewCommand::Run));
+    open_json(&mut other, &app.session.state().review.record().to_json());
+    assert_eq!(status(&other), "approved");
 }
 
 const KEY: &str = "enroute/review-1/enroute";
@@ -428,6 +459,30 @@ fn runs_with_chance_survive_a_reload_and_reach_the_report_and_the_file() {
     again.run(Command::WriteReport);
     let page = again.world.saved_text();
     assert!(page.contains("of 20 runs reached the end (Monte Carlo, seed 5;"));
+}
+
+#[test]
+fn runs_from_a_file_count_only_as_an_approval_has_signed_them() {
+    let mut author = before_the_board();
+    author.dispatch("review.rules", &json!({ "success_rate": null }));
+    author.sample(20, 5);
+    author.acknowledge_all("Ada");
+    let unsigned = author.session.state().review.record().to_json();
+    author.dispatch("review.approve", &json!({ "name": "Ada", "role": "Science" }));
+    let record = author.session.state().review.record().clone();
+    let hash = author.json()["review"]["hash"].as_str().expect("a hash").to_owned();
+    let mut better = record.runs_of(&hash).expect("they are kept by content").clone();
+    (better.runs, better.tally.runs, better.tally.succeeded) = (40, 40, 40);
+    let mut forged = record.clone();
+    forged.keep_runs(better);
+    for (text, runs) in [(unsigned, None), (forged.to_json(), None), (record.to_json(), Some(20))] {
+        let mut app = test_support::start();
+        app.run(Command::Review(ReviewCommand::Run));
+        share_keys(&author, &mut app);
+        open_json(&mut app, &text);
+        assert_eq!(last_toast(&app).contains("left out"), runs.is_none(), "{}", last_toast(&app));
+        assert_eq!(app.json()["robustness"]["runs"].as_u64(), runs);
+    }
 }
 
 #[test]

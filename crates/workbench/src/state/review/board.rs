@@ -73,17 +73,7 @@ impl ReviewState {
             _ if objection == Some(Objection::NotSigner) => {
                 Err("Only the person who signed an entry can withdraw it".to_owned())
             }
-            Act::Withdraw { .. }
-                if !of.is_some_and(|of| {
-                    matches!(
-                        of.act,
-                        Act::Comment { .. }
-                            | Act::Acknowledge { .. }
-                            | Act::Waive { .. }
-                            | Act::Approve { .. }
-                    )
-                }) =>
-            {
+            _ if objection == Some(Objection::Permanent) => {
                 Err("Only comments, acknowledgments, waivers and approvals can be withdrawn".to_owned())
             }
             Act::Approve { .. } | Act::Rules { .. } => Err("This entry can't be withdrawn".to_owned()),
@@ -160,6 +150,7 @@ impl Reviewing<'_> {
             }
         };
         let who = self.who(by);
+        self.name_record();
         self.judge_record();
         let mut record = self.review.record.clone();
         add(&mut record, who, &secret);
