@@ -46,10 +46,11 @@ struct Row {
     compute: fn(&mut AppState),
 }
 
-static TABLE: [Row; 9] = [
+static TABLE: [Row; 10] = [
     Row { of: Derivation::Language, from: &[Text], compute: |it| it.language.follow(&it.document) },
     Row { of: Derivation::Folding, from: &[Carets], compute: AppState::follow_folding },
     Row { of: Derivation::Program, from: &[Text], compute: AppState::follow_program },
+    Row { of: Derivation::Conflicts, from: &[Program], compute: AppState::follow_conflicts },
     Row { of: Derivation::Shown, from: &[Answers], compute: AppState::follow_shown },
     Row {
         of: Derivation::Review,
@@ -128,6 +129,13 @@ impl AppState {
 
     fn follow_program(&mut self) {
         self.automaton.follow(&self.document, self.language.is_control());
+    }
+
+    fn follow_conflicts(&mut self) {
+        // Whoever takes the program to change it makes all due that is computed from it.
+        if self.automaton.has_other_conflicts() {
+            self.automaton.follow_conflicts();
+        }
     }
 
     /// Carries over to what is shown now what belongs to what was shown before.

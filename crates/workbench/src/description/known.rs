@@ -9,7 +9,7 @@ use tpn::{Network, NodeId, Plan};
 use super::program::ProgramVerdict;
 use super::{Description, PlantState};
 use crate::state::automaton::{Moment, PlantMoment, Program};
-use crate::state::diagnosing::Diagnosing;
+use crate::state::diagnosing::{Diagnosing, StepConflicts};
 use crate::state::lesson::Predictions;
 use crate::state::search::{Counts, Recording};
 use crate::state::{Selection, Status};
@@ -111,9 +111,9 @@ impl<'a> Description<'a> {
         self.state.automaton.diagnosing()
     }
 
-    /// The root of that tree.
-    pub(super) fn new_diagnosing(&self) -> Option<Diagnosing> {
-        self.state.automaton.new_diagnosing()
+    /// The conflicts of the last step.
+    pub(super) fn step_conflicts(&self) -> Option<&'a StepConflicts> {
+        self.state.automaton.step_conflicts()
     }
 
     /// The review of the present plan.

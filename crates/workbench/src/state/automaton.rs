@@ -17,7 +17,7 @@ use snapshot::ContentKey;
 use text_editing::Document;
 
 use crate::mission_file;
-use crate::state::diagnosing::Diagnosing;
+use crate::state::diagnosing::{Diagnosing, StepConflicts};
 use crate::state::program_chance::ProgramChanceState;
 use crate::state::program_proof::ProgramProofState;
 
@@ -62,6 +62,8 @@ pub struct AutomatonState {
     pub part: ProgramPart,
     /// Why the last step could not be taken.
     pub error: Option<String>,
+    /// The conflicts of the step before the moment that is looked at.
+    conflicts: Option<StepConflicts>,
     /// The hitting-set tree that was begun last.
     diagnosing: Option<Diagnosing>,
     /// Whether steps go by themselves.
@@ -265,24 +267,42 @@ impl AutomatonState {
         self.at
     }
 
-    /// The hitting-set tree over the conflicts of the step before the moment that is looked at, if it was begun.
-    pub fn diagnosing(&self) -> Option<&Diagnosing> {
-        let root = self.new_diagnosing()?;
-        self.diagnosing.as_ref().filter(|known| known.is_about(&root))
+    /// The conflicts of the step before the moment that is looked at; nothing at the first, and without a plant.
+    pub fn step_conflicts(&self) -> Option<&StepConflicts> {
+        self.conflicts.as_ref()
     }
 
-    /// The root of that tree; nothing if the step has no conflicts.
-    pub fn new_diagnosing(&self) -> Option<Diagnosing> {
+    /// Whether these conflicts are of another step than the one before the moment that is looked at.
+    pub(crate) fn has_other_conflicts(&self) -> bool {
+        match (self.last_step(), &self.conflicts) {
+            (Some((model, before, after)), Some(known)) => !known.is_of(model, before, after),
+            (step, known) => step.is_some() || known.is_some(),
+        }
+    }
+
+    /// Finds the conflicts of the step before the moment that is looked at.
+    pub(crate) fn follow_conflicts(&mut self) {
+        let step = self.last_step();
+        self.conflicts = step.map(|(model, before, after)| StepConflicts::new(model, before, after));
+    }
+
+    /// The step before the moment that is looked at: the plant's model, and the moments before and after it.
+    fn last_step(&self) -> Option<(&Arc<plant::Model>, &Arc<Moment>, &Arc<Moment>)> {
         let model = self.program.as_ref()?.model()?;
-        let before = self.moments.get(self.at.checked_sub(1)?)?.plant.as_ref()?;
-        Diagnosing::new(model, before, self.moment()?.plant.as_ref()?)
+        Some((model, self.moments.get(self.at.checked_sub(1)?)?, self.moments.get(self.at)?))
+    }
+
+    /// The hitting-set tree over these conflicts, if it was begun.
+    pub fn diagnosing(&self) -> Option<&Diagnosing> {
+        let root = self.conflicts.as_ref()?.root()?;
+        self.diagnosing.as_ref().filter(|known| known.is_about(root))
     }
 
     fn diagnose(&mut self, change: impl FnOnce(&mut Diagnosing, &plant::Model)) {
-        let Some(root) = self.new_diagnosing() else { return };
+        let Some(root) = self.conflicts.as_ref().and_then(StepConflicts::root) else { return };
         let Some(model) = self.program.as_ref().and_then(Program::model) else { return };
-        let kept = self.diagnosing.take().filter(|known| known.is_about(&root));
-        change(self.diagnosing.insert(kept.unwrap_or(root)), model);
+        let kept = self.diagnosing.take().filter(|known| known.is_about(root));
+        change(self.diagnosing.insert(kept.unwrap_or_else(|| root.clone())), model);
     }
 
     /// What comes from outside in the step after the moment that is looked at.
@@ -396,7 +416,9 @@ impl AutomatonState {
                 self.fault_seed = seed;
                 self.wants_answer = true;
             }
-            AutomatonCommand::StartDiagnosis => self.diagnosing = self.new_diagnosing(),
+            AutomatonCommand::StartDiagnosis => {
+                self.diagnosing = self.conflicts.as_ref().and_then(StepConflicts::root).cloned();
+            }
             AutomatonCommand::Diagnose(node, step) => {
                 self.diagnose(|tree, model| tree.apply(model, node, step));
             }

@@ -14,6 +14,8 @@ pub enum Derivation {
     Folding,
     /// Whether the text is a control program, which the core is to run then.
     Program,
+    /// The conflicts of the step of the program that is looked at.
+    Conflicts,
     /// Selection, pins, search, trees and picture, carried over to what is shown now.
     Shown,
     /// What the present content is called, and what of it has been reviewed.

@@ -1,9 +1,11 @@
 //! The hitting-set tree that a student builds over the conflicts of a step, and how it agrees with the estimate.
 
+use std::sync::{Arc, OnceLock};
+
 use plant::hitting_sets::{HittingLabel, HittingMove, HittingTree, Refusal};
 use plant::{ComponentId, Conflict, FactoredBelief, Model, Observation, State};
 
-use super::automaton::PlantMoment;
+use super::automaton::{Moment, PlantMoment};
 
 /// So many states of an estimate are compared with diagnoses.
 const MAX_COMPARED: usize = 4096;
@@ -30,9 +32,54 @@ pub struct Agreement {
     pub probabilities: Vec<f64>,
 }
 
+/// The conflicts of a step: the tree before anything was built, and the diagnoses that the whole one has.
+#[derive(Debug)]
+pub struct StepConflicts {
+    model: Arc<Model>,
+    /// The moments before and after the step.
+    between: [Arc<Moment>; 2],
+    /// Nothing if the step has no conflicts.
+    root: Option<Diagnosing>,
+    /// Computed when it is first asked for: the tree may be large.
+    diagnoses: OnceLock<Vec<(Vec<ComponentId>, f64)>>,
+}
+
+impl StepConflicts {
+    /// The conflicts of the step from `before` to `after`.
+    pub(super) fn new(model: &Arc<Model>, before: &Arc<Moment>, after: &Arc<Moment>) -> Self {
+        let plants = before.plant.as_ref().zip(after.plant.as_ref());
+        let root = plants.and_then(|(before, after)| Diagnosing::new(model, before, after));
+        let between = [Arc::clone(before), Arc::clone(after)];
+        Self { model: Arc::clone(model), between, root, diagnoses: OnceLock::new() }
+    }
+
+    /// Whether this is the step from `before` to `after`.
+    pub(super) fn is_of(&self, model: &Arc<Model>, before: &Arc<Moment>, after: &Arc<Moment>) -> bool {
+        let [first, last] = &self.between;
+        Arc::ptr_eq(&self.model, model) && Arc::ptr_eq(first, before) && Arc::ptr_eq(last, after)
+    }
+
+    /// The root of the tree; nothing if the step has no conflicts.
+    pub fn root(&self) -> Option<&Diagnosing> {
+        self.root.as_ref()
+    }
+
+    /// All diagnoses, each with the probability that the estimate gives to exactly its faults.
+    pub fn diagnoses(&self) -> &[(Vec<ComponentId>, f64)] {
+        self.diagnoses.get_or_init(|| {
+            let [_, after] = &self.between;
+            let Some((root, plant)) = self.root.as_ref().zip(after.plant.as_ref()) else { return Vec::new() };
+            let whole = root.finished(&self.model);
+            let probabilities = whole.agreement(&self.model, &plant.belief).probabilities;
+            let sets = whole.tree.diagnoses().map(|(_, set)| set.to_vec());
+            sets.zip(probabilities).collect()
+        })
+    }
+}
+
 impl Diagnosing {
     /// The root of the tree over the conflicts of the step from `before` to `after`; nothing if there are none.
-    pub(super) fn new(model: &Model, before: &PlantMoment, after: &PlantMoment) -> Option<Self> {
+    fn new(model: &Model, before: &PlantMoment, after: &PlantMoment) -> Option<Self> {
         let record = after.record.as_ref().filter(|record| !record.conflicts.is_empty())?;
         let expected =
             plant::successor::nominal(model, before.belief.most_likely(), &record.commands).ok()?;
@@ -72,7 +119,7 @@ impl Diagnosing {
     }
 
     /// The same, finished level by level from its root.
-    pub fn finished(&self, model: &Model) -> Self {
+    fn finished(&self, model: &Model) -> Self {
         let mut whole = Self { tree: HittingTree::new(self.tree.conflicts().to_vec()), ..self.clone() };
         for _ in 0..plant::hitting_sets::MAX_NODES {
             whole.apply_next(model);

@@ -7,7 +7,7 @@ use workbench::command::Command;
 use workbench::outside::Remote as _;
 use workbench::state::Selection;
 use workbench::state::derived::Derivation::{
-    self, Extent, Folding, Language, Lesson, Moment, Program, Questions, Review,
+    self, Conflicts, Extent, Folding, Language, Lesson, Moment, Program, Questions, Review,
 };
 
 fn computed(command: Command) -> Vec<Derivation> {
@@ -21,7 +21,7 @@ fn computed(command: Command) -> Vec<Derivation> {
 #[test]
 fn what_does_not_depend_on_a_command_is_not_computed_after_it() {
     let typed = computed(Command::Text(TextCommand::Insert(" ".to_owned())));
-    assert_eq!(typed, [Language, Folding, Program, Review, Lesson, Questions]);
+    assert_eq!(typed, [Language, Folding, Program, Conflicts, Review, Lesson, Questions]);
     assert_eq!(computed(Command::Seek(10.0)), [Moment, Lesson]);
     assert_eq!(computed(Command::Hover(Selection::None)), []);
     assert_eq!(computed(Command::ShowReason(0)), []);

@@ -32,6 +32,23 @@ fn label(app: &mut App, node: usize, label: &str, conflict: usize) -> Option<Ref
 }
 
 #[test]
+fn the_diagnoses_of_a_step_are_found_once() {
+    let mut app = lesson();
+    let found = |app: &App| {
+        let step = app.session.state().automaton.step_conflicts();
+        step.map(|step| (step.diagnoses().as_ptr(), step.diagnoses().len()))
+    };
+    let first = found(&app);
+    assert_eq!(first.map(|(_, count)| count), Some(3));
+    app.dispatch("program.diagnose", &json!({}));
+    assert_eq!(found(&app), first, "building the tree changes no diagnoses");
+    app.dispatch("program.goTo", &json!({ "moment": 0 }));
+    assert_eq!(found(&app), None);
+    app.dispatch("program.goTo", &json!({ "moment": 1 }));
+    assert_eq!(found(&app).map(|(_, count)| count), Some(3));
+}
+
+#[test]
 fn a_tree_is_built_by_hand_and_agrees_with_the_estimate() {
     let mut app = lesson();
     let is_done = |app: &App| app.json()["lesson"]["open"]["question"]["isRight"] == true;

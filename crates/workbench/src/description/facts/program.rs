@@ -40,19 +40,16 @@ pub(super) const VALUES: &[Row] = &[
     ("verdict", |it, property| words(it.verdict(property)?.verdict.as_str())),
     ("counterexample", |it, property| words(it.verdict(property)?.faults.join("; "))),
     ("diagnoses", |it, _| {
-        let (model, _) = it.plant_of_moment()?;
-        count(it.new_diagnosing()?.finished(model).tree().diagnoses().count())
+        let step = it.step_conflicts()?;
+        step.root().and_then(|_| count(step.diagnoses().len()))
     }),
     ("likeliest-diagnosis", |it, _| {
-        let (model, moment) = it.plant_of_moment()?;
-        let whole = it.new_diagnosing()?.finished(model);
-        let probabilities = whole.agreement(model, &moment.belief).probabilities;
-        let sets = whole.tree().diagnoses().zip(&probabilities);
-        let ((_, set), _) = sets.max_by(|one, other| one.1.total_cmp(other.1))?;
-        words(set_text(model, set))
+        let (model, _) = it.plant_of_moment()?;
+        let sets = it.step_conflicts()?.diagnoses().iter();
+        words(set_text(model, &sets.max_by(|one, other| one.1.total_cmp(&other.1))?.0))
     }),
     ("diagnosed", |it, _| {
-        it.new_diagnosing()?;
+        it.step_conflicts()?.root()?;
         truth(it.diagnosing().is_some_and(|it| it.tree().is_finished()))
     }),
 ];
