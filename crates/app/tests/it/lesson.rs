@@ -330,3 +330,28 @@ fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read_or_makes_it_small() {
     }
     assert!(cut.is_empty(), "{}", cut.join("\n"));
 }
+
+#[test]
+fn the_conflicts_of_estimation_are_in_view() {
+    let is_in_view = |app: &App| {
+        let found = app.texts(egui::Rect::EVERYTHING);
+        ["Conflicts", "Build hitting-set tree"]
+            .iter()
+            .all(|words| found.iter().any(|(text, _)| text == words))
+    };
+    for stop in [6, 7] {
+        let app = opened(&format!("lesson=estimation&stop={stop}"), [1280.0, 800.0]);
+        assert!(is_in_view(&app), "step {stop}");
+    }
+    // On the way there, the panel was scrolled elsewhere.
+    let mut app = opened("lesson=estimation&stop=5", [1280.0, 800.0]);
+    for stop in [6, 7, 6] {
+        click(
+            &mut app,
+            Role::Button,
+            if stop == 6 && lesson(&app)["stop"] == 7 { "Previous" } else { "Next" },
+        );
+        assert_eq!(lesson(&app)["stop"], stop);
+        assert!(is_in_view(&app), "step {stop}");
+    }
+}

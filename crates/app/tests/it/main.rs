@@ -6,6 +6,7 @@ mod drawing;
 mod editor;
 mod execution;
 mod lesson;
+mod lesson_keys;
 mod missions;
 mod network;
 mod panels;

@@ -1,5 +1,6 @@
 //! What was observed, what is believed because of it, and why.
 
+use egui::style::ScrollAnimation;
 use egui::{Align2, ComboBox, FontId, Grid, Rect, RichText, Sense, Ui, pos2, vec2};
 use executive::model_based::{StepOutcome, StepRecord};
 use plant::{Interval, Model, State, VariableId};
@@ -43,7 +44,8 @@ pub(super) fn show(
     let place = place.response;
     ui.add_space(space::L);
     if reveals {
-        place.scroll_to_me(None);
+        // At once: an animation would follow what is still being laid out.
+        place.scroll_to_me_animation(None, ScrollAnimation::none());
     }
 }
 

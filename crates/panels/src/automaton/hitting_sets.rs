@@ -1,5 +1,6 @@
 //! The conflicts of the last step as sets of assumptions, and the hitting-set tree that a student builds over them.
 
+use egui::accesskit::Role;
 use egui::{Button, Frame, Margin, RichText, Ui};
 use plant::Model;
 use plant::hitting_sets::{HittingLabel, HittingMove};
@@ -46,9 +47,12 @@ pub(super) fn show(
         }
         return;
     };
-    for at in depth_first(diagnosing) {
-        node(ui, context, model, diagnosing, at, commands);
-    }
+    ui.scope(|ui| {
+        theme::structure::part(ui, Role::Tree, "Hitting-set tree");
+        for at in depth_first(diagnosing) {
+            node(ui, context, model, diagnosing, at, commands);
+        }
+    });
     result(ui, context, model, plant, diagnosing);
     ui.horizontal_wrapped(|ui| {
         let next = ui.add_enabled(!diagnosing.tree().is_finished(), Button::new("Do next step"));
@@ -99,6 +103,7 @@ fn node(
     };
     let margin = Margin { left: (INDENT * node.without.len() as f32).min(96.0) as i8, ..Margin::ZERO };
     Frame::new().inner_margin(margin).show(ui, |ui| {
+        item(ui, diagnosing, at, &name);
         ui.add(egui::Label::new(RichText::new(&name).color(color)).wrap());
         if node.label != HittingLabel::Open {
             return;
@@ -125,6 +130,23 @@ fn node(
         }
     });
     ui.add_space(space::XS);
+}
+
+/// Says that what fills `ui` is an item of the tree: its level, and its place among those below the same node.
+fn item(ui: &Ui, diagnosing: &Diagnosing, at: usize, name: &str) {
+    let nodes = diagnosing.tree().nodes();
+    let node = &nodes[at];
+    let beside = (0..nodes.len()).filter(|&it| nodes[it].parent == node.parent).collect::<Vec<_>>();
+    let has_children = nodes.iter().any(|it| it.parent == Some(at));
+    theme::structure::part(ui, Role::TreeItem, name);
+    ui.ctx().accesskit_node_builder(ui.unique_id(), |item| {
+        item.set_level(node.without.len() + 1);
+        item.set_position_in_set(beside.iter().position(|&it| it == at).unwrap_or_default());
+        item.set_size_of_set(beside.len());
+        if has_children {
+            item.set_expanded(true);
+        }
+    });
 }
 
 /// What the tree came to, and whether the estimate agrees.

@@ -50,11 +50,12 @@ pub(super) fn show(
             }
         }
         ui.add_space(space::S);
-        let (sign, color, text) = match (given, &ask.answer) {
-            (Some(given), Answer::Task(_)) if given.is_right => (Icon::Check, tokens.good, "Done."),
-            (Some(given), _) if given.is_right => (Icon::Check, tokens.good, "Correct."),
-            (Some(_), _) => (Icon::Close, tokens.error, "Incorrect. Try again."),
-            (None, Answer::Task(_)) => (Icon::Working, tokens.text_muted, "Checked automatically."),
+        let (sign, color, text) = match (context.state.lesson.verdict(), &ask.answer) {
+            (Some(words), _) if is_right => (Icon::Check, tokens.good, words),
+            (Some(words), _) => (Icon::Close, tokens.error, words),
+            (None, Answer::Task(_)) => {
+                (Icon::Working, tokens.text_muted, "Checked automatically.".to_owned())
+            }
             (None, _) => return,
         };
         ui.horizontal(|ui| {
@@ -131,15 +132,11 @@ fn show_prediction(ui: &mut Ui, context: &Context<'_>, forecast: &Forecast, comm
     let tokens = context.tokens;
     let predictions = context.state.lesson.predictions();
     if let Some(last) = predictions.made().last() {
-        let (sign, color, text) = if last.is_right() {
-            (Icon::Check, tokens.good, format!("Correct: {}.", last.shown))
-        } else {
-            let text = format!("Incorrect. You predicted “{}”; the result is “{}”.", last.given, last.shown);
-            (Icon::Close, tokens.error, text)
-        };
+        let (sign, color) =
+            if last.is_right() { (Icon::Check, tokens.good) } else { (Icon::Close, tokens.error) };
         ui.horizontal_wrapped(|ui| {
             icon::label(ui, sign, color);
-            ui.label(RichText::new(text).color(color));
+            ui.label(RichText::new(last.verdict()).color(color));
         });
         let made = predictions.made().len();
         let predicted = if made == 1 { "prediction" } else { "predictions" };

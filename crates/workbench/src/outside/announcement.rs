@@ -1,4 +1,5 @@
-//! What somebody who does not see the window is told as it happens: where the plan stands, mistakes, steps, messages.
+//! What somebody who does not see the window is told as it happens: where the plan stands, mistakes, steps, how answers
+//! were judged, messages.
 
 use rmpl::Severity;
 
@@ -8,8 +9,8 @@ use crate::state::snapshots::Status;
 
 /// What is to be said now. It is said when it is other than before; empty while there is nothing new to say.
 pub fn announcement(state: &AppState) -> String {
-    let parts = [plan_words(state), step_words(state), program_words(state), message_words(state)];
-    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    let told = [step_words(state), program_words(state), lesson_words(state), message_words(state)];
+    let parts: Vec<String> = std::iter::once(plan_words(state)).chain(told).flatten().collect();
     parts.join(" ")
 }
 
@@ -58,6 +59,14 @@ fn step_words(state: &AppState) -> Option<String> {
 fn program_words(state: &AppState) -> Option<String> {
     let at = state.automaton.at();
     (state.automaton.is_control() && at > 0).then(|| format!("Step {at} of the program."))
+}
+
+/// How the last answer was judged; before one is given, which step of the lesson is open.
+fn lesson_words(state: &AppState) -> Option<String> {
+    let (open, stop) = (state.lesson.open()?, state.lesson.stop()?);
+    let place =
+        || format!("{}, step {} of {}: {}.", open.title, state.lesson.at() + 1, open.stops.len(), stop.title);
+    Some(state.lesson.verdict().unwrap_or_else(place))
 }
 
 fn message_words(state: &AppState) -> Option<String> {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use smol_str::SmolStr;
 
-use crate::lesson::{COURSE, Lesson, LessonError, LessonMission, Stop};
+use crate::lesson::{Answer, COURSE, Lesson, LessonError, LessonMission, Stop};
 use crate::panel_kind::PanelKind;
 use crate::state::settings::PlanSettings;
 
@@ -125,6 +125,20 @@ impl LessonState {
     /// What was answered last at the stop where the lesson is.
     pub fn given(&self) -> Option<&Given> {
         self.answers.get(&(self.open.as_ref()?.name.clone(), self.stop))
+    }
+
+    /// How the last answer at the stop where the lesson is was judged, in words; nothing before one was given.
+    pub fn verdict(&self) -> Option<String> {
+        let answer = &self.stop()?.ask.as_ref()?.answer;
+        if let Answer::Prediction(_) = answer {
+            return self.predictions.made.last().map(Prediction::verdict);
+        }
+        let words = match (self.given()?.is_right, answer) {
+            (true, Answer::Task(_)) => "Done.",
+            (true, _) => "Correct.",
+            (false, _) => "Incorrect. Try again.",
+        };
+        Some(words.to_owned())
     }
 
     /// What was predicted at the stop where the lesson is.

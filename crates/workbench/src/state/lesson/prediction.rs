@@ -28,6 +28,15 @@ impl Prediction {
     pub fn is_right(&self) -> bool {
         self.given == self.shown
     }
+
+    /// The same in words, with what came.
+    pub fn verdict(&self) -> String {
+        if self.is_right() {
+            format!("Correct: {}.", self.shown)
+        } else {
+            format!("Incorrect. You predicted “{}”; the result is “{}”.", self.given, self.shown)
+        }
+    }
 }
 
 impl Predictions {
