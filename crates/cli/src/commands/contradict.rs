@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 use smol_str::SmolStr;
 use tpn::Network;
 use tpn::plan_json::plan_from_json;
+use tpn::text::CallNames;
 
 use crate::commands::report::read_rules;
 use crate::commands::verify::without_path_vertices;
@@ -98,7 +99,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let tried: Vec<&Tried> = trial.tried().collect();
     let is_contradicted = tried.iter().any(|it| it.verdict() == Verdict::Contradicted);
     match format {
-        Format::Text => print_text(&table(&tried))?,
+        Format::Text => print_text(&CallNames::new(&evaluated.planned.network).in_text(&table(&tried)))?,
         Format::Json => {
             let body = json!({ "seed": seed, "items": items_json(&tried) });
             print_json(&document("contradict", &snapshot.problems, body))?;

@@ -10,6 +10,7 @@ use executive::{Observations, Progress, Waiting};
 use mission::Manner;
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
+use tpn::text::CallNames;
 use tpn::{Network, Plan, Window};
 
 use crate::deadline::TimeLimit;
@@ -64,7 +65,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         Format::Json => {
             print_json(&document("execute", &problems, progress_json(network, &progress)))?;
         }
-        Format::Text => print_text(&progress_text(network, &plan, &progress))?,
+        Format::Text => {
+            let text = progress_text(network, &plan, &progress);
+            print_text(&CallNames::new(network).in_text(&text))?;
+        }
     }
     Ok(exit(if is_consistent { YES } else { NO }))
 }
@@ -129,7 +133,9 @@ fn progress_text(network: &Network, plan: &Plan, progress: &Progress) -> String 
         Progress::Consistent(windows, waits) => {
             let named = named_windows(network, windows);
             let before = named_windows(network, &plan.windows);
-            let shown = column(named.keys().map(String::as_str));
+            let calls = CallNames::new(network);
+            let read: Vec<String> = named.keys().map(|name| calls.in_text(name)).collect();
+            let shown = column(read.iter().map(String::as_str));
             let lines = named.iter().zip(&shown).map(|((name, window), shown)| {
                 let changed = if before.get(name) == Some(window) { "" } else { "  changed" };
                 format!("{shown}  [{}, {}]{changed}\n", window.earliest, window.latest)

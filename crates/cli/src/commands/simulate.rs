@@ -10,6 +10,7 @@ use rmpl::program::Program;
 use serde_json::{Value, json};
 use snapshot::{DriveFrame, Problem, SimulatedDrive};
 use tpn::Network;
+use tpn::text::CallNames;
 
 use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
@@ -78,8 +79,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let Ran { outcome, drives, .. } = outcome?;
     let drive = |drive| drive_json(drive, &evaluated.network, &evaluated.compiled.program);
+    let names = CallNames::new(&evaluated.network);
     match args.options.format {
-        Format::Text => print_text(&outcome.log.iter().map(line).collect::<String>())?,
+        Format::Text => {
+            let log: String = outcome.log.iter().map(line).collect();
+            print_text(&names.in_text(&log))?;
+        }
         Format::Json => {
             let mut body = json!({
                 "status": outcome.ending,

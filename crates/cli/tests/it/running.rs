@@ -171,3 +171,35 @@ fn a_plan_is_checked_with_the_gap_it_was_planned_with() {
         assert!(line.ends_with(end) && text.contains("verified by the independent checker"), "{text}");
     }
 }
+
+const SOL: &str = "location BASE (0, 0); location ROCK (30, 0);
+    model Scout { resource battery 0..200 = 90; state drill : {IN, OUT} = IN; }
+    vehicle R : Scout at BASE; vehicle S[1..2] : Scout at BASE;
+    primitive Drive(r, to)[1,30] moves r speed (0.02, 0.3) consumes r.battery 50;
+    primitive Charge(r)[5,5] produces r.battery 30;
+    primitive Deploy(r)[1,1] sets r.drill=OUT;";
+
+fn sol(name: &str, scenario: &str) -> String {
+    file(name, &format!("{SOL} scenario Sol[0,100] = {{ {scenario} }}"))
+}
+
+#[test]
+fn text_names_calls_by_their_arguments_and_json_by_their_identifiers() {
+    let mission = sol("calls.rmpl", "Drive(R, ROCK); Charge(S[2]); Charge(R); Charge(R)");
+    let plan = text(&enroute(&["plan", &mission, "--no-paths"]));
+    for name in ["Drive(R, ROCK).start", "Charge(S[2]).end", "Charge(R)#2.start", "Charge(R)#3.end"] {
+        assert!(plan.contains(&format!("  {name} ")), "{name}: {plan}");
+    }
+    assert!(!plan.contains("Drive#1") && !plan.contains("Charge#"), "{plan}");
+    let run = text(&enroute(&["simulate", &mission]));
+    assert!(run.contains("R.at=ROCK by Drive(R, ROCK)") && !run.contains("Drive#1"), "{run}");
+    let document: Value =
+        serde_json::from_str(&text(&enroute(&["plan", &mission, "--no-paths", "--format", "json"])))
+            .expect("JSON");
+    assert!(document["plans"][0]["windows"].get("Drive#1.end").is_some(), "{document}");
+    // An explanation, too.
+    let short = sol("short-calls.rmpl", "Drive(S[1], ROCK); Drive(S[1], BASE)");
+    let failure = text(&enroute(&["plan", &short, "--no-paths"]));
+    let both = "Drive(S[1], ROCK) and Drive(S[1], BASE) together take 100";
+    assert!(failure.contains(both) && !failure.contains("Drive#1"), "{failure}");
+}
