@@ -8,9 +8,9 @@ use std::time::Instant;
 use anyhow::Context as _;
 use interchange::Source;
 use link::{Request, Response, Update};
-use mission::{Compiled, Core, CoreHost, Evaluated, Ground, Manner, Scenarios};
-use rmpl::Diagnostic;
+use mission::{Compiled, Core, CoreHost, Evaluated, Ground, Manner, SavedState, Scenarios};
 use rmpl::program::World;
+use rmpl::{Diagnostic, Severity};
 use serde_json::Value;
 use snapshot::{Goal, Problem, Snapshot};
 use terrain::Terrain;
@@ -65,6 +65,24 @@ impl Opened {
             update: Update { goal, ..Update::new(1, source) },
             host: Host::default(),
         }
+    }
+
+    /// Lets the mission start from a state. Fails if the state names what the mission does not declare. A mission with errors is
+    /// left to [`Self::compile`], which reports them.
+    pub fn start_from(&mut self, start: SavedState) -> anyhow::Result<()> {
+        anyhow::ensure!(
+            !self.must_be_network,
+            "{} is a network; only a mission can start from a state",
+            self.name
+        );
+        let parse = rmpl::parse(&self.source);
+        if parse.diagnostics().iter().all(|found| found.severity != Severity::Error)
+            && let Some(undeclared) = start.undeclared(&parse.program())
+        {
+            anyhow::bail!("{} cannot start from this state: {undeclared}", self.name);
+        }
+        self.core.start_from(start);
+        Ok(())
     }
 
     /// Compiles the text. Fails when it is a network that cannot be read.

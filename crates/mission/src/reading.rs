@@ -20,6 +20,7 @@ use crate::evaluated::Ground;
 use crate::ground::Grounds;
 use crate::network_text::NetworkText;
 use crate::programs::Programs;
+use crate::saved_state::SavedState;
 use crate::sight::{self, Seeing};
 
 /// What an edit came to.
@@ -44,6 +45,8 @@ pub(crate) struct Reading {
     program: Option<Keyed<Program>>,
     compiled: Option<Compiled>,
     programs: Option<CompiledPrograms>,
+    /// What the mission starts from instead of what its text says.
+    start: Option<SavedState>,
 }
 
 /// The network of a goal.
@@ -88,7 +91,10 @@ impl Reading {
             return Followed::Same;
         }
         self.parse.follow(Arc::clone(text.text()), shift);
-        let program = self.parse.program();
+        let mut program = self.parse.program();
+        if let Some(start) = &self.start {
+            start.begin(&mut program);
+        }
         let Some(before) = &mut self.program else {
             self.program = Some(Keyed { key: keys.fresh(), value: Arc::new(program) });
             self.compiled = None;
@@ -139,6 +145,11 @@ impl Reading {
             Some(Compiled { goal: Goal::Default, map: None, network, is_sound, found, diagnostics });
         self.network_text = Some(read);
         Followed::Changed
+    }
+
+    /// Lets the texts that are read from now on start from a state.
+    pub(crate) fn start_from(&mut self, start: SavedState) {
+        *self = Self { start: Some(start), ..Self::default() };
     }
 
     /// The program of the text, and its key.

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use exact::{Bound, Time};
 use kirk::{Failure, Options, Outcome, Search, Status};
 use mission::planning::Planned;
-use mission::{Compiled, Evaluated, Manner};
+use mission::{Compiled, Evaluated, Manner, SavedState};
 use rmpl::LineIndex;
 use rmpl::files::Files;
 use serde_json::{Value, json};
@@ -23,6 +23,7 @@ use crate::commands::held_rules::HeldRules;
 use crate::commands::report::read_rules;
 use crate::deadline::TimeLimit;
 use crate::diagnostics::{path_of_file, print_problems};
+use crate::input::read_json;
 use crate::opened::Opened;
 use crate::output::{
     Format, LIMIT, NO, WRONG, YES, any_error, column, document, exit, print_json, print_text, without_timings,
@@ -64,6 +65,9 @@ pub struct Args {
     /// Check every plan against these flight rules.
     #[arg(long, value_name = "RULES.json")]
     rules: Option<PathBuf>,
+    /// Start from the values, levels and places that simulate --state wrote.
+    #[arg(long, value_name = "STATE.json")]
+    state: Option<PathBuf>,
     /// Omit timings, for reproducible output.
     #[arg(long)]
     no_timings: bool,
@@ -91,6 +95,10 @@ const TRACE_EVENTS: usize = 1_000_000;
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let options = args.options()?;
     let mut mission = args.target.open()?;
+    if let Some(file) = &args.state {
+        let start: SavedState = read_json(file)?;
+        mission.start_from(start).with_context(|| format!("cannot use {}", file.display()))?;
+    }
     let mut compiled = mission.compile()?;
     if let Some(gap) = options.threat_gap {
         // The checker asks for the same gap.

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use executive::{Ending, Entry, Happening, Script};
-use mission::Manner;
 use mission::execution::Ran;
+use mission::{Manner, SavedState};
 use rmpl::program::Program;
 use serde_json::{Value, json};
 use snapshot::{DriveFrame, Problem, SimulatedDrive};
@@ -16,6 +16,7 @@ use crate::deadline::Undecided;
 use crate::diagnostics::print_problems;
 use crate::input::read_json;
 use crate::output::{Format, NO, YES, document, exit, print_json, print_text};
+use crate::save::{refuse_input, save};
 use crate::target::{PlanOptions, Target};
 
 /// Simulate a plan, replanning when it fails.
@@ -34,6 +35,9 @@ pub struct Args {
     /// Seed for random durations [default: that of the script or of --seed].
     #[arg(long, value_name = "SEED")]
     run_seed: Option<u64>,
+    /// Write the values, levels and places at the end to STATE.json.
+    #[arg(long, value_name = "STATE.json")]
+    state: Option<PathBuf>,
     #[command(flatten)]
     options: PlanOptions,
 }
@@ -54,6 +58,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         return mission.refuse(&problems, args.options.format, ("simulate", body));
     }
     compiled.check_script(&script).map_err(anyhow::Error::msg)?;
+    args.state.as_deref().map_or(Ok(()), refuse_input)?;
     let ground = mission.ground(&compiled)?;
     let deadline = args.options.time_limit.start();
     let manner = Manner { seed: args.options.seed, ..Manner::default() };
@@ -97,6 +102,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             }
             print_json(&document("simulate", &problems, body))?;
         }
+    }
+    if let Some(file) = &args.state {
+        let saved = SavedState::at_end(&outcome, &drives, &evaluated.compiled.program);
+        let saved = saved.map_err(|reason| {
+            anyhow::anyhow!("no state is written to {}: {}", file.display(), names.in_text(&reason))
+        })?;
+        save(file, &format!("{}\n", serde_json::to_string_pretty(&saved)?))?;
     }
     Ok(exit(if outcome.ending == Ending::Finished { YES } else { NO }))
 }

@@ -203,3 +203,73 @@ fn text_names_calls_by_their_arguments_and_json_by_their_identifiers() {
     let both = "Drive(S[1], ROCK) and Drive(S[1], BASE) together take 100";
     assert!(failure.contains(both) && !failure.contains("Drive#1"), "{failure}");
 }
+
+/// What simulation writes is what planning starts from: tomorrow's mission begins where today's ends.
+#[test]
+fn a_state_that_a_run_ends_in_is_the_start_of_the_next_plan() {
+    let today = sol("today.rmpl", "Drive(R, ROCK); Deploy(R); Deploy(S[2])");
+    let saved = file("saved.json", "");
+    let run = enroute(&["simulate", &today, "--state", &saved]);
+    assert_eq!(run.status.code(), Some(0), "{run:?}");
+    let state: Value =
+        serde_json::from_str(&std::fs::read_to_string(&saved).expect("it is written")).expect("JSON");
+    assert_eq!(
+        state,
+        json!({
+            "states": { "R.drill": "OUT", "S[1].drill": "IN", "S[2].drill": "OUT" },
+            "levels": { "R.battery": 40, "S[1].battery": 90, "S[2].battery": 90 },
+            "places": { "R": "ROCK", "S[1]": "BASE", "S[2]": "BASE" },
+        })
+    );
+    let plan = |scenario: &str, state: &[&str]| {
+        let next = sol("next.rmpl", scenario);
+        let output = enroute(&[&["plan", next.as_str(), "--format", "json"][..], state].concat());
+        output.status.code()
+    };
+    let from = ["--state", saved.as_str()];
+    assert_eq!(plan("Drive(R, ROCK)", &[]), Some(0));
+    assert_eq!(plan("Drive(R, BASE)", &from), Some(1), "the way back needs a charge now");
+    assert_eq!(plan("Charge(R); ask R.drill=OUT and R.at=ROCK [0,0]; Drive(R, BASE)", &from), Some(0));
+    assert_eq!(plan("ask S[1].drill=OUT [1,1]", &from), Some(1));
+    // A vehicle may be between locations.
+    let between = file("between.json", r#"{"places": {"R": [12.5, 3]}}"#);
+    assert_eq!(plan("ask R.at=BASE [1,1]", &["--state", between.as_str()]), Some(1));
+    assert_eq!(plan("Drive(R, BASE); ask R.at=BASE [1,1]", &["--state", between.as_str()]), Some(0));
+    // The mission's own rules count for what is read: a level is in its range.
+    let full = file("full.json", r#"{"levels": {"R.battery": 201}}"#);
+    assert_eq!(plan("Charge(R)", &["--state", full.as_str()]), Some(2));
+}
+
+#[test]
+fn no_state_is_written_while_an_activity_is_under_way() {
+    let mission = sol("under-way.rmpl", "Charge(R)");
+    let script = r#"{"disturbances": [{"kind": "duration", "activity": "Charge#1", "duration": 50}]}"#;
+    let script = file("under-way.json", script);
+    let saved = file("under-way-state.json", "as before");
+    let run = enroute(&["simulate", &mission, "--disturb", &script, "--state", &saved]);
+    assert_eq!(run.status.code(), Some(2), "{run:?}");
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(said.contains("Charge(R) is under way at the end of the run"), "{said}");
+    assert_eq!(std::fs::read_to_string(&saved).expect("it is still there"), "as before");
+}
+
+#[test]
+fn a_state_of_what_the_mission_does_not_declare_is_refused() {
+    let mission = sol("declared.rmpl", "Deploy(R)");
+    let refused = |state: &str| {
+        let output = enroute(&["plan", &mission, "--state", &file("undeclared.json", state)]);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    for (state, told) in [
+        (r#"{"states": {"Q.drill": "IN"}}"#, "no state `Q.drill`"),
+        (r#"{"states": {"R.drill": "AWAY"}}"#, "`AWAY` is not a value of `R.drill`"),
+        (r#"{"levels": {"R.fuel": 3}}"#, "no reservoir `R.fuel`"),
+        (r#"{"places": {"T": "BASE"}}"#, "no vehicle `T`"),
+        (r#"{"places": {"R": "MOON"}}"#, "no location `MOON`"),
+        (r#"{"place": {"R": "BASE"}}"#, "unknown field"),
+    ] {
+        let said = refused(state);
+        assert!(said.contains(told), "{state}: {said}");
+    }
+}

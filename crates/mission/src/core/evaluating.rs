@@ -22,11 +22,17 @@ use crate::listing;
 use crate::programs::Programs;
 use crate::reading;
 use crate::sampling::Sampler;
+use crate::saved_state::SavedState;
 
 impl Core {
     /// Makes a map file available to `terrain "name"` declarations, or says why it cannot be read.
     pub fn import(&mut self, name: &str, bytes: &[u8]) -> Result<(), String> {
         self.grounds.import(name, bytes).map(|_| ())
+    }
+
+    /// Lets missions start from a state instead of what their texts say.
+    pub fn start_from(&mut self, start: SavedState) {
+        self.reading.start_from(start);
     }
 
     /// Reads a text and compiles what is to be planned of it. What is kept of an earlier plan follows the text.
