@@ -346,11 +346,8 @@ fn the_conflicts_of_estimation_are_in_view() {
     // On the way there, the panel was scrolled elsewhere.
     let mut app = opened("lesson=estimation&stop=5", [1280.0, 800.0]);
     for stop in [6, 7, 6] {
-        click(
-            &mut app,
-            Role::Button,
-            if stop == 6 && lesson(&app)["stop"] == 7 { "Previous" } else { "Next" },
-        );
+        let button = if stop == 6 && lesson(&app)["stop"] == 7 { "Previous" } else { "Next" };
+        click(&mut app, Role::Button, button);
         assert_eq!(lesson(&app)["stop"], stop);
         assert!(is_in_view(&app), "step {stop}");
     }
