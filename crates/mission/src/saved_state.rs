@@ -22,7 +22,6 @@ pub struct SavedState {
     /// Of reservoirs.
     #[serde(default)]
     pub levels: BTreeMap<SmolStr, Rational>,
-    /// Of vehicles.
     #[serde(default)]
     pub places: BTreeMap<SmolStr, Place>,
 }

@@ -25,7 +25,8 @@ fn press_with(app: &mut App, modifiers: Modifiers, key: Key) {
 /// The role and the name of what has the keyboard.
 fn focused(app: &App) -> Option<(Role, String)> {
     let nodes = app.harness.root().children_recursive();
-    let focused = nodes.map(|node| node.accesskit_node()).find(|node| node.is_focused())?;
+    let focused =
+        nodes.map(|node| node.accesskit_node()).find(egui_kittest::kittest::AccessKitNode::is_focused)?;
     Some((focused.role(), focused.label().unwrap_or_default()))
 }
 
@@ -199,7 +200,8 @@ fn steps_turn_with_one_key_and_the_trees_of_the_lesson_are_worked_with_keys() {
     assert!(selected(&app).starts_with("D1 = 0: Long-Way#1"), "{}", selected(&app));
     assert_ne!(announced(&app), before.1);
     press(&mut app, Key::ArrowDown);
-    assert_eq!(selected(&app), before.0);
+    // It is told as it is at its own step, at which it has not failed yet.
+    assert!(selected(&app).starts_with("D2 = 0: Core#1"), "{}", selected(&app));
 }
 
 #[test]

@@ -282,7 +282,7 @@ fn the_board_is_part_of_the_flight_rules() {
     type_into(&mut app, "Role 2", "Mobility");
     click(&mut app, "Apply rules");
     let board = review(&app)["rules"]["board"].clone();
-    assert_eq!(board[1], json!({ "role": "Mobility", "approvals": 1 }));
+    assert_eq!(board[1], json!({ "role": "Mobility", "approvals": 1, "people": [] }));
     assert!(has(&app, "Approval, Reviewer 0 of 1, Mobility 0 of 1"));
 }
 
