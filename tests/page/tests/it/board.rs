@@ -260,7 +260,7 @@ fn a_waiver_lapses_on_its_day_while_the_page_is_open() -> Result<()> {
 #[test]
 fn two_tabs_see_each_other_s_approvals() -> Result<()> {
     let page = approved_by_ada()?;
-    let beside = page.open_beside("")?;
+    let beside = page.open_beside("mission=enroute")?;
     beside.wait_until_ready()?;
     beside.evaluate("enroute.dispatch('view.workspace', { name: 'review' })")?;
     beside.wait_until("enroute.state().review.board[0]?.given.length === 1")?;
