@@ -195,7 +195,7 @@ fn a_proof_finds_the_faults_under_which_the_program_waits_forever_and_shows_the_
         proof["verdicts"].as_array().expect("verdicts").clone()
     };
     let one = verdicts(&app);
-    assert_eq!(one.len(), 6);
+    assert_eq!(one.len(), 5);
     assert!(one.iter().all(|it| it["verdict"] == "holds"), "{one:?}");
     app.harness.get_by_label("✓ the program ends");
     let properties = "ends; never EngineA = Firing AND EngineB = Firing";

@@ -1,4 +1,4 @@
-//! `enroute prove`: what holds in every run of a control program with its plant.
+//! `enroute prove`: the properties of a control program that hold in every run with its plant.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -23,7 +23,7 @@ pub struct Args {
     /// Plant model [default: the one that the program file declares].
     #[arg(long, value_name = "M.rmpl")]
     model: Option<PathBuf>,
-    /// Prove this, such as "never A=On & B=On" (repeatable) [default: six checks].
+    /// Prove this, such as "never A=On AND B=On" (repeatable) [default: five checks].
     #[arg(long, value_name = "PROPERTY")]
     property: Vec<String>,
     /// Let components fail at most N times in a run.
@@ -33,8 +33,8 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t)]
     knowledge: KnowledgeArg,
     /// Stop after N states (exit status 3).
-    #[arg(long, value_name = "N", default_value_t = 200_000)]
-    states: usize,
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u32).range(1..))]
+    states: u32,
     /// Explore runs of at most N steps [default: no limit].
     #[arg(long, value_name = "N")]
     steps: Option<u32>,
@@ -46,8 +46,8 @@ pub struct Args {
     format: Format,
 }
 
-/// Of the runs with their probabilities so many different places are followed in each step.
-const MOST_PLACES: usize = 20_000;
+/// In each step, this many of the most likely places of a run are followed; the others leave its probability open.
+const MAX_PLACES: usize = 20_000;
 
 const ABOUT_MISSIONS: &str = "save the program of its `control` block in a file of its own";
 
@@ -67,10 +67,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let knowledge = args.knowledge.into();
     let steps = args.steps.unwrap_or(u32::MAX);
-    let scope = Scope { faults: args.faults, knowledge, states: args.states, steps };
+    let scope = Scope { faults: args.faults, knowledge, states: args.states as usize, steps };
     let proof = prove(system, &properties, scope, &mut |_| true)?;
     let chance = match args.chance {
-        Some(steps) => Some((steps, chance_to_end(system, knowledge, steps, MOST_PLACES)?)),
+        Some(steps) => Some((steps, chance_to_end(system, knowledge, steps, MAX_PLACES)?)),
         None => None,
     };
     match args.format {
@@ -139,8 +139,7 @@ fn count(number: usize, one: &str) -> String {
 fn text(args: &Args, system: &Arc<System>, proof: &Proof, chance: Option<&(u32, Interval)>) -> String {
     let faults = match args.faults {
         0 => "no component fails".to_owned(),
-        1 => "at most 1 fault".to_owned(),
-        more => format!("at most {more} faults"),
+        some => format!("at most {}", count(some as usize, "fault")),
     };
     let mut out = format!(
         "Explored {} and {}, with {faults}.\n",
@@ -154,8 +153,8 @@ fn text(args: &Args, system: &Arc<System>, proof: &Proof, chance: Option<&(u32, 
         match verdict {
             Verdict::Holds => out.push_str(&format!("holds      {property}\n")),
             Verdict::Open => out.push_str(&format!(
-                "open       {property}: no counterexample in the states explored, up to {} steps\n",
-                proof.depth
+                "open       {property}: no counterexample in the states explored, up to {}\n",
+                count(proof.depth as usize, "step")
             )),
             Verdict::Never(what) => {
                 out.push_str(&format!("broken     {property}\n"));
@@ -170,7 +169,8 @@ fn text(args: &Args, system: &Arc<System>, proof: &Proof, chance: Option<&(u32, 
     if let Some((steps, interval)) = chance {
         let (low, high) = interval.decimals();
         let value = if low == high { low } else { format!("{low} to {high}") };
-        out.push_str(&format!("chance     the program ends within {steps} steps: {value}\n"));
+        let steps = count(*steps as usize, "step");
+        out.push_str(&format!("chance     the program ends within {steps}: {value}\n"));
     }
     out
 }
@@ -216,7 +216,7 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
     out
 }
 
-/// What is still active when the run is repeated.
+/// The locations that are still active at the end of the run, which is repeated for it.
 fn active_at_end(args: &Args, system: &Arc<System>, counterexample: &Counterexample) -> Option<String> {
     let options = Options { knowledge: args.knowledge.into(), ..Options::default() };
     let mut run = Run::new(system, options);

@@ -704,6 +704,9 @@ fn orbit_insertion_is_proven_to_end_with_one_fault_and_shown_to_wait_forever_wit
         "{}",
         chance.output
     );
+    // As the help writes it.
+    assert_eq!(prove(&["--property", "never EngineA=Firing AND EngineB=Firing"]).status, 0);
+    assert_eq!(prove(&["--states", "0"]).status, 2);
     let wrong = prove(&["--property", "never EngineA = Fring"]);
     assert_eq!(wrong.status, 2);
     assert!(wrong.errors.contains("did you mean `Firing`?"), "{}", wrong.errors);

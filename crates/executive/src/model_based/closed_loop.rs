@@ -242,6 +242,11 @@ impl ClosedLoop {
         &self.believed.belief
     }
 
+    /// What was observed in the last step.
+    pub(super) const fn observation(&self) -> &Observation {
+        &self.observation
+    }
+
     /// Whether the last step can be explained; if not, no further one is taken.
     pub const fn outcome(&self) -> &StepOutcome {
         &self.outcome
@@ -324,8 +329,8 @@ impl ClosedLoop {
         Commanded { commands: next.commands, planned_from, unachievable, contradiction }
     }
 
-    /// What the plant makes of commands; returns the components that chance brought into another mode than the commanded
-    /// one, with that mode.
+    /// Lets the plant carry out commands. Returns the components that chance brought into another mode than the commanded one,
+    /// with that mode.
     fn answer(
         &mut self,
         system: &System,
@@ -356,7 +361,7 @@ impl ClosedLoop {
         self.plant.step(commands, &all.collect())
     }
 
-    /// Takes in what is observed: what is believed then, and where the programs go by it. Choices that they come to stay open.
+    /// Updates the belief by an observation, and moves the programs on by it. Choices that they reach stay open.
     pub(super) fn learn(
         &mut self,
         system: &System,

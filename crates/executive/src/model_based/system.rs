@@ -178,17 +178,15 @@ impl System {
         Known { groups: &self.groups, belief: &belief, observation: &observation }.groups_of(condition)
     }
 
-    /// The groups of components that the program asks about or commands.
+    /// The groups of components that the program speaks of or commands.
     pub(super) fn groups_used(&self) -> BTreeSet<usize> {
-        let tests = (0..self.automaton.tests.len()).map(|at| TestId(at as u32));
-        let mut used: BTreeSet<usize> =
-            tests.flat_map(|test| self.groups_of(&self.condition(test, Vec::new()))).collect();
         let commanded = self.commanded();
-        let is_commanded = |group: &Group| group.components.iter().any(|id| commanded.contains(id));
-        used.extend(
-            self.groups.iter().enumerate().filter(|(_, group)| is_commanded(group)).map(|(at, _)| at),
-        );
-        used
+        let is_spoken_of = |binding: Binding| self.bindings.contains(&binding);
+        let is_used = |group: &Group| {
+            group.components.iter().any(|id| commanded.contains(id) || is_spoken_of(Binding::Mode(*id)))
+                || group.variables.iter().any(|id| is_spoken_of(Binding::Plant(*id)))
+        };
+        self.groups.iter().enumerate().filter(|(_, group)| is_used(group)).map(|(at, _)| at).collect()
     }
 
     /// The configurations of the plant that satisfy what a location asserts, if it asserts anything.

@@ -109,6 +109,8 @@ fn a_property_that_cannot_be_read_says_why() {
         ("ends within 0 steps", "needs a time"),
         ("ends within soon", "needs a time"),
         ("eventually (A = ", "not a condition"),
+        ("never ~(A = On)", "not a condition"),
+        ("never (HELD 3 (A = On))", "not a condition"),
     ] {
         let error = Property::read(text, &system).expect_err(text);
         assert!(error.contains(part), "{text}: {error}");
@@ -144,14 +146,14 @@ fn what_chance_decides_again_and_again_comes_at_some_time() {
 }
 
 #[test]
-fn the_six_checks_find_what_each_is_for() {
+fn the_five_checks_find_what_each_is_for() {
     let checks = |program: &str, faults: u32| -> Vec<bool> {
         let system = system(program, PLANT);
         let scope = Scope { faults, ..Scope::default() };
         let proof = prove(&system, &DEFAULTS, scope, &mut |_| true).expect("it can be explored");
         proof.verdicts.iter().map(|(_, verdict)| *verdict == Verdict::Holds).collect()
     };
-    let ok = [true; 6];
+    let ok = [true; 5];
     let but = |wrong: &[usize]| {
         let mut expected = ok;
         for at in wrong {
@@ -374,6 +376,55 @@ fn what_modes_leave_open_is_observed_in_every_way() {
     assert_eq!(verdict(&gauge, "ends", 0), Verdict::Holds);
     let Verdict::Broken(run) = verdict(&gauge, "ends within 3", 0) else { panic!("it may stay low") };
     assert!(run.unusual(&gauge.model).is_empty());
+    // What is left open may be either: never has to exclude it, and always has to be sure of it.
+    for (property, holds) in [
+        ("never G.level = high", false),
+        ("always G.level = low", false),
+        ("always (G.level = low) OR (G.level = high)", true),
+        ("never (G.level = low) AND (G.level = high)", true),
+        ("eventually G.level = high", true),
+        ("G = Busy leads to G.level = high within 1", true),
+        ("G.level = low leads to G = Busy within 3", false),
+    ] {
+        assert_eq!(verdict(&gauge, property, 0) == Verdict::Holds, holds, "{property}");
+    }
     let Verdict::Broken(run) = verdict(&gauge, "never G = Busy", 0) else { panic!("it may be high") };
     assert_eq!(run.unusual(&gauge.model), ["1: G.level=high observed"]);
+}
+
+#[test]
+fn more_conditions_than_bits_in_a_word_are_all_judged() {
+    let system = system("(SEQUENCE (A = On) (B = On))", PLANT);
+    let mut properties: Vec<String> =
+        (0..70).map(|more| format!("never A = Broken{}", " ".repeat(more))).collect();
+    properties.extend((0..70).map(|more| format!("always {}A = Off{}", "(".repeat(more), ")".repeat(more))));
+    properties.push("never B = On".to_owned());
+    let properties: Vec<&str> = properties.iter().map(String::as_str).collect();
+    let proof = proven(&system, &properties, Scope { faults: 0, ..Scope::default() });
+    let is_broken = |(_, verdict): &(Property, Verdict)| matches!(verdict, Verdict::Broken(_));
+    assert!(!proof.verdicts[..70].iter().any(is_broken));
+    assert!(proof.verdicts[70..].iter().all(is_broken));
+}
+
+#[test]
+fn where_not_every_observation_was_explored_nothing_is_proven() {
+    let lamps: String = (0..9).map(|at| format!(" (VAR l{at} {{dark lit}} OBSERVABLE)")).collect();
+    let plant = format!(
+        "(DEFCLASS Board (){lamps} (COMMAND cmd {{none go}}) (MODE Idle true) (MODE Busy true) \
+         (TRANSITION Idle Busy (cmd = go))) (DEFINSTANCE G Board INIT Idle)"
+    );
+    // One of 512 combinations is all that would start it.
+    let lit: Vec<String> = (0..9).map(|at| format!("(G.l{at} = lit)")).collect();
+    let board = system(&format!("(WHEN-DONEXT ({}) (G = Busy))", lit.join(" AND ")), &plant);
+    assert_eq!(verdict(&board, "never G = Busy", 0), Verdict::Open);
+    assert_eq!(verdict(&board, "G.l0 = lit leads to G = Idle within 1", 0), Verdict::Open);
+    let chance = chance_to_end(&board, Knowledge::Estimated, 2, 100).expect("it can be computed");
+    assert!(chance.low < chance.high, "{chance:?}");
+}
+
+#[test]
+fn at_least_one_state_is_explored() {
+    let system = system("(A = On)", PLANT);
+    let none = Scope { faults: 0, states: 0, ..Scope::default() };
+    assert_eq!(proven(&system, &["never A = On"], none).verdicts[0].1, Verdict::Open);
 }

@@ -35,10 +35,12 @@ pub fn chance_to_end(
     most: usize,
 ) -> Result<Interval, EstimateError> {
     let mut explorer = Explorer::new(system, Vec::new());
-    let (mut ended, mut open) = (Probability::zero(), Probability::zero());
     let mut layer = Layer::default();
     let starts = explorer.starts(knowledge, most);
-    ended += layer.add(&explorer, starts, &Probability::one());
+    let known: Probability = starts.iter().map(Way::weight).sum();
+    // Starts that were left out have the rest.
+    let mut open = Probability::one() - &known;
+    let mut ended = layer.add(&explorer, starts, &known);
     for _ in 0..steps {
         let mut shares = layer.shares;
         shares.sort_by(|left, right| right.probability.cmp(&left.probability));
@@ -46,7 +48,12 @@ pub fn chance_to_end(
         shares.truncate(most);
         layer = Layer::default();
         for share in shares {
+            explorer.has_cut = false;
             let (ways, _) = explorer.ways(&share.standing, &share.closed, u32::MAX)?;
+            if explorer.has_cut || ways.is_empty() {
+                open += share.probability;
+                continue;
+            }
             ended += layer.add(&explorer, ways, &share.probability);
         }
     }

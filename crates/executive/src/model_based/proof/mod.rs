@@ -18,7 +18,7 @@ use smol_str::SmolStr;
 use super::closed_loop::Knowledge;
 use super::system::System;
 use paths::Found;
-use product::{Exploration, Explorer, Limits, NodeId, Product};
+use product::{Exploration, Explorer, Judged, Limits, NodeId, Product};
 
 pub use chance::chance_to_end;
 pub use paths::Counterexample;
@@ -71,8 +71,7 @@ pub struct Proof {
     pub stopped: Option<String>,
 }
 
-/// Finds out which properties hold in all runs of a program, as long as `go_on` says so, which is told how many states have
-/// been found.
+/// Finds out which properties hold in all runs of a program, until `go_on` returns false; it gets the number of states found.
 pub fn prove(
     system: &Arc<System>,
     properties: &[Property],
@@ -96,9 +95,8 @@ pub struct Proving {
 impl Proving {
     /// Begins a proof.
     pub fn new(system: &Arc<System>, properties: Vec<Property>, scope: Scope) -> Self {
-        let conditions: Vec<Condition> =
-            properties.iter().flat_map(Property::conditions).take(MAX_CONDITIONS).cloned().collect();
-        let limits = Limits { faults: scope.faults, nodes: scope.states, depth: scope.steps };
+        let conditions: Vec<Condition> = properties.iter().flat_map(Property::conditions).cloned().collect();
+        let limits = Limits { faults: scope.faults, nodes: scope.states.max(1), depth: scope.steps };
         let explorer = Explorer::new(system, conditions.clone());
         let exploration = Exploration::new(explorer, scope.knowledge, limits);
         Self { system: Arc::clone(system), properties, conditions, exploration, is_over: false }
@@ -109,8 +107,8 @@ impl Proving {
         self.exploration.product.nodes.len()
     }
 
-    /// Explores as long as `go_on` says so, which is told how many states have been found; returns whether all is explored
-    /// that the scope allows.
+    /// Explores until `go_on` returns false; it gets the number of states found. Returns whether everything in the scope is
+    /// explored.
     pub fn advance(&mut self, go_on: &mut dyn FnMut(usize) -> bool) -> Result<bool, EstimateError> {
         self.is_over = self.exploration.advance(go_on)?;
         Ok(self.is_over)
@@ -144,8 +142,6 @@ impl Proving {
     }
 }
 
-/// Conditions are kept in the bits of a word.
-pub const MAX_CONDITIONS: usize = 64;
 /// A run that has not come to what is to come after so many more steps is taken for one that never does.
 const LONG_RUN: u32 = 2000;
 
@@ -162,7 +158,7 @@ impl Judge<'_> {
         let ended = |id: NodeId| node(id).end == Some(End::Ended);
         let found = match property {
             Property::Always(condition) => product.run_to(|id| !self.holds(id, condition)),
-            Property::Never(condition) => product.run_to(|id| self.holds(id, condition)),
+            Property::Never(condition) => product.run_to(|id| self.may_hold(id, condition)),
             Property::Eventually { condition, within: None } => {
                 product.run_without(None, |id| self.holds(id, condition))
             }
@@ -172,7 +168,7 @@ impl Judge<'_> {
             Property::Ends { within: None } => product.run_without(None, ended),
             Property::Ends { within: Some(steps) } => product.run_too_long(None, ended, *steps),
             Property::LeadsTo { from, to, within } => {
-                let starts = |id: NodeId| self.holds(id, from);
+                let starts = |id: NodeId| self.may_hold(id, from);
                 let is_goal = |id: NodeId| self.holds(id, to);
                 match within {
                     None => product.run_without(Some(&starts), is_goal),
@@ -181,12 +177,6 @@ impl Judge<'_> {
             }
             Property::GoalsAgree => product.run_to(|id| node(id).contradiction.is_some()),
             Property::NoDeadlock => product.run_to(|id| node(id).end == Some(End::Deadlock)),
-            Property::Explained => match product.run_to(|id| node(id).end == Some(End::Refuted)) {
-                Found::Nothing if product.nodes.iter().any(|node| node.end == Some(End::Unclear)) => {
-                    Found::Open
-                }
-                found => found,
-            },
             Property::AllReached => return self.all(self.unreached()),
             Property::AllGuardsHold => return self.all(self.unheard()),
         };
@@ -209,13 +199,13 @@ impl Judge<'_> {
             Property::LeadsTo { from, to, within: None } => (Some(from), Some(to)),
             _ => return Ok(None),
         };
-        let is_goal = |holds: u64, end: Option<End>| match to {
-            Some(condition) => self.is_in(holds, condition),
+        let is_goal = |judged: &[Judged], end: Option<End>| match to {
+            Some(condition) => self.judged(judged, condition) == Judged::True,
             None => end == Some(End::Ended),
         };
         let node = |id: NodeId| &self.product.nodes[id as usize];
-        let is_goal_node = |id: NodeId| is_goal(node(id).holds, node(id).end);
-        let starts = |id: NodeId| from.is_some_and(|from| self.holds(id, from));
+        let is_goal_node = |id: NodeId| is_goal(&node(id).judged, node(id).end);
+        let starts = |id: NodeId| from.is_some_and(|from| self.may_hold(id, from));
         let from: Option<&dyn Fn(NodeId) -> bool> = if from.is_some() { Some(&starts) } else { None };
         let Some((mut run, last)) = self.product.run_to_the_unexplored(from, is_goal_node) else {
             return Ok(None);
@@ -226,12 +216,16 @@ impl Judge<'_> {
     }
 
     fn holds(&self, id: NodeId, condition: &Condition) -> bool {
-        self.is_in(self.product.nodes[id as usize].holds, condition)
+        self.judged(&self.product.nodes[id as usize].judged, condition) == Judged::True
     }
 
-    fn is_in(&self, holds: u64, condition: &Condition) -> bool {
+    fn may_hold(&self, id: NodeId, condition: &Condition) -> bool {
+        self.judged(&self.product.nodes[id as usize].judged, condition) != Judged::False
+    }
+
+    fn judged(&self, judged: &[Judged], condition: &Condition) -> Judged {
         let place = self.conditions.iter().position(|known| known == condition);
-        place.is_some_and(|place| holds >> place & 1 == 1)
+        place.and_then(|place| judged.get(place)).copied().unwrap_or(Judged::Undecided)
     }
 
     fn all(&self, never: Vec<SmolStr>) -> Verdict {

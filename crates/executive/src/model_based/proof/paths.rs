@@ -88,7 +88,7 @@ impl Product {
         self.starts.iter().map(|(id, _)| *id).collect()
     }
 
-    /// The shortest path from some nodes, through nodes that may be passed, to one that is looked for.
+    /// The shortest path from one of `from` to a goal, over nodes that `passes` allows.
     fn path(
         &self,
         from: &[NodeId],
@@ -236,7 +236,7 @@ impl Product {
         let mut layer: BTreeMap<NodeId, Option<(NodeId, usize)>> =
             sources.into_iter().filter(|id| !is_goal(*id)).map(|id| (id, None)).collect();
         let mut layers = Vec::new();
-        let mut is_open = self.stopped.is_some() && from.is_some();
+        let mut is_open = self.has_cut || (self.stopped.is_some() && from.is_some());
         for _ in 0..steps {
             let mut next = BTreeMap::new();
             for &id in layer.keys() {

@@ -66,10 +66,10 @@ pub(super) struct Node {
     standing: Standing,
     closed: ClosedLoop,
     faults_left: u32,
-    /// After how many steps it is first come to.
+    /// The length of the shortest run to it, in steps.
     pub(super) depth: u32,
-    /// Which of the conditions hold, one bit each.
-    pub(super) holds: u64,
+    /// What is so of each condition.
+    pub(super) judged: Vec<Judged>,
     /// Why it has no next step, if it has none.
     pub(super) end: Option<End>,
     /// Why goals contradict each other in the next step, if some do.
@@ -78,8 +78,17 @@ pub(super) struct Node {
     pub(super) edges: Option<Vec<Edge>>,
 }
 
+/// What a true state says of a condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Judged {
+    True,
+    False,
+    /// Modes, and what is shown of what they leave open, do not decide it.
+    Undecided,
+}
+
 /// Why a run is over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum End {
     Ended,
     Deadlock,
@@ -106,8 +115,11 @@ pub(super) struct Key {
     standing: Standing,
     modes: Vec<u8>,
     beliefs: Vec<Arc<Belief>>,
+    /// What was observed last, where the next commands depend on it.
+    observation: Option<Observation>,
+    judged: Vec<Judged>,
     faults_left: u32,
-    end: u8,
+    end: Option<End>,
     /// Tells nodes apart whose beliefs have dropped something: what a history is expanded to again may differ.
     unlike: Option<NodeId>,
 }
@@ -123,6 +135,8 @@ pub(super) struct Product {
     pub(super) fired: BTreeSet<TransitionId>,
     /// What stopped the exploration, if something did.
     pub(super) stopped: Option<String>,
+    /// Whether steps are missing from nodes that were explored.
+    pub(super) has_cut: bool,
 }
 
 /// Notes which transitions fire.
@@ -139,6 +153,7 @@ impl StepObserver for Fired {
 pub(super) struct Way {
     standing: Standing,
     closed: ClosedLoop,
+    judged: Vec<Judged>,
     pub(super) by: Move,
     pub(super) is_fault: bool,
     faults: u32,
@@ -158,6 +173,8 @@ struct Entered {
 #[derive(Clone)]
 struct Seen {
     observation: Observation,
+    /// The same without errors.
+    truth: Observation,
     /// The values that differ from what is shown without chance.
     unusual: Vec<(VariableId, u8)>,
     errors: u32,
@@ -177,8 +194,8 @@ pub(super) struct Explorer {
     groups: BTreeSet<usize>,
     components: BTreeSet<ComponentId>,
     fired: Fired,
-    /// Whether some state admits more observations than were explored.
-    has_cut: bool,
+    /// Whether not everything that can happen was followed.
+    pub(super) has_cut: bool,
 }
 
 impl Explorer {
@@ -203,6 +220,7 @@ impl Explorer {
     pub(super) fn starts(&mut self, knowledge: Knowledge, most: usize) -> Vec<Way> {
         let closed = ClosedLoop::new(&self.system, &mut self.estimator, None);
         let likeliest = closed.true_state().clone();
+        self.has_cut |= !closed.belief().is_exact();
         let states: Vec<_> = closed.belief().states().take(most).collect();
         let mut ways = Vec::new();
         for (state, probability) in states {
@@ -214,7 +232,9 @@ impl Explorer {
             let standing = ProgramExecution::new(&self.system).stepper.standing();
             // A start that is not known exactly has no share.
             let share = probability.exact().and_then(fraction).unwrap_or((0, 1));
-            let way = Way { standing, closed, by, is_fault: false, faults: 0, weights: vec![share] };
+            let judged = self.judge(closed.true_state(), &Observation::default());
+            let weights = vec![share];
+            let way = Way { standing, closed, judged, by, is_fault: false, faults: 0, weights };
             self.choose(way, &mut ways);
         }
         ways
@@ -264,6 +284,7 @@ impl Explorer {
             let entered = Entered { closed, by, faults, weights };
             for seen in self.seen(&entered, most_faults) {
                 let mut closed = entered.closed.clone();
+                let judged = self.judge(closed.true_state(), &seen.truth);
                 self.program.stepper.return_to(standing);
                 let programs = &mut [&mut self.program];
                 let observers = std::slice::from_mut(&mut self.fired);
@@ -273,7 +294,8 @@ impl Explorer {
                 let faults = entered.faults + seen.errors;
                 let weights = entered.weights.iter().copied().chain(seen.weights).collect();
                 let standing = self.program.stepper.standing();
-                self.choose(Way { standing, closed, by, is_fault: faults > 0, faults, weights }, &mut ways);
+                let is_fault = faults > 0;
+                self.choose(Way { standing, closed, judged, by, is_fault, faults, weights }, &mut ways);
             }
         }
         Ok((ways, commanded.contradiction))
@@ -293,7 +315,13 @@ impl Explorer {
             .map(|observation| {
                 let differs = |(id, value): &(&VariableId, &u8)| shown.0.get(id) != Some(value);
                 let unusual = observation.0.iter().filter(differs).map(|(id, value)| (*id, *value)).collect();
-                Seen { observation, unusual, errors: 0, weights: vec![(1, count)] }
+                Seen {
+                    truth: observation.clone(),
+                    observation,
+                    unusual,
+                    errors: 0,
+                    weights: vec![(1, count)],
+                }
             })
             .collect();
         for &variable in
@@ -347,8 +375,8 @@ impl Explorer {
                 let mut shares = way.weights.clone();
                 shares.push((*weight, total));
                 let standing = self.program.stepper.standing();
-                let closed = way.closed.clone();
-                self.choose(Way { standing, closed, by, weights: shares, ..way }, into);
+                let (closed, judged) = (way.closed.clone(), way.judged.clone());
+                self.choose(Way { standing, closed, judged, by, weights: shares, ..way }, into);
             }
             return;
         }
@@ -359,10 +387,19 @@ impl Explorer {
         into.push(way);
     }
 
-    fn holds(&self, state: &State) -> u64 {
-        let mut situation = Situation::new(&self.system.model, state, &plant::Observation::default());
-        let holding = self.conditions.iter().enumerate().filter(|(_, it)| situation.entails(&it.formula));
-        holding.fold(0, |bits, (at, _)| bits | 1 << at)
+    /// What is so of each condition in a state that shows this.
+    fn judge(&self, state: &State, truth: &Observation) -> Vec<Judged> {
+        let mut situation = Situation::new(&self.system.model, state, truth);
+        let judged = self.conditions.iter().map(|condition| {
+            if situation.entails(&condition.formula) {
+                Judged::True
+            } else if situation.entails(&condition.opposite) {
+                Judged::False
+            } else {
+                Judged::Undecided
+            }
+        });
+        judged.collect()
     }
 
     /// What tells the place apart to which a way leads. What the program has nothing to do with does not matter.
@@ -374,8 +411,10 @@ impl Explorer {
             standing: way.standing.clone(),
             modes: self.components.iter().map(|id| state.mode(*id)).collect(),
             beliefs: beliefs.map(|(_, belief)| Arc::clone(belief)).collect(),
+            observation: self.system.entailment.as_ref().map(|_| way.closed.observation().clone()),
+            judged: way.judged.clone(),
             faults_left,
-            end: way.end().map_or(0, |end| end as u8 + 1),
+            end: way.end(),
             unlike: None,
         }
     }
@@ -388,18 +427,19 @@ impl Explorer {
             standing: node.standing.clone(),
             modes: modes.collect(),
             beliefs: Vec::new(),
+            observation: None,
+            judged: node.judged.clone(),
             faults_left: node.faults_left,
-            end: 0,
+            end: None,
             unlike: None,
         }
     }
 
-    /// What comes next at a node by what is nominal, as long as no goal is come to; the number of steps that were taken of
-    /// `most`.
+    /// Takes nominal steps from a node until a goal is reached or the run ends, at most `most`. Returns how many were taken.
     pub(super) fn nominal_steps(
         &mut self,
         from: &Node,
-        is_goal: &dyn Fn(u64, Option<End>) -> bool,
+        is_goal: &dyn Fn(&[Judged], Option<End>) -> bool,
         most: u32,
     ) -> Result<u32, EstimateError> {
         let (mut standing, mut closed) = (from.standing.clone(), from.closed.clone());
@@ -407,7 +447,7 @@ impl Explorer {
             let (ways, _) = self.ways(&standing, &closed, 0)?;
             let Some(way) = ways.into_iter().next() else { return Ok(step) };
             let end = way.end();
-            if end.is_some() || is_goal(self.holds(way.closed.true_state()), end) {
+            if end.is_some() || is_goal(&way.judged, end) {
                 return Ok(step);
             }
             (standing, closed) = way.place();
@@ -448,7 +488,7 @@ impl Exploration {
         exploration
     }
 
-    /// Explores in breadth as long as `go_on` says so, which is told how many nodes there are; returns whether it is over.
+    /// Explores in breadth until `go_on` returns false; it gets the number of nodes. Returns whether everything is explored.
     pub(super) fn advance(&mut self, go_on: &mut dyn FnMut(usize) -> bool) -> Result<bool, EstimateError> {
         while let Some(id) = self.queue.front().copied() {
             if !go_on(self.product.nodes.len()) {
@@ -483,7 +523,8 @@ impl Exploration {
             }
             self.product.fired.extend(self.explorer.fired.0.drain(..));
             if self.explorer.has_cut {
-                let why = || format!("a state admits more than {MAX_OBSERVATIONS} observations");
+                self.product.has_cut = true;
+                let why = || "not every first state or observation was explored".to_owned();
                 self.product.stopped.get_or_insert_with(why);
             }
             let node = &mut self.product.nodes[id as usize];
@@ -510,17 +551,21 @@ impl Exploration {
         }
         self.known.insert(key, id);
         self.product.reached.extend(way.standing.marking().iter());
-        let holds = self.explorer.holds(way.closed.true_state());
-        let edges = end.map(|_| vec![Edge { to: id, by: Move::default(), is_fault: false }]);
-        if end.is_none() {
-            self.queue.push_back(id);
+        let mut edges = None;
+        match end {
+            None => self.queue.push_back(id),
+            Some(End::Unclear) => {
+                let why = || "a belief keeps too few states to explain an observation".to_owned();
+                self.product.stopped.get_or_insert_with(why);
+            }
+            Some(_) => edges = Some(vec![Edge { to: id, by: Move::default(), is_fault: false }]),
         }
         self.product.nodes.push(Node {
             standing: way.standing,
             closed: way.closed,
             faults_left,
             depth,
-            holds,
+            judged: way.judged,
             end,
             contradiction: None,
             edges,

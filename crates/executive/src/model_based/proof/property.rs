@@ -14,6 +14,7 @@ pub struct Condition {
     /// As it was written.
     pub text: SmolStr,
     pub(super) formula: Formula,
+    pub(super) opposite: Formula,
 }
 
 /// What runs of a program have to do, if not for ever then within some steps.
@@ -37,18 +38,15 @@ pub enum Property {
     AllGuardsHold,
     /// Locks do not wait for each other for ever.
     NoDeadlock,
-    /// No observation refutes the belief.
-    Explained,
 }
 
 /// The properties that every program should have.
-pub const DEFAULTS: [Property; 6] = [
+pub const DEFAULTS: [Property; 5] = [
     Property::Ends { within: None },
     Property::GoalsAgree,
     Property::AllGuardsHold,
     Property::AllReached,
     Property::NoDeadlock,
-    Property::Explained,
 ];
 
 impl Property {
@@ -115,7 +113,11 @@ impl Condition {
         let body = parsed.file.main().map(|main| &main.body);
         let guard = body.and_then(|body| body.guard());
         let guard = guard.ok_or_else(|| format!("`{text}` is not a condition"))?;
-        Ok(Self { text: text.into(), formula: formula(&guard.constraint, model)? })
+        if guard.non_entailed || guard.held.is_some() {
+            return Err(format!("`{text}` is not a condition of one state: remove `~` or HELD"));
+        }
+        let formula = formula(&guard.constraint, model)?;
+        Ok(Self { text: text.into(), opposite: model.opposite(formula.clone()), formula })
     }
 }
 
@@ -179,7 +181,6 @@ impl fmt::Display for Property {
             Self::AllReached => f.write_str("every location can become active"),
             Self::AllGuardsHold => f.write_str("every condition waited for can become true"),
             Self::NoDeadlock => f.write_str("locks do not deadlock"),
-            Self::Explained => f.write_str("every observation can be explained"),
         }
     }
 }
