@@ -26,7 +26,7 @@ pub struct Facts {
     pub states: Vec<(VariableId, ValueId, Time)>,
     /// By how much levels changed that nobody planned to change, and when.
     pub levels: Vec<(ResourceId, Rational, Time)>,
-    /// Traverses of which is known how far they have driven: `levels` has what that takes less than the most, or more.
+    /// Traverses whose driven distance is known: `levels` has how much less than the maximum they take, or how much more.
     pub driven: Vec<OccurrenceId>,
     /// What activities that said to set something have brought about instead.
     pub outcomes: Vec<(LabelId, ValueId)>,

@@ -376,7 +376,7 @@ impl Run<'_> {
         let duration = match self.executions.get(&occurrence) {
             Some(Ends::Never(reason)) => return Ok(Some(ByWorld::Never(reason.clone()))),
             Some(Ends::After(duration)) => *duration,
-            // Whoever is early waits until nature lets it be over.
+            // An activity that is early waits until nature ends it.
             Some(Ends::NotBefore(duration)) => chosen.max(*duration),
             Some(Ends::AsPlanned) | None => chosen,
         };
@@ -420,8 +420,8 @@ impl Run<'_> {
         self.is_decided(point, |_| true)
     }
 
-    /// Whether the world has decided when a point happens, or that it does not, and nobody can hold it until its turn: what is
-    /// early and waits, such as a vehicle that has arrived, is over when the plan lets it be.
+    /// Whether the world has decided when a point happens, or that it does not, and the plan cannot delay it. The end of an
+    /// activity that waits when it is early, such as a drive that has arrived, does not count: the plan can delay it.
     fn is_reported(&self, point: PointId) -> Result<bool, PlanError> {
         self.is_decided(point, |decider| match decider {
             Decider::Nature(_) => true,
@@ -432,7 +432,7 @@ impl Run<'_> {
         })
     }
 
-    /// Whether one of these deciders has decided when a point happens, or that it does not.
+    /// Whether a decider that counts has decided when a point happens, or that it does not.
     fn is_decided(&self, point: PointId, counts: impl Fn(&Decider) -> bool) -> Result<bool, PlanError> {
         let planned = self.stage.window(point).0.max(self.now);
         let node = self.stage.made.node(point);

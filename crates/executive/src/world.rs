@@ -262,7 +262,7 @@ impl World {
                 Disturbance::Level { resource, level, at } => {
                     world.changes.push(WorldChange::Level { at, resource, level });
                 }
-                // What vehicles meet is for whoever drives them, what components do for whoever runs their programs.
+                // The simulation of drives takes in what vehicles meet, and that of control programs what components do.
                 Disturbance::Obstacle { .. }
                 | Disturbance::VehicleSlow { .. }
                 | Disturbance::Fault { .. } => {}

@@ -83,7 +83,7 @@ impl Ends {
         self.ranges.push_back((end, end));
     }
 
-    /// Counts from another step, which was `before` and is `after`.
+    /// Renumbers the steps: the step `before` becomes the step `after`.
     fn shift(&mut self, before: u64, after: u64) {
         let shifted = |end: u64| end.saturating_sub(before).saturating_add(after);
         for (first, last) in &mut self.ranges {
@@ -148,13 +148,20 @@ impl Times {
         }
     }
 
-    /// Forgets how many steps have been taken, but not what that means for the steps to come.
+    /// Forgets how many steps have been taken, but not their effect on later steps.
     ///
-    /// The step becomes the smallest number for which everything that lies in the past still has a number: how long a
-    /// condition has lasted matters up to what is asked for, and of locks that are waited for only who came first.
+    /// The step becomes the smallest number that leaves room for all past steps that matter: a condition counts as lasting
+    /// at most as long as it has to, and for waiting programs only their order matters. Until the last time of an AT, the
+    /// steps since the program's start matter.
     pub(crate) fn count_from_now(&mut self, automaton: &Automaton) {
+        let at = automaton.clocks.iter().filter(|clock| clock.kind == ClockKind::At);
+        let last_time = at.map(|clock| clock.steps).max().unwrap_or(0);
         let lasting = automaton.held.iter().map(|held| held.steps).max().unwrap_or(0);
-        let now = lasting.max(self.locks.len() as u64);
+        let now = if self.step < last_time {
+            self.step
+        } else {
+            lasting.max(self.locks.len() as u64).max(last_time)
+        };
         for ends in &mut self.ends {
             ends.shift(self.step, now);
         }

@@ -1,13 +1,15 @@
 //! Equality of two variables in a program, written out over the values that they share (SPEC 2.2).
 
-use rmpl::Code;
 use rmpl::Diagnostic;
 use rmpl::control::{Constraint, ConstraintKind, Expression, Name};
+use rmpl::diagnostics::value::different_domains;
 use smol_str::SmolStr;
 
 use crate::vocabulary::Vocabulary;
 
-/// Replaces `(x = y)`, where y is no value of x but another variable of its domain, by what it means.
+/// Replaces each `(x = y)`, where y is another variable and not a value of x, by an `OR` over the shared values.
+///
+/// Returns an error for each two variables with different domains.
 pub(crate) fn write_out(program: &mut Expression, vocabulary: &Vocabulary) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = Vec::new();
     program.change_constraints(&mut |constraint| {
@@ -18,10 +20,8 @@ pub(crate) fn write_out(program: &mut Expression, vocabulary: &Vocabulary) -> Ve
             return;
         };
         if !has_all(values, others) || !has_all(others, values) {
-            // A definition that is called twice has one mistake.
-            if !found.iter().any(|known| known.span == value.span) {
-                found.push(different(variable, value));
-            }
+            // A definition that is called twice has one error.
+            different_domains(&variable.text, &value.text, value.span).add_once_to(&mut found);
             return;
         }
         let equals = |name: &Name, with: &SmolStr| Constraint {
@@ -42,10 +42,4 @@ pub(crate) fn write_out(program: &mut Expression, vocabulary: &Vocabulary) -> Ve
 
 fn has_all(values: &[SmolStr], wanted: &[SmolStr]) -> bool {
     wanted.iter().all(|value| values.contains(value))
-}
-
-fn different(variable: &Name, other: &Name) -> Diagnostic {
-    let message = format!("`{}` and `{}` have different domains", variable.text, other.text);
-    Diagnostic::error(Code("E-VALUE"), other.span, message)
-        .with_hint("two variables can be equal if they have the same values")
 }

@@ -84,8 +84,8 @@ impl Standing {
         &self.marking
     }
 
-    /// The same with times that count from now: standings from which the same comes next are then equal, whenever they are
-    /// come to.
+    /// The same with times that count from now: two standings that continue alike are then equal, in whichever step they are
+    /// reached.
     #[must_use]
     pub fn relative(mut self, automaton: &Automaton) -> Self {
         self.times.count_from_now(automaton);
@@ -93,13 +93,13 @@ impl Standing {
     }
 }
 
-/// Where a run stands, whatever the number of its step: two runs that stand alike go on alike.
+/// The position of a run, without the number of its step: two runs in equal positions continue alike.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
     marking: Marking,
-    /// Of each running clock, in how many steps it is up; of a time of the program, also if nothing waits for it.
+    /// For each running clock, in how many steps it is up; for an `AT` clock, also if nothing waits for it.
     clocks: Vec<Vec<(u64, u64)>>,
-    /// For how many steps each condition that has to last has lasted, up to what it has to.
+    /// For how many steps each `HELD` condition has lasted, at most the number that it needs.
     lasted: Vec<u64>,
 }
 
@@ -134,7 +134,7 @@ pub struct Stepper {
     acts_after_step: bool,
 }
 
-// What only forms in time do is marked cold: the guards of plain programs are then evaluated where they are asked.
+// Functions that only forms in time need are marked cold, so that the compiler inlines the guards of plain programs.
 impl Stepper {
     /// Starts in the automaton's start marking; choices are made by what is likeliest.
     pub fn new(automaton: &Arc<Automaton>) -> Self {
@@ -204,7 +204,7 @@ impl Stepper {
         Standing { marking, aside, times: self.times.clone() }
     }
 
-    /// Where a program without locks stands when its choices are made.
+    /// The position of a program without locks and without open choices.
     pub fn position(&self) -> Position {
         let numbered = (0..).map(ClockId).zip(&self.automaton.clocks);
         let clocks = numbered.map(|(id, clock)| match clock.kind {

@@ -1,14 +1,11 @@
-//! Everything that can happen in a step: the modes that components may enter, and what may be observed then.
+//! All possible results of a step: the modes that components may enter, and the observations that may be made then.
 
 use std::collections::BTreeSet;
 
 use crate::belief::State;
-use crate::consistency::Assumed;
-use crate::domains::Domains;
-use crate::formula::values;
 use crate::island::Island;
-use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
-use crate::simulate::observation_of;
+use crate::model::{Commands, ComponentId, Model, Observation};
+use crate::simulate::{observation_of, shown_values};
 use crate::successor::{EstimateError, distribution, intended, successor};
 
 /// A mode that a component may enter in a step.
@@ -37,8 +34,8 @@ pub fn targets(
     Ok(targets)
 }
 
-/// What may be observed in a state by sensors without errors, all of it equally likely and what is shown without chance
-/// first. Only the variables that some components have to do with vary. `None` if there is more than `most`.
+/// The observations that sensors without errors may make in a state, all equally likely; the first one is made without
+/// chance. Only variables in the islands of `components` vary. `None` if there are more than `most`.
 pub fn observations(
     model: &Model,
     state: &State,
@@ -49,7 +46,7 @@ pub fn observations(
     let mut all = vec![shown.clone()];
     let is_of = |island: &&Island| island.components.iter().any(|id| components.contains(id));
     for island in model.islands.iter().filter(is_of) {
-        let open = open_values(model, island, state, &shown, most / all.len())?;
+        let open = shown_values(model, island, state, most / all.len().max(1))?;
         all = all
             .into_iter()
             .flat_map(|observation| {
@@ -63,46 +60,4 @@ pub fn observations(
     }
     all.sort_by_key(|observation| *observation != shown);
     Some(all)
-}
-
-/// The combinations of values of an island's observable variables that its modes allow, where SHOWS does not decide.
-fn open_values(
-    model: &Model,
-    island: &Island,
-    state: &State,
-    shown: &Observation,
-    most: usize,
-) -> Option<Vec<Vec<(VariableId, u8)>>> {
-    let assumed = Assumed::all(model, island, &state.0);
-    let mut domains = Domains::observed(model, &Observation::default());
-    if assumed.propagate(&mut domains).is_err() {
-        return Some(vec![Vec::new()]);
-    }
-    let mut found: Vec<(Vec<(VariableId, u8)>, Domains)> = vec![(Vec::new(), domains)];
-    for &variable in &island.variables {
-        let Some(data) = model.variables.get(variable.0 as usize).filter(|data| data.observable) else {
-            continue;
-        };
-        let symbol = model.variable_symbol(variable) as usize;
-        let mut next = Vec::new();
-        for (chosen, domains) in &found {
-            let set = domains.sets.get(symbol).copied().unwrap_or(0);
-            // What is shown by rule does not vary.
-            let fixed = data.shows.filter(|shows| shown.0.get(&variable) == Some(shows));
-            for value in values(fixed.map_or(set, |value| set & 1 << value)) {
-                let mut trial = domains.clone();
-                trial.sets[symbol] = 1 << value;
-                if assumed.settle_all(&mut trial).is_ok() && assumed.check(&mut trial).is_ok() {
-                    let mut chosen = chosen.clone();
-                    chosen.push((variable, value));
-                    next.push((chosen, trial));
-                }
-            }
-            if next.len() > most {
-                return None;
-            }
-        }
-        found = next;
-    }
-    Some(found.into_iter().map(|(chosen, _)| chosen).collect())
 }

@@ -60,7 +60,7 @@ impl Random {
         }
     }
 
-    /// One of some values, each with its weight, however long. A value that stands alone takes no draw.
+    /// Draws one of some values by their weights, which may have any number of digits. A single possible value takes no draw.
     fn weighted_exactly(&mut self, weights: &[(u8, BigUint)]) -> u8 {
         let divisor = weights.iter().fold(BigUint::zero(), |divisor, (_, weight)| divisor.gcd(weight));
         let possible = weights.iter().filter(|(_, weight)| !weight.is_zero());
@@ -77,7 +77,7 @@ impl Random {
         possible.first().map_or(0, |(value, _)| *value)
     }
 
-    /// A number below `bound`, however long, all equally likely.
+    /// A number below `bound`, all equally likely; both may have any number of digits.
     fn below_exactly(&mut self, bound: &BigUint) -> BigUint {
         if let Some(bound) = bound.to_u64() {
             return self.below(bound).into();
@@ -191,7 +191,7 @@ impl SimulatedPlant {
         observation_of(&self.model, &self.state)
     }
 
-    /// What the plant shows by chance: values that its modes leave open are drawn, but for `SHOWS`, and then errors.
+    /// What the plant shows with chance: values that its modes and `SHOWS` leave open are drawn, and then errors.
     pub fn observation_with_chance(&self, random: &mut Random) -> Observation {
         let mut observation = Observation::default();
         for island in &self.model.islands {
@@ -218,6 +218,66 @@ fn is_completable(assumed: &Assumed<'_>, domains: &mut Domains) -> bool {
     result.is_ok()
 }
 
+/// The observable variables of an island.
+fn observed_of<'model>(
+    model: &'model Model,
+    island: &'model Island,
+) -> impl Iterator<Item = VariableId> + use<'model> {
+    let is_observable =
+        |id: &VariableId| model.variables.get(id.0 as usize).is_some_and(|data| data.observable);
+    island.variables.iter().copied().filter(is_observable)
+}
+
+/// Gives the variables of an island that have a `SHOWS` value this value, in the order of the text, where that is possible.
+/// The consequences of the modes were drawn already.
+fn show(model: &Model, island: &Island, assumed: &Assumed<'_>, domains: &mut Domains) {
+    for id in observed_of(model, island) {
+        let Some(shows) = model.variables.get(id.0 as usize).and_then(|data| data.shows) else { continue };
+        let point = domains.point();
+        let restricted = assumed.restrict([(model.variable_symbol(id), 1 << shows)], domains);
+        if !restricted.is_ok_and(|is_true| is_true || is_completable(assumed, domains)) {
+            domains.return_to(&point);
+        }
+    }
+}
+
+/// The combinations of values of an island's observable variables that are possible in a state, in the order of the values:
+/// what `SHOWS` decides is the same in all of them. `None` if there are more than `most`.
+pub(crate) fn shown_values(
+    model: &Model,
+    island: &Island,
+    state: &State,
+    most: usize,
+) -> Option<Vec<Vec<(VariableId, u8)>>> {
+    let assumed = Assumed::all(model, island, &state.0);
+    let mut domains = Domains::observed(model, &Observation::default());
+    if assumed.propagate(&mut domains).is_err() {
+        return Some(vec![Vec::new()]);
+    }
+    show(model, island, &assumed, &mut domains);
+    let mut found = vec![(Vec::new(), domains)];
+    for variable in observed_of(model, island) {
+        let symbol = model.variable_symbol(variable) as usize;
+        let mut next = Vec::new();
+        for (chosen, domains) in &found {
+            for value in values(domains.sets.get(symbol).copied().unwrap_or(0)) {
+                let mut trial = domains.clone();
+                trial.sets[symbol] = 1 << value;
+                if assumed.settle_all(&mut trial).is_ok() && assumed.check(&mut trial).is_ok() {
+                    let mut chosen: Vec<(VariableId, u8)> = chosen.clone();
+                    chosen.push((variable, value));
+                    next.push((chosen, trial));
+                }
+            }
+            if next.len() > most {
+                return None;
+            }
+        }
+        found = next;
+    }
+    Some(found.into_iter().map(|(chosen, _)| chosen).collect())
+}
+
 /// True values of the observable variables of an island: all combinations that the modes allow are equally likely.
 fn true_values(model: &Model, island: &Island, state: &State, random: &mut Random) -> Vec<(VariableId, u8)> {
     let mut domains = Domains::observed(model, &Observation::default());
@@ -225,18 +285,8 @@ fn true_values(model: &Model, island: &Island, state: &State, random: &mut Rando
     if assumed.propagate(&mut domains).is_err() {
         return Vec::new();
     }
-    let data = |id: &VariableId| model.variables.get(id.0 as usize);
-    let observed: Vec<VariableId> =
-        island.variables.iter().copied().filter(|id| data(id).is_some_and(|data| data.observable)).collect();
-    for id in &observed {
-        let Some(shows) = data(id).and_then(|data| data.shows) else { continue };
-        let point = domains.point();
-        let restricted = assumed.restrict([(model.variable_symbol(*id), 1 << shows)], &mut domains);
-        let is_possible = restricted.is_ok_and(|is_true| is_true || is_completable(&assumed, &mut domains));
-        if !is_possible {
-            domains.return_to(&point);
-        }
-    }
+    show(model, island, &assumed, &mut domains);
+    let observed: Vec<VariableId> = observed_of(model, island).collect();
     let symbols: Vec<u32> = observed.iter().map(|id| model.variable_symbol(*id)).collect();
     let mut values_drawn = Vec::with_capacity(observed.len());
     for (at, (id, &symbol)) in observed.iter().zip(&symbols).enumerate() {
@@ -275,15 +325,10 @@ pub fn observation_of(model: &Model, state: &State) -> Observation {
         if assumed.propagate(&mut domains).is_err() {
             continue;
         }
-        for &variable in &island.variables {
-            let Some(data) = model.variables.get(variable.0 as usize).filter(|data| data.observable) else {
-                continue;
-            };
+        show(model, island, &assumed, &mut domains);
+        for variable in observed_of(model, island) {
             let symbol = model.variable_symbol(variable) as usize;
-            let set = domains.sets.get(symbol).copied().unwrap_or(0);
-            let preferred = data.shows.map_or(0, |shows| 1_u64 << shows);
-            let order = values(set & preferred).chain(values(set & !preferred));
-            for value in order {
+            for value in values(domains.sets.get(symbol).copied().unwrap_or(0)) {
                 let mut trial = domains.clone();
                 trial.sets[symbol] = 1 << value;
                 let settled = assumed.settle_all(&mut trial);

@@ -13,8 +13,8 @@ use super::place::find_places;
 use super::plan_lines::{PlanLines, driven_within_s};
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
-/// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` says so, the alternatives that have
-/// not been looked at yet are left as [`super::Fate::NotExamined`].
+/// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` returns `true`,
+/// the alternatives that have not been looked at yet are left as [`super::Fate::NotExamined`].
 ///
 /// Alternatives that the plan does not take are planned once more each, so this takes as long as planning does, times
 /// the number of alternatives; it is meant to be asked for, not to follow every edit.
@@ -107,7 +107,7 @@ pub(crate) const ACCEPTED: &str = "the independent checker accepts the plan";
 /// How the lines of a plan that the checker finds invalid begin.
 pub(crate) const REJECTED: &str = "the independent checker rejects the plan: ";
 
-/// How the line of what a plan is worth begins.
+/// How the line of a plan's objective begins.
 pub(crate) const OBJECTIVE: &str = "objective: ";
 
 /// How the line of a dynamically controllable plan begins.
@@ -203,8 +203,11 @@ fn controllability(
             ),
         ),
     };
-    let late = late_drives(snapshot, network, &nodes);
-    if late.is_empty() || network.controllability == Controllability::None {
+    let late = match network.controllability {
+        Controllability::None => Vec::new(),
+        _ => late_drives(snapshot, network, &nodes),
+    };
+    if late.is_empty() {
         return Some(places.line(status, text, None, names, nodes));
     }
     let text = format!("{text}; unmapped obstacles may extend {} beyond that", late.join(", "));
@@ -220,7 +223,8 @@ fn late_drives<'network>(
     let unit_s = snapshot.program.options.time_unit.seconds() as f64;
     let late = snapshot.traverses.iter().filter_map(|traverse| {
         let occurrence = &network.occurrences[traverse.occurrence.index()];
-        let most = network.arcs[occurrence.arc?.index()].upper.finite()?;
+        let arc = Some(&network.arcs[occurrence.arc?.index()]).filter(|arc| arc.is_contingent)?;
+        let most = arc.upper.finite()?;
         let is_late = most.to_f64() * unit_s < driven_within_s(snapshot, network, traverse) - 1e-3;
         (ends.contains(&occurrence.end) && is_late).then_some(occurrence.name.as_str())
     });
@@ -313,7 +317,7 @@ fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
 }
 
 /// What the plan is worth, as far as its mission counts anything, and whether it is known to be the best. The checker
-/// adds up the figures; that nothing is better is the planner's word, and said to be.
+/// adds up the figures; that nothing is better rests on the planner alone, and the line says that.
 fn worth(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
     let mut text = tpn::worth::words(network, plan)?;

@@ -307,6 +307,26 @@ fn that_a_plan_withstands_nature_has_not_passed_on_the_planner_s_word() {
 }
 
 #[test]
+fn a_contingent_drive_that_rocks_may_hold_up_beyond_its_range_needs_attention() {
+    let controllable = |terrain: &str, most: &str| {
+        let source = format!(
+            "{terrain} location A (20, 20); location B (50, 20); vehicle R : ATRV at A;
+             primitive Drive(to) contingent [1,{most}] moves R; primitive Walk() contingent [1,2];
+             scenario S[0,60] = {{ {{ Drive(B); delay }}, {{ Walk(); delay }} }}"
+        );
+        line(&source, "dynamically controllable").expect("nature chooses")
+    };
+    let mapped = "terrain \"flat\" cell 0.6;";
+    let (status, text) = controllable(mapped, "1.2");
+    assert_eq!(status, Status::Attention, "{text}");
+    assert!(text.ends_with("; unmapped obstacles may extend Drive#1 beyond that"), "{text}");
+    // With more time, or without a map that may leave out rocks, nothing extends it.
+    for (terrain, most) in [(mapped, "9"), ("", "1.2")] {
+        assert_eq!(controllable(terrain, most).0, Status::Passed);
+    }
+}
+
+#[test]
 fn a_formation_sets_out_from_one_location() {
     let mission = |first: &str| {
         reviewed(&format!(

@@ -111,7 +111,7 @@ pub(super) struct BeliefUpdate {
 }
 
 impl BeliefUpdate {
-    /// The state is known.
+    /// The update of programs that know the state.
     pub(super) fn certain(system: &System, state: &State) -> Self {
         let believed = Some(Believed::certain(system, state));
         Self { believed, outcome: StepOutcome::Explained, is_uncertain: false, conflicts: Vec::new() }

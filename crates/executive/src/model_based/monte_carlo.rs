@@ -123,7 +123,7 @@ pub const fn run_seed(seed: u64, number: u64) -> u64 {
     Random::skipped(seed, number).next_bits()
 }
 
-/// Makes the runs of these numbers, as long as `go_on` says so after each; the tally says how many were made.
+/// Makes the runs of these numbers, until `go_on` returns `false` after one of them; the tally says how many were made.
 pub fn sample(
     system: &Arc<System>,
     trials: &Trials<'_>,

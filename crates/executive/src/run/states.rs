@@ -211,14 +211,13 @@ impl Run<'_> {
         let network = std::sync::Arc::clone(&self.stage.network);
         let cause = driven(&network, occurrence, extra_m);
         let mut violation = None;
-        for used in network.uses.iter().filter(|used| used.owner == Some(occurrence)) {
+        let taken = |used: &&tpn::Use| used.owner == Some(occurrence) && used.change == Change::Consumes;
+        for used in network.uses.iter().filter(taken) {
             let Supply::Reservoir { greatest, .. } = network.resources[used.resource.index()].supply else {
                 continue;
             };
             let by = used.per_meter.checked_mul(since_m).and_then(Rational::checked_neg);
-            let Some(mut by) = by.filter(|by| !by.is_zero() && used.change == Change::Consumes) else {
-                continue;
-            };
+            let Some(mut by) = by.filter(|by| !by.is_zero()) else { continue };
             if by.is_positive() {
                 // What was not taken after all fills a reservoir, and no more.
                 let room = greatest.checked_sub(self.state.level(used.resource)).unwrap_or_default();
@@ -230,7 +229,7 @@ impl Run<'_> {
         violation
     }
 
-    /// A traverse is over: what it gives for each meter more than the plan counts at least.
+    /// A traverse is over: counts what it gives for the meters beyond those that the plan counts at least.
     fn give_for_meters(&mut self, network: &Network, node: NodeId) -> Option<Violation> {
         let mut violation = None;
         let given = |used: &&tpn::Use| used.end == node && used.change == Change::Produces;
@@ -440,7 +439,7 @@ impl Run<'_> {
         })
     }
 
-    /// The level as it is counted now, and how high it is at most: traverses under way may take less than is counted.
+    /// The present level as it is counted, and its maximum: traverses under way may take less than is counted.
     fn possible_levels(&self, resource: ResourceId) -> Option<[Rational; 2]> {
         let network = &self.stage.network;
         let now = self.state.level(resource);
@@ -466,13 +465,24 @@ impl Run<'_> {
     ) -> Option<(Time, UseId, Rational)> {
         coming.sort_unstable();
         let [mut low, mut high] = self.possible_levels(resource)?;
+        // What may be given back while traverses are under way fills nothing before something is produced.
+        let mut produced = None;
         for (index, &(at, used)) in coming.iter().enumerate() {
-            let [less, more] = self.stage.network.uses[used.index()].level_changes();
+            let of = &self.stage.network.uses[used.index()];
+            let [less, more] = of.level_changes();
             (low, high) = (low.checked_add(less)?, high.checked_add(more)?);
+            if of.change == Change::Produces {
+                produced = Some(used);
+            }
             // Only the level after an instant counts.
-            let is_last = coming.get(index + 1).is_none_or(|&(next, _)| next > at);
-            if is_last && (low < least || high > greatest) {
-                return Some((at, used, if low < least { low } else { high }));
+            if coming.get(index + 1).is_some_and(|&(next, _)| next == at) {
+                continue;
+            }
+            if low < least {
+                return Some((at, used, low));
+            }
+            if let Some(used) = produced.take().filter(|_| high > greatest) {
+                return Some((at, used, high));
             }
         }
         None
@@ -487,7 +497,7 @@ fn named(network: &Network, variable: &str, value: &str) -> Option<(VariableId, 
     Some((VariableId::from_index(index), ValueId::from_index(known)))
 }
 
-/// How far a traverse has driven, as a cause.
+/// How far a traverse has driven, in words for the cause of a violation.
 fn driven(network: &Network, occurrence: OccurrenceId, extra_m: Rational) -> String {
     format!(
         "{} has driven {} m {} than its path",

@@ -131,6 +131,26 @@ fn time_that_passes_again_and_again_is_a_finite_number_of_states() {
 }
 
 #[test]
+fn times_of_a_program_come() {
+    let at = system("(SEQUENCE (A = On) (AT 5 (B = On)))", PLANT);
+    for (property, holds) in [
+        ("ends", true),
+        ("ends within 6 steps", true),
+        ("ends within 5 steps", false),
+        ("never B = On", false),
+        ("eventually B = On", true),
+    ] {
+        assert_eq!(verdict(&at, property, 0) == Verdict::Holds, holds, "{property}");
+    }
+    // What is over makes no more states.
+    let after =
+        system("(PARALLEL (AT 5 (B = On)) (ALWAYS (IF-THENNEXT (HELD 2 (A = On)) (A = Off))))", PLANT);
+    let scope = Scope { faults: 0, knowledge: Knowledge::Perfect, ..Scope::default() };
+    let proof = proven(&after, &["eventually B = On"], scope);
+    assert_eq!((proof.stopped, &proof.verdicts[0].1), (None, &Verdict::Holds));
+}
+
+#[test]
 fn what_chance_decides_again_and_again_comes_at_some_time() {
     let retry =
         "(DO-WATCHING (A = On) (WHENEVER-DONEXT (A = Off) (CHOOSE-PROB (0.5 (A = On)) (0.5 (B = On)))))";
@@ -246,12 +266,13 @@ fn program(rng: &mut Rng, depth: u32) -> String {
         return if rng.below(5) == 0 { format!("(WAIT {})", 1 + rng.below(3)) } else { goal(rng) };
     }
     let part = |rng: &mut Rng| program(rng, depth - 1);
-    match rng.below(7) {
+    match rng.below(8) {
         0 => format!("(SEQUENCE {} {})", part(rng), part(rng)),
         1 => format!("(PARALLEL {} {})", part(rng), part(rng)),
         2 => format!("(DO-WATCHING {} {})", condition(rng), part(rng)),
         3 => format!("(WHEN-DONEXT {} {})", condition(rng), part(rng)),
         4 => format!("(IF-THENNEXT {} {})", condition(rng), part(rng)),
+        6 => format!("(AT {} {})", 1 + rng.below(6), part(rng)),
         5 => format!("(TIMEOUT {} {} {})", 1 + rng.below(4), part(rng), part(rng)),
         _ => goal(rng),
     }

@@ -1,6 +1,6 @@
 //! Outcomes, guarded faults, sensors with errors and equality, against enumeration by the specification's sentences (9.1).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -528,4 +528,22 @@ fn modes_that_nothing_reaches_and_constraints_that_nothing_satisfies_are_reporte
     let inherited =
         "(DEFCLASS Base () (VAR v {x y}) (MODE A (v = x))) (DEFCLASS Half (Base) (MODE A (v = y)))";
     assert_eq!(found(inherited).len(), 1, "both constraints hold together");
+}
+
+/// What is shown without chance, what chance draws, and what a proof explores rest on one reading of `SHOWS`.
+#[test]
+fn what_chance_shows_is_among_the_possible_observations() {
+    let text = "(DEFCLASS G () (VAR c {0 1} OBSERVABLE) (VAR a {0 1} OBSERVABLE SHOWS 1) (VAR b {0 1} OBSERVABLE SHOWS 1)
+          (VAR d {0 1} OBSERVABLE)
+          (MODE M ((NOT ((c = 0) AND (a = 1))) AND (NOT ((a = 1) AND (b = 1))))))
+        (DEFINSTANCE g G)";
+    let model = Arc::new(model(text));
+    let plant = SimulatedPlant::new(&model, None);
+    let components = model.component_ids().collect();
+    let possible = plant::observations(&model, plant.state(), &components, 100).expect("there are few");
+    assert_eq!(possible[0], plant.observation());
+    assert_eq!(plant::observations(&model, plant.state(), &components, 1), None);
+    let mut random = Random::new(3);
+    let drawn: BTreeSet<_> = (0..200).map(|_| plant.observation_with_chance(&mut random)).collect();
+    assert_eq!(drawn, possible.into_iter().collect());
 }
