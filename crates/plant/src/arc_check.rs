@@ -1,4 +1,5 @@
-//! Modes that cannot be, and arcs that say too much of one step: two targets, or probabilities above 1 (SPEC 9.1).
+//! Checks of modes and arcs: modes that no values allow or nothing reaches, transitions that conflict, and faults that sum to
+//! more than 1 (SPEC 9.1).
 
 use std::collections::BTreeMap;
 
@@ -19,18 +20,15 @@ pub(crate) fn check_arcs(model: &Model, id: ComponentId, diagnostics: &mut Vec<D
         let impossible = impossible.then(|| constraint::impossible_mode(&mode.name, mode.span));
         let found = impossible.into_iter().chain(choices(model, component, mode, &mut sets));
         for diagnostic in found.chain(faults(model, component, mode, &mut sets)) {
-            // Components of one class have the same mistakes.
-            let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.code == diagnostic.code;
-            if !diagnostics.iter().any(is_same) {
-                diagnostics.push(diagnostic);
-            }
+            // Components of one class have the same errors.
+            diagnostic.add_once_to(diagnostics);
         }
     }
 }
 
-/// A warning for each mode that no component begins in, and no transition or fault leads to.
+/// Adds a warning for each mode that no component starts in, and no transition or fault leads to.
 pub(crate) fn check_reach(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
-    // A class may have several components: what one of them reaches is reached.
+    // A mode of a class is reachable if one of its components reaches it.
     let mut reached: BTreeMap<Span, (&str, &str, bool)> = BTreeMap::new();
     for component in &model.components {
         let modes = reach(component);
@@ -44,7 +42,7 @@ pub(crate) fn check_reach(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
     }
 }
 
-/// The modes that a component can get to, one bit each.
+/// The modes that a component can reach, one bit each.
 fn reach(component: &Component) -> u64 {
     let mut reached = component.prior.iter().fold(0_u64, |modes, (mode, _)| modes | 1 << mode);
     loop {
@@ -61,7 +59,7 @@ fn reach(component: &Component) -> u64 {
     }
 }
 
-/// Pairs of guards that can hold together and lead elsewhere.
+/// Pairs of guards that can hold together and lead to different modes.
 fn choices(model: &Model, component: &Component, mode: &Mode, sets: &mut [u64]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (at, second) in mode.choices.iter().enumerate() {

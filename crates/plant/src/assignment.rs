@@ -5,16 +5,16 @@ use smol_str::{SmolStr, format_smolstr};
 use crate::formula::{Formula, Truth, values};
 use crate::model::{ComponentId, Model};
 
-/// After so many trials a search gives up.
+/// A search stops after this many trials.
 const MAX_TRIALS: u32 = 20_000;
 
-/// What a search for an assignment came to.
+/// The result of a search for an assignment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Found {
     /// Values of symbols with which all constraints hold, whatever the other symbols are.
     Assignment(Vec<(u32, u8)>),
     Nothing,
-    /// The search was given up.
+    /// The search stopped at its limit.
     Undecided,
 }
 
@@ -69,7 +69,7 @@ fn search(
     found
 }
 
-/// Whether the same values within `sets` satisfy both.
+/// Whether the same values within `sets` satisfy both; false if the search stopped at its limit.
 pub(crate) fn are_equal(model: &Model, left: &Formula, right: &Formula, sets: &mut [u64]) -> bool {
     let mut implies = |from: &Formula, to: &Formula| {
         satisfying(&[from, &model.opposite(to.clone())], sets) == Found::Nothing

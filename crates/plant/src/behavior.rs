@@ -1,8 +1,8 @@
-//! Classes that behave like a program: what is written out of `(BEHAVIOR e)` is a class with modes, transitions and
-//! outcomes, for which all else is done as for one written by hand (SPEC 2.2).
+//! Classes that behave like a program: `(BEHAVIOR e)` is written out as modes, transitions and outcomes, and the class is
+//! then compiled like one that was written by hand (SPEC 2.2).
 //!
-//! A mode is what is marked, with the time left of clocks and what has to have lasted. What a step may depend on is asked of
-//! the automaton, and each combination of answers that values can give leads to a mode.
+//! A mode is a marking of the program, with the time left of its clocks and how long its HELD conditions have lasted. The
+//! automaton tells which conditions a step depends on; each combination of answers that values can give leads to a mode.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,11 +19,13 @@ use rmpl::{Code, Diagnostic};
 use smol_str::{SmolStr, SmolStrBuilder, ToSmolStr as _, format_smolstr};
 
 use crate::assignment::{Found, satisfying};
-use crate::formula::Formula;
+use crate::formula::{Formula, all_values};
 
-/// A class has at most so many modes: sets of them are words of 64 bits.
+/// A class has at most this many modes, because sets of modes are words of 64 bits.
 const MAX_MODES: usize = 64;
 const MAX_TRANSITIONS: usize = 65_536;
+/// So many combinations of answers are followed, in all steps of a class.
+const MAX_ANSWERS: usize = 4 * MAX_TRANSITIONS;
 
 /// The file with each BEHAVIOR replaced by the modes and transitions that it means, and what is wrong with them.
 ///
@@ -77,7 +79,7 @@ fn mixed(file: &ControlFile, classes: &BTreeMap<SmolStr, MergedClass<'_>>) -> Ve
             && !found.iter().any(|known| known.span == first.span)
         {
             let message =
-                "a class with a BEHAVIOR has no MODE, TRANSITION, FAULT or other BEHAVIOR, own or inherited";
+                "a class with a BEHAVIOR cannot have or inherit a MODE, TRANSITION, FAULT or other BEHAVIOR";
             let hint = "keep the BEHAVIOR, or write the modes by hand";
             found.push(Diagnostic::error(Code("E-FORM"), first.span, message).with_hint(hint));
         }
@@ -85,7 +87,7 @@ fn mixed(file: &ControlFile, classes: &BTreeMap<SmolStr, MergedClass<'_>>) -> Ve
     found
 }
 
-/// Components that do not say where they start start where the behavior does, also by chance.
+/// Gives components without INIT the start of the behavior, where that is random.
 fn begin(
     file: &mut ControlFile,
     classes: &BTreeMap<SmolStr, MergedClass<'_>>,
@@ -153,11 +155,12 @@ fn modes_of(
         known: BTreeMap::new(),
         fields: Vec::new(),
         transitions: 0,
+        answers: 0,
     };
     exploration.run(stepper).map_err(|diagnostic| vec![diagnostic])
 }
 
-/// Forms that no plant can do.
+/// Adds an error for each form that a plant cannot run.
 fn refuse(expression: &Expression, into: &mut Vec<Diagnostic>) {
     let form = match &expression.kind {
         ExpressionKind::Lock { .. } => Some("LOCK"),
@@ -166,7 +169,7 @@ fn refuse(expression: &Expression, into: &mut Vec<Diagnostic>) {
         _ => None,
     };
     if let Some(form) = form {
-        let message = format!("a BEHAVIOR has no {form}");
+        let message = format!("a BEHAVIOR cannot contain {form}");
         into.push(Diagnostic::error(Code("E-FORM"), expression.span, message));
     }
     for part in expression.parts() {
@@ -191,41 +194,30 @@ impl Values {
         let mut values = Self { variables: BTreeMap::new(), full: Vec::new() };
         for variable in &automaton.variables {
             let domain = class.and_then(|class| domain_of(class, classes, &variable.name));
-            let count = domain.as_ref().map_or(variable.values.len() + 1, Vec::len).min(64);
+            let count = domain.as_ref().map_or(variable.values.len() + 1, Vec::len);
             let domain = domain.unwrap_or_else(|| variable.values.clone());
             values.variables.insert(variable.name.clone(), (values.full.len() as u32, domain));
-            values.full.push(if count >= 64 { u64::MAX } else { (1 << count) - 1 });
+            values.full.push(all_values(count));
         }
         values
     }
 
     fn formula(&self, constraint: &Constraint, wanted: bool) -> Formula {
-        let joined = |parts: &[Constraint], is_all: bool| {
-            let parts = parts.iter().map(|part| self.formula(part, wanted)).collect();
-            if is_all == wanted { Formula::All(parts) } else { Formula::Any(parts) }
+        Formula::of(constraint, wanted, &|variable, value, wanted| self.equality(variable, value, wanted))
+    }
+
+    fn equality(&self, variable: &str, value: &str, wanted: bool) -> Formula {
+        let Some((symbol, values)) = self.variables.get(variable) else {
+            return Formula::Constant(!wanted);
         };
-        match &constraint.kind {
-            ConstraintKind::True => Formula::Constant(wanted),
-            ConstraintKind::False | ConstraintKind::Parameter(_) | ConstraintKind::Unreadable => {
-                Formula::Constant(!wanted)
+        let full = self.full.get(*symbol as usize).copied().unwrap_or(0);
+        match values.iter().position(|known| known == value) {
+            Some(at) => {
+                let set = 1_u64 << at.min(63);
+                Formula::Member { symbol: *symbol, set: if wanted { set } else { full & !set } }
             }
-            ConstraintKind::Not(inner) => self.formula(inner, !wanted),
-            ConstraintKind::And(parts) => joined(parts, true),
-            ConstraintKind::Or(parts) => joined(parts, false),
-            ConstraintKind::Equals { variable, value } => {
-                let Some((symbol, values)) = self.variables.get(&variable.text) else {
-                    return Formula::Constant(!wanted);
-                };
-                let full = self.full.get(*symbol as usize).copied().unwrap_or(0);
-                match values.iter().position(|known| *known == value.text) {
-                    Some(at) => {
-                        let set = 1_u64 << at.min(63);
-                        Formula::Member { symbol: *symbol, set: if wanted { set } else { full & !set } }
-                    }
-                    // Equality of two variables, or what is reported later: both answers are possible.
-                    None => Formula::Constant(true),
-                }
-            }
+            // For two variables, and for errors that are reported later, both answers are possible.
+            None => Formula::Constant(true),
         }
     }
 }
@@ -242,13 +234,11 @@ fn domain_of(
     };
     field(class, name).or_else(|| {
         let (path, name) = name.rsplit_once('.')?;
-        let behind =
-            path.split('.').try_fold(class, |class, step| classes.get(&class.neighbor(step)?.text))?;
-        field(behind, name)
+        field(class.reached(classes, path)?, name)
     })
 }
 
-/// A mode on its way.
+/// A mode that the exploration has reached.
 struct Place {
     name: SmolStr,
     stepper: Stepper,
@@ -268,6 +258,8 @@ struct Exploration {
     known: BTreeMap<Position, usize>,
     fields: Vec<Field>,
     transitions: usize,
+    /// How many combinations of answers have been followed.
+    answers: usize,
 }
 
 impl Exploration {
@@ -303,7 +295,7 @@ impl Exploration {
         }
     }
 
-    /// The modes in which a stepper may stand when its choices are made.
+    /// The modes of a stepper after its open choices, with their probabilities.
     fn settled(&mut self, stepper: Stepper) -> Result<Outcomes, Diagnostic> {
         let mut outcomes: Outcomes = Vec::new();
         let mut waiting = vec![(Rational::ONE, stepper)];
@@ -332,7 +324,7 @@ impl Exploration {
         Ok(outcomes)
     }
 
-    /// The number of the mode in which a stepper stands.
+    /// The number of a stepper's mode.
     fn place(&mut self, stepper: Stepper) -> Result<usize, Diagnostic> {
         let position = stepper.position();
         if let Some(known) = self.known.get(&position) {
@@ -345,7 +337,8 @@ impl Exploration {
         for location in stepper.marking().iter().filter_map(|id| self.automaton.location(id)) {
             let test = location.assertion.as_ref().and_then(|it| self.automaton.guard(it.test));
             let Some(constraint) = test.map(|guard| &guard.constraint) else { continue };
-            let is_known = |known: &Constraint| known.to_string() == constraint.to_string();
+            let text = constraint.to_string();
+            let is_known = |known: &Constraint| known.to_string() == text;
             if constraint.kind != ConstraintKind::True && !asserted.iter().any(is_known) {
                 asserted.push(constraint.clone());
             }
@@ -450,6 +443,10 @@ impl Exploration {
             return Ok(None);
         }
         let Some(next) = asked.get(answers.len()) else {
+            self.answers += 1;
+            if self.answers > MAX_ANSWERS {
+                return Err(size::answers(MAX_ANSWERS, self.span));
+            }
             return Ok(Some(Tree::Leaf(self.stepped(at, asked, answers)?)));
         };
         let mut branches = Vec::with_capacity(2);

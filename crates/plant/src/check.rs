@@ -18,6 +18,7 @@ const MAX_VALUES: usize = 64;
 pub(crate) fn check(
     file: &ControlFile,
     classes: &BTreeMap<SmolStr, MergedClass<'_>>,
+    components: &PlantComponents<'_>,
     diagnostics: &mut Vec<Diagnostic>,
 ) {
     let mut checker = Checker { file, classes, diagnostics };
@@ -29,9 +30,8 @@ pub(crate) fn check(
     for class in &file.classes {
         checker.check_nesting(&class.name.text, &mut Vec::new(), &mut nested);
     }
-    let components = PlantComponents::new(file, classes);
-    checker.check_instances(&components);
-    checker.check_components(&components);
+    checker.check_instances(components);
+    checker.check_components(components);
 }
 
 /// What a name in a constraint of a class stands for.
@@ -48,13 +48,10 @@ struct Checker<'check, 'file> {
 
 impl Checker<'_, '_> {
     fn error(&mut self, code: &'static str, span: Span, message: impl Into<String>, hint: Option<String>) {
-        // An inherited field is met again in every class that extends its own.
-        if self.diagnostics.iter().any(|known| known.span == span && known.code == Code(code)) {
-            return;
-        }
         let mut diagnostic = Diagnostic::error(Code(code), span, message);
         diagnostic.hint = hint;
-        self.diagnostics.push(diagnostic);
+        // An inherited field is checked again in every class that extends its own.
+        diagnostic.add_once_to(self.diagnostics);
     }
 
     fn check_class(&mut self, name: &SmolStr) {
@@ -166,23 +163,14 @@ impl Checker<'_, '_> {
         };
         fields(class, name)
             .or_else(|| {
-                let modes =
-                    self.behind(class, name)?.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
+                let reached = class.reached(self.classes, name)?;
+                let modes = reached.modes.iter().map(|(mode, _)| mode.text.clone()).collect();
                 Some(Meaning { values: modes, is_command: false })
             })
             .or_else(|| {
                 let (path, field) = name.rsplit_once('.')?;
-                fields(self.behind(class, path)?, field)
+                fields(class.reached(self.classes, path)?, field)
             })
-    }
-
-    /// The class of what a path of ports and parts leads to.
-    fn behind<'class>(
-        &'class self,
-        class: &'class MergedClass<'_>,
-        path: &str,
-    ) -> Option<&'class MergedClass<'class>> {
-        path.split('.').try_fold(class, |class, step| self.classes.get(&class.neighbor(step)?.text))
     }
 
     fn check_constraint(&mut self, class: &MergedClass<'_>, constraint: &Constraint, is_guard: bool) {
@@ -250,9 +238,8 @@ impl Checker<'_, '_> {
         let is_within =
             |one: &Meaning, other: &Meaning| one.values.iter().all(|it| other.values.contains(it));
         if !is_within(left.1, right.1) || !is_within(right.1, left.1) {
-            let message = format!("`{}` and `{}` have different domains", left.0.text, right.0.text);
-            let hint = "two variables can be equal if they have the same values".to_owned();
-            self.error("E-VALUE", right.0.span, message, Some(hint));
+            let found = diagnostics::value::different_domains(&left.0.text, &right.0.text, right.0.span);
+            found.add_once_to(self.diagnostics);
         }
     }
 
@@ -264,6 +251,9 @@ impl Checker<'_, '_> {
 
     fn check_instances(&mut self, components: &PlantComponents<'_>) {
         let file = self.file;
+        let names = components.all().iter().map(|known| known.name.as_str()).collect();
+        let class_of = |name: &str| components.named(name).map(|component| component.class.text.clone());
+        let surroundings = Surroundings { names, class_of: &class_of };
         for (at, instance) in file.instances.iter().enumerate() {
             if file.instances.iter().take(at).any(|earlier| earlier.name.text == instance.name.text) {
                 self.error(
@@ -273,14 +263,12 @@ impl Checker<'_, '_> {
                     None,
                 );
             }
-            let names: Vec<&str> = components.all().iter().map(|known| known.name.as_str()).collect();
-            let class_of = |name: &str| components.named(name).map(|component| component.class.text.clone());
             self.check_component(
                 &instance.name,
                 &instance.class,
                 &instance.ports,
                 &instance.initial,
-                &Surroundings { names, class_of: &class_of },
+                &surroundings,
             );
         }
     }
@@ -341,7 +329,12 @@ impl Checker<'_, '_> {
         }
         for component in components.all() {
             let first = components.named(&component.name);
-            if first.is_some_and(|first| !std::ptr::eq(first, component)) {
+            // Two instances with one name are reported at the name.
+            let is_reported = || {
+                let instances = self.file.instances.iter();
+                instances.filter(|instance| instance.name.text == component.name).count() > 1
+            };
+            if first.is_some_and(|first| !std::ptr::eq(first, component)) && !is_reported() {
                 let message = format!("the component `{}` is already declared", component.name);
                 self.error("E-DUP", component.span, message, None);
             }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use num_integer::gcd;
 use rmpl::control::{
-    Constraint, ConstraintKind, ControlFile, Initial, MergedClass, MergedTransition, Name, PlantComponent,
-    PlantComponents, merge_all,
+    Constraint, ControlFile, Initial, MergedClass, MergedTransition, Name, PlantComponent, PlantComponents,
+    merge_all,
 };
 use rmpl::diagnostics::constraint::impossible_guard;
 use rmpl::diagnostics::{ambiguous, probability as probabilities};
@@ -17,7 +17,7 @@ use crate::assignment::{Found, are_equal, describe, satisfying};
 use crate::behavior::written_out;
 use crate::belief::Belief;
 use crate::check::check;
-use crate::formula::Formula;
+use crate::formula::{Formula, all_values};
 use crate::guard_check::check_guards;
 use crate::model::{
     Choice, CommandVariable, CommandVariableId, Component, ComponentId, Fault, Mode, Model, PlantVariable,
@@ -25,8 +25,8 @@ use crate::model::{
 };
 use crate::probability;
 
-/// Of the states in which a plant may start so many are looked at for one whose modes can hold together, before it is
-/// searched for.
+/// Of the states in which a plant may start, at most this many are tried one by one for modes that can hold together; after
+/// that, such a state is searched for.
 const CHECKED_STATES: usize = 1000;
 
 /// Compiles the classes and components of a file that parsed without errors.
@@ -35,12 +35,15 @@ const CHECKED_STATES: usize = 1000;
 pub fn compile(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
     let (classes, found) = merge_all(file);
     if has_errors(&found) {
-        return compile_modes(file);
+        return compile_modes(file, &classes, found);
     }
     match written_out(file, &classes) {
-        None => compile_modes(file),
+        None => compile_modes(file, &classes, found),
         Some((_, diagnostics)) if has_errors(&diagnostics) => (None, diagnostics),
-        Some((written, _)) => compile_modes(&written),
+        Some((written, _)) => {
+            let (classes, found) = merge_all(&written);
+            compile_modes(&written, &classes, found)
+        }
     }
 }
 
@@ -48,23 +51,26 @@ fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
 }
 
-/// The same where all classes have modes.
-fn compile_modes(file: &ControlFile) -> (Option<Model>, Vec<Diagnostic>) {
-    let (classes, mut diagnostics) = merge_all(file);
-    check(file, &classes, &mut diagnostics);
+/// The same where all classes have modes; `diagnostics` are those of merging the classes.
+fn compile_modes(
+    file: &ControlFile,
+    classes: &Classes<'_>,
+    mut diagnostics: Vec<Diagnostic>,
+) -> (Option<Model>, Vec<Diagnostic>) {
+    let components = PlantComponents::new(file, classes);
+    check(file, classes, &components, &mut diagnostics);
     if has_errors(&diagnostics) {
         diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
         return (None, diagnostics);
     }
-    let components = PlantComponents::new(file, &classes);
-    let mut model = assembled(&classes, &units(&components, &classes), &mut diagnostics);
+    let mut model = assembled(classes, &units(&components, classes), &mut diagnostics);
     for id in model.component_ids() {
         check_arcs(&model, id, &mut diagnostics);
     }
-    // Classes that nothing is an instance of are checked by themselves, with components of their ports' classes.
+    // Classes without components are checked by themselves, with components of their ports' classes.
     for class in file.classes.iter().map(|class| &class.name.text) {
         if !components.all().iter().any(|component| component.class.text == *class) {
-            let alone = assembled(&classes, &units_of_class(class, &classes), &mut diagnostics);
+            let alone = assembled(classes, &units_of_class(class, classes), &mut diagnostics);
             check_arcs(&alone, ComponentId(0), &mut diagnostics);
         }
     }
@@ -135,10 +141,10 @@ fn units(components: &PlantComponents<'_>, classes: &Classes<'_>) -> Vec<Unit> {
     components.all().iter().map(unit).collect()
 }
 
-/// Names in the constraints of a class that nothing is an instance of lead over at most so many ports and parts.
+/// In a class without components, names in constraints lead over at most this many ports and parts.
 const MAX_PATH: usize = 3;
 
-/// A component of a class that nothing is an instance of, with components at its ports.
+/// A component made up for a class that has none, with components at its ports.
 fn units_of_class(name: &SmolStr, classes: &Classes<'_>) -> Vec<Unit> {
     let mut units = Vec::new();
     add_unit(name.clone(), name, classes, MAX_PATH, &mut units);
@@ -181,16 +187,13 @@ fn add_unit(
 /// Classes with what they inherit, by name.
 type Classes<'file> = BTreeMap<SmolStr, MergedClass<'file>>;
 
-/// The model of some components; what its arcs say too much is added to `diagnostics`.
+/// The model of some components; errors of its transitions and faults are added to `diagnostics`.
 fn assembled(classes: &Classes<'_>, units: &[Unit], diagnostics: &mut Vec<Diagnostic>) -> Model {
     let mut compiler = Compiler { units, classes, model: empty(), offsets: Vec::new(), found: Vec::new() };
     compiler.declare();
     compiler.fill();
     for diagnostic in compiler.found {
-        let is_same = |known: &Diagnostic| known.span == diagnostic.span && known.code == diagnostic.code;
-        if !diagnostics.iter().any(is_same) {
-            diagnostics.push(diagnostic);
-        }
+        diagnostic.add_once_to(diagnostics);
     }
     compiler.model
 }
@@ -288,12 +291,11 @@ impl Compiler<'_, '_> {
 
     /// Gives every component its modes, transitions and faults.
     fn fill(&mut self) {
-        let bits = |count: usize| if count >= 64 { u64::MAX } else { (1 << count) - 1 };
         let classes: Vec<&MergedClass<'_>> =
             self.units.iter().filter_map(|unit| self.classes.get(&unit.class)).collect();
-        let modes = classes.iter().map(|class| bits(class.modes.len()));
-        let variables = self.model.variables.iter().map(|variable| bits(variable.values.len()));
-        let commands = self.model.command_variables.iter().map(|command| bits(command.values.len()));
+        let modes = classes.iter().map(|class| all_values(class.modes.len()));
+        let variables = self.model.variables.iter().map(|variable| all_values(variable.values.len()));
+        let commands = self.model.command_variables.iter().map(|command| all_values(command.values.len()));
         self.model.full = modes.chain(variables).chain(commands).collect();
         let mut all = Vec::with_capacity(classes.len());
         for (id, class) in (0..).map(ComponentId).zip(classes) {
@@ -393,7 +395,7 @@ impl Compiler<'_, '_> {
         grouped.into_iter().filter_map(choice).collect()
     }
 
-    /// What enables a transition: its guard, without what it gives way to.
+    /// What enables a transition: its guard, and none of the guards that take precedence.
     fn guard(&self, id: ComponentId, transition: &MergedTransition<'_>) -> Formula {
         let guard = self.formula(id, transition.guard, true);
         if transition.unless.is_empty() {
@@ -468,22 +470,9 @@ impl Compiler<'_, '_> {
 
     /// The formula of a constraint, or of its opposite.
     fn formula(&self, id: ComponentId, constraint: &Constraint, wanted: bool) -> Formula {
-        let joined = |parts: &[Constraint], is_all: bool| {
-            let parts = parts.iter().map(|part| self.formula(id, part, wanted)).collect();
-            if is_all == wanted { Formula::All(parts) } else { Formula::Any(parts) }
-        };
-        match &constraint.kind {
-            ConstraintKind::True => Formula::Constant(wanted),
-            ConstraintKind::Not(inner) => self.formula(id, inner, !wanted),
-            ConstraintKind::And(parts) => joined(parts, true),
-            ConstraintKind::Or(parts) => joined(parts, false),
-            ConstraintKind::Equals { variable, value } => {
-                self.equality(id, &variable.text, &value.text, wanted).unwrap_or(Formula::Constant(false))
-            }
-            ConstraintKind::False | ConstraintKind::Parameter(_) | ConstraintKind::Unreadable => {
-                Formula::Constant(!wanted)
-            }
-        }
+        Formula::of(constraint, wanted, &|name, value, wanted| {
+            self.equality(id, name, value, wanted).unwrap_or(Formula::Constant(false))
+        })
     }
 
     /// That a name has a value, or the value of another name, or that it has not.

@@ -52,7 +52,7 @@ pub(crate) struct Point {
 }
 
 impl Domains {
-    /// All values for all symbols, except that what is observed without errors is as it is.
+    /// All values for all symbols, except that variables observed without errors have their observed values.
     pub(crate) fn observed(model: &Model, observation: &Observation) -> Self {
         let mut domains = Self {
             sets: model.full.clone(),

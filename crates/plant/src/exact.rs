@@ -78,7 +78,7 @@ pub fn update_exact(
     Belief::from_weights(weights).ok_or(EstimateError::Unexplained)
 }
 
-/// The predicted weights times the likelihoods of the observation, in a common unit; and by what that unit is smaller.
+/// The predicted weights times the likelihoods of the observation, in a common unit; and the factor by which it is smaller.
 pub(crate) fn weighed(
     model: &Model,
     predicted: Vec<(State, BigUint)>,

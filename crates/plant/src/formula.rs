@@ -1,5 +1,6 @@
 //! Constraints over modes, variables and commands, compiled to value sets in negation normal form.
 
+use rmpl::control::{Constraint, ConstraintKind};
 use serde::{Deserialize, Serialize};
 
 /// A constraint over symbols: the modes of components, then plant variables, then command variables.
@@ -38,7 +39,34 @@ pub(crate) fn values(mut set: u64) -> impl Iterator<Item = u8> {
     })
 }
 
+/// All values of a symbol that has this many, one bit each.
+pub(crate) const fn all_values(count: usize) -> u64 {
+    if count >= 64 { u64::MAX } else { (1 << count) - 1 }
+}
+
 impl Formula {
+    /// The formula of a constraint, or of its opposite; `equality` gives that of a name and a value, or of its opposite.
+    pub(crate) fn of(
+        constraint: &Constraint,
+        wanted: bool,
+        equality: &dyn Fn(&str, &str, bool) -> Self,
+    ) -> Self {
+        let joined = |parts: &[Constraint], is_all: bool| {
+            let parts = parts.iter().map(|part| Self::of(part, wanted, equality)).collect();
+            if is_all == wanted { Self::All(parts) } else { Self::Any(parts) }
+        };
+        match &constraint.kind {
+            ConstraintKind::True => Self::Constant(wanted),
+            ConstraintKind::False | ConstraintKind::Parameter(_) | ConstraintKind::Unreadable => {
+                Self::Constant(!wanted)
+            }
+            ConstraintKind::Not(inner) => Self::of(inner, !wanted, equality),
+            ConstraintKind::And(parts) => joined(parts, true),
+            ConstraintKind::Or(parts) => joined(parts, false),
+            ConstraintKind::Equals { variable, value } => equality(&variable.text, &value.text, wanted),
+        }
+    }
+
     /// The opposite, where `full` gives all values of a symbol.
     pub(crate) fn negated(self, full: &impl Fn(u32) -> u64) -> Self {
         match self {

@@ -19,14 +19,14 @@ const MAX_COMBINATIONS: usize = 4096;
 /// In larger islands a combination that admits what is observed is looked for among so many.
 const MAX_NODES: usize = 20_000;
 
-/// How likely what is observed of a variable with errors is, by its true value, in units that all states have in common.
+/// An observed value of a variable with errors, with its weight for each true value, in units that all states share.
 struct Sensor {
     observed: u8,
-    /// If that is the true value.
+    /// The weight if the observed value is the true one.
     right: BigUint,
-    /// If another value is the true one.
+    /// The weight if another value is the true one.
     wrong: BigUint,
-    /// What a probability of 1 weighs.
+    /// The weight of a probability of 1.
     unit: BigUint,
 }
 
@@ -70,7 +70,7 @@ impl Likelihood {
     }
 }
 
-/// What the combinations of true values weigh that variables have which nothing ties together.
+/// The weight of all combinations of true values of variables that no constraint connects.
 fn product_of_values(observed: &[u32], domains: &Domains, sensors: &Sensors) -> BigUint {
     // Gathered in a machine word before it meets the long number.
     let mut product = BigUint::one();
@@ -132,12 +132,12 @@ fn parts(assumed: &Assumed<'_>, settled: &Settled, domains: &Domains) -> Vec<Vec
     parts
 }
 
-/// In how many ways the variables of some parts can be true; all consequences of the modes were drawn.
+/// The number of combinations of true values of the observed variables; all consequences of the modes were drawn.
 pub(crate) fn combinations(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32]) -> BigUint {
     count(assumed, domains, observed, WITHOUT_ERRORS)
 }
 
-/// What the combinations of true values of a part's variables weigh; all consequences of the modes were drawn.
+/// The weight of all combinations of true values of the observed variables; all consequences of the modes were drawn.
 fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32], sensors: &Sensors) -> BigUint {
     let point = domains.point();
     let open = observed
@@ -243,7 +243,7 @@ impl<'model> Likelihoods<'model> {
         };
         let sensors: Vec<Sensors> = model.islands.iter().map(sensors).collect();
         let mut observed = Domains::observed(model, observation);
-        // What is never observed as it is is not what is observed.
+        // A sensor that is always wrong never shows the true value.
         for (symbol, sensor) in sensors.iter().flatten().filter(|(_, sensor)| sensor.right.is_zero()) {
             observed.sets[*symbol as usize] &= !(1 << sensor.observed);
         }
@@ -284,7 +284,7 @@ impl<'model> Likelihoods<'model> {
         &self.known[at][&self.modes]
     }
 
-    /// The same as a machine number, at most 1.
+    /// The same likelihood as a floating-point number, at most 1.
     pub(crate) fn chance(&mut self, at: usize, state: &[u8]) -> f64 {
         if self.sensors[at].is_empty() {
             let likelihood = self.of(at, state);
@@ -299,8 +299,8 @@ impl<'model> Likelihoods<'model> {
 
     /// The greatest likelihood in any modes of an island, if some admit the observation.
     ///
-    /// Where an island has more combinations of modes than are looked at, what is observed as it most likely is, if some
-    /// combination may admit it.
+    /// Where an island has more combinations of modes than are looked at, an upper bound, if some combination may admit the
+    /// observation: the likeliest true value of each observed one.
     fn greatest(&mut self, at: usize) -> Option<Likelihood> {
         let island = &self.model.islands[at];
         if self.symbols[at].is_empty() && island.core.is_empty() {

@@ -4,7 +4,7 @@
 //! for all prior states at once.
 
 use crate::belief::{Belief, State};
-use crate::formula::values;
+use crate::formula::{all_values, values};
 use crate::likelihood::Likelihoods;
 use crate::model::{ComponentId, Model};
 use crate::successor::Choices;
@@ -119,8 +119,7 @@ impl Odds {
 
     /// All options of a free component, one bit each.
     pub(crate) fn full_set(&self, at: usize) -> u64 {
-        let count = self.starts[at + 1] - self.starts[at];
-        if count >= 64 { u64::MAX } else { (1 << count) - 1 }
+        all_values(self.starts[at + 1] - self.starts[at])
     }
 
     /// By prior state, the probability of a free component's option.

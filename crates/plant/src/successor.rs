@@ -45,7 +45,7 @@ pub fn successor(
     Ok(enabled.map_or_else(|| state.mode(component), |choice| choice.nominal))
 }
 
-/// What the guards that are true in `state` under `commands` lead to; `None` if none is.
+/// The choice whose guard is true in `state` under `commands`; `None` if no guard is.
 fn enabled<'model>(
     model: &'model Model,
     component: ComponentId,
@@ -166,7 +166,7 @@ fn distribute(
     Ok(mode.denominator * scale)
 }
 
-/// Joins what leads to one mode, and takes out what has no weight.
+/// Joins the weights of each mode, and removes modes without weight.
 fn join(into: &mut Vec<(u8, u64)>, start: usize) {
     let mut kept = start;
     for at in start..into.len() {

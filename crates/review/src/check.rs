@@ -1,7 +1,7 @@
 //! Checks the entries of a history: whose signature each has, and whether it was that person's to make (SPEC 16.3).
 //!
-//! What an entry says of its signer is in its signature; what counts is decided here, for whoever trusts some keys, at
-//! some time. An entry that does not count stays in the history, and is shown with the reason.
+//! What an entry says of its signer is in its signature; what counts is decided here, for a list of trusted keys and a
+//! time. An entry that does not count stays in the history, and is shown with the reason.
 
 use jiff::{SignedDuration, Timestamp, civil};
 use serde::Serialize;
@@ -90,7 +90,10 @@ fn problem_of_name(entry: &Entry, known: Option<&str>, trust: &Trust) -> Option<
 
 fn problem_of_mission(record: &Record, entry: &Entry) -> Option<String> {
     let is_elsewhere = entry.key.is_some() && entry.mission != record.mission;
-    is_elsewhere.then(|| format!("it belongs to the history of “{}”", entry.mission))
+    is_elsewhere.then(|| match entry.mission.as_str() {
+        "" => "it does not name its mission; sign it again".to_owned(),
+        mission => format!("it belongs to the history of “{mission}”"),
+    })
 }
 
 fn problem_of_time(record: &Record, entry: &Entry, now: Option<Timestamp>) -> Option<String> {
@@ -168,7 +171,7 @@ pub fn objection(record: &Record, key: Option<&PublicKey>, act: &Act) -> Option<
     }
 }
 
-/// Whether nothing takes this back. Flight rules are replaced, and comments are reopened.
+/// Whether nobody can withdraw this. Flight rules are replaced, and comments are reopened.
 const fn is_permanent(act: &Act) -> bool {
     matches!(act, Act::Rules { .. } | Act::Resolve { .. } | Act::Reopen { .. } | Act::Withdraw { .. })
 }
@@ -181,7 +184,7 @@ pub fn is_concerned(key: &PublicKey, of: &Entry) -> bool {
     }
 }
 
-/// Whether the first of two times is later by more than clocks may be apart.
+/// Whether the first of two times is later by more than clocks may differ.
 pub(super) fn is_after(later: &str, earlier: &str) -> bool {
     let times = moment(earlier).zip(moment(later));
     times.is_some_and(|(earlier, later)| earlier.duration_until(later) > CLOCK_TOLERANCE)

@@ -86,6 +86,13 @@ impl Diagnostic {
         Self { severity: Severity::Warning, ..Self::error(code, span, message) }
     }
 
+    /// Adds it to `known`, unless a diagnostic with the same code and span is there.
+    pub fn add_once_to(self, known: &mut Vec<Self>) {
+        if !known.iter().any(|other| other.span == self.span && other.code == self.code) {
+            known.push(self);
+        }
+    }
+
     /// The same with a hint.
     pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(legible(hint.into()));

@@ -66,8 +66,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             print_json(&document("execute", &problems, progress_json(network, &progress)))?;
         }
         Format::Text => {
-            let text = progress_text(network, &plan, &progress);
-            print_text(&CallNames::new(network).in_text(&text))?;
+            let calls = CallNames::new(network);
+            let text = progress_text(network, &plan, &progress, &calls);
+            print_text(&calls.in_text(&text))?;
         }
     }
     Ok(exit(if is_consistent { YES } else { NO }))
@@ -128,12 +129,11 @@ fn progress_json(network: &Network, progress: &Progress) -> Value {
     }
 }
 
-fn progress_text(network: &Network, plan: &Plan, progress: &Progress) -> String {
+fn progress_text(network: &Network, plan: &Plan, progress: &Progress, calls: &CallNames) -> String {
     match progress {
         Progress::Consistent(windows, waits) => {
             let named = named_windows(network, windows);
             let before = named_windows(network, &plan.windows);
-            let calls = CallNames::new(network);
             let read: Vec<String> = named.keys().map(|name| calls.in_text(name)).collect();
             let shown = column(read.iter().map(String::as_str));
             let lines = named.iter().zip(&shown).map(|((name, window), shown)| {

@@ -22,9 +22,9 @@ pub struct Args {
     file: PathBuf,
     /// Problem of the PDDL domain.
     problem: Option<PathBuf>,
-    /// How often each action may happen (PDDL).
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=i64::from(pddl::MAX_TIMES)))]
-    times: u32,
+    /// How often each action may happen (PDDL) [default: 1].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(pddl::MAX_TIMES)))]
+    times: Option<u32>,
     /// Leave out the metric: any plan counts, which is found sooner (PDDL).
     #[arg(long)]
     any_plan: bool,
@@ -46,10 +46,20 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let text = read_text(&args.file)?;
     let name = args.file.display().to_string();
-    if pddl::is_pddl(&text) {
+    let has_frame = args.meters || args.origin.is_some() || args.radius.is_some();
+    let is_pddl = pddl::is_pddl(&text);
+    anyhow::ensure!(
+        !has_frame || (!is_pddl && is_places(&name, &text)),
+        "{name} is not GeoJSON; remove --origin, --radius and --meters, which only GeoJSON needs"
+    );
+    if is_pddl {
         return import_pddl(args, (&name, &text));
     }
     anyhow::ensure!(args.problem.is_none(), "{name} is not a PDDL domain; give one file only");
+    anyhow::ensure!(
+        args.times.is_none() && !args.any_plan,
+        "{name} is not a PDDL domain; remove --times and --any-plan, which only PDDL needs"
+    );
     if is_places(&name, &text) {
         let frame = Frame { is_meters: args.meters, origin_deg: args.origin, radius_m: args.radius };
         let lines =
@@ -60,10 +70,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(exit(YES));
     }
-    anyhow::ensure!(
-        !args.meters && args.origin.is_none() && args.radius.is_none(),
-        "{name} is not GeoJSON; remove --origin, --radius and --meters, which only GeoJSON needs"
-    );
     let source = Source::read(&text).with_context(|| format!("cannot read {}", args.file.display()))?;
     let not_planned = match &source {
         Source::Enroute(_) => Vec::new(),
@@ -86,7 +92,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(exit(YES))
 }
 
-/// Prints a problem in PDDL as a mission, with what the mission does not say on standard error.
+/// Prints a problem in PDDL as a mission. Prints what the mission leaves out or changes on standard error.
 fn import_pddl(args: &Args, domain: (&str, &str)) -> anyhow::Result<ExitCode> {
     let Some(path) = &args.problem else {
         anyhow::bail!(
@@ -95,7 +101,7 @@ fn import_pddl(args: &Args, domain: (&str, &str)) -> anyhow::Result<ExitCode> {
         )
     };
     let problem = (path.display().to_string(), read_text(path)?);
-    let settings = pddl::Settings { times: args.times, has_metric: !args.any_plan };
+    let settings = pddl::Settings { times: args.times.unwrap_or(1), has_metric: !args.any_plan };
     let read = pddl::translate(domain, (&problem.0, &problem.1), settings);
     let read = read.context("cannot read the problem as a mission")?;
     match args.format {

@@ -1,6 +1,6 @@
 //! `enroute prove`: the properties of a control program that hold in every run with its plant.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -204,9 +204,9 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
     let is_repeatable = run.start == Move::default() && run.moves.iter().all(|by| by.choices.is_empty());
     if is_repeatable && let Some(active) = active_at_end(args, system, run) {
         out.push_str(&active);
-        let file = args.file.display();
+        let file = in_shell(&args.file);
         let model =
-            args.model.as_ref().map_or_else(String::new, |path| format!(" --model {}", path.display()));
+            args.model.as_ref().map_or_else(String::new, |path| format!(" --model {}", in_shell(path)));
         let knowledge = if args.knowledge == KnowledgeArg::Perfect { " --knowledge perfect" } else { "" };
         out.push_str(&format!(
             "  repeat   enroute run {file}{model}{knowledge}{flags} --steps {}\n",
@@ -214,6 +214,12 @@ fn run_text(args: &Args, system: &Arc<System>, run: &Counterexample) -> String {
         ));
     }
     out
+}
+
+/// A path as a shell takes it.
+fn in_shell(path: &Path) -> String {
+    let path = path.display().to_string();
+    shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into)
 }
 
 /// The locations that are still active at the end of the run, which is repeated for it.

@@ -72,8 +72,8 @@ impl From<KnowledgeArg> for Knowledge {
     }
 }
 
-/// Compiles a program with its plant, and prints what is wrong with them if the output is text; a file that turns out to be a
-/// mission is refused with a word about missions.
+/// Compiles a program with its plant, and prints their problems if the output is text. If a file is a mission, the error says
+/// so and ends with `about_missions`.
 pub(super) fn read_system(
     file: &Path,
     model_file: Option<&Path>,
@@ -133,7 +133,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }))
 }
 
-/// What comes from outside, by step.
+/// The faults and observations of the arguments, by step.
 fn inputs(system: &System, args: &Args) -> anyhow::Result<BTreeMap<u32, StepInput>> {
     let model = &system.model;
     let mut inputs: BTreeMap<u32, StepInput> = BTreeMap::new();

@@ -704,6 +704,12 @@ fn orbit_insertion_is_proven_to_end_with_one_fault_and_shown_to_wait_forever_wit
         "{}",
         chance.output
     );
+    // A shell takes the call as it is printed.
+    let spaced = written("orbit insertion.rmpl", &std::fs::read_to_string(&program).expect("the case"));
+    let call = enroute(&["prove", &spaced, "--model", &plant, "--faults", "2", "--property", "ends"]);
+    let repeat = call.output.lines().find_map(|line| line.trim().strip_prefix("repeat   "));
+    let words = shlex::split(repeat.expect("a run that can be repeated")).expect("a command");
+    assert_eq!(words[..3], ["enroute", "run", spaced.as_str()]);
     // As the help writes it.
     assert_eq!(prove(&["--property", "never EngineA=Firing AND EngineB=Firing"]).status, 0);
     assert_eq!(prove(&["--states", "0"]).status, 2);

@@ -178,3 +178,24 @@ fn any_mission_has_a_plan_in_pddl() {
     let plan = text_of(&enroute(&["export", &mission, "--as", "pddl"]));
     assert!(plan.contains("0.000: (Drive R1 A) [5.000]\n5.000: (Drive R1 B) [5.000]\n"), "{plan}");
 }
+
+#[test]
+fn options_of_another_format_and_very_long_actions_are_refused() {
+    let (domain, problem) = (fixture("delivery-domain"), fixture("delivery-problem"));
+    let refused = |arguments: &[&str], part: &str| {
+        let output = enroute(&[&["import"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");
+        assert!(said(&output).contains(part), "{arguments:?}: {output:?}");
+    };
+    refused(&[&domain, &problem, "--origin", "1,2"], "remove --origin, --radius and --meters");
+    let places = file("options.geojson", r#"{"type": "FeatureCollection", "features": []}"#);
+    refused(&[&places, "--meters", "--times", "2"], "remove --times and --any-plan");
+    refused(&[&places, "--meters", "--any-plan"], "remove --times and --any-plan");
+    let parameters: String = (0..20_000).map(|at| format!(" ?p{at}")).collect();
+    let domain = format!(
+        "(define (domain many) (:predicates (done)) (:action a :parameters ({parameters}) :precondition () :effect (done)))"
+    );
+    let problem = "(define (problem one) (:domain many) (:objects o) (:init) (:goal (done)))";
+    let files = [file("many.pddl", &domain), file("many-problem.pddl", problem)];
+    refused(&[&files[0], &files[1]], "more than 100 parameters of an action");
+}

@@ -241,6 +241,22 @@ fn a_state_that_a_run_ends_in_is_the_start_of_the_next_plan() {
 }
 
 #[test]
+fn no_state_is_written_while_an_activity_is_under_way() {
+    let mission = file(
+        "under-way.rmpl",
+        "state A : {X, Y} = X;\nprimitive Use()[20,20] requires A=X;\nscenario M[0,60] = { Use() }\n",
+    );
+    let script = r#"{"disturbances": [{"kind": "state", "variable": "A", "value": "Y", "at": 5}]}"#;
+    let script = file("under-way.json", script);
+    let saved = file("under-way-state.json", "as before");
+    let run = enroute(&["simulate", &mission, "--disturb", &script, "--state", &saved]);
+    assert_eq!(run.status.code(), Some(2), "{run:?}");
+    let said = String::from_utf8_lossy(&run.stderr).into_owned();
+    assert!(said.contains("Use#1 is under way at the end of the run"), "{said}");
+    assert_eq!(std::fs::read_to_string(&saved).expect("it is still there"), "as before");
+}
+
+#[test]
 fn a_state_of_what_the_mission_does_not_declare_is_refused() {
     let mission = sol("declared.rmpl", "Deploy(R)");
     let refused = |state: &str| {

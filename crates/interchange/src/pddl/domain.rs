@@ -1,4 +1,4 @@
-//! Domains and problems as data, before anything is put in the place of a parameter.
+//! Domains and problems as data, before objects replace parameters.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,10 @@ use exact::Rational;
 use super::error::PddlError;
 use super::tree::Tree;
 
-/// What `:constraints` are called.
+/// How an error names `:constraints`.
 const CONSTRAINTS: &str = "a constraint on the course of a plan (`:constraints`)";
 
-/// Names with their types; of several types a name has any.
+/// Names with their types. A name with several types (`either`) may have any of them.
 pub(super) type Typed = Vec<(String, Vec<String>)>;
 
 /// A predicate or a function with its terms.
@@ -26,9 +26,9 @@ pub(super) struct Task {
     /// Constants and objects.
     pub(super) objects: Typed,
     pub(super) schemas: Vec<Schema>,
-    /// What is true at first.
+    /// The atoms that are true at the start.
     pub(super) facts: Vec<Application>,
-    /// The numbers at first.
+    /// The numbers at the start.
     pub(super) values: Vec<(Application, Rational)>,
     /// What becomes true or false at a time, whatever the plan does.
     pub(super) timed: Vec<(Rational, Application, bool)>,
@@ -183,7 +183,8 @@ impl Reader<'_> {
     fn domain_section(&self, task: &mut Task, head: &str, section: &Tree) -> Result<(), PddlError> {
         let rest = section.list().and_then(|list| list.get(1..)).unwrap_or_default();
         match head {
-            // What is used is read, whatever is announced; predicates and functions are known by their use.
+            // Requirements decide nothing: each construct is read or refused where it is used. So are predicates and
+            // functions.
             ":requirements" | ":predicates" | ":functions" => {}
             ":types" => task.parents.extend(self.typed(rest)?),
             ":constants" => task.objects.extend(self.typed(rest)?),
@@ -227,9 +228,7 @@ impl Reader<'_> {
                 let text = format!("{direction} {measure}");
                 task.metric = Some(Metric { is_maximized, measure: self.expr(measure)?, text });
             }
-            (":constraints", _) => {
-                return Err(self.unsupported(section, CONSTRAINTS));
-            }
+            (":constraints", _) => return Err(self.unsupported(section, CONSTRAINTS)),
             (other, _) => return Err(self.unsupported(section, format!("the section `{other}`"))),
         }
         Ok(())
@@ -254,7 +253,7 @@ impl Reader<'_> {
                 };
                 task.timed.push((time, self.application(event)?, value));
             }
-            // What is not said is false anyway.
+            // An atom that the problem does not list is false anyway.
             Some(("not", [_])) => {}
             _ => task.facts.push(self.application(fact)?),
         }
@@ -302,7 +301,7 @@ impl Reader<'_> {
     /// `(= ?duration 10)`, several of them joined by `and`, or `()`.
     fn limits(&self, tree: &Tree, limits: &mut Vec<(Comparison, Expr)>) -> Result<(), PddlError> {
         match tree.headed() {
-            None if tree.list().is_some_and(<[Tree]>::is_empty) => {}
+            None if tree.is_empty() => {}
             Some(("and", parts)) => {
                 for part in parts {
                     self.limits(part, limits)?;
@@ -332,7 +331,7 @@ impl Reader<'_> {
             return Ok(());
         }
         match tree.headed() {
-            None if tree.list().is_some_and(<[Tree]>::is_empty) => {}
+            None if tree.is_empty() => {}
             Some(("and", parts)) => {
                 for part in parts {
                     self.conditions(part, found)?;
@@ -363,7 +362,7 @@ impl Reader<'_> {
             (Some((when, effect)), _) => {
                 found.extend(self.effects(effect)?.into_iter().map(|effect| (when, effect)));
             }
-            (None, None) if tree.list().is_some_and(<[Tree]>::is_empty) => {}
+            (None, None) if tree.is_empty() => {}
             (None, Some(("and", parts))) => {
                 for part in parts {
                     self.timed_effects(part, found)?;
@@ -391,7 +390,7 @@ impl Reader<'_> {
     fn effects(&self, tree: &Tree) -> Result<Vec<Effect>, PddlError> {
         let change = |fluent: &Tree, amount: &Tree| Ok((self.fluent(fluent)?, self.expr(amount)?));
         Ok(match tree.headed() {
-            None if tree.list().is_some_and(<[Tree]>::is_empty) => Vec::new(),
+            None if tree.is_empty() => Vec::new(),
             Some(("and", parts)) => {
                 let mut all = Vec::new();
                 for part in parts {
@@ -423,7 +422,7 @@ impl Reader<'_> {
         let several =
             |parts: &[Tree]| parts.iter().map(|part| self.formula(part)).collect::<Result<Vec<_>, _>>();
         Ok(match tree.headed() {
-            None if tree.list().is_some_and(<[Tree]>::is_empty) => Formula::And(Vec::new()),
+            None if tree.is_empty() => Formula::And(Vec::new()),
             Some(("and", parts)) => Formula::And(several(parts)?),
             Some(("or", parts)) => Formula::Or(several(parts)?),
             Some(("not", [inner])) => Formula::Not(Box::new(self.formula(inner)?)),

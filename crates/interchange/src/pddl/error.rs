@@ -1,15 +1,15 @@
-//! What keeps a problem from becoming a mission.
+//! Why a problem cannot become a mission.
 
-/// Why a domain and a problem are no mission.
+/// Why a domain and a problem cannot become a mission.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PddlError {
-    /// It is not PDDL, or not well formed.
+    /// The file is not PDDL, or not well formed.
     #[error("{file}, line {line}: {what}")]
     Shape { file: String, line: u32, what: String },
-    /// It is PDDL that no mission can say.
+    /// The file is PDDL that RMPL cannot express.
     #[error("{file}, line {line}: {what} is not supported")]
     Unsupported { file: String, line: u32, what: String },
-    /// The same, of an action on objects or of the goal.
+    /// RMPL cannot express a part of an action on objects, of the goal or of the metric.
     #[error("{place}: {what} is not supported")]
     Said { place: String, what: &'static str },
     #[error("{place} speaks of `{name}`, which is not an object; declare it in :objects or :constants")]

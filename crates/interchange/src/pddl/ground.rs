@@ -1,4 +1,4 @@
-//! Every action with objects in the place of its parameters, as far as it can ever happen and may help.
+//! Every action with objects instead of parameters, if the action can ever happen and may help to reach the goal.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,13 +8,15 @@ use super::domain::{Application, Comparison, Effect, Expr, Formula, Metric, Sche
 use super::error::PddlError;
 use super::names::OBJECT;
 
-/// How many times an object may be put in the place of a parameter.
+/// How many times an object may replace a parameter.
 const MAX_BINDINGS: usize = 2_000_000;
 
 /// How many actions a mission may have.
 pub(super) const MAX_ACTIONS: usize = 2_000;
 
-/// How many actions are looked at for whether they can ever happen.
+/// An action with more parameters is refused: no author means it.
+const MAX_PARAMETERS: usize = 100;
+/// How many actions are tested for whether they can ever happen.
 const MAX_CANDIDATES: usize = 50_000;
 
 pub(super) type Atom = usize;
@@ -49,18 +51,18 @@ pub(super) struct Need {
     pub(super) limit: Rational,
 }
 
-/// What must hold, all of it.
+/// Conditions that must all hold.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Conditions {
     pub(super) literals: BTreeMap<Atom, bool>,
     pub(super) needs: Vec<Need>,
-    /// Atoms that the conditions speak of without depending on them, as in `(imply (static) (atom))`: PDDL keeps changes of
-    /// these apart from the action, too.
+    /// Atoms that the conditions name without depending on them, as in `(imply (static) (atom))`. PDDL keeps changes of these
+    /// atoms apart from the action, too.
     pub(super) mentioned: BTreeSet<Atom>,
 }
 
 impl Conditions {
-    /// With what else must hold; `None` if both cannot.
+    /// Both conditions together; `None` if they contradict each other.
     fn and(mut self, other: Self) -> Option<Self> {
         for (atom, value) in other.literals {
             if *self.literals.entry(atom).or_insert(value) != value {
@@ -86,7 +88,7 @@ pub(super) struct Snap {
 pub(super) struct Action {
     /// Its name and its objects.
     pub(super) words: Vec<String>,
-    /// The least and the greatest duration; `None` for an action that takes no time.
+    /// The minimum and the maximum duration; `None` for an action that takes no time.
     pub(super) duration: Option<(Rational, Option<Rational>)>,
     pub(super) start: Snap,
     pub(super) throughout: Conditions,
@@ -100,6 +102,11 @@ impl Action {
 
     pub(super) const fn snaps(&self) -> [&Snap; 2] {
         [&self.start, &self.end]
+    }
+
+    /// Whether the start sets atoms that have to hold throughout.
+    pub(super) fn rests_on_start(&self) -> bool {
+        self.throughout.literals.keys().any(|atom| self.start.sets.contains_key(atom))
     }
 }
 
@@ -127,7 +134,7 @@ pub(super) struct Ground {
     pub(super) metric: Option<Linear>,
 }
 
-/// What a formula says where objects are in the place of its parameters.
+/// The value of a formula with objects instead of parameters.
 enum Truth {
     Yes,
     No,
@@ -146,11 +153,11 @@ struct Grounder<'task> {
     atoms: Names,
     fluents: Names,
     bindings: usize,
-    /// The atoms that conditions spoke of since this was emptied.
+    /// The atoms that conditions have named since this set was last emptied.
     mentioned: BTreeSet<Atom>,
 }
 
-/// Puts objects in the place of parameters.
+/// Replaces parameters by objects.
 pub(super) fn ground(task: &Task) -> Result<Ground, PddlError> {
     let mut grounder = Grounder::new(task);
     let mut actions = Vec::new();
@@ -221,7 +228,7 @@ impl<'task> Grounder<'task> {
         }
     }
 
-    /// The objects that may be in the place of a parameter.
+    /// The objects that may replace a parameter of these types.
     fn objects_of(&self, kinds: &[String]) -> Vec<&'task str> {
         let is_one = |object: &str| {
             let types = self.types.get(object);
@@ -234,9 +241,12 @@ impl<'task> Grounder<'task> {
 
     /// All actions of a schema whose conditions on what never changes hold.
     fn instances(&mut self, schema: &'task Schema, actions: &mut Vec<Action>) -> Result<(), PddlError> {
+        if schema.parameters.len() > MAX_PARAMETERS {
+            return Err(PddlError::TooMany { what: "parameters of an action", most: MAX_PARAMETERS });
+        }
         let choices: Vec<Vec<&str>> =
             schema.parameters.iter().map(|(_, kinds)| self.objects_of(kinds)).collect();
-        // What never changes is looked at as soon as the last of its parameters has its object.
+        // A condition on what never changes is tested as soon as the last of its parameters has its object.
         let mut early: Vec<Vec<&Formula>> = vec![Vec::new(); schema.parameters.len()];
         for (_, formula) in &schema.conditions {
             for part in conjuncts(formula) {
@@ -275,13 +285,19 @@ impl<'task> Grounder<'task> {
             return Ok(());
         };
         for object in objects {
-            self.bindings += 1;
-            if self.bindings > MAX_BINDINGS {
-                return Err(PddlError::TooMany { what: "bindings of parameters", most: MAX_BINDINGS });
-            }
+            self.count_bindings(1)?;
             bound.push(object);
             self.bind(schema, choices, early, bound, actions)?;
             bound.pop();
+        }
+        Ok(())
+    }
+
+    /// Counts further bindings, before they are made.
+    fn count_bindings(&mut self, more: usize) -> Result<(), PddlError> {
+        self.bindings = self.bindings.saturating_add(more);
+        if self.bindings > MAX_BINDINGS {
+            return Err(PddlError::TooMany { what: "bindings of parameters", most: MAX_BINDINGS });
         }
         Ok(())
     }
@@ -370,7 +386,7 @@ impl<'task> Grounder<'task> {
             Effect::Set(application, value) => {
                 let atom = self.put(application, bindings, place)?;
                 let atom = self.atoms.id(atom);
-                // What is set and taken back at once is set.
+                // An atom that one instant makes both true and false is true afterwards.
                 let set = snap.sets.entry(atom).or_insert(*value);
                 *set |= *value;
             }
@@ -402,7 +418,7 @@ impl<'task> Grounder<'task> {
         Ok(true)
     }
 
-    /// All bindings that put objects in the place of further names.
+    /// All bindings with objects for further names.
     fn each(
         &mut self,
         names: &'task Typed,
@@ -416,26 +432,22 @@ impl<'task> Grounder<'task> {
                 bindings.insert(name, object);
                 bindings
             };
+            self.count_bindings(all.len().saturating_mul(objects.len()))?;
             all =
                 all.iter().flat_map(|known| objects.iter().map(move |object| with(known, object))).collect();
-            self.bindings += all.len();
-            if self.bindings > MAX_BINDINGS {
-                return Err(PddlError::TooMany { what: "bindings of parameters", most: MAX_BINDINGS });
-            }
         }
         Ok(all)
     }
 
-    /// An application with objects in the place of its parameters.
+    /// An application with objects instead of parameters.
     fn put(
         &self,
         application: &'task [String],
         bindings: &Bindings<'task>,
         place: &str,
     ) -> Result<Application, PddlError> {
-        let (name, terms) = application.split_first().ok_or(PddlError::NoGoal)?;
-        let mut words = vec![name.clone()];
-        for term in terms {
+        let mut words = vec![application[0].clone()];
+        for term in &application[1..] {
             words.push(self.object(term, bindings, place)?.to_owned());
         }
         Ok(words)
@@ -625,7 +637,7 @@ impl Linear {
         self.factors.is_empty() && self.of_time.is_zero()
     }
 
-    /// With another one, which counts `factor` times.
+    /// The sum with `factor` times another one.
     fn plus(mut self, other: &Self, factor: Rational) -> Result<Self, PddlError> {
         let add = |sum: Rational, more: Rational| {
             more.checked_mul(factor).and_then(|more| sum.checked_add(more)).ok_or(PddlError::Number)
@@ -744,7 +756,8 @@ impl Ground {
             self.actions.extend(found);
         }
         self.actions.sort_by(|a, b| a.words.cmp(&b.words));
-        // Also where something sets what is so anyway: that must not happen at the same time.
+        // An atom counts as changing even if an action only sets the value that it always has: PDDL still keeps that action
+        // apart from those that need the atom.
         let set: BTreeSet<Atom> =
             self.actions.iter().flat_map(Action::snaps).flat_map(|snap| snap.sets.keys().copied()).collect();
         let changes = |atom: &Atom| values[*atom] == [true, true] || set.contains(atom);

@@ -12,7 +12,7 @@ use super::groups::Groups;
 use super::names::{BEFORE_PART, BETWEEN_WORDS, EPSILON, INSTANT, body_of};
 use super::numbers::{Range, Side, ranges};
 
-/// What the state of an object's group is called, behind the object.
+/// The end of the name of a group's state, after its object.
 const IS: &str = "is";
 
 /// The value of a group's state while none of its atoms is true.
@@ -21,12 +21,12 @@ const NONE: &str = "none";
 /// No action happens more often than this.
 pub const MAX_TIMES: u32 = 20;
 
-/// A mission that says what a problem says.
+/// A problem as a mission.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Translation {
     /// The mission in RMPL.
     pub mission: String,
-    /// What the mission does not say, and what to know about it.
+    /// What the mission leaves out or changes.
     pub remarks: Vec<String>,
 }
 
@@ -44,11 +44,8 @@ pub(super) fn write(task: &Task, mut ground: Ground, times: u32) -> Result<Trans
         let Some(call) = writer.action(action)? else { continue };
         let mut branch = String::new();
         for _ in 0..times {
-            branch = if branch.is_empty() {
-                format!("choose {{ delay[0,0], {{ delay; {call} }} }}")
-            } else {
-                format!("choose {{ delay[0,0], {{ delay; {call}; {branch} }} }}")
-            };
+            let more = if branch.is_empty() { String::new() } else { format!("; {branch}") };
+            branch = format!("choose {{ delay[0,0], {{ delay; {call}{more} }} }}");
         }
         branches.push(branch);
     }
@@ -131,12 +128,12 @@ impl<'ground> Writer<'ground> {
         })
     }
 
-    /// Conditions. Those on atoms of groups are never that one is false.
+    /// Conditions. No condition wants an atom of a group to be false.
     fn literals(&mut self, literals: &BTreeMap<Atom, bool>) -> Result<Vec<String>, PddlError> {
         literals.iter().map(|(atom, value)| self.literal(*atom, *value)).collect()
     }
 
-    /// Effects: of a group, what becomes true, or that none is.
+    /// Effects. For a group: the atom that becomes true, or that none is true.
     fn sets(&mut self, sets: &BTreeMap<Atom, bool>) -> Result<Vec<String>, PddlError> {
         let is_written = |atom: &Atom, value: bool| {
             let group = self.groups.of(*atom);
@@ -168,7 +165,7 @@ impl<'ground> Writer<'ground> {
     fn state_of(&self, group: usize) -> Result<String, PddlError> {
         let object = &self.groups.all[group].object;
         let before = self.groups.all[..group].iter().filter(|other| other.object == *object).count();
-        // Parts of names stand behind names, so that no atom is called the same.
+        // No atom has this name, because names of atoms do not contain the separator of parts.
         name(&[object.clone(), IS.to_owned()])?;
         Ok(match before {
             0 => format!("{object}{BEFORE_PART}{IS}"),
@@ -176,7 +173,7 @@ impl<'ground> Writer<'ground> {
         })
     }
 
-    /// The declarations of an action. Returns how it is called; `None` if it can never happen.
+    /// The declarations of an action. Returns its call; `None` if the action can never happen.
     fn action(&mut self, action: &Action) -> Result<Option<String>, PddlError> {
         if action.conditions().into_iter().any(|conditions| self.groups.exclude(conditions)) {
             return Ok(None);
@@ -204,8 +201,6 @@ impl<'ground> Writer<'ground> {
             self.remarks.push(format!("{place} takes at least {EPSILON}"));
         }
         let least = least.max(self.epsilon);
-        let rests_on_start =
-            action.throughout.literals.keys().any(|atom| action.start.sets.contains_key(atom));
         let required = self.literals(&action.throughout.literals)?;
         let mut clauses = clause("requires", &required);
         clauses += &self.reserved(action, &place)?;
@@ -213,7 +208,7 @@ impl<'ground> Writer<'ground> {
         let start =
             self.snap(&action.start, Some(&action.throughout), &format!("{name}{BEFORE_PART}start"), &place)?;
         let end = self.snap(&action.end, None, &format!("{name}{BEFORE_PART}end"), &place)?;
-        if rests_on_start {
+        if action.rests_on_start() {
             let shorter = |time: Rational| time.checked_sub(self.epsilon).ok_or(PddlError::Number);
             let body = body_of(&name);
             let (shortest, longest) = (shorter(least)?, greatest.map(shorter).transpose()?);
@@ -232,7 +227,7 @@ impl<'ground> Writer<'ground> {
         let _ = writeln!(self.declarations, "primitive {name}(){}{clauses};", bounds(least, greatest));
     }
 
-    /// Declares the start or the end of an action. Returns its call, if there is anything to it.
+    /// Declares the start or the end of an action. Returns its call; `None` if it needs and changes nothing.
     fn snap(
         &mut self,
         snap: &Snap,
@@ -266,7 +261,7 @@ impl<'ground> Writer<'ground> {
             if !is_asked && !is_changed {
                 continue;
             }
-            locks.push(lock_of(self.ground, *fluent)?);
+            locks.push(lock_of(&self.ground.fluents, *fluent)?);
             let lasts = |conditions: &&Conditions| conditions.needs.iter().any(|need| need.fluent == *fluent);
             let lasting = throughout.filter(lasts);
             if lasting.is_some() && is_changed {
@@ -291,7 +286,7 @@ impl<'ground> Writer<'ground> {
         }
         for atom in &self.mentioned {
             if snap.conditions.mentioned.contains(atom) || snap.sets.contains_key(atom) {
-                locks.push(format!("{}{BEFORE_PART}lock", name_of(&self.ground.atoms, *atom)?));
+                locks.push(lock_of(&self.ground.atoms, *atom)?);
             }
         }
         text += &clause("uses", &locks);
@@ -300,7 +295,7 @@ impl<'ground> Writer<'ground> {
         Ok(text)
     }
 
-    /// What an action reserves of reservoirs as long as it lasts.
+    /// The amounts of reservoirs that an action reserves while it lasts.
     fn reserved(&self, action: &Action, place: &str) -> Result<String, PddlError> {
         let mut amounts = Vec::new();
         for (fluent, range) in self.ranges {
@@ -311,9 +306,7 @@ impl<'ground> Writer<'ground> {
                 }
             }
         }
-        let rests_on_start =
-            action.throughout.literals.keys().any(|atom| action.start.sets.contains_key(atom));
-        if !amounts.is_empty() && rests_on_start {
+        if !amounts.is_empty() && action.rests_on_start() {
             let what =
                 "a condition over all on a number beside one that the start of the same action makes true";
             return Err(PddlError::Said { place: place.to_owned(), what });
@@ -430,10 +423,10 @@ impl<'ground> Writer<'ground> {
                 };
                 let _ = writeln!(text, "resource {reservoir} 0..{} = {level}; // {meaning}", range.size()?);
             }
-            let _ = writeln!(text, "resource {};", lock_of(self.ground, *fluent)?);
+            let _ = writeln!(text, "resource {};", lock_of(&self.ground.fluents, *fluent)?);
         }
         for atom in &self.mentioned {
-            let _ = writeln!(text, "resource {}{BEFORE_PART}lock;", name_of(&self.ground.atoms, *atom)?);
+            let _ = writeln!(text, "resource {};", lock_of(&self.ground.atoms, *atom)?);
         }
         Ok(text)
     }
@@ -463,9 +456,9 @@ fn reservoir_of(ground: &Ground, fluent: Fluent, side: Side) -> Result<String, P
     Ok(format!("{name}{BEFORE_PART}{}", if side == Side::Above { "level" } else { "room" }))
 }
 
-/// What keeps changes of a number apart from each other and from what asks for it.
-fn lock_of(ground: &Ground, fluent: Fluent) -> Result<String, PddlError> {
-    Ok(format!("{}{BEFORE_PART}lock", name_of(&ground.fluents, fluent)?))
+/// The resource that keeps changes of an atom or a number apart from each other and from conditions on it.
+fn lock_of(names: &Names, id: usize) -> Result<String, PddlError> {
+    Ok(format!("{}{BEFORE_PART}lock", name_of(names, id)?))
 }
 
 /// The words of an action, an atom or a number as one name of RMPL, from which they can be read again.

@@ -1,21 +1,21 @@
-//! The names that actions have in a mission, and what is the same for all of them.
+//! The names of actions in a mission, and the constants that they share.
 
 /// The type of everything.
 pub(super) const OBJECT: &str = "object";
 
-/// How far apart things are that may not happen at once: more than the tolerance of 0.01 that VAL takes.
+/// The time between changes that must not happen at once. It exceeds the tolerance of VAL, the PDDL plan checker: 0.01.
 pub const EPSILON: &str = "0.02";
 
 /// Between the words of an action in its name.
 pub(super) const BETWEEN_WORDS: &str = "__";
 
-/// Before what an activity is of an action.
+/// Before the name of a part of an action, such as `start`.
 pub(super) const BEFORE_PART: &str = "___";
 
-/// What the activity of an action that takes no time is called, behind its name.
+/// The part that stands for an action that takes no time.
 pub(super) const INSTANT: &str = "instant";
 
-/// What the conditions of an action are called that its own start makes true.
+/// The part with the conditions that the start of the same action makes true.
 pub(super) const BODY: &str = "body";
 
 /// An action by the name that it has in a mission.
@@ -27,7 +27,7 @@ pub struct NamedAction<'name> {
     pub is_instant: bool,
 }
 
-/// The action that an activity of this name is; `None` where the activity is only a part of one.
+/// The action that an activity of this name represents; `None` if the activity is only a part of an action.
 pub fn named_action(activity: &str) -> Option<NamedAction<'_>> {
     let (name, part) =
         activity.rsplit_once(BEFORE_PART).map_or((activity, None), |(name, part)| (name, Some(part)));
@@ -38,8 +38,8 @@ pub fn named_action(activity: &str) -> Option<NamedAction<'_>> {
     Some(NamedAction { words, is_instant: part.is_some() })
 }
 
-/// The name of the part of an action that holds its conditions where they rest on its own start: the action is the activity
-/// around it.
+/// The name of the part of an action with the conditions that its own start makes true. The action itself is the activity
+/// around this part.
 pub fn body_of(action: &str) -> String {
     format!("{action}{BEFORE_PART}{BODY}")
 }

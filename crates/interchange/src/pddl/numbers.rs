@@ -1,5 +1,5 @@
-//! Numbers that change as reservoirs: one for how far a number is above the least that it can be, and one for how far it is
-//! below the greatest, as far as conditions ask for either.
+//! Numbers that change, as reservoirs: one for how far a number is above its minimum, and one for how far it is below its
+//! maximum. A reservoir that no condition asks for is left out.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -31,9 +31,9 @@ pub(super) struct Exchange {
 /// Which of the two reservoirs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Side {
-    /// The number above its least.
+    /// How far the number is above its minimum.
     Above,
-    /// What is left to its greatest.
+    /// How far the number is below its maximum.
     Below,
 }
 
@@ -49,12 +49,8 @@ fn difference(left: Rational, right: Rational) -> Result<Rational, PddlError> {
 /// conditions that always hold and actions whose conditions never do.
 pub(super) fn ranges(ground: &mut Ground, times: u32) -> Result<BTreeMap<Fluent, Range>, PddlError> {
     let mut ranges: BTreeMap<Fluent, Range> = BTreeMap::new();
-    let conditions = |action: &Action| {
-        let [start, end] = action.snaps().map(|snap| snap.conditions.needs.clone());
-        [start, action.throughout.needs.clone(), end].concat()
-    };
-    let asked: Vec<Need> =
-        ground.actions.iter().flat_map(conditions).chain(ground.goal.needs.iter().copied()).collect();
+    let conditions = ground.actions.iter().flat_map(Action::conditions).chain([&ground.goal]);
+    let asked: Vec<Need> = conditions.flat_map(|conditions| &conditions.needs).copied().collect();
     for need in &asked {
         if let Entry::Vacant(vacant) = ranges.entry(need.fluent) {
             vacant.insert(range(ground, need.fluent, times)?);
@@ -120,7 +116,7 @@ pub(super) fn ranges(ground: &mut Ground, times: u32) -> Result<BTreeMap<Fluent,
     Ok(ranges)
 }
 
-/// What a number can be at the least and at the most, if every action happens as often as it may.
+/// The range of a number if every action happens as often as allowed.
 fn range(ground: &Ground, fluent: Fluent, times: u32) -> Result<Range, PddlError> {
     let lacks = || PddlError::Said {
         place: format!("({})", ground.fluents.all[fluent].join(" ")),
@@ -172,7 +168,7 @@ impl Range {
         Ok(Exchange { takes, gives: sum(takes, change)? })
     }
 
-    /// The sides that conditions ask for, each with its level at first.
+    /// The sides that conditions ask for, each with its initial level.
     pub(super) fn sides(&self) -> Result<Vec<(Side, Rational)>, PddlError> {
         let mut sides = Vec::new();
         if self.has_least {
@@ -184,7 +180,7 @@ impl Range {
         Ok(sides)
     }
 
-    /// What a reservoir holds at the most.
+    /// The most that a reservoir holds.
     pub(super) fn size(&self) -> Result<Rational, PddlError> {
         difference(self.greatest, self.least)
     }

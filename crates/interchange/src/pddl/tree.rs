@@ -73,6 +73,11 @@ impl Tree {
         }
     }
 
+    /// Whether it is `()`.
+    pub(super) fn is_empty(&self) -> bool {
+        self.list().is_some_and(<[Self]>::is_empty)
+    }
+
     /// The first word of a list and what follows it.
     pub(super) fn headed(&self) -> Option<(&str, &[Self])> {
         let (head, rest) = self.list()?.split_first()?;
@@ -95,7 +100,7 @@ impl std::fmt::Display for Tree {
     }
 }
 
-/// Parentheses, and what stands between them and blanks.
+/// The parentheses of a row, and the words between parentheses and blanks.
 fn words(row: &str) -> impl Iterator<Item = &str> {
     let is_end = |letter: char| letter.is_whitespace() || letter == '(' || letter == ')';
     let mut rest = row;

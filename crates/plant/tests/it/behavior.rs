@@ -125,3 +125,15 @@ fn what_a_behavior_cannot_be_is_reported() {
         assert_eq!(found.iter().map(|found| found.code.0).collect::<Vec<_>>(), [code], "{text}: {found:?}");
     }
 }
+
+#[test]
+fn a_behavior_whose_steps_depend_on_very_many_combinations_is_refused() {
+    const WATCHED: usize = 25;
+    let commands: String = (0..WATCHED).map(|at| format!(" (COMMAND c{at} {{none go}})")).collect();
+    let body = (0..WATCHED)
+        .fold("(ALWAYS (flow = no))".to_owned(), |inner, at| format!("(DO-WATCHING (c{at} = go) {inner})"));
+    let text = format!("(DEFCLASS C () (VAR flow {{no yes}}){commands} (BEHAVIOR {body})) (DEFINSTANCE c C)");
+    let found = compile(&rmpl::control::parse(&text).file).1;
+    assert_eq!(found.iter().map(|found| found.code.0).collect::<Vec<_>>(), ["E-SIZE"], "{found:?}");
+    assert!(found[0].message.contains("combinations of conditions"), "{found:?}");
+}

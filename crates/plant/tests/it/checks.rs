@@ -37,6 +37,7 @@ fn each_mistake_in_a_model_gives_one_diagnostic_with_its_code() {
         ),
         ("(DEFCLASS A () (VAR v {x y})) (DEFCLASS B (A) (VAR v {z}) (MODE M true))", "E-VALUE"),
         ("(DEFCLASS A () (VAR v {x})) (DEFINSTANCE a A)", "E-FORM"),
+        ("(DEFCLASS A () (MODE M true)) (DEFINSTANCE a A) (DEFINSTANCE a A)", "E-DUP"),
     ] {
         let found = found(text);
         assert_eq!(found.iter().map(|(code, _)| *code).collect::<Vec<_>>(), [code], "{text}: {found:?}");

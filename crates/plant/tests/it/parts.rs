@@ -115,3 +115,18 @@ fn each_mistake_with_parts_gives_one_diagnostic() {
         assert_eq!(found.iter().map(|found| found.code.0).collect::<Vec<_>>(), [code], "{text}: {found:?}");
     }
 }
+
+/// Each connection leads over the one before it, twice.
+#[test]
+fn connections_that_rest_on_each_other_are_followed_once() {
+    let mut text = "(DEFCLASS P () (PORT w P) (MODE M true))
+        (DEFCLASS K () (PORT u K) (PORT d K) (PART p P (w u.p.w.p.w.d)) (MODE M true))"
+        .to_owned();
+    for at in 0..40_usize {
+        text += &format!("(DEFINSTANCE i{at} K (u i{}) (d i{}))", at.saturating_sub(1), (at + 1).min(39));
+    }
+    let parsed = rmpl::control::parse(&text);
+    // It ends, whatever it says of connections that lead in a circle.
+    let (_, found) = compile(&parsed.file);
+    assert!(found.len() < 1000, "{found:?}");
+}

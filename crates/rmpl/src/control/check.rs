@@ -28,12 +28,10 @@ pub(super) fn check(file: &ControlFile) -> Vec<Diagnostic> {
         checker.expression(&definition.body, definition);
     }
     checker.recursion();
-    // Components of one class share their methods' mistakes.
-    let mut diagnostics: Vec<Diagnostic> = Vec::with_capacity(checker.diagnostics.len());
+    // Components of one class share the errors of their methods.
+    let mut diagnostics = Vec::with_capacity(checker.diagnostics.len());
     for found in checker.diagnostics {
-        if !diagnostics.iter().any(|known| known.span == found.span && known.code == found.code) {
-            diagnostics.push(found);
-        }
+        found.add_once_to(&mut diagnostics);
     }
     diagnostics
 }
@@ -140,7 +138,7 @@ impl<'file> Checker<'file> {
     }
 
     fn unknown(&mut self, name: &Name, arguments: &[Argument]) {
-        // The plant, and with it what it has for methods, may be another text.
+        // Without components, the plant and its methods may be in another text.
         if name.text.contains('.') && self.file.instances.is_empty() {
             return;
         }

@@ -10,8 +10,6 @@ use crate::span::Span;
 
 /// A plant of more components than this is refused: no author means it.
 pub const MAX_COMPONENTS: usize = 20_000;
-/// Names in constraints lead over at most so many ports.
-const LONGEST_PATH: usize = 64;
 
 /// A component of a plant, declared by itself or as a part of another one.
 #[derive(Clone, Debug)]
@@ -33,6 +31,9 @@ pub struct PlantComponent<'file> {
     parts: Vec<(&'file SmolStr, usize)>,
 }
 
+/// What is connected to a component by what is written for one of its ports.
+type Connections<'file> = BTreeMap<(usize, &'file str), Option<usize>>;
+
 /// All components of a plant.
 #[derive(Clone, Debug, Default)]
 pub struct PlantComponents<'file> {
@@ -41,7 +42,7 @@ pub struct PlantComponents<'file> {
 }
 
 impl<'file> PlantComponents<'file> {
-    /// The components of a file, each followed by its parts. At most [`MAX_COMPONENTS`] are told, and one more.
+    /// The components of a file, each followed by its parts. With more than [`MAX_COMPONENTS`], no further parts are added.
     pub fn new(file: &'file ControlFile, classes: &BTreeMap<SmolStr, MergedClass<'file>>) -> Self {
         let mut components = Self::default();
         for instance in &file.instances {
@@ -53,10 +54,11 @@ impl<'file> PlantComponents<'file> {
             };
             components.add(&instance.name.text, None, &declared, classes, 0);
         }
+        let mut known = Connections::new();
         for at in 0..components.all.len() {
             let component = &components.all[at];
             let ports = component.written.iter().filter_map(|(port, connected)| {
-                Some((&port.text, components.connected(at, &connected.text, LONGEST_PATH)?))
+                Some((&port.text, components.connected(at, &connected.text, &mut known)?))
             });
             let neighbors: Vec<_> = ports.chain(component.parts.iter().copied()).collect();
             components.all[at].neighbors = neighbors;
@@ -123,9 +125,25 @@ impl<'file> PlantComponents<'file> {
         at
     }
 
-    /// The place of what is written for a port of a component: for a part, in its owner's names.
-    fn connected(&self, at: usize, written: &str, depth: usize) -> Option<usize> {
-        let depth = depth.checked_sub(1)?;
+    /// The place of what is written for a port of a component: for a part, in its owner's names. `None` if there is no such
+    /// component, or if the ports lead in a circle.
+    fn connected(&self, at: usize, written: &'file str, known: &mut Connections<'file>) -> Option<usize> {
+        if let Some(place) = known.get(&(at, written)) {
+            return *place;
+        }
+        // Asking again before the answer is known means a circle.
+        known.insert((at, written), None);
+        let place = self.connected_anew(at, written, known);
+        known.insert((at, written), place);
+        place
+    }
+
+    fn connected_anew(
+        &self,
+        at: usize,
+        written: &'file str,
+        known: &mut Connections<'file>,
+    ) -> Option<usize> {
         let Some(owner) = self.all.get(at)?.owner else { return self.by_name.get(written).copied() };
         let mut found = owner;
         for (number, step) in written.split('.').enumerate() {
@@ -138,7 +156,7 @@ impl<'file> PlantComponents<'file> {
                 part
             } else {
                 let (_, connected) = component.written.iter().find(|(port, _)| port.text == step)?;
-                self.connected(found, &connected.text, depth)?
+                self.connected(found, &connected.text, known)?
             };
         }
         Some(found)

@@ -30,7 +30,7 @@ pub struct MergedTransition<'file> {
     pub from: &'file Name,
     pub to: &'file Name,
     pub guard: &'file Constraint,
-    /// Of one written with `*`: the guards of the transitions that it gives way to.
+    /// For a transition from `*`, the guards of the transitions that take precedence.
     pub unless: Vec<&'file Constraint>,
     pub probability: Option<&'file Name>,
 }
@@ -49,7 +49,7 @@ pub struct MergedFault<'file> {
 pub struct MergedPart<'file> {
     pub name: &'file Name,
     pub class: &'file Name,
-    /// What stands at its ports, in the names of the class that declares it.
+    /// Its ports with what they are connected to, in the names of the class that declares it.
     pub ports: &'file [(Name, Name)],
     pub initial: &'file Initial,
     /// Where it is declared.
@@ -85,10 +85,19 @@ pub struct MergedClass<'file> {
 }
 
 impl MergedClass<'_> {
-    /// The class of what a port or part of this name is.
+    /// The class of the port or part of this name.
     pub fn neighbor(&self, name: &str) -> Option<&Name> {
         let port = self.ports.iter().find(|(port, _)| port.text == name).map(|(_, class)| *class);
         port.or_else(|| self.parts.iter().find(|part| part.name.text == name).map(|part| part.class))
+    }
+
+    /// The class that a path of ports and parts leads to, such as `valve.driver`.
+    pub fn reached<'class>(
+        &'class self,
+        classes: &'class BTreeMap<SmolStr, Self>,
+        path: &str,
+    ) -> Option<&'class Self> {
+        path.split('.').try_fold(self, |class, step| classes.get(&class.neighbor(step)?.text))
     }
 
     /// The place of a mode.
@@ -280,7 +289,7 @@ impl<'file> Merger<'file> {
                         }
                     }
                     FieldKind::Transition { .. } | FieldKind::Fault { .. } => overridden = true,
-                    // What it means is written out before classes are merged.
+                    // A behavior is written out as modes and transitions first, and then classes are merged again.
                     FieldKind::Behavior(_) => {}
                 }
             }

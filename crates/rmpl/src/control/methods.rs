@@ -31,7 +31,7 @@ pub(super) fn definitions(
     definitions
 }
 
-/// The definitions with all places in a text taken out: they are those of another text.
+/// The definitions without their spans, which would refer to another text.
 pub fn without_places(mut definitions: Vec<Definition>) -> Vec<Definition> {
     for definition in &mut definitions {
         definition.span = Span::default();
@@ -43,13 +43,15 @@ pub fn without_places(mut definitions: Vec<Definition>) -> Vec<Definition> {
 
 fn displace(expression: &mut Expression) {
     expression.span = Span::default();
-    expression.change_constraints(&mut |constraint| {
-        constraint.span = Span::default();
-        if let ConstraintKind::Equals { variable, value } = &mut constraint.kind {
-            variable.span = Span::default();
-            value.span = Span::default();
-        }
-    });
+    for constraint in expression.constraints_mut() {
+        constraint.change(&mut |constraint| {
+            constraint.span = Span::default();
+            if let ConstraintKind::Equals { variable, value } = &mut constraint.kind {
+                variable.span = Span::default();
+                value.span = Span::default();
+            }
+        });
+    }
     for part in expression.parts_mut() {
         displace(part);
     }
@@ -102,7 +104,7 @@ impl Qualifier<'_, '_> {
         {
             value.text = known;
         }
-        // What the component does not have is its own, too: nothing else is meant.
+        // A name that the component does not have cannot mean anything else.
         variable.text = self
             .known(&variable.text)
             .unwrap_or_else(|| format_smolstr!("{}.{}", self.component.name, variable.text));
@@ -112,7 +114,7 @@ impl Qualifier<'_, '_> {
         self.parameters.iter().any(|parameter| parameter.text == name.text)
     }
 
-    /// The name in the plant of a variable, part or port of the component, or of one behind those.
+    /// The name in the plant of a variable, part or port of the component, or of one that those lead to.
     fn known(&self, name: &str) -> Option<SmolStr> {
         if let Some(other) = self.components.reached(self.component, name) {
             return Some(other.name.clone());
@@ -131,7 +133,7 @@ impl Qualifier<'_, '_> {
         }
     }
 
-    /// The name of a method of the component, or of one behind its parts and ports.
+    /// The name of a method of the component, or of one that its parts and ports lead to.
     fn method(&self, name: &str) -> Option<SmolStr> {
         let (owner, method) = self.owner(name)?;
         let class = self.classes.get(&owner.class.text)?;

@@ -384,7 +384,7 @@ pub enum FieldKind {
         /// What it is called.
         name: Name,
         class: Name,
-        /// What stands at its ports, in the names of the class.
+        /// Its ports with what they are connected to, in the names of the class.
         ports: Vec<(Name, Name)>,
         /// The modes in which it may start.
         initial: Initial,
@@ -413,7 +413,7 @@ pub enum FieldKind {
         to: Name,
         /// What triggers it.
         guard: Constraint,
-        /// Of one of several outcomes of the guard: its probability as written.
+        /// Its probability as written, if it is one of several outcomes of the guard.
         probability: Option<Name>,
     },
     /// `(FAULT from to probability [guard])`.

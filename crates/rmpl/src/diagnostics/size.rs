@@ -32,6 +32,16 @@ pub fn transitions(most: usize, span: Span) -> Diagnostic {
         .with_hint("let each step depend on fewer conditions")
 }
 
+/// More combinations of answers to conditions than are followed.
+pub fn answers(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::error(
+        CODE,
+        span,
+        format!("the steps of this behavior depend on more than {most} combinations of conditions"),
+    )
+    .with_hint("let each step depend on fewer conditions")
+}
+
 /// Probabilities that cannot be calculated with exactly.
 pub fn digits(span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, "the probabilities of this behavior have too many digits")

@@ -47,6 +47,13 @@ pub(crate) fn no_value(variable: &str, span: Span, domain: &[&str]) -> Diagnosti
     })
 }
 
+/// Two variables of a control program or plant model that a constraint compares.
+pub fn different_domains(left: &str, right: &str, right_span: Span) -> Diagnostic {
+    let message = format!("`{left}` and `{right}` have different domains");
+    Diagnostic::error(CODE, right_span, message)
+        .with_hint("two variables can be equal if they have the same values")
+}
+
 /// The place of a vehicle that is no location.
 pub(crate) fn no_location(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("unknown location `{name}`"))

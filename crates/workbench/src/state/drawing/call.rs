@@ -1,6 +1,4 @@
-//! What can be called with what, and activities that are not declared yet.
-
-use std::collections::BTreeSet;
+//! The calls that a mission offers with their arguments, and activities that are not declared yet.
 
 use rmpl::program::{PrimitiveDecl, Program};
 use rmpl::syntax::SyntaxKind;
@@ -8,6 +6,7 @@ use rmpl::{Edit, Parse, Span};
 
 use super::list::insertion;
 use super::{Drawn, Place, insert, site};
+use crate::state::placing::Names;
 
 /// An activity that a mission declares, with the calls of it that are offered.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,10 +16,10 @@ pub struct Callable {
     pub calls: Vec<String>,
 }
 
-/// More calls of one activity are not offered.
+/// At most this many calls of one activity are offered.
 const MAX_CALLS: usize = 24;
-/// The bounds of an activity that is new.
-const NEW_BOUNDS: &str = "[1,5]";
+/// The bounds of a new activity, and of a statement whose duration is set, for the author to type over.
+pub const NEW_BOUNDS: &str = "[1,5]";
 
 /// What a parameter can stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +27,7 @@ pub(super) enum Kind {
     Vehicle,
     Location,
     Number,
-    /// What no use of it tells.
+    /// Unknown: no use of the parameter tells.
     Any,
 }
 
@@ -110,18 +109,18 @@ fn written_kind(program: &Program, kind: Option<&str>) -> Option<Kind> {
 
 /// Adds a call of an activity that is new, and declares it; the author types its name over both.
 pub(super) fn new_activity(parse: &Parse, at: Place) -> Result<Drawn, String> {
-    let name = fresh_name(parse.text(), "Activity", &mut BTreeSet::new());
+    let name = Names::of(parse.text()).fresh("Activity");
     let mut edits = insert(parse, &format!("{name}()"), at)?;
     add(&mut edits, declare(parse, &format!("primitive {name}(){NEW_BOUNDS};")));
     edits.sort_by_key(|edit| edit.span);
     let mut drawn = Drawn { edits, ..Drawn::default() };
     let changed = drawn.apply(parse.text());
-    let places = changed.match_indices(&name);
+    let places = changed.match_indices(name.as_str());
     drawn.typed_over = places.map(|(at, _)| Span::new(at as u32, (at + name.len()) as u32)).collect();
     Ok(drawn)
 }
 
-/// Declares something behind the last primitive, or else in front of the first definition, or at the end.
+/// Declares something after the last primitive, or else before the first definition, or at the end.
 pub(super) fn declare(parse: &Parse, declaration: &str) -> Edit {
     let find = |kind: SyntaxKind| parse.declarations().filter_map(move |root| root.child(kind));
     if let Some(last) = find(SyntaxKind::PrimitiveDecl).last() {
@@ -144,12 +143,14 @@ pub(super) fn add(edits: &mut Vec<Edit>, declaration: Edit) {
     }
 }
 
-/// What stands between a text and a declaration that is added to its end.
-pub(super) fn gap(text: &str) -> &'static str {
-    match () {
-        () if text.trim().is_empty() || text.ends_with("\n\n") => "",
-        () if text.ends_with('\n') => "\n",
-        () => "\n\n",
+/// The blank lines between a text and a declaration that is added at its end.
+pub fn gap(text: &str) -> &'static str {
+    if text.trim().is_empty() || text.ends_with("\n\n") {
+        ""
+    } else if text.ends_with('\n') {
+        "\n"
+    } else {
+        "\n\n"
     }
 }
 
@@ -159,15 +160,4 @@ pub(super) fn new_scenario(parse: &Parse, text: &str) -> Option<Edit> {
     let end = parse.text().len() as u32;
     let lines = super::list::braced("scenario Mission = ", &[text.to_owned()], "");
     (!has_one).then(|| insertion(end, format!("{}{lines}\n", gap(parse.text()))))
-}
-
-/// `stem` with the least number that makes it a word which the text does not have.
-pub(super) fn fresh_name(text: &str, stem: &str, used: &mut BTreeSet<String>) -> String {
-    let is_part = |sign: char| sign.is_alphanumeric() || sign == '_' || sign == '-';
-    let words: BTreeSet<&str> = text.split(|sign| !is_part(sign)).collect();
-    let mut names = (1_u32..).map(|number| format!("{stem}{number}"));
-    let name = names.find(|name| !words.contains(name.as_str()) && !used.contains(name));
-    let name = name.unwrap_or_else(|| stem.to_owned());
-    used.insert(name.clone());
-    name
 }

@@ -4,6 +4,7 @@ use rmpl::syntax::{Element, SyntaxKind, SyntaxNode, SyntaxToken};
 use rmpl::{Edit, Parse, Span};
 
 use super::site::{Holder, Site, steps};
+use crate::state::placing::behind;
 
 /// Which side of another statement one goes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,32 +106,33 @@ pub(super) fn thread(parse: &Parse, block: &SyntaxNode<'_>, text: &str) -> Vec<E
     }
 }
 
-/// Deletes a statement, with its separator, its line, and whatever would be empty without it.
+/// Deletes a statement, with its separator, its line, and all that would be empty without it.
 pub(super) fn delete(parse: &Parse, site: &Site<'_>) -> Vec<Edit> {
     let source = parse.text();
     let (holder, separator) = match site.holder {
         Holder::Row(row) => (row, SyntaxKind::Semicolon),
         Holder::Parallel(holder) | Holder::Choose(holder) => (holder, SyntaxKind::Comma),
-        Holder::Alone(_) => {
-            let outer = site.outer(parse);
-            return outer.map_or_else(|| vec![removal(site.span())], |outer| delete(parse, &outer));
-        }
+        Holder::Alone(_) => return delete_outer(parse, site),
     };
     let is_only = steps(holder).count() == 1;
-    if is_only && holder.kind() != SyntaxKind::Block
-        || is_only && !is_body(parse, &holder) && site.outer(parse).is_some()
-    {
-        let outer = site.outer(parse);
-        return outer.map_or_else(|| vec![removal(site.span())], |outer| delete(parse, &outer));
+    let is_block = holder.kind() == SyntaxKind::Block;
+    let may_be_empty = is_block && (is_body(parse, &holder) || site.outer(parse).is_none());
+    if is_only && !may_be_empty {
+        return delete_outer(parse, site);
     }
-    let behind = separator_behind(holder, site.node, separator);
+    let after = separator_behind(holder, site.node, separator);
     let before = separator_before(holder, site.node, separator);
-    let own = Span::new(site.span().start, behind.map_or(site.span().end, |token| token.span.end));
+    let own = Span::new(site.span().start, after.map_or(site.span().end, |token| token.span.end));
     let mut edits = vec![removal(whole_lines(source, own))];
-    if let (None, Some(before)) = (behind, before) {
+    if let (None, Some(before)) = (after, before) {
         edits.push(removal(before.span));
     }
     edits
+}
+
+/// Deletes the statement that would be empty without this one.
+fn delete_outer(parse: &Parse, site: &Site<'_>) -> Vec<Edit> {
+    site.outer(parse).map_or_else(|| vec![removal(site.span())], |outer| delete(parse, &outer))
 }
 
 /// Whether a block is the body of a scenario or an activity, which may be empty.
@@ -184,7 +186,7 @@ fn single(text: &str) -> String {
     }
 }
 
-/// Adds text to one of several that a separator stands between.
+/// Adds text beside one of several that are separated.
 fn join(
     source: &str,
     holder: SyntaxNode<'_>,
@@ -201,9 +203,9 @@ fn join(
     }
     match separator_behind(holder, node, kind) {
         Some(separator) => {
-            let at = behind_note(source, separator.span.end);
+            let at = behind(source, separator.span.end);
             let (gap, text) = gap_and_text(source, Span::new(span.start, separator.span.end), text);
-            // A separator behind the last one stays behind the last one.
+            // If the last one had a separator, the new last one has it too.
             vec![insertion(at, format!("{gap}{text}{sign}"))]
         }
         None => join_behind_line(source, span, text, sign),
@@ -211,12 +213,12 @@ fn join(
 }
 
 fn join_behind_line(source: &str, span: Span, text: &str, sign: char) -> Vec<Edit> {
-    let at = behind_note(source, span.end);
+    let at = behind(source, span.end);
     let (gap, text) = gap_and_text(source, span, text);
     if at == span.end {
         return vec![insertion(at, format!("{sign}{gap}{text}"))];
     }
-    // A comment behind the last one stays with it.
+    // A comment after the last one stays with it.
     vec![insertion(span.end, sign.to_string()), insertion(at, format!("{gap}{text}"))]
 }
 
@@ -225,8 +227,8 @@ fn join_behind(source: &str, end: u32, text: &str, sign: char) -> Vec<Edit> {
     vec![insertion(end, format!("{sign}\n{indent}{}", indented(text, &indent)))]
 }
 
-/// What stands between two statements, and the text of the new one: in a line of its own where the other one, with its
-/// separator, has its lines to itself.
+/// The gap between two statements, and the text of the new one. If the other statement and its separator fill their lines,
+/// the new one gets a line of its own.
 fn gap_and_text(source: &str, other: Span, text: &str) -> (String, String) {
     let rest = source.get(other.end as usize..).unwrap_or_default().split('\n').next().unwrap_or_default();
     let ends_line = rest.trim().is_empty() || rest.trim_start().starts_with("//");
@@ -270,13 +272,6 @@ fn separator_before<'a>(
     None
 }
 
-/// Behind a comment that ends the line of a place, if there is one.
-fn behind_note(source: &str, at: u32) -> u32 {
-    let rest = source.get(at as usize..).unwrap_or_default();
-    let line = rest.split('\n').next().unwrap_or_default();
-    if line.trim_start().starts_with("//") { at + line.trim_end().len() as u32 } else { at }
-}
-
 fn begins_line(source: &str, at: u32) -> bool {
     let line = line_start(source, at as usize);
     source.get(line..at as usize).is_some_and(|before| before.trim().is_empty())
@@ -286,7 +281,7 @@ fn line_start(source: &str, at: usize) -> usize {
     source.get(..at).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1)
 }
 
-/// A span with the rest of its lines, where nothing else stands in them; otherwise with the blanks behind it.
+/// A span with the rest of its lines, if nothing else is in them; otherwise with the blanks after it.
 fn whole_lines(source: &str, span: Span) -> Span {
     let rest = source.get(span.end as usize..).unwrap_or_default();
     let line = rest.split('\n').next().unwrap_or_default();

@@ -1,7 +1,7 @@
 //! Activities as they are drawn: created, moved, wrapped, bounded and deleted, each as edits of the mission's text.
 //!
 //! `site` finds the statement that a drawing stands for, `list` adds to and removes from statements in a row, `wrap` puts
-//! constructs around them, `call` knows what can be called with what, and `visit` sends a vehicle to a place.
+//! constructs around them, `call` lists calls and their arguments, and `visit` sends a vehicle to a place.
 
 mod call;
 mod list;
@@ -14,7 +14,7 @@ mod tests;
 
 use rmpl::{Edit, Parse, Severity, Span};
 
-pub use call::{Callable, callables};
+pub use call::{Callable, NEW_BOUNDS, callables, gap};
 pub use wrap::{Wrapping, conditions};
 
 use site::Site;
@@ -36,7 +36,7 @@ pub enum Change {
     Unwrap(Span),
     /// Gives a statement bounds, such as `[1,5]`.
     Bound(Span, String),
-    /// Lets one statement start only after another one has ended, whatever threads they are in.
+    /// Lets one statement start only after another one has ended, even in another thread.
     Connect { from: Span, to: Span },
     /// Sends a vehicle to a location after all else that it does: the drive, and the visit.
     Visit { vehicle: String, location: String },
@@ -84,7 +84,7 @@ pub enum Place {
 pub struct Drawn {
     /// Disjoint, in textual order.
     pub edits: Vec<Edit>,
-    /// What the author is to type over, as it stands in the new text: a name, or bounds.
+    /// What the author is to type over, by its place in the new text: a name, or bounds.
     pub typed_over: Vec<Span>,
     /// Where what was added or moved begins in the new text.
     pub made: Option<u32>,
@@ -104,7 +104,7 @@ impl Drawn {
         changed
     }
 
-    /// The lines that the edits change, as they will be: at most so many.
+    /// The lines that the edits change, before and after: at most `most` of them.
     pub fn preview(&self, text: &str, most: usize) -> String {
         let changed = self.apply(text);
         let before: Vec<&str> = text.lines().collect();
@@ -146,7 +146,7 @@ pub fn draw(parse: &Parse, change: &Change) -> Result<Drawn, String> {
     if changed == parse.text() {
         return Err("It is there already".to_owned());
     }
-    // What does not read as a mission any more is not drawn.
+    // A change that adds syntax errors is refused.
     if syntax_errors(&rmpl::parse(&changed)) > syntax_errors(parse) {
         return Err("The text has no room for this there".to_owned());
     }
@@ -190,7 +190,7 @@ pub fn is_statement(parse: &Parse, what: Span) -> bool {
     Site::of(parse, what).is_ok()
 }
 
-/// The statement before or after the one of a span, among those that it stands in a row with.
+/// The statement before or after the one of a span, among those in the same row.
 pub fn neighbor(parse: &Parse, what: Span, forwards: bool) -> Option<Span> {
     Site::of(parse, what).ok()?.neighbor(forwards).map(rmpl::syntax::SyntaxNode::span)
 }

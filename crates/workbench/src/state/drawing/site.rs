@@ -1,4 +1,4 @@
-//! The statement that a drawing stands for, and what it stands in.
+//! The statement that a drawing shows, and what contains it.
 
 use rmpl::syntax::{SyntaxKind, SyntaxNode};
 use rmpl::{Parse, Span};
@@ -19,7 +19,7 @@ pub(super) enum Holder<'a> {
     Parallel(SyntaxNode<'a>),
     /// One of several.
     Choose(SyntaxNode<'a>),
-    /// Alone behind a word, such as `optional`: the statement that the word begins.
+    /// Alone after a word, such as `optional`: the statement that begins with the word.
     Alone(SyntaxNode<'a>),
 }
 
@@ -50,7 +50,7 @@ impl<'a> Site<'a> {
         Some(Self { node, holder })
     }
 
-    /// Where it stands.
+    /// Its place in the text.
     pub(super) fn span(&self) -> Span {
         self.node.span()
     }
@@ -66,7 +66,7 @@ impl<'a> Site<'a> {
         Self::at(&path, at)
     }
 
-    /// The one before or after it among those that it stands in a row with, one after the other.
+    /// The statement before or after it in the same holder.
     pub(super) fn neighbor(&self, forwards: bool) -> Option<SyntaxNode<'a>> {
         let (Holder::Row(holder) | Holder::Parallel(holder) | Holder::Choose(holder)) = self.holder else {
             return None;
@@ -78,7 +78,7 @@ impl<'a> Site<'a> {
     }
 }
 
-/// What stands in a row, at the same time, or as alternatives in a node.
+/// The statements of a node that are in a row, at the same time, or alternatives.
 pub(super) fn steps(holder: SyntaxNode<'_>) -> impl Iterator<Item = SyntaxNode<'_>> {
     holder.children().filter(|node| {
         is_step(node.kind()) || matches!(node.kind(), SyntaxKind::Parallel | SyntaxKind::Alternative)
@@ -109,10 +109,9 @@ pub(super) fn unconditional(parse: &Parse, span: Span) -> Option<Site<'_>> {
 
 /// The block of the first scenario.
 pub(super) fn scenario_block(parse: &Parse) -> Result<SyntaxNode<'_>, String> {
-    let declared = |root: SyntaxNode<'_>| root.child(SyntaxKind::ScenarioDecl).is_some();
-    let root = parse.declarations().find(|root| declared(*root)).ok_or("Add a scenario first")?;
-    let scenario = root.child(SyntaxKind::ScenarioDecl).ok_or("Add a scenario first")?;
-    scenario.child(SyntaxKind::Block).ok_or_else(|| "Add a scenario first".to_owned())
+    let scenario = parse.declarations().find_map(|root| root.child(SyntaxKind::ScenarioDecl));
+    let block = scenario.and_then(|scenario| scenario.child(SyntaxKind::Block));
+    block.ok_or_else(|| "Add a scenario first".to_owned())
 }
 
 fn is_step(kind: SyntaxKind) -> bool {

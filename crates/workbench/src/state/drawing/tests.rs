@@ -165,10 +165,16 @@ fn a_vehicle_is_sent_to_a_place_behind_all_else_that_it_does() {
         0,
         "{second}"
     );
-    // The same one goes on where it was.
+    // The same vehicle continues from its last place.
     let third = visit(&second, "R");
     let order: Vec<&str> = third.lines().map(str::trim).filter(|line| line.contains("(R, ")).collect();
     assert_eq!(order, ["Drive(R, ROCK);", "Visit(R, ROCK);", "Drive(R, ROCK);", "Visit(R, ROCK)"], "{third}");
+    // What is not declared is not written.
+    for (vehicle, location, part) in [("X", "ROCK", "Unknown vehicle X"), ("R", "Y", "Unknown location Y")] {
+        let change = Change::Visit { vehicle: vehicle.to_owned(), location: location.to_owned() };
+        let refused = draw(&rmpl::parse(WORLD), &change).expect_err("it is not declared");
+        assert!(refused.contains(part), "{refused}");
+    }
     // The mission's own activities are used, and a choice is left as it is.
     let own = format!(
         "{WORLD}primitive Go(to)[1,9] moves R;\nprimitive Shoot(place)[1,2] requires R.at=place;\n\

@@ -1,34 +1,40 @@
 //! Sending a vehicle to a place: the drive there, and what it does there.
 
-use std::collections::BTreeSet;
-
 use rmpl::program::{PrimitiveDecl, Program};
 use rmpl::syntax::{SyntaxKind, SyntaxNode};
 use rmpl::{Edit, Parse, Span};
+use smol_str::SmolStr;
 
-use super::call::{Kind, add, declare, fresh_name, kinds};
+use super::call::{Kind, add, declare, kinds};
 use super::{Place, insert, site};
+use crate::state::placing::Names;
 
-/// Adds a drive of a vehicle to a location and a visit of it behind all else that the vehicle does, or in a thread of its
-/// own. What the mission has no activities for is declared.
+/// Adds a drive of a vehicle to a location and a visit of it after all else that the vehicle does, or in a thread of its
+/// own. Declares the activities that the mission lacks.
 pub(super) fn visit(parse: &Parse, vehicle: &str, location: &str) -> Result<Vec<Edit>, String> {
     let program = parse.program();
+    if !program.world.vehicles.iter().any(|it| it.name.text == vehicle) {
+        return Err(format!("Unknown vehicle {vehicle}: declare it first"));
+    }
+    if !program.world.locations.iter().any(|it| it.name.text == location) {
+        return Err(format!("Unknown location {location}: declare it first"));
+    }
     let last = last_of(parse, &program, vehicle);
     let here = last.as_ref().and_then(|(_, at)| at.clone()).or_else(|| start(&program, vehicle));
-    let mut used = BTreeSet::new();
+    let mut names = Names::of(parse.text());
     let mut declared = Vec::new();
     let drives = |it: &&PrimitiveDecl| moves(it, vehicle);
     let drive = if let Some(drive) = program.primitives.iter().find(drives) {
         call(drive, vehicle, (here.as_deref(), location))
     } else {
-        let name = name_for(parse, "Drive", &mut used);
+        let name = name_for("Drive", &mut names);
         declared.push(format!("primitive {name}(rover, to)[1,inf] moves rover;"));
         format!("{name}({vehicle}, {location})")
     };
     let visit = if let Some(visit) = program.primitives.iter().find(|it| is_visit(&program, it, vehicle)) {
         call(visit, vehicle, (None, location))
     } else {
-        let name = name_for(parse, "Visit", &mut used);
+        let name = name_for("Visit", &mut names);
         declared.push(format!("primitive {name}(rover, site)[1,10] requires rover.at=site;"));
         format!("{name}({vehicle}, {location})")
     };
@@ -41,13 +47,8 @@ pub(super) fn visit(parse: &Parse, vehicle: &str, location: &str) -> Result<Vec<
 }
 
 /// A name by its plain word, or with a number where the mission has that word for something else.
-fn name_for(parse: &Parse, word: &str, used: &mut BTreeSet<String>) -> String {
-    let is_part = |sign: char| sign.is_alphanumeric() || sign == '_' || sign == '-';
-    if parse.text().split(|sign| !is_part(sign)).any(|known| known == word) {
-        fresh_name(parse.text(), word, used)
-    } else {
-        word.to_owned()
-    }
+fn name_for(word: &str, names: &mut Names) -> SmolStr {
+    if names.contains(word) { names.fresh(word) } else { SmolStr::new(word) }
 }
 
 fn start(program: &Program, vehicle: &str) -> Option<String> {

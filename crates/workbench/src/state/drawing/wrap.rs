@@ -1,15 +1,13 @@
-//! Constructs around statements, bounds behind them, and bounds between them.
-
-use std::collections::BTreeSet;
+//! Constructs around statements, bounds after them, and bounds between them.
 
 use rmpl::program::Program;
 use rmpl::syntax::{SyntaxKind, SyntaxNode};
 use rmpl::{Edit, Parse, Span};
 
 use super::Drawn;
-use super::call::fresh_name;
 use super::list::{braced, indent_at, indented, insertion, outdented};
 use super::site::{Holder, Site, steps};
+use crate::state::placing::Names;
 
 /// A construct that is put around a statement.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +22,7 @@ pub enum Wrapping {
     Maintaining(String),
 }
 
-/// Conditions that can be maintained, at most so many are worth a list.
+/// At most this many conditions are listed.
 const MAX_CONDITIONS: usize = 24;
 
 /// The conditions that can be maintained: each value of each variable.
@@ -40,7 +38,7 @@ pub(super) fn wrap(parse: &Parse, site: &Site<'_>, wrapping: &Wrapping) -> Resul
     let span = site.span();
     let text = outdented(source, span);
     let is_several = site.node.kind() == SyntaxKind::Alternative && steps(site.node).count() > 1;
-    let unit = if is_several { format!("{{ {text} }}") } else { text.clone() };
+    let unit = if is_several { format!("{{ {text} }}") } else { text };
     let (span, whole) = match wrapping {
         Wrapping::Choose => (span, braced("choose ", &[unit], "")),
         Wrapping::Optional => (span, format!("optional {unit}")),
@@ -115,7 +113,7 @@ pub(super) fn connect(parse: &Parse, from: Span, to: Span) -> Result<Drawn, Stri
     if from.span() == to.span() {
         return Err("Select another activity to start after".to_owned());
     }
-    let mut used: BTreeSet<String> = BTreeSet::new();
+    let mut names = Names::of(parse.text());
     let mut edits = Vec::new();
     let mut name_of = |site: &Site<'_>| {
         let statement = statement_in(site.node);
@@ -126,7 +124,7 @@ pub(super) fn connect(parse: &Parse, from: Span, to: Span) -> Result<Drawn, Stri
         let called = statement.tokens().find(|token| token.kind == SyntaxKind::Name);
         let stem: String =
             called.map_or("Step", |token| token.text).chars().filter(|it| *it != '-').collect();
-        let name = fresh_name(parse.text(), &stem, &mut used);
+        let name = names.fresh(&stem).to_string();
         edits.push(insertion(statement.span().end, format!(" as {name}")));
         name
     };
