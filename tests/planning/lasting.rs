@@ -65,7 +65,7 @@ fn amounts_between_two_numbers_are_planned_exactly() {
     compare_all_with(Kind::RESOURCES, with_ranges).tell(Kind::RESOURCES);
 }
 
-/// Some of what reservoirs give and take gets a lesser amount at least, as of drives, whose lengths differ.
+/// Gives some uses of reservoirs a minimum amount below their maximum, as drives have one, whose lengths differ.
 fn with_ranges(network: &mut Network, seed: u64) {
     let mut rng = Rng::new(seed ^ 0x7261_6e67);
     let resources = &network.resources;

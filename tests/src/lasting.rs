@@ -77,7 +77,7 @@ struct Variable {
 struct Use {
     start: usize,
     end: usize,
-    /// At least and at most: drives differ in length.
+    /// The minimum and the maximum amount: drives differ in length.
     amounts: [Rational; 2],
     is_production: bool,
 }

@@ -146,7 +146,7 @@ fn works(scope: Scope, focus: Focus, keys: KeyboardShortcut) -> bool {
         Scope::Typing => focus == Focus::Editor,
         Scope::NotTyping => match focus {
             Focus::Nothing => true,
-            // Plain arrows go from one thing to the next in it.
+            // Plain arrow keys go to the neighbor in the drawing.
             Focus::Drawing => {
                 let is_own = matches!(keys.logical_key, egui::Key::Space | egui::Key::Delete);
                 is_own || !is_widget_key(keys.logical_key) || !keys.modifiers.is_none()

@@ -351,7 +351,7 @@ impl PanelTiles<'_> {
         structure::part(ui, Role::Region, &format!("{} panel", kind.title()));
         self.region(ui, kind);
         let place = egui::UiBuilder::new().max_rect(ui.available_rect_before_wrap());
-        // Another mission is looked at from its beginning. Lessons and the manual outlast missions.
+        // A panel starts with a fresh view for each mission. Lessons and the manual outlast missions.
         let mission = if matches!(kind, PanelKind::Lesson | PanelKind::Manual) {
             0
         } else {

@@ -50,8 +50,9 @@ pub(crate) struct ModelUse {
     pub(crate) start: NodeId,
     pub(crate) end: NodeId,
     pub(crate) change: Change,
-    /// The maximum of it.
+    /// The maximum amount.
     pub(crate) amount: i64,
+    /// The minimum amount.
     pub(crate) at_least: i64,
 }
 
@@ -61,13 +62,14 @@ impl ModelUse {
         if self.change == Change::Produces { self.end } else { self.start }
     }
 
-    /// By how much it changes a reservoir's level, in units: at most if `is_most`, otherwise at least.
+    /// The change of a reservoir's level, in units: the greatest possible one if `is_most`, otherwise the least.
     pub(crate) const fn level_change(&self, is_most: bool) -> i64 {
         level_change(self.change, [self.at_least, self.amount], is_most)
     }
 }
 
-/// By how much something that gives or takes between two amounts changes a level: at most if `is_most`, otherwise at least.
+/// The change of a level by a use with a minimum and a maximum amount: the greatest possible one if `is_most`, otherwise the
+/// least.
 pub(crate) const fn level_change(change: Change, [at_least, amount]: [i64; 2], is_most: bool) -> i64 {
     match (change, is_most) {
         (Change::Produces, true) => amount,

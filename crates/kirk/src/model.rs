@@ -235,6 +235,11 @@ impl Model {
         true
     }
 
+    /// Whether an arc is a bound between threads.
+    pub(crate) fn is_constraint(&self, arc: ArcId) -> bool {
+        self.constraints.binary_search(&arc).is_ok()
+    }
+
     /// Whether a bound between threads begins or ends at an event.
     pub(crate) fn is_constrained(&self, node: NodeId) -> bool {
         self.constraints.iter().any(|&arc| self.arcs[arc].from == node || self.arcs[arc].to == node)
@@ -361,9 +366,8 @@ impl Model {
 
     /// Finds the context of every arc and decision; `false` if its choices are not nested as its blocks say.
     fn find_contexts(&mut self, network: &Network) -> bool {
-        // Arcs back to the start hold what has happened already, and of two threads either may be ahead.
-        let is_free =
-            |id: ArcId| self.arcs[id].to == network.start || self.constraints.binary_search(&id).is_ok();
+        // Arcs back to the start hold what has happened already, and of the events of two threads either may come first.
+        let is_free = |id: ArcId| self.arcs[id].to == network.start || self.is_constraint(id);
         if self.arcs.iter_enumerated().any(|(id, arc)| arc.lower < 0 && !is_free(id)) {
             return false;
         }

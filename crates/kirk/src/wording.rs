@@ -141,11 +141,10 @@ impl Told<'_> {
                 joined(&shared)
             );
         }
-        let sum_of = |change: Change, amount: fn(&Use) -> Rational| {
-            let amounts = uses.iter().filter(|used| used.change == change).map(|used| amount(used));
+        let sum = |change: Change| {
+            let amounts = uses.iter().filter(|used| used.change == change).map(|used| used.amount);
             amounts.fold(Rational::default(), |sum, amount| sum.checked_add(amount).unwrap_or(sum))
         };
-        let sum = |change: Change| sum_of(change, |used| used.amount);
         let verb = if names.len() == 1 { "takes" } else { "together take" };
         let what = match resource.supply {
             Supply::Reusable { capacity } if capacity == Rational::ONE => {
@@ -156,14 +155,12 @@ impl Told<'_> {
                 sum(Change::Uses),
             ),
             Supply::Reservoir { least, greatest, level } => {
-                let after = |taken: Rational, given: Rational| {
-                    let after = level.checked_sub(taken).and_then(|level| level.checked_add(given));
-                    after.unwrap_or(level)
-                };
                 let (taken, given) = (sum(Change::Consumes), sum(Change::Produces));
-                // Drives take from so much to so much: the plan has to keep the level whatever they take.
-                let low = after(taken, sum_of(Change::Produces, |used| used.at_least));
-                let high = after(sum_of(Change::Consumes, |used| used.at_least), given);
+                // The amounts of drives have a minimum and a maximum: a plan has to keep the level for all between these.
+                let [low, high] = uses.iter().fold([level; 2], |[low, high], used| {
+                    let [less, more] = used.level_changes();
+                    [low.checked_add(less).unwrap_or(low), high.checked_add(more).unwrap_or(high)]
+                });
                 if low >= least && high <= greatest {
                     let text =
                         format!("no order of {names_joined} keeps {name} between {least} and {greatest}");
@@ -554,8 +551,8 @@ fn needing(arc: &Arc) -> String {
     }
 }
 
-/// What drives take of the resource of `uses`, or give to it, where that depends on how far they drive: these uses, and others
-/// that could help them. Empty where none does.
+/// The minimum and maximum amounts of drives that take of the resource of `uses`, or give to it: of these uses, and of others
+/// that could help them. Empty if no amount depends on the distance.
 fn driven(network: &Network, uses: &[&Use]) -> String {
     let Some(first) = uses.first() else { return String::new() };
     let ranges = network.uses.iter().filter(|used| {

@@ -57,7 +57,7 @@ pub enum Request {
         source: Source,
         /// What is to be proven.
         question: ProofQuestion,
-        /// How many states were found before; 0 begins anew.
+        /// How many states were found before; 0 starts again.
         from: usize,
     },
     /// Review the plan of a text: see [`review`].

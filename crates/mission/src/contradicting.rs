@@ -1,10 +1,9 @@
-//! The lines of a review under trial: what else the mission could do, and what vehicles see where they really are.
+//! Counterexamples to the items of a review: other plans of the mission, and what vehicles see during a run.
 
 use std::sync::Arc;
 
 use exact::Time;
 use kirk::{Options, Search};
-use nalgebra::Point2;
 use review::contradict::{Effort, Sight, Trial};
 use review::record::LineKey;
 use snapshot::SimulatedDrive;
@@ -22,12 +21,12 @@ pub(crate) struct Trying {
     pub(crate) trial: Trial,
 }
 
-/// Plans with other choices that are looked at, at most.
+/// The most plans with other choices that are tried.
 const MAX_PLANS: usize = 50;
-/// Alternatives that one search tries, at most.
+/// The most alternatives that one search tries.
 const MAX_ALTERNATIVES: u32 = 5_000;
 
-/// Plans of the mission that are found in another way than its own: by the other search, and one for each of its choices.
+/// Other plans of the mission: those of the search that it does not use, and one for each combination of choices.
 pub(crate) fn other_plans(
     evaluated: &Evaluated,
     grounds: &mut Grounds,
@@ -52,7 +51,7 @@ pub(crate) fn other_plans(
         found.extend(planning.outcome.plans.iter().map(|plan| (Arc::clone(&network), plan.clone())));
         found.extend(others.into_iter().map(|listed| (listed.network, listed.plan)));
     }
-    // What the checker does not accept is no plan.
+    // A plan that the checker rejects is no counterexample.
     found.retain(|(network, plan)| verify::check_plan(network, plan).valid);
     found
 }
@@ -71,11 +70,9 @@ pub(crate) fn sight(
     let frames = drives.iter().rev().flat_map(|drive| &drive.vehicles);
     let mut frames = frames.filter(|it| it.vehicle as usize == index);
     let driven = frames.find_map(|it| it.at(at.to_f64()));
-    let place_m = driven.map(|frame| frame.position_m).or_else(|| {
-        let first = &world.vehicles[index].start.text;
-        let place = world.locations.iter().find(|it| it.name.text == *first)?;
-        Some(Point2::from(place.position_m))
-    })?;
+    let program = &evaluated.compiled.program;
+    let place_m =
+        driven.map(|frame| frame.position_m).or_else(|| snapshot::standing::start_m(program, index))?;
     let is_seen = Seeing::new(world, map).sees(vehicle, place_m, location)?;
     Some(Sight { is_seen, from_m: place_m.coords.into() })
 }

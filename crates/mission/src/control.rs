@@ -23,6 +23,16 @@ pub enum Control {
     Nothing,
 }
 
+impl Control {
+    /// The program with its plant.
+    pub(crate) fn system(&self) -> Result<&Arc<System>, String> {
+        let Self::Bound(system) = self else {
+            return Err("a control program with a plant is needed".to_owned());
+        };
+        Ok(system)
+    }
+}
+
 /// Reads a text in prefix notation, and says what is wrong with it.
 ///
 /// A program without a plant of its own is bound to `plant`, a model's text, if all its names fit.

@@ -25,9 +25,7 @@ pub(crate) fn sample_control(
     from: u64,
     go_on: &mut dyn FnMut() -> bool,
 ) -> Result<ProgramTally, String> {
-    let Control::Bound(system) = control else {
-        return Err("a control program with a plant is needed".to_owned());
-    };
+    let system = control.system()?;
     let inputs = inputs(system, &chance.injected)?;
     let trials = Trials {
         options: Options::default(),

@@ -1,4 +1,4 @@
-//! Proofs about a control program, led on a little with each request.
+//! Proofs about a control program, continued a little with each request.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use link::{ProofAnswer, ProofQuestion};
 
 use crate::control::Control;
 
-/// A proof under way, with what was asked for.
+/// An unfinished proof, with its question.
 pub(crate) struct ProofUnderWay {
     source: Arc<str>,
     question: ProofQuestion,
@@ -15,15 +15,13 @@ pub(crate) struct ProofUnderWay {
 }
 
 impl ProofUnderWay {
-    /// Begins a proof about a text that was read. The error tells why none is possible.
+    /// Starts a proof about a text that was read. The error tells why no proof is possible.
     pub(crate) fn new(
         source: &Arc<str>,
         control: &Control,
         question: &ProofQuestion,
     ) -> Result<Self, String> {
-        let Control::Bound(system) = control else {
-            return Err("a control program with a plant is needed".to_owned());
-        };
+        let system = control.system()?;
         let properties = if question.properties.is_empty() {
             DEFAULTS.to_vec()
         } else {
@@ -39,12 +37,13 @@ impl ProofUnderWay {
         Ok(Self { source: Arc::clone(source), question: question.clone(), proving })
     }
 
-    /// Whether it is the proof that is asked for, as far as it was led.
+    /// Whether this is the proof that answers `question`, after `from` states.
     pub(crate) fn is_of(&self, source: &Arc<str>, question: &ProofQuestion, from: usize) -> bool {
         self.source == *source && self.question == *question && self.proving.states() == from && from > 0
     }
 
-    /// Explores as long as `go_on` says so; the answer once all is explored, and how many states have been found.
+    /// Explores until `go_on` returns false. Returns how many states have been found, with the answer if the exploration is
+    /// over, and the proof to continue otherwise.
     pub(crate) fn lead_on(
         mut self,
         go_on: &mut dyn FnMut() -> bool,

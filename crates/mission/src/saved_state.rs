@@ -1,4 +1,4 @@
-//! What is so at the end of a run as a document, and missions that start from one (SPEC 17): values of states, levels of
+//! The state at the end of a run as a document, and missions that start from it (SPEC 17): values of states, levels of
 //! reservoirs, and where vehicles are.
 
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use exact::Rational;
 use executive::{Happening, RunOutcome};
 use rmpl::Span;
-use rmpl::program::{Expr, ExprKind, LocationDecl, Name, Program, Supply};
+use rmpl::program::{Expr, ExprKind, LocationDecl, Name, Program, ResourceDecl, Supply};
 use serde::{Deserialize, Serialize};
 use smol_str::{SmolStr, format_smolstr};
 use snapshot::SimulatedDrive;
@@ -36,7 +36,7 @@ pub enum Place {
 }
 
 impl SavedState {
-    /// What is so at the end of a run, or what is still under way then.
+    /// The state at the end of a run. The error names what is still under way or not known then.
     pub fn at_end(
         outcome: &RunOutcome,
         drives: &[SimulatedDrive],
@@ -112,10 +112,9 @@ impl SavedState {
             }
         }
         for name in self.levels.keys() {
-            let is_it = |it: &&rmpl::program::ResourceDecl| {
-                it.name.text == *name && matches!(it.supply, Supply::Reservoir { .. })
-            };
-            if !program.resources.iter().any(|it| is_it(&it)) {
+            let is_it =
+                |it: &ResourceDecl| it.name.text == *name && matches!(it.supply, Supply::Reservoir { .. });
+            if !program.resources.iter().any(is_it) {
                 return Some(format!("the mission declares no reservoir `{name}`"));
             }
         }
@@ -138,7 +137,7 @@ impl SavedState {
         None
     }
 
-    /// Lets a mission start from this state. What it does not declare is left out.
+    /// Lets a mission start from this state. Names that the mission does not declare are ignored.
     pub fn begin(&self, program: &mut Program) {
         for declared in program.variables.iter_mut().filter(|it| !it.is_from_plant) {
             if let (Some(initial), Some(value)) =
@@ -179,7 +178,7 @@ fn place_variable(vehicle: &str) -> SmolStr {
     format_smolstr!("{vehicle}.at")
 }
 
-/// Where a vehicle of this number was last seen driving.
+/// Where the vehicle with this index was when its last drive ended.
 fn position(drives: &[SimulatedDrive], vehicle: usize) -> Option<[f64; 2]> {
     let driven = drives.iter().flat_map(|drive| &drive.vehicles).filter(|it| it.vehicle as usize == vehicle);
     let frames = driven.filter_map(|it| it.frames.last());

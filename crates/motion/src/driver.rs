@@ -139,8 +139,8 @@ const CLOSE_SHARE: f64 = 0.25;
 /// The greatest turn between two decisions, in radians.
 const STEP_TURN_RAD: f64 = 0.2;
 
-/// How far the leader of some followers drives at most along a path of some meters where nothing disturbs it and the map shows
-/// everything that stands in its way: where it turns back, it goes around its followers. Measured: see
+/// How far the leader of some followers drives at most along a path of some meters where nothing disturbs it: it goes around
+/// its followers where it turns back, and around rocks that the map does not show, if `leaves_out_rocks`. Measured: see
 /// `crates/mission/tests/it/margins.rs`, which holds it over random missions.
 pub fn driven_at_most_m(length_m: f64, followers: usize, leaves_out_rocks: bool) -> f64 {
     if length_m > 0.0 {

@@ -140,7 +140,7 @@ impl Search {
         Statistics { vertices, ..self.statistics }
     }
 
-    /// Runs to the end, or until `stop` says so; it is asked before every sample.
+    /// Runs to the end, or until `stop` returns `true`; it is called before every sample.
     pub fn run(
         mut self,
         space: &ConfigurationSpace,

@@ -23,15 +23,15 @@ pub(crate) enum Carried {
     Site(SmolStr),
 }
 
-/// How high the box of a vehicle is that has no lane.
+/// The height of the box of a vehicle without a lane.
 const BOX_HEIGHT: f32 = 26.0;
 
-/// Takes something along with the pointer, until its button is let go.
+/// Carries something with the pointer until its button is released.
 pub(crate) fn take(egui: &Egui, carried: Carried) {
     DragAndDrop::set_payload(egui, carried);
 }
 
-/// Carries no site any more: it is over its own ground again.
+/// Stops carrying a site: the pointer is over the map again.
 pub(crate) fn put_site_back(egui: &Egui) {
     if matches!(carried(egui), Some(Carried::Site(_))) {
         DragAndDrop::clear_payload(egui);
@@ -64,16 +64,18 @@ pub(crate) fn over_activity(
     offer(ui, context, Change::Move { what, at }, commands);
 }
 
-/// Carries a site over the timeline: each vehicle has its lane, or a box at the bottom where it has none.
+/// Carries a site over the timeline: each vehicle has its lane, or a box at the bottom if it has no lane. `lanes` is only
+/// asked while a site is carried.
 pub(crate) fn over_timeline(
     ui: &Ui,
     context: &Context<'_>,
     area: Rect,
-    lanes: &[(SmolStr, Rect)],
+    lanes: impl FnOnce() -> Vec<(SmolStr, Rect)>,
     commands: &mut CommandSender,
 ) {
     let Some(Carried::Site(location)) = carried(ui.ctx()).filter(|_| !context.is_stale) else { return };
     let Some(snapshot) = context.snapshot else { return };
+    let lanes = lanes();
     let pointer = ui.input(|input| input.pointer.interact_pos());
     let painter = ui.ctx().layer_painter(layer("sites")).with_clip_rect(area);
     let mut bottom = area.bottom();
@@ -102,7 +104,7 @@ pub(crate) fn over_timeline(
     }
 }
 
-/// Shows what a drop here would do to the text, and does it when the button is let go.
+/// Shows what a drop here would do to the text, and makes the change when the button is released.
 fn offer(ui: &Ui, context: &Context<'_>, change: Change, commands: &mut CommandSender) {
     let (pointer, is_dropped) =
         ui.input(|input| (input.pointer.interact_pos(), input.pointer.any_released()));

@@ -1,25 +1,28 @@
 //! The menu that a right click opens on a drawing, and the clipboard there: what can be made of the mission's activities,
-//! with what each change does to the text.
+//! and what each change does to the text.
 
 use egui::accesskit::Role;
-use egui::{Button, Event, Response, RichText, Ui};
+use egui::{Event, Response, RichText, Ui};
 use rmpl::Span;
 use snapshot::Snapshot;
 use text_editing::TextCommand;
 use tpn::OccurrenceKind;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
-use workbench::state::drawing::{Callable, Change, DrawCommand, Place, Wrapping, callables, conditions};
+use workbench::state::Selection;
+use workbench::state::drawing::{
+    Callable, Change, DrawCommand, NEW_BOUNDS, Place, Wrapping, callables, conditions,
+};
 use workbench::state::editor::EditorCommand;
 use workbench::state::placing::{NewThing, VehicleStart};
 use workbench::state::terrain::TerrainCommand;
 
 use crate::Context;
 
-/// More activities than this are not listed to be connected with.
+/// At most this many activities are listed to start after.
 const MAX_LISTED: usize = 24;
 
-/// Shows the menu of network and timeline while it is open: about what is selected, which a right click decides.
+/// Shows the menu of network and timeline while it is open. It is about the selection, which a right click sets.
 pub(crate) fn activities(response: &Response, context: &Context<'_>, commands: &mut CommandSender) {
     response.context_menu(|ui| {
         ui.set_min_width(200.0);
@@ -40,7 +43,6 @@ pub(crate) fn terrain(
     at_m: Option<nalgebra::Point2<f64>>,
     commands: &mut CommandSender,
 ) {
-    use workbench::state::Selection;
     response.context_menu(|ui| {
         ui.set_min_width(200.0);
         theme::structure::part(ui, Role::Menu, "Map");
@@ -50,37 +52,21 @@ pub(crate) fn terrain(
         match &*context.state.selection {
             Selection::Location(name) => {
                 for vehicle in &world.vehicles {
-                    let change =
-                        Change::Visit { vehicle: vehicle.name.text.to_string(), location: name.to_string() };
-                    menu.item(ui, &format!("Send {} here", vehicle.name.text), change);
+                    let vehicle = &vehicle.name.text;
+                    menu.visit(ui, &format!("Send {vehicle} here"), vehicle, name);
                 }
-                for model in ["ATRV", "ATRV-Jr", "Blimp"] {
-                    let start = VehicleStart::Location(name.clone());
-                    menu.place(
-                        ui,
-                        &format!("Add {model} here"),
-                        NewThing::Vehicle { model: model.into(), start },
-                    );
-                }
+                menu.vehicles(ui, &VehicleStart::Location(name.clone()));
             }
             Selection::Vehicle(name) => {
                 for location in &world.locations {
-                    let change =
-                        Change::Visit { vehicle: name.to_string(), location: location.name.text.to_string() };
-                    menu.item(ui, &format!("Send to {}", location.name.text), change);
+                    let location = &location.name.text;
+                    menu.visit(ui, &format!("Send to {location}"), name, location);
                 }
             }
             _ => {
                 let Some(at_m) = at_m else { return };
                 menu.place(ui, "Add location here", NewThing::Location(at_m));
-                for model in ["ATRV", "ATRV-Jr", "Blimp"] {
-                    let start = VehicleStart::Ground(at_m);
-                    menu.place(
-                        ui,
-                        &format!("Add {model} here"),
-                        NewThing::Vehicle { model: model.into(), start },
-                    );
-                }
+                menu.vehicles(ui, &VehicleStart::Ground(at_m));
                 let circle = NewThing::Circle { center_m: at_m, radius_m: 5.0 };
                 menu.place(ui, "Add obstacle here", circle);
             }
@@ -129,7 +115,7 @@ impl Menu<'_> {
                 self.item(ui, &name, Change::Connect { from: span, to: what });
             }
         });
-        self.item(ui, "Set duration", Change::Bound(what, "[1,5]".to_owned()));
+        self.item(ui, "Set duration", Change::Bound(what, NEW_BOUNDS.to_owned()));
         self.rename(ui, what);
         ui.separator();
         self.item(ui, "Wrap in choice", Change::Wrap(what, Wrapping::Choose));
@@ -159,8 +145,8 @@ impl Menu<'_> {
         for vehicle in &world.vehicles {
             submenu(ui, &format!("Send {} to", vehicle.name.text), |ui| {
                 for location in &world.locations {
-                    let (vehicle, location) = (vehicle.name.text.to_string(), location.name.text.to_string());
-                    self.item(ui, &location.clone(), Change::Visit { vehicle, location });
+                    let location = &location.name.text;
+                    self.visit(ui, location, &vehicle.name.text, location);
                 }
             });
         }
@@ -168,9 +154,7 @@ impl Menu<'_> {
 
     /// Renames what is called, in all places.
     fn rename(&mut self, ui: &mut Ui, what: Span) {
-        let item = ui.button("Rename…");
-        theme::structure::role(&item, Role::MenuItem);
-        if item.clicked() {
+        if entry(ui, "Rename…").clicked() {
             let at = what.start as usize;
             self.commands.send(Command::Text(TextCommand::Select { anchor: at, head: at }));
             self.commands.send(Command::Editor(EditorCommand::Rename));
@@ -221,10 +205,8 @@ impl Menu<'_> {
 
     /// A change, with what it does to the text.
     fn item(&mut self, ui: &mut Ui, label: &str, change: Change) {
-        let item = ui.button(label);
-        theme::structure::role(&item, Role::MenuItem);
         let state = self.context.state;
-        let item = item.on_hover_ui(|ui| match state.drawing_preview(&change) {
+        let item = entry(ui, label).on_hover_ui(|ui| match state.drawing_preview(&change) {
             Ok(preview) => {
                 ui.label(RichText::new(preview).monospace().small());
             }
@@ -239,22 +221,38 @@ impl Menu<'_> {
     }
 
     fn command(&mut self, ui: &mut Ui, label: &str, command: DrawCommand) {
-        let item = ui.add(Button::new(label));
-        theme::structure::role(&item, Role::MenuItem);
-        if item.clicked() {
+        if entry(ui, label).clicked() {
             self.commands.send(Command::Draw(command));
             ui.close();
         }
     }
 
+    /// A drive of a vehicle to a location, and its visit there.
+    fn visit(&mut self, ui: &mut Ui, label: &str, vehicle: &str, location: &str) {
+        self.item(ui, label, Change::Visit { vehicle: vehicle.to_owned(), location: location.to_owned() });
+    }
+
+    /// A new vehicle of each model.
+    fn vehicles(&mut self, ui: &mut Ui, start: &VehicleStart) {
+        for model in ["ATRV", "ATRV-Jr", "Blimp"] {
+            let thing = NewThing::Vehicle { model: model.into(), start: start.clone() };
+            self.place(ui, &format!("Add {model} here"), thing);
+        }
+    }
+
     fn place(&mut self, ui: &mut Ui, label: &str, thing: NewThing) {
-        let item = ui.button(label);
-        theme::structure::role(&item, Role::MenuItem);
-        if item.clicked() {
+        if entry(ui, label).clicked() {
             self.commands.send(Command::Terrain(TerrainCommand::Place { thing, again: false }));
             ui.close();
         }
     }
+}
+
+/// An entry of a menu.
+fn entry(ui: &mut Ui, label: &str) -> Response {
+    let item = ui.button(label);
+    theme::structure::role(&item, Role::MenuItem);
+    item
 }
 
 /// An entry that opens a menu of its own.

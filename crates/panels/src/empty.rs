@@ -8,7 +8,7 @@ use theme::space;
 use workbench::PanelKind;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Status;
-use workbench::state::drawing::DrawCommand;
+use workbench::state::drawing::{self, DrawCommand};
 
 use crate::Context;
 
@@ -25,9 +25,8 @@ pub fn show_empty(ui: &mut Ui, context: &Context<'_>, text: &str) {
     });
 }
 
-/// Says beside the tab of a panel that draws a mission that this is not the mission which is written now: there it takes no
-/// room from the panel, whose drawing stays where it is. While the mission is worked out, which mostly is a moment, nothing
-/// is said.
+/// Marks the tab of a panel whose drawing is out of date. The mark is beside the tab, so that the drawing does not move.
+/// While Enroute plans, which mostly takes a moment, there is no mark.
 pub fn show_stale(ui: &mut Ui, context: &Context<'_>, panel: PanelKind) {
     let now = match context.state.status() {
         Status::Broken => "the current text has errors",
@@ -80,13 +79,7 @@ pub(crate) fn show_missing(ui: &mut Ui, context: &Context<'_>, then: &str, comma
             let document = &context.state.document;
             let end = document.file_range(0).end;
             let before = &document.text()[..end];
-            let gap = if before.trim().is_empty() || before.ends_with("\n\n") {
-                ""
-            } else if before.ends_with('\n') {
-                "\n"
-            } else {
-                "\n\n"
-            };
+            let gap = drawing::gap(before);
             let span = rmpl::Span::new(end as u32, end as u32);
             let edit = rmpl::Edit { span, text: format!("{gap}{SCENARIO}") };
             commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Single });

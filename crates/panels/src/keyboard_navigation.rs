@@ -34,13 +34,13 @@ pub fn arrows(ui: &Ui, context: &Context<'_>, panel: PanelKind) -> Option<isize>
 /// Follows the arrow keys in the network, the timeline and the terrain.
 pub fn follow(ui: &Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let panel = context.state.window.active_panel;
-    if is_free(ui, context) {
-        crate::draw_menu::clipboard(ui, context, commands);
+    if !is_free(ui, context) {
+        return;
     }
+    crate::draw_menu::clipboard(ui, context, commands);
     let navigates = matches!(panel, PanelKind::Network | PanelKind::Timeline | PanelKind::Terrain);
     let is_shown = context.state.window.panels_on_screen.contains(&panel);
-    if !navigates || !is_shown || !is_free(ui, context) || context.state.selection.is_none() && has_focus(ui)
-    {
+    if !navigates || !is_shown || context.state.selection.is_none() && has_focus(ui) {
         return;
     }
     let Some(direction) = pressed(ui) else { return };

@@ -49,7 +49,7 @@ pub fn region_id(panel: workbench::PanelKind) -> egui::Id {
     egui::Id::unique(("panel", panel.name()))
 }
 
-/// Notes that a drawing has the keyboard, if it has: it does nothing of its own with Space, which plays there as elsewhere.
+/// Notes whether a drawing has the keyboard. A drawing does not use Space itself, so that Space plays there as elsewhere.
 pub(crate) fn note_drawing(response: &egui::Response) {
     if response.has_focus() {
         response.ctx.data_mut(|data| data.insert_temp(focused_drawing(), response.id));

@@ -71,6 +71,14 @@ fn unit(snapshot: &Snapshot) -> &'static str {
     }
 }
 
+/// The unit of the mission's times, spelled out.
+pub(crate) fn unit_in_words(snapshot: &Snapshot) -> &'static str {
+    match snapshot.program.options.time_unit {
+        TimeUnit::Minute => "minutes",
+        TimeUnit::Second => "seconds",
+    }
+}
+
 /// The columns of [`csv()`].
 pub const CSV_COLUMNS: [&str; 16] = [
     "name",

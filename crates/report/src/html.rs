@@ -3,13 +3,12 @@
 use data_encoding::BASE64;
 use markup::escaped;
 use review::{Record, Review, Status};
-use rmpl::program::TimeUnit;
 use sha2::{Digest as _, Sha256};
 use snapshot::{Robustness, Snapshot};
 use terrain::Terrain;
 
 use crate::style::STYLE;
-use crate::{board, figure, listing, tables};
+use crate::{board, export, figure, listing, tables};
 
 /// What goes into a report.
 #[derive(Clone, Copy)]
@@ -118,10 +117,7 @@ fn facts(document: &Document<'_>, record: &Record) -> String {
         Status::Attention => "needs attention",
         Status::Failed => "not ready",
     };
-    let unit = match document.snapshot.program.options.time_unit {
-        TimeUnit::Minute => "minutes",
-        TimeUnit::Second => "seconds",
-    };
+    let unit = export::unit_in_words(document.snapshot);
     let map = match &document.snapshot.map {
         Some(key) if !key.asset.is_empty() => key.asset.to_string(),
         Some(_) => "flat ground".to_owned(),

@@ -3,11 +3,10 @@
 use exact::Time;
 use interchange::pddl::{body_of, named_action};
 use review::schedule::scheduled;
-use rmpl::program::TimeUnit;
 use snapshot::Snapshot;
 use tpn::{Occurrence, OccurrenceKind};
 
-use crate::export::About;
+use crate::export::{About, unit_in_words};
 
 /// One line for each primitive, at its earliest times. `None` without a plan.
 ///
@@ -16,10 +15,7 @@ use crate::export::About;
 pub fn pddl(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
     let network = snapshot.network.as_deref()?;
     let plan = about.plan.or_else(|| snapshot.plan())?;
-    let unit = match snapshot.program.options.time_unit {
-        TimeUnit::Minute => "minutes",
-        TimeUnit::Second => "seconds",
-    };
+    let unit = unit_in_words(snapshot);
     let mut text = format!(
         "; Earliest schedule, in {unit} of the mission ({}, content {}).\n",
         about.status_in_words(),
@@ -27,7 +23,7 @@ pub fn pddl(snapshot: &Snapshot, about: &About<'_>) -> Option<String> {
     );
     let is_action = |occurrence: &Occurrence| match occurrence.kind {
         OccurrenceKind::Primitive => true,
-        // What holds its conditions is a part of it.
+        // The primitive with its conditions is a part of it.
         OccurrenceKind::Activity => {
             let body = body_of(&occurrence.activity);
             snapshot.program.primitives.iter().any(|primitive| primitive.name.text == body)

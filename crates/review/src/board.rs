@@ -43,7 +43,7 @@ impl PlanStatus {
     }
 }
 
-/// What is asked how it stands.
+/// The mission and plan whose status is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Present<'a> {
     /// The content: see [`super::content_hash`].
@@ -111,7 +111,7 @@ impl<'a> Accepted<'a> {
     }
 
     /// Whether an approval has signed an acknowledgment or a waiver that still holds for each line for attention that
-    /// somebody has accepted. Without a review nobody knows the lines: all that it has signed has to hold.
+    /// somebody has accepted. Without a review the lines are not known: all that the approval has signed has to hold.
     fn hold_for(&self, approval: &Entry, review: Option<&Review>) -> bool {
         let signed: BTreeSet<&str> = approval.acknowledged.iter().map(String::as_str).collect();
         let Some(review) = review else {
@@ -167,7 +167,7 @@ pub struct Approvals<'a> {
     pub given: Vec<&'a Entry>,
 }
 
-/// How what `present` names stands by what `record` has. Nothing else is looked at.
+/// The status of what `present` names, from `record` alone.
 pub fn standing<'a>(record: &'a Record, present: &Present<'a>) -> Standing<'a> {
     let approvals: Vec<(&Entry, &Subject)> =
         record.standing_entries().filter_map(|entry| Some((entry, record.subject(entry)?))).collect();
@@ -317,7 +317,7 @@ impl Standing<'_> {
         };
         if !wanted.seat.admits(key) {
             return Err(format!(
-                "the key {} does not approve as {role}: the flight rules name who does",
+                "the key {} does not approve as {role}: the flight rules name other keys for this role",
                 key.fingerprint()
             ));
         }

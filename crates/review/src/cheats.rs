@@ -224,7 +224,7 @@ fn nobody_approves_in_the_role_of_somebody_else() {
     };
     assert!(may(&board, "Ada").is_err_and(|why| why.contains("does not approve as Safety")));
     assert_eq!(may(&board, "Grace"), Ok(()));
-    // Signed by other means, it is no approval of the role.
+    // If it is signed by other means, it still does not count as an approval of the role.
     for by in ["Ada", "Grace"] {
         let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, None);
         let who = Who { role: "Safety".to_owned(), ..board.who(by) };
@@ -605,7 +605,7 @@ fn runs_with_chance_count_only_as_an_approval_has_signed_them() {
     let content = board.review.content_hash.clone();
     let found = tallied(90);
     board.record.keep_runs(Runs::new(&content, &found));
-    // Nobody has signed them: whoever reads the document makes them again.
+    // Nobody has signed them: they are left out when the document is read.
     let mut read = board.read(|_| ()).expect("it is whole");
     assert_eq!((read.drop_unsigned_runs(), read.runs_of(&content)), (1, None));
     let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, Some(&found));
@@ -629,7 +629,7 @@ fn runs_with_chance_count_only_as_an_approval_has_signed_them() {
     assert_eq!(read.drop_unsigned_runs(), 1);
 }
 
-/// Of 100 runs, so many reached the end.
+/// 100 runs, of which `succeeded` reached the end.
 fn tallied(succeeded: u64) -> Robustness {
     let settings = RobustnessSettings { runs: 100, seed: 1, uncertainty: Uncertainty::default() };
     Robustness { settings, tally: Tally { runs: 100, succeeded, ..Tally::default() } }
@@ -659,7 +659,7 @@ fn a_waiver_lapses_on_its_date() {
     assert_eq!(at(&board, "2026-01-29T00:00:00Z"), (PlanStatus::Approved, WaiverState::AboutToLapse));
     assert_eq!(at(&board, "2026-02-04T23:59:59Z"), (PlanStatus::Approved, WaiverState::AboutToLapse));
     assert_eq!(at(&board, "2026-02-05T00:00:00Z"), (PlanStatus::InReview, WaiverState::Lapsed));
-    // Whoever does not look at the lines again knows by the signatures that a waiver has lapsed.
+    // Without a review of the lines, the signatures show that a waiver has lapsed.
     let unseen = |now: &str| {
         let mut record = board.record.clone();
         record.judge(&trust(&PEOPLE), now);

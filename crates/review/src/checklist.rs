@@ -56,7 +56,7 @@ pub struct Review {
     pub warnings: Vec<Line>,
 }
 
-/// How a line of a review stands.
+/// The status of a line of a review.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
@@ -85,9 +85,9 @@ impl Status {
 /// One line of a review.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// How it stands.
+    /// What the flight rules make of `checked`.
     pub status: Status,
-    /// How it stands whatever the flight rules say.
+    /// Its status without the flight rules.
     pub checked: Status,
     /// What it says, in one sentence.
     pub text: String,

@@ -4,6 +4,7 @@
 
 use exact::Rational;
 use rmpl::program::LabelMode;
+use smol_str::SmolStr;
 use snapshot::Planning;
 use tpn::{CausalLink, Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Variable};
 
@@ -38,20 +39,27 @@ fn is_unordered(network: &Network, known: LabelId, label: LabelId) -> bool {
     network.labels[known.index()].extent != Extent::Initial && !network.conflict(known, label)
 }
 
-/// What a vehicle sees where it has to, or does not see where it must not, and from where (SPEC 10.5); empty for a condition
-/// about something else.
-pub(super) fn sight_text(network: &Network, link: CausalLink) -> String {
-    let ask = &network.labels[link.ask.index()];
-    let Some(sight) = network.sight(ask) else { return String::new() };
+/// The vehicle and the location of a condition about what is in sight, and whether the vehicle has to see the location, or
+/// must not (SPEC 10.5); `None` for a condition about something else.
+pub(super) fn required_sight(network: &Network, ask: LabelId) -> Option<(&str, &SmolStr, bool)> {
+    let ask = &network.labels[ask.index()];
+    let sight = network.sight(ask)?;
     let vehicle = network.variables[sight.variable.index()].name.trim_end_matches(".at");
+    Some((vehicle, &sight.location, !ask.text.starts_with("not(")))
+}
+
+/// What a vehicle sees where it has to, or does not see where it must not, and from where (SPEC 10.5); `None` for a condition
+/// about something else.
+pub(super) fn sight_text(network: &Network, link: CausalLink) -> Option<String> {
+    let (vehicle, location, is_seen) = required_sight(network, link.ask)?;
     let place = network.value_names(&network.labels[link.tell.index()].literal).join(", ");
-    let verb = if ask.text.starts_with("not(") { "does not see" } else { "sees" };
-    let owner = ask.owner.and_then(|owner| network.occurrences.get(owner.index()));
+    let verb = if is_seen { "sees" } else { "does not see" };
+    let owner = network.labels[link.ask.index()].owner;
+    let owner = owner.and_then(|owner| network.occurrences.get(owner.index()));
     let during = owner.map(|owner| format!(" during {}", owner.name)).unwrap_or_default();
-    format!(
-        "{vehicle} {verb} {} from {place}{during}; rocks and declared obstacles are ignored",
-        sight.location
-    )
+    Some(format!(
+        "{vehicle} {verb} {location} from {place}{during}; rocks and declared obstacles are ignored"
+    ))
 }
 
 /// Whatever the checker examines has passed only where it finds the plan valid.
@@ -113,14 +121,11 @@ impl DemandLines<'_> {
     fn sights(&self) -> Vec<Line> {
         let mut lines = Vec::new();
         for link in &self.plan.causal_links {
-            let ask = &self.network.labels[link.ask.index()];
-            if self.network.sight(ask).is_none() {
-                continue;
-            }
-            let text = sight_text(self.network, *link);
+            let Some(text) = sight_text(self.network, *link) else { continue };
             let names = self.owner(link.ask).map(str::to_owned).into_iter().collect();
             let (start, end) = self.network.interval(link.ask);
-            lines.push(self.places.line(self.status, text, ask.span, names, vec![start, end]));
+            let span = self.network.labels[link.ask.index()].span;
+            lines.push(self.places.line(self.status, text, span, names, vec![start, end]));
         }
         lines
     }

@@ -26,6 +26,7 @@ pub fn content_hash(source: &str, map: Option<&MapKey>, goal: &Goal, seed: u64) 
         part(&map.cell_mm.to_le_bytes());
         part(&map.origin_mm[0].to_le_bytes());
         part(&map.origin_mm[1].to_le_bytes());
+        // A map that comes with the program is hashed as in earlier versions, which had a number here.
         match &map.version {
             Some(digest) => part(digest),
             None => part(&[0; 4]),

@@ -1,7 +1,7 @@
 //! The people of a board as keys (Ed25519): who signs, and whose signatures count.
 //!
-//! A person is a public key with a name. Whoever has the secret key signs as that person; whoever trusts the public key
-//! counts what it signs. Secret keys stay in the browser, or in a file that their owner saves.
+//! A person is a public key with a name. The owner of the secret key signs as that person, and the signature counts for all
+//! who trust the public key. Secret keys stay in the browser, or in a file that their owner saves.
 
 use std::collections::BTreeMap;
 use std::fmt;

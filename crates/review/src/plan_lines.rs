@@ -268,8 +268,8 @@ impl<'input> PlanLines<'input> {
                     self.range_text(used)
                 );
                 let nodes = vec![occurrence.start, occurrence.end];
-                // Whoever is early can wait; whoever is late breaks the plan. Where no end was declared, nobody promised
-                // one that is taken away.
+                // An activity that is early can wait; one that is late breaks the plan. Without a declared maximum, the plan
+                // takes nothing away.
                 let is_cut = is_earlier && upper != Bound::Infinite;
                 let status = if is_cut { Status::Attention } else { Status::Information };
                 Some(self.places.line(status, text, occurrence.span, vec![name], nodes))
@@ -429,8 +429,7 @@ impl<'input> PlanLines<'input> {
         Some(self.places.line(Status::Attention, text, occurrence.span, names, vec![occurrence.end]))
     }
 
-    /// Traverses whose vehicles are to set out in formation, but are at different locations: a run cannot begin as the plan
-    /// says.
+    /// Traverses whose vehicles are to set out in formation, but are at different locations: no run can start them as planned.
     pub(super) fn scattered_formations(&self) -> Vec<Line> {
         self.snapshot.traverses.iter().filter_map(|traverse| self.scattered_formation(traverse)).collect()
     }
@@ -545,8 +544,8 @@ fn interval_text(name: &str) -> String {
     format!("{} during {owner}", inside.unwrap_or(condition))
 }
 
-/// The activities that a plan selects and whose durations nature does not choose, each with its declared bounds: a plan has to
-/// leave nature everything.
+/// The activities that a plan selects and whose durations nature does not choose, each with its declared bounds. A plan has to
+/// leave nature the whole range.
 pub(super) fn declared_durations<'network>(
     network: &'network Network,
     plan: &Plan,

@@ -3,8 +3,7 @@
 //!
 //! Each entry names the content and the plan that it is about, is sealed over the entries before it, and is signed: one
 //! that is altered, missing or put elsewhere is noticed when the document is read, and only what trusted keys have signed
-//! counts ([`Record::judge`]). Whoever leaves out the last entries is found out by the last digest alone, which a report
-//! prints.
+//! counts ([`Record::judge`]). That the last entries are missing shows only in the last digest, which a report prints.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
@@ -86,7 +85,7 @@ pub fn is_record(document: &Value) -> bool {
     document["format"].as_str().is_some_and(|format| format.starts_with(FORMATS))
 }
 
-/// Two records are the same if they have the same in them, whoever looks at them.
+/// Two records are the same if they have the same content, whatever keys are trusted.
 impl PartialEq for Record {
     fn eq(&self, other: &Self) -> bool {
         let parts = |it: &Self| (it.mission.clone(), it.heads.clone());
@@ -225,8 +224,8 @@ impl Record {
         Said { by, mission, key, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
     }
 
-    /// The last entries that an entry of this `time` can follow. What is dated later is passed over: nothing that follows it
-    /// would count, so whoever adds such an entry would keep everybody else from taking an approval back.
+    /// The last entries that an entry of this `time` can follow. Entries with a later date are passed over: an entry that
+    /// follows one of them would not count, so one false date would keep everybody from withdrawing an approval.
     fn last_before(&self, time: &str) -> Vec<String> {
         let mut last = BTreeSet::new();
         let mut open: Vec<&str> = self.heads.iter().map(String::as_str).collect();
@@ -274,8 +273,8 @@ impl Record {
         self.runs.drain(..more);
     }
 
-    /// Leaves out the runs that no approval that counts has signed: whoever hands over a document can write any figures into
-    /// it. Returns how many were left out.
+    /// Leaves out the runs that no valid approval has signed, because anybody can write any figures into a document. Returns
+    /// how many were left out.
     pub fn drop_unsigned_runs(&mut self) -> usize {
         let approved = self.standing_entries().filter_map(|entry| self.subject(entry)?.runs.clone());
         let signed: BTreeSet<String> = approved.collect();

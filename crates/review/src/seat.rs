@@ -14,13 +14,13 @@ pub struct Seat {
     pub role: String,
     /// How many people in this role have to approve.
     pub approvals: u32,
-    /// Whose approvals count in this role; if nobody is named, those of everybody whose key is trusted.
+    /// The keys whose approvals count in this role; if there are none, every trusted key.
     #[serde(default)]
     pub people: Vec<PublicKey>,
 }
 
 impl Seat {
-    /// A role of anybody.
+    /// A role in which every trusted key can approve.
     pub fn new(role: &str, approvals: u32) -> Self {
         Self { role: role.to_owned(), approvals, people: Vec::new() }
     }
@@ -51,13 +51,13 @@ pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
     match board {
         [] => Some("someone must approve"),
         _ if board.len() > MAX_SEATS => Some("a board has at most 12 roles"),
-        _ if roles.contains("") => Some("a role has a name"),
-        _ if roles.len() < board.len() => Some("each role has a name of its own"),
+        _ if roles.contains("") => Some("every role needs a name"),
+        _ if roles.len() < board.len() => Some("every role needs a different name"),
         _ if board.iter().any(|seat| !(1..=MAX_APPROVALS).contains(&seat.approvals)) => {
             Some("a role needs 1 to 9 approvals")
         }
         _ if board.iter().any(has_too_few_people) => {
-            Some("a role that names people names as many as have to approve, each once")
+            Some("a role that names people must name each once, and at least as many as it needs approvals")
         }
         _ => None,
     }

@@ -98,8 +98,8 @@ pub struct MapKey {
     pub cell_mm: u32,
     /// Mission coordinates of the south-west corner in millimeters.
     pub origin_mm: [i64; 2],
-    /// The SHA-256 of the file that was imported under this name; nothing for what comes with the program. All of it counts:
-    /// of a part, somebody could find another file with the same, and an approval would hold for that one, too.
+    /// The SHA-256 of the file that was imported under this name; `None` for a map that comes with the program. The whole
+    /// digest is kept: somebody could make another file that shares a part of it, and an approval would hold for that file.
     pub version: Option<[u8; 32]>,
 }
 

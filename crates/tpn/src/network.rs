@@ -312,9 +312,9 @@ pub struct Use {
     pub resource: ResourceId,
     /// What happens to it.
     pub change: Change,
-    /// How much, at most; not negative.
+    /// The maximum amount; not negative.
     pub amount: Rational,
-    /// How much at least. It is less than `amount` only where meters count, because drives along one path differ in length.
+    /// The minimum amount. It is less than `amount` only where meters count, because drives along one path differ in length.
     pub at_least: Rational,
     /// How much more for each meter that is driven.
     pub per_meter: Rational,
@@ -550,7 +550,7 @@ impl Use {
         if self.change == Change::Produces { self.end } else { self.start }
     }
 
-    /// By how much it changes the level of a reservoir: the least change and the greatest.
+    /// The minimum and maximum change of a reservoir's level.
     pub fn level_changes(&self) -> [Rational; 2] {
         let less = |amount: Rational| amount.checked_neg().unwrap_or_default();
         match self.change {
@@ -560,12 +560,12 @@ impl Use {
         }
     }
 
-    /// What is counted until it is known how far something has driven: the most that it takes, and the least that it gives.
+    /// The amount that counts until the driven distance is known: the maximum that it takes, or the minimum that it gives.
     pub fn counted(&self) -> Rational {
         if self.change == Change::Produces { self.at_least } else { self.amount }
     }
 
-    /// How much, for people: `4`, `28.5 to 40`.
+    /// The amount for people: `4`, `28.5 to 40`.
     pub fn readable_amount(&self) -> String {
         let amount = self.amount.readable();
         if self.at_least == self.amount {

@@ -39,15 +39,14 @@ pub fn to_text(network: &Network) -> String {
     text
 }
 
-/// What people read where files have identifiers: calls with their arguments (SPEC 17).
+/// Readable names for texts in which calls are identifiers: calls with their arguments (SPEC 17).
 #[derive(Clone, Debug, Default)]
 pub struct CallNames {
     by_identifier: BTreeMap<SmolStr, String>,
 }
 
 impl CallNames {
-    /// `Visit#3` is read as `Visit(S[3], RIDGE)`. Of several calls that are the same each keeps its number:
-    /// `Visit(S[3], RIDGE)#3`.
+    /// `Visit#3` becomes `Visit(S[3], RIDGE)`, or `Visit(S[3], RIDGE)#3` if another call has the same arguments.
     pub fn new(network: &Network) -> Self {
         let is_call = |it: &&Occurrence| {
             matches!(it.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity)
@@ -70,7 +69,7 @@ impl CallNames {
         Self { by_identifier: calls().map(|call| (call.name.clone(), shown(call))).collect() }
     }
 
-    /// A text in which calls are named as people read them.
+    /// The text with its identifiers of calls replaced by their readable names.
     pub fn in_text(&self, text: &str) -> String {
         let mut shown = String::with_capacity(text.len());
         let mut rest = text;

@@ -26,8 +26,9 @@ pub(crate) struct Taken {
     pub(crate) used: UseId,
     pub(crate) start: NodeId,
     pub(crate) end: NodeId,
-    /// The maximum of it.
+    /// The maximum amount.
     pub(crate) amount: i128,
+    /// The minimum amount.
     pub(crate) at_least: i128,
     /// It gives instead of taking.
     pub(crate) is_production: bool,

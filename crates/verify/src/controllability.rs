@@ -190,7 +190,7 @@ fn before_the_end(
                     continue;
                 }
             } else {
-                // Whoever has seen the end waits for it no longer.
+                // After the end was observed, nothing waits for it.
                 if step.awaited == Some(place) {
                     continue;
                 }

@@ -126,7 +126,7 @@ fn menu(ui: &mut Ui, context: &Context<'_>, group: Group, commands: &mut Command
         structure::role(&opener, accesskit::Role::MenuItem);
         ui.separator();
     }
-    // What does not fit into the window is scrolled to.
+    // Entries that do not fit into the window scroll.
     let height = ui.ctx().content_rect().height() - 2.0 * space::BAR;
     egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
         for spec in all_commands().filter(|spec| spec.group == group && spec.is_plain()) {

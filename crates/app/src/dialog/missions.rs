@@ -20,7 +20,7 @@ const PICTURE: Vec2 = Vec2::new(72.0, 36.0);
 /// The least width of an example, and its height.
 const CARD: Vec2 = Vec2::new(210.0, 132.0);
 const CARD_PICTURE: f32 = 44.0;
-/// The time of a picture runs through in so many seconds.
+/// The seconds in which the time of a picture runs from start to end.
 const CARD_SECS: f64 = 4.0;
 
 /// What the list asks for; it is sent when everything is shown.

@@ -59,7 +59,7 @@ fn appearance(ui: &mut Ui, context: &Context<'_>, send: &mut dyn FnMut(SettingsC
     });
     let mut scale = settings.text_scale;
     let slider = Slider::new(&mut scale, TEXT_SCALES[0]..=TEXT_SCALES[1]).step_by(0.1).text("Text size");
-    // A page that changes its size under the pointer cannot be dragged: the size changes when the button is let go.
+    // A slider whose page changes its size cannot be dragged, so the size changes when the button is released.
     let slider = ui.add(slider);
     let dragged = slider.id.with("dragged");
     if slider.dragged() {
@@ -92,7 +92,7 @@ fn planning(ui: &mut Ui, context: &Context<'_>, send: &mut dyn FnMut(SettingsCom
     });
 }
 
-/// The layouts that are saved with the mission, and what saves the present one.
+/// The layouts that are saved with the mission, and a button that saves the current one.
 fn layouts(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     section(ui, context, "Layouts of this mission");
     let mut send = |command| commands.send(Command::Library(command));

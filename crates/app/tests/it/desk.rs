@@ -162,7 +162,7 @@ fn a_layout_is_saved_with_the_mission_and_comes_back_by_its_name() {
     dispatch(&mut app, "view.resetWorkspace", &json!(null));
     app.settle();
     assert!(has(&app, "Terrain"));
-    // The file of the mission has it, and whoever opens the file has it, too.
+    // The mission's file contains the layout.
     let mission = app.harness.state().app_state().library.open_mission().expect("a mission").to_json();
     let read = workbench::library::Mission::from_json(&mission).expect("it is sound");
     assert_eq!(read.layouts[0].name, "No map");

@@ -149,7 +149,7 @@ fn statements_are_copied_from_the_drawing_and_pasted_into_it() {
     app.settle();
     app.settle();
     assert!(scenario(&app).contains("Rest();\n  Dig(ROCK);\n  Wake()\n}"), "{}", scenario(&app));
-    // What is no statement is refused, and said so.
+    // Text that is not a statement is refused with a message.
     let before = app.harness.state().source();
     app.harness.event(Event::Paste("} nonsense {".to_owned()));
     app.settle();

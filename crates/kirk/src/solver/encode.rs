@@ -379,7 +379,7 @@ impl<'m> Problem<'m> {
             self.add_constraint(solver, constraint);
         }
         for (id, arc) in model.arcs.iter_enumerated() {
-            if model.constraints.binary_search(&id).is_ok() {
+            if model.is_constraint(id) {
                 continue;
             }
             let (from, to) = (self.times[arc.from], self.times[arc.to]);
@@ -669,7 +669,7 @@ fn reach(model: &Model) -> Result<(i64, i64), Unencoded> {
     let mut total = i128::from(model.gap) * (model.conditions.labels.len() as i128 + 1) + 1;
     let mut can_precede_start = false;
     for (id, arc) in model.arcs.iter_enumerated() {
-        can_precede_start |= arc.lower < 0 && model.constraints.binary_search(&id).is_err();
+        can_precede_start |= arc.lower < 0 && !model.is_constraint(id);
         if arc.lower != UNBOUNDED_BELOW {
             total += i128::from(arc.lower).abs();
         }

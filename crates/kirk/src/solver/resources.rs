@@ -29,8 +29,9 @@ pub(super) struct Task {
     pub(super) id: UseId,
     pub(super) interval: Interval,
     pub(super) change: Change,
-    /// The maximum of it.
+    /// The maximum amount.
     pub(super) amount: i64,
+    /// The minimum amount.
     pub(super) at_least: i64,
     /// Otherwise it takes nothing, but still gives.
     pub(super) is_active: bool,
@@ -49,7 +50,7 @@ impl Task {
         if self.change == Change::Produces { self.interval.end } else { self.interval.start }
     }
 
-    /// By how much it changes a reservoir's level: at most if `is_most`, otherwise at least.
+    /// The change of a reservoir's level: the greatest possible one if `is_most`, otherwise the least.
     pub(super) const fn level_change(&self, is_most: bool) -> i64 {
         level_change(self.change, [self.at_least, self.amount], is_most)
     }

@@ -95,8 +95,8 @@ impl Core {
         Ok(tally)
     }
 
-    /// Holds one more schedule or run of the plan, or other plans, against the lines that stand; returns whether there was
-    /// one to try.
+    /// Tries one more schedule or run of the plan, or other plans, against the items without a counterexample. Returns whether
+    /// anything was left to try.
     pub fn try_next(&mut self, evaluated: &Evaluated, trial: &mut Trial) -> Result<bool, PlanError> {
         if trial.try_schedule() {
             return Ok(true);
@@ -164,7 +164,7 @@ impl Core {
         host.answer(Response::ProgramSampled { revision, chance, from, tally });
     }
 
-    /// Leads a proof about a control program on, from where the last request ended.
+    /// Continues a proof about a control program from where the last request ended.
     pub(super) fn prove_program(
         &mut self,
         (revision, source): (u64, &Arc<str>),

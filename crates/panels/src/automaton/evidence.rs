@@ -44,7 +44,7 @@ pub(super) fn show(
     let place = place.response;
     ui.add_space(space::L);
     if reveals {
-        // At once: an animation would follow what is still being laid out.
+        // Without an animation: it would follow a layout that still changes.
         place.scroll_to_me_animation(None, ScrollAnimation::none());
     }
 }

@@ -132,7 +132,7 @@ fn node(
     ui.add_space(space::XS);
 }
 
-/// Says that what fills `ui` is an item of the tree: its level, and its place among those below the same node.
+/// Marks `ui` as an item of the tree: with its level, and its place among the children of the same node.
 fn item(ui: &Ui, diagnosing: &Diagnosing, at: usize, name: &str) {
     let nodes = diagnosing.tree().nodes();
     let node = &nodes[at];

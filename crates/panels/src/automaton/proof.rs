@@ -10,7 +10,8 @@ use workbench::state::automaton::Program;
 use workbench::state::program_proof::{MAX_FAULTS, ProgramProofCommand, can_step_through};
 
 use super::title;
-use crate::Context;
+use crate::review::capital::sentence;
+use crate::{Context, counted};
 
 /// Shows what is asked for and what was found.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -18,7 +19,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     ask(ui, context, commands);
     let proof = &context.state.automaton.proof;
     if proof.is_running() {
-        ui.label(format!("{} states found", proof.states()));
+        ui.label(format!("{} found", counted(proof.states() as u64, "state")));
         ui.ctx().request_repaint();
     }
     match proof.answer(context.state.document.revision()) {
@@ -78,10 +79,11 @@ fn answer(
     ui.add_space(space::M);
     let faults = match question.faults {
         0 => "no faults".to_owned(),
-        1 => "at most 1 fault".to_owned(),
-        more => format!("at most {more} faults"),
+        most => format!("at most {}", counted(u64::from(most), "fault")),
     };
-    let text = format!("{} states, {} transitions, {faults}", found.states, found.transitions);
+    let states = counted(found.states as u64, "state");
+    let transitions = counted(found.transitions as u64, "transition");
+    let text = format!("{states}, {transitions}, {faults}");
     ui.label(RichText::new(text).color(tokens.text_muted));
     if let Some(stopped) = &found.stopped {
         let text = format!("Not all states were explored: {stopped}.");
@@ -124,8 +126,5 @@ fn counterexample(ui: &mut Ui, context: &Context<'_>, run: &Counterexample) {
         let choices: Vec<String> = by.choices.iter().map(|choice| (choice + 1).to_string()).collect();
         ui.label(format!("Step {step}: alternative {}", choices.join(", ")));
     }
-    let ending = run.ending();
-    let mut letters = ending.chars();
-    let capital = letters.next().map_or_else(String::new, |first| first.to_uppercase().collect());
-    ui.label(format!("{capital}{}.", letters.as_str()));
+    ui.label(format!("{}.", sentence(&run.ending())));
 }

@@ -32,7 +32,7 @@ struct Shown<'a> {
     network: &'a tpn::Network,
 }
 
-/// The part of the panel that the log has at first: what may go wrong has to be in sight above it.
+/// The share of the panel that the log has at first. The disturbances above it stay in view.
 const LOG_SHARE: f32 = 0.25;
 
 impl Panel for ExecutionPanel {

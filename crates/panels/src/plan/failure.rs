@@ -49,9 +49,9 @@ pub(crate) fn show(
 /// A change of the text that gives a plan.
 struct Offer<'a> {
     label: &'a str,
-    /// What it changes; `None` for what is worked out from the whole text once it is wanted, or cannot be done.
+    /// The edits; `None` for the gap, whose fix reads the whole text when it is applied, and where no edit does it.
     edits: Option<Vec<Edit>>,
-    /// Where the text shows what it is about.
+    /// The place in the text that the change is about.
     span: Option<Span>,
     is_of_gap: bool,
 }
@@ -92,7 +92,7 @@ fn show_fixes(
             let can_apply = (offer.is_of_gap || offer.edits.is_some()) && !context.is_stale;
             let button = ui.add_enabled(can_apply, egui::Button::new(offer.label).wrap());
             let button = button.accessible_name(format!("Fix: {}", offer.label));
-            // The gap's fix reads the whole text: only once it is wanted.
+            // The gap's fix reads the whole text, so it is only computed when it is applied.
             if button.clicked()
                 && let Some(edits) = offer.edits.or_else(|| failure.gap_fix(source).map(|fix| fix.edits))
             {

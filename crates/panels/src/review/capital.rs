@@ -1,7 +1,7 @@
 //! Texts as sentences.
 
 /// A text with a capital at its start, unless it starts with a name.
-pub(super) fn sentence(text: &str) -> String {
+pub(crate) fn sentence(text: &str) -> String {
     let first_word = text.split(' ').next().unwrap_or_default();
     let is_plain = first_word.chars().all(|c| c.is_ascii_lowercase() || c == ':');
     let mut characters = text.chars();

@@ -119,7 +119,7 @@ impl Panel for TimelinePanel {
                 _ => "No plan to show. The Plan panel explains why.".to_owned(),
             };
             show_empty(ui, context, &text);
-            carry::over_timeline(ui, context, area, &[], commands);
+            carry::over_timeline(ui, context, area, Vec::new, commands);
             return;
         };
         self.prepare(context, snapshot, network, plan);
@@ -240,7 +240,7 @@ impl TimelinePanel {
             let last = ((viewport.bottom() / ROW_HEIGHT).ceil().max(0.0) as usize).min(chart.rows.len());
             self.show_rows(ui, &painting, plan, first..last, &links, commands);
             self.follow_selection(ui, &painting, &mut moved);
-            carry::over_timeline(ui, context, below, &lanes(&painting), commands);
+            carry::over_timeline(ui, context, below, || lanes(&painting), commands);
             view = moved;
         });
         if let Some(column) = column {
@@ -567,7 +567,7 @@ impl TimelinePanel {
     }
 }
 
-/// The vehicles, each with the rows of the lane that it is named by.
+/// The rows of each lane that is named after a vehicle, with the vehicle's name.
 fn lanes(painting: &Painting<'_>) -> Vec<(SmolStr, Rect)> {
     let vehicles = painting.context.snapshot.map_or(&[][..], |it| &it.program.world.vehicles);
     let rows = &painting.chart.rows;

@@ -1,8 +1,7 @@
 //! Looks for counterexamples of the lines of a review that have passed (SPEC 16.1): schedules of the plan, and undisturbed
-//! runs of it, in which something is otherwise than a line says, and plans that are better than one that is called optimal.
+//! runs of it, that contradict a line, and plans that are better than one that is called optimal.
 //!
-//! Nothing is proven by a line that survives; it says how it was tried. Lines that are about none of these are not tried, and
-//! said to be so.
+//! Nothing is proven by a line that survives; it says how it was tried. Lines about anything else are marked as not tried.
 
 mod instant;
 mod promise;
@@ -193,7 +192,7 @@ impl Trial {
         [self.num_schedules + self.num_runs, schedules + runs]
     }
 
-    /// Holds one more schedule against the lines that stand; returns whether there was one to try.
+    /// Holds one more schedule against the lines without a counterexample. Returns whether there was one to try.
     pub fn try_schedule(&mut self) -> bool {
         let is_wanted = self.num_schedules < self.effort.schedules
             && self
@@ -248,13 +247,13 @@ impl Trial {
         true
     }
 
-    /// The lines about declared durations that stand.
+    /// The lines about declared durations without a counterexample.
     fn declared_durations(&mut self) -> impl Iterator<Item = &mut Tried> {
         let stand = self.lines.iter_mut().filter(|(_, tried)| tried.counterexample.is_none());
         stand.filter(|(it, _)| matches!(it, Promise::DeclaredDurations)).map(|(_, tried)| tried)
     }
 
-    /// The next run to make; `None` when there is none, or no line stands that runs say something of.
+    /// The next run to make; `None` when there is none, or no line without a counterexample is about runs.
     pub fn next_run(&mut self) -> Option<Script> {
         let is_wanted = self.num_runs < self.effort.runs
             && self.lines.iter().any(|(promise, it)| it.counterexample.is_none() && promise.is_of_runs());
@@ -263,12 +262,10 @@ impl Trial {
         script
     }
 
-    /// Whether other plans are to be held against a line that stands.
+    /// Whether other plans are still to be compared with the plan, for a line without a counterexample.
     pub fn wants_plans(&self) -> bool {
-        let is_of_plans = |(promise, it): &(Promise, Tried)| {
-            it.counterexample.is_none() && matches!(promise, Promise::Optimal)
-        };
-        !self.has_plans && self.lines.iter().any(is_of_plans)
+        let is_open = |(promise, it): &(Promise, Tried)| it.counterexample.is_none() && promise.is_of_plans();
+        !self.has_plans && self.lines.iter().any(is_open)
     }
 
     /// Holds other plans of the mission, in their networks, against the line that none is better.
@@ -281,13 +278,13 @@ impl Trial {
             text: format!("another plan has {}", tpn::worth::words(network, other).unwrap_or_default()),
             script: Script::default(),
         });
-        for (_, tried) in self.lines.iter_mut().filter(|(promise, _)| matches!(promise, Promise::Optimal)) {
+        for (_, tried) in self.lines.iter_mut().filter(|(promise, _)| promise.is_of_plans()) {
             tried.plans += others.len() as u64;
             tried.counterexample = tried.counterexample.take().or_else(|| found.clone());
         }
     }
 
-    /// Holds an undisturbed run of the plan against the lines that stand; `script` made it.
+    /// Holds an undisturbed run of the plan against the lines without a counterexample; `script` made it.
     pub fn try_run(&mut self, script: &Script, run: &Observed<'_>) {
         for (promise, tried) in &mut self.lines {
             if tried.counterexample.is_some() {

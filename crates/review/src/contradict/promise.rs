@@ -10,7 +10,7 @@ use tpn::{LabelId, Levels, Network, NodeId, OccurrenceId, Plan};
 
 use super::Observed;
 use super::instant::Scheduled;
-use crate::demand_lines::{in_any_order, sight_text};
+use crate::demand_lines::{in_any_order, required_sight, sight_text};
 use crate::lines;
 use crate::overlaps::{occupied, owners};
 use crate::{Outcome, Review, Section, TimeRange, flight_rule};
@@ -196,15 +196,13 @@ impl Promise {
     /// What a line about what a vehicle sees promises.
     fn of_sight(network: &Network, plan: &Plan, line: &crate::Line) -> Option<Self> {
         plan.causal_links.iter().find_map(|link| {
-            let ask = &network.labels[link.ask.index()];
-            let sight = network.sight(ask)?;
+            let (vehicle, location, is_seen) = required_sight(network, link.ask)?;
             let (start, end) = network.interval(link.ask);
-            let vehicle = network.variables[sight.variable.index()].name.trim_end_matches(".at").to_owned();
-            let is_its = line.nodes == [start, end] && line.text == sight_text(network, *link);
+            let is_its = line.nodes == [start, end] && line.text == sight_text(network, *link)?;
             is_its.then(|| Self::Sees {
-                vehicle,
-                location: sight.location.clone(),
-                is_seen: !ask.text.starts_with("not("),
+                vehicle: vehicle.to_owned(),
+                location: location.clone(),
+                is_seen,
                 events: [start, end].map(|node| names(network, plan, node)),
             })
         })
@@ -227,6 +225,11 @@ impl Promise {
     /// Whether a run says something of it.
     pub(super) const fn is_of_runs(&self) -> bool {
         !matches!(self, Self::Valid | Self::Rule(_) | Self::DeclaredDurations | Self::Optimal | Self::Nothing)
+    }
+
+    /// Whether another plan says something of it.
+    pub(super) const fn is_of_plans(&self) -> bool {
+        matches!(self, Self::Optimal)
     }
 
     /// What contradicts it in a schedule, if something does; `None` if the schedule says nothing of it.

@@ -42,7 +42,7 @@ impl Interval {
         self.lower <= Time::ZERO && self.upper >= Bound::ZERO
     }
 
-    /// The time back from the second event to the first, if only that is not negative.
+    /// The bounds from the second event back to the first, if the second never comes after the first.
     pub(super) fn reversed(self) -> Option<Self> {
         let (lower, upper) = (self.upper.finite()?.checked_neg()?, self.lower.checked_neg()?);
         (upper.is_positive() && !lower.is_negative()).then_some(Self { lower, upper: Bound::Finite(upper) })

@@ -99,7 +99,7 @@ impl Expander<'_> {
         }
     }
 
-    /// A bound that lets the second event only come first is the same bound from that event to the other one.
+    /// Adds a bound. If the second event never comes after the first, the arc leads from the second to the first.
     fn relate(&mut self, (from, to): (NodeId, NodeId), interval: Interval, span: Span) {
         if from == to && interval.allows_zero() {
             return;

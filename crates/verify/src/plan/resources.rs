@@ -31,8 +31,8 @@ pub(super) fn check_use_orderings(network: &Network, plan: &Plan, violations: &m
 impl Checker<'_> {
     /// The criteria of SPEC 11 for every resource, and what the plan says of them.
     ///
-    /// Amounts are the network's alone: what is counted per metre is part of them once paths are inserted, as the range that
-    /// drives along these paths take. The worst case takes the end of the range that is worst for the level.
+    /// Amounts are the network's alone: once paths are inserted, they include what is counted per metre, with the minimum and
+    /// the maximum that drives along these paths take. The worst case takes whichever is worse for the level.
     pub(super) fn check_resources(&self, violations: &mut Vec<Violation>) {
         let network = self.network;
         let Some(all) = Shared::all(network, self.plan) else {

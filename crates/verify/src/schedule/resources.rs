@@ -78,14 +78,14 @@ impl Schedule<'_> {
         }
     }
 
-    /// The level after each instant, whatever of their range drives take.
+    /// The level after each instant, for every amount that drives may take.
     fn check_reservoir(
         &self,
         shared: &Shared,
         [least, greatest, level]: [i128; 3],
         violations: &mut Vec<Violation>,
     ) {
-        // Drives take from so much to so much: the level is between these.
+        // The amounts of drives have a minimum and a maximum: the level is between these two.
         let [mut low, mut high] = [level; 2];
         let mut events = shared.uses.clone();
         events.sort_by_key(|it| (self.time(it.moment()), it.used));

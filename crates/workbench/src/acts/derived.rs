@@ -132,7 +132,7 @@ impl AppState {
     }
 
     fn follow_conflicts(&mut self) {
-        // Whoever takes the program to change it makes all due that is computed from it.
+        // Mutable access to the program makes everything that depends on it due again.
         if self.automaton.has_other_conflicts() {
             self.automaton.follow_conflicts();
         }
@@ -171,8 +171,8 @@ impl AppState {
         }
     }
 
-    /// Selects in a newer snapshot what is selected in the one before. What an edit takes away is selected again once it is
-    /// there again, as after an undo, unless something else has been selected meanwhile.
+    /// Carries the selection over to a newer snapshot. If an edit removes the selected thing, it is selected again when it
+    /// returns, such as after an undo, unless something else was selected meanwhile.
     fn carry_selection(&mut self, before: &Snapshot, after: &Snapshot) {
         if self.selection.is_none() {
             let lost = self.derived.lost_selection.as_deref();

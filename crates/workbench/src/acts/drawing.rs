@@ -8,7 +8,7 @@ use crate::panel_kind::PanelKind;
 use crate::state::AppState;
 use crate::state::drawing::{self, Change, DrawCommand, Drawn, Place};
 
-/// So many lines show what a change would do to the text.
+/// A preview of a change has at most this many lines.
 const PREVIEW_LINES: usize = 8;
 
 impl AppState {
@@ -26,7 +26,7 @@ impl AppState {
         Ok(drawing::draw(parse, change)?.preview(parse.text(), PREVIEW_LINES))
     }
 
-    /// The text, if what is drawn is drawn from it.
+    /// The text, if the drawings are up to date with it.
     fn drawn_text(&self) -> Result<&Parse, String> {
         if self.snapshots.is_stale(self.document.revision()) {
             return Err("The drawing is out of date. Fix the errors of the text first.".to_owned());
@@ -68,7 +68,7 @@ impl AppState {
         }
     }
 
-    /// Edits the text, selects what was made once it is planned, and lets the author type what is to be typed.
+    /// Edits the text, selects the new statement once it is planned, and lets the author type over names and bounds.
     fn take_drawn(&mut self, drawn: &Drawn) {
         self.document.edit(&drawn.edits, EditKind::Single, None);
         self.derived.made = drawn.made.map(|at| (self.document.revision(), at));

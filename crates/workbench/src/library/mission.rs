@@ -96,7 +96,7 @@ pub struct SavedLayout {
     pub name: String,
     /// The workspace that it is a layout of.
     pub workspace: String,
-    /// The panels with their places, as the front end writes them; empty until it has.
+    /// The panels with their places, as the front end writes them; empty before that.
     pub tiles: String,
 }
 

@@ -355,7 +355,7 @@ impl Library {
         }
     }
 
-    /// The open mission has a layout of this name, in place of one that it has. Returns its number.
+    /// Adds a layout to the open mission, replacing one of the same name. Returns its number.
     pub fn add_layout(&mut self, name: &str, workspace: &str, now_millis: i64) -> Option<usize> {
         let id = self.open_id().cloned()?;
         let mission = self.mission_mut(&id)?;
@@ -367,7 +367,7 @@ impl Library {
         Some(number)
     }
 
-    /// The front end has written where the panels of a layout are.
+    /// Stores the panels of a layout with their places, as the front end has written them.
     pub fn set_layout(&mut self, number: usize, tiles: String) {
         let Some(id) = self.open_id().cloned() else { return };
         if let Some(layout) = self.mission_mut(&id).and_then(|it| it.layouts.get_mut(number)) {
@@ -376,7 +376,7 @@ impl Library {
         }
     }
 
-    /// The open mission has a layout no longer.
+    /// Removes a layout from the open mission.
     pub fn remove_layout(&mut self, number: usize, now_millis: i64) {
         let Some(id) = self.open_id().cloned() else { return };
         if let Some(mission) = self.mission_mut(&id).filter(|mission| number < mission.layouts.len()) {

@@ -1,5 +1,5 @@
-//! What somebody who does not see the window is told as it happens: where the plan stands, mistakes, steps, how answers
-//! were judged, messages.
+//! What somebody who does not see the window is told as it happens: the status of the plan, errors, steps, how answers were
+//! judged, messages.
 
 use rmpl::Severity;
 
@@ -9,8 +9,8 @@ use crate::state::snapshots::Status;
 
 /// What is to be said now. It is said when it is other than before; empty while there is nothing new to say.
 pub fn announcement(state: &AppState) -> String {
-    let told = [step_words(state), program_words(state), lesson_words(state), message_words(state)];
-    let parts: Vec<String> = std::iter::once(plan_words(state)).chain(told).flatten().collect();
+    let words = [plan_words, step_words, program_words, lesson_words, message_words];
+    let parts: Vec<String> = words.into_iter().filter_map(|tell| tell(state)).collect();
     parts.join(" ")
 }
 

@@ -9,7 +9,7 @@ use crate::command::Command;
 use crate::command::chord::Key;
 use crate::registry::spec::{CommandSpec, Group, Scope};
 use crate::state::AppState;
-use crate::state::drawing::{Change, DrawCommand, Wrapping};
+use crate::state::drawing::{Change, DrawCommand, NEW_BOUNDS, Wrapping};
 
 /// In the order of the menus.
 pub(super) const COMMANDS: &[CommandSpec] = &[
@@ -54,7 +54,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     ),
     when(
         plain("draw.bounds", "Set duration of activity", Group::Draw, &[], Scope::Everywhere, |state| {
-            make(state, |what| Change::Bound(what, BOUNDS.to_owned()))
+            make(state, |what| Change::Bound(what, NEW_BOUNDS.to_owned()))
         }),
         with_statement,
     ),
@@ -103,9 +103,6 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Ok(Command::Draw(DrawCommand::Make(Change::Visit { vehicle, location })))
     }),
 ];
-
-/// The bounds that the author types over.
-const BOUNDS: &str = "[1,5]";
 
 /// A change of what is selected.
 fn make(state: &AppState, change: impl FnOnce(rmpl::Span) -> Change) -> Command {

@@ -62,7 +62,7 @@ pub struct AutomatonState {
     pub part: ProgramPart,
     /// Why the last step could not be taken.
     pub error: Option<String>,
-    /// The conflicts of the step before the moment that is looked at.
+    /// The conflicts of the step before the current moment.
     conflicts: Option<StepConflicts>,
     /// The hitting-set tree that was begun last.
     diagnosing: Option<Diagnosing>,
@@ -267,12 +267,12 @@ impl AutomatonState {
         self.at
     }
 
-    /// The conflicts of the step before the moment that is looked at; nothing at the first, and without a plant.
+    /// The conflicts of the step before the current moment; `None` at the first moment, and without a plant.
     pub fn step_conflicts(&self) -> Option<&StepConflicts> {
         self.conflicts.as_ref()
     }
 
-    /// Whether these conflicts are of another step than the one before the moment that is looked at.
+    /// Whether the known conflicts are of another step than the one before the current moment.
     pub(crate) fn has_other_conflicts(&self) -> bool {
         match (self.last_step(), &self.conflicts) {
             (Some((model, before, after)), Some(known)) => !known.is_of(model, before, after),
@@ -280,19 +280,19 @@ impl AutomatonState {
         }
     }
 
-    /// Finds the conflicts of the step before the moment that is looked at.
+    /// Finds the conflicts of the step before the current moment.
     pub(crate) fn follow_conflicts(&mut self) {
         let step = self.last_step();
         self.conflicts = step.map(|(model, before, after)| StepConflicts::new(model, before, after));
     }
 
-    /// The step before the moment that is looked at: the plant's model, and the moments before and after it.
+    /// The step before the current moment: the plant's model, and the moments before and after the step.
     fn last_step(&self) -> Option<(&Arc<plant::Model>, &Arc<Moment>, &Arc<Moment>)> {
         let model = self.program.as_ref()?.model()?;
         Some((model, self.moments.get(self.at.checked_sub(1)?)?, self.moments.get(self.at)?))
     }
 
-    /// The hitting-set tree over these conflicts, if it was begun.
+    /// The hitting-set tree over these conflicts, if the user has started one.
     pub fn diagnosing(&self) -> Option<&Diagnosing> {
         let root = self.conflicts.as_ref()?.root()?;
         self.diagnosing.as_ref().filter(|known| known.is_about(root))

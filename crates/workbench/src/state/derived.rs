@@ -14,7 +14,7 @@ pub enum Derivation {
     Folding,
     /// Whether the text is a control program, which the core is to run then.
     Program,
-    /// The conflicts of the step of the program that is looked at.
+    /// The conflicts of the current step of the program.
     Conflicts,
     /// Selection, pins, search, trees and picture, carried over to what is shown now.
     Shown,
@@ -41,7 +41,7 @@ pub struct Derived {
     pub(crate) shown: Option<Arc<Snapshot>>,
     /// The name of what was selected until an edit took it away.
     pub(crate) lost_selection: Option<String>,
-    /// Where something was drawn into the text of a revision: it is selected once that is planned.
+    /// The revision and the place of a new statement that was drawn: it is selected once the revision is planned.
     pub(crate) made: Option<(u64, u32)>,
 }
 

@@ -145,18 +145,23 @@ fn location(name: &str, at_m: Point2<f64>) -> String {
 }
 
 /// The words of a text, so that new names do not meet old ones.
-struct Names {
+pub(super) struct Names {
     used: BTreeSet<SmolStr>,
 }
 
 impl Names {
-    fn of(text: &str) -> Self {
+    pub(super) fn of(text: &str) -> Self {
         let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
         Self { used: text.split(|c| !is_part(c)).map(SmolStr::new).collect() }
     }
 
+    /// Whether the text has a word, or a new name is that word.
+    pub(super) fn contains(&self, word: &str) -> bool {
+        self.used.contains(word)
+    }
+
     /// `stem` with the least number that makes it new.
-    fn fresh(&mut self, stem: &str) -> SmolStr {
+    pub(super) fn fresh(&mut self, stem: &str) -> SmolStr {
         let mut names = (1_u32..).map(|number| format_smolstr!("{stem}{number}"));
         let name = names.find(|name| !self.used.contains(name)).unwrap_or_default();
         self.used.insert(name.clone());
@@ -181,7 +186,7 @@ impl Names {
 fn insert(edits: &mut Vec<Edit>, text: &str, world: &World, kind: Kind, declaration: &str) {
     let (offset, inserted) = if let Some((span, last)) = last_before(world, kind) {
         let between = if last == kind { "\n" } else { "\n\n" };
-        (behind(text, span), format!("{between}{declaration}"))
+        (behind(text, span.end), format!("{between}{declaration}"))
     } else {
         let offset = first_code(text);
         let after = if offset == text.len() { "\n" } else { "\n\n" };
@@ -212,9 +217,9 @@ fn last_before(world: &World, kind: Kind) -> Option<(Span, Kind)> {
     kinds.into_iter().filter(|&other| other <= kind).find_map(|other| Some((last(other)?, other)))
 }
 
-/// Behind a declaration, and behind a comment that ends its line.
-fn behind(text: &str, span: Span) -> u32 {
-    let end = (span.end as usize).min(text.len());
+/// The place after the end of a piece of text, and after a comment that ends its line.
+pub(super) fn behind(text: &str, end: u32) -> u32 {
+    let end = (end as usize).min(text.len());
     let rest = text.get(end..).unwrap_or_default();
     let line = rest.split('\n').next().unwrap_or_default();
     let is_note = line.trim().is_empty() || line.trim_start().starts_with("//");

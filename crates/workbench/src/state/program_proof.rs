@@ -48,9 +48,9 @@ pub enum ProgramProofCommand {
     StepThrough(usize),
 }
 
-/// More faults than these are for the command line.
+/// The page allows at most this many faults; the command line allows more.
 pub const MAX_FAULTS: u32 = 5;
-/// The page explores at most so many states.
+/// The page explores at most this many states.
 const MAX_STATES: usize = 100_000;
 
 impl Default for ProofSettings {
@@ -82,7 +82,7 @@ impl ProgramProofState {
         self.is_wanted = false;
     }
 
-    /// The text has this revision now: what was asked of another one is not wanted any more.
+    /// The text has this revision now: a question about another revision is dropped.
     pub(super) fn follow(&mut self, revision: u64) {
         if self.asked.as_ref().is_some_and(|(asked, _)| *asked != revision) {
             self.give_up();
@@ -128,11 +128,11 @@ impl AutomatonState {
                 let answer = self.proof.answer.as_ref().and_then(|answer| answer.as_ref().ok());
                 let verdict = answer.and_then(|answer| answer.verdicts.get(number));
                 if let Some((_, Verdict::Broken(run))) = verdict {
-                    let inputs = run.moves.iter().map(|by| StepInput {
+                    let input = |by: &Move| StepInput {
                         injected: by.modes.iter().copied().collect(),
                         observed: by.observed.iter().copied().collect(),
-                    });
-                    let inputs: Vec<StepInput> = inputs.collect();
+                    };
+                    let inputs = run.moves.iter().map(input).collect();
                     self.show_steps(inputs);
                 }
             }

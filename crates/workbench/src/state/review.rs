@@ -396,11 +396,11 @@ impl Reviewing<'_> {
         }
     }
 
-    /// Adds what came from elsewhere. Returns how many entries are new, and of how many contents runs were left out.
+    /// Adds a record from elsewhere. Returns how many entries are new, and for how many contents runs were left out.
     fn merge_foreign(&mut self, mut record: Record) -> (usize, usize) {
         self.name_record();
         record.judge(&self.keys.ring().trust(), &self.utc_now());
-        // Who has no history yet continues that of somebody else who has reviewed the very content under another name.
+        // If the history here is empty, it continues one of the same content under another mission name.
         let is_present = |content: &str| self.review.hash() == Some(content);
         if self.review.record.entries().is_empty()
             && record.counted().any(|entry| is_present(&entry.content_hash))
@@ -415,7 +415,7 @@ impl Reviewing<'_> {
         (count, left_out)
     }
 
-    /// A history that nobody has said anything in yet is of the open mission, whatever it is called by then.
+    /// Gives an empty history the name of the open mission, which may have been renamed.
     pub(super) fn name_record(&mut self) {
         if self.review.record.entries().is_empty() && self.review.record.mission != self.mission {
             self.review.record.mission = self.mission.to_string();

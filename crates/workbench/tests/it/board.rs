@@ -352,7 +352,7 @@ fn the_review_of_another_mission_is_refused_and_nothing_of_it_is_added() {
     share_keys(&author, &mut app);
     open_json(&mut app, &renamed.to_string());
     assert_eq!(app.json()["review"]["history"], author.json()["review"]["history"]);
-    // In the other mission nothing of it counts, whatever the file says that it is of.
+    // None of it counts in another mission, even if the file names that mission.
     renamed["mission"] = json!("both-paths");
     let mut app = test_support::start();
     app.run(Command::OpenExample("both-paths".into()));
