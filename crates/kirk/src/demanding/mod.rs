@@ -23,6 +23,13 @@ use crate::unplannable::Unplannable;
 /// How many conflicts a search in textual order may meet before one that follows its conflicts takes over.
 const MAX_CONFLICTS_IN_ORDER: u64 = 200;
 
+/// How many conflicts a search for a better plan may meet at first before one near the last plan takes over: each next time
+/// more.
+const CONFLICTS_EVERYWHERE: u64 = 50;
+
+/// How many the search near the last plan may meet.
+const CONFLICTS_NEAR: u64 = 100;
+
 /// How many conflicts it may take to find out that choices that were a plan still are.
 const MAX_CONFLICTS_TO_KEEP: u64 = 500;
 
@@ -130,6 +137,7 @@ pub(crate) fn search(
         stats: Stats::default(),
         is_stopped: false,
         bound: None,
+        floor: None,
         excluded: excluded.to_vec(),
         incumbent: None,
         record: options.trace_events.map(|limit| Box::new(Record::new(limit, has_goals))),
@@ -161,6 +169,8 @@ struct Searching<'a> {
     is_stopped: bool,
     /// What no plan is better than, of the first goal that is not at its optimum yet.
     bound: Option<Rational>,
+    /// The least value of that goal that propagation leaves possible, once it has been looked for.
+    floor: Option<i64>,
     /// The choices of plans that are not looked for: of those that have been found, where others are.
     excluded: Vec<Vec<Choice>>,
     /// The choices of the best plan so far, where a better one is looked for.
@@ -248,17 +258,24 @@ impl<'a> Searching<'a> {
         for choices in &self.excluded {
             problem.forbid_choices(&mut solver, choices);
         }
+        let mut attempt = Attempt { problem, solver, sums: GoalSums::default() };
+        self.add_limits(&mut attempt, limits)?;
+        Ok(attempt)
+    }
+
+    /// Adds a limit on each goal that has one, and prefers the best plan's choices.
+    fn add_limits(&self, attempt: &mut Attempt<'a>, limits: &Limits) -> Result<(), Unencoded> {
+        let Attempt { problem, solver, sums } = attempt;
         if let Some(incumbent) = &self.incumbent {
-            problem.prefer(&mut solver, incumbent);
+            problem.prefer(solver, incumbent);
         }
         let sought = limits.iter().rposition(Option::is_some);
-        let mut sums = GoalSums::default();
         for (at, (goal, limit)) in self.model.demands.goals.iter().zip(limits).enumerate() {
             if let Some(limit) = *limit {
-                sums = problem.add_goal(&mut solver, goal, limit, sought == Some(at))?;
+                *sums = problem.add_goal(solver, goal, limit, sought == Some(at))?;
             }
         }
-        Ok(Attempt { problem, solver, sums })
+        Ok(())
     }
 
     /// Solves, with at most so many conflicts where a number is given. `None` if these are spent, or the search was stopped.
@@ -416,13 +433,17 @@ impl<'a> Searching<'a> {
         }
         let model = self.model;
         let mut limits: Limits = vec![None; model.demands.goals.len()];
-        self.incumbent = None;
-        let Some(mut plan) = self.better(&mut None, &limits)? else {
+        (self.incumbent, self.floor) = (None, None);
+        // Better plans are looked for where the first one was found.
+        let mut improving = None;
+        let Some(mut plan) = self.better(&mut improving, &limits)? else {
             return Ok(None);
         };
         self.tell_values(&plan)?;
         for goal in 0..model.demands.goals.len() {
-            let mut improving = None;
+            if goal > 0 {
+                (improving, self.floor) = (None, None);
+            }
             loop {
                 let value = model.demands.goals[goal].sum(model, &plan)?;
                 limits[goal] = Some(value - 1);
@@ -460,7 +481,34 @@ impl<'a> Searching<'a> {
         let encoded = Problem::new(self.model, part, &mut || false).ok()?;
         let Attempt { problem, solver, .. } = self.attempt(encoded, limits, false).ok()?;
         let goal = &self.model.demands.goals[goal];
-        Some(goal.value(problem.goal_bound(&solver, goal)))
+        let bound = problem.goal_bound(&solver, goal);
+        Some(goal.value(self.floor.map_or(bound, |floor| floor.max(bound))))
+    }
+
+    /// The least value of the last goal with a limit that propagation alone does not refute, by halves (destructive bounds: Klein
+    /// and Scholl 1999).
+    fn refuted_limit(&mut self, attempt: &Attempt<'_>, limits: &Limits) -> i64 {
+        let mut goals = self.model.demands.goals.iter().zip(limits).rev();
+        let Some((goal, limit)) = goals.find_map(|(goal, limit)| Some((goal, (*limit)?))) else {
+            return i64::MIN;
+        };
+        let mut least = attempt.problem.goal_bound(&attempt.solver, goal);
+        let mut most = limit + 1;
+        while least < most && !self.is_stopped {
+            let middle = least.midpoint(most);
+            let mut solver = attempt.solver.clone();
+            Problem::lower_goal(&mut solver, &attempt.sums, limit - middle);
+            let (termination, stats, is_stopped) = (&mut self.termination, &self.stats, &mut self.is_stopped);
+            match solver.is_refuted_at_root(&mut || {
+                *is_stopped |= termination.should_stop(stats);
+                *is_stopped
+            }) {
+                Some(true) => least = middle + 1,
+                Some(false) => most = middle,
+                None => {}
+            }
+        }
+        least
     }
 
     /// A plan within the limits, the same one each time. The last of them is no greater than in the attempts before, with
@@ -470,10 +518,17 @@ impl<'a> Searching<'a> {
         improving: &mut Improving<'a>,
         limits: &Limits,
     ) -> Result<Option<Plan>, Unplannable> {
-        let limit = limits.iter().rev().find_map(|limit| *limit).unwrap_or(0);
+        let limit = limits.iter().rev().find_map(|limit| *limit);
         let mut attempt = match improving.take() {
             Some((mut attempt, last_limit)) => {
-                Problem::lower_goal(&mut attempt.solver, &attempt.sums, last_limit - limit);
+                match (last_limit, limit) {
+                    (Some(last), Some(limit)) => {
+                        Problem::lower_goal(&mut attempt.solver, &attempt.sums, last - limit);
+                    }
+                    _ => self
+                        .add_limits(&mut attempt, limits)
+                        .map_err(|_| Unplannable::at(self.model.start))?,
+                }
                 self.begin_record(&mut attempt, limits);
                 attempt
             }
@@ -482,10 +537,35 @@ impl<'a> Searching<'a> {
                 None => return Ok(None),
             },
         };
-        let next = self.next_plan((&mut attempt.problem, &mut attempt.solver), limits, None)?;
+        let is_first = self.incumbent.is_none();
+        if is_first && self.model.demands.goals.first().is_some_and(|goal| goal.per_tick > 0) {
+            attempt.problem.begin_dispatch(&mut attempt.solver);
+        }
+        let mut everywhere = CONFLICTS_EVERYWHERE;
+        let mut is_near = false;
+        let next = loop {
+            let most = if is_near { CONFLICTS_NEAR } else { everywhere };
+            let most = Some(most).filter(|_| !is_first);
+            let next = self.next_plan((&mut attempt.problem, &mut attempt.solver), limits, most)?;
+            if !matches!(next, Next::Stopped) || self.is_stopped {
+                break next;
+            }
+            is_near = !is_near;
+            if self.floor.is_none() {
+                self.floor = Some(self.refuted_limit(&attempt, limits));
+            }
+            if is_near {
+                attempt.solver.search_near();
+            } else {
+                attempt.solver.search_everywhere();
+                everywhere += everywhere / 8;
+            }
+        };
         self.record = attempt.solver.record.take();
         Ok(match next {
             Next::Plan(found) => {
+                attempt.solver.note_solution();
+                attempt.solver.search_everywhere();
                 *improving = Some((attempt, limit));
                 Some(*found)
             }
@@ -503,7 +583,7 @@ struct Attempt<'m> {
 }
 
 /// The last attempt to reach less and less of one goal, with its limit.
-type Improving<'m> = Option<(Attempt<'m>, i64)>;
+type Improving<'m> = Option<(Attempt<'m>, Option<i64>)>;
 
 #[cfg(test)]
 mod tests {

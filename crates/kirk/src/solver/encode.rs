@@ -6,6 +6,7 @@ use tpn::{ArcId, CausalLink, Choice, DecisionId, LabelId, NodeId, Ordering, Vari
 use typed_index_collections::{TiSlice, TiVec};
 
 use super::alternatives::Way;
+use super::dispatch::Dispatching;
 use super::enclosure::Enclosures;
 use super::growth::{Growth, LINK, Unencoded};
 use super::instants::Instants;
@@ -84,6 +85,8 @@ pub(crate) struct Problem<'m> {
     pub(super) instants: Instants,
     /// Times of another plan, by node, in whose order conflicting pairs are tried first.
     pub(crate) preferred_times: Vec<i64>,
+    /// While uses start in the order of time.
+    pub(super) dispatching: Option<Dispatching>,
     /// By decision and alternative.
     pub(super) alternatives: TiVec<DecisionId, Vec<Literal>>,
     /// Requirements with the assertions that may carry them.
@@ -129,6 +132,7 @@ impl<'m> Problem<'m> {
             shares: Shares::default(),
             instants: Instants::new(model),
             preferred_times: Vec::new(),
+            dispatching: None,
             alternatives,
             carriers: Vec::new(),
             contexts: node_contexts(model),

@@ -25,6 +25,7 @@ mod control;
 mod cumulative;
 mod difference;
 mod disjunctive;
+mod dispatch;
 mod enclosure;
 mod encode;
 mod goals;
@@ -37,6 +38,7 @@ mod leaf;
 mod linear;
 mod lists;
 mod literal;
+mod neighborhood;
 mod premise;
 mod queue;
 mod record;
@@ -66,6 +68,7 @@ use disjunctive::Disjunctives;
 use linear::Linears;
 use lists::Lists;
 use literal::{Literal, Side, Variable};
+use neighborhood::Neighborhood;
 use premise::Premise;
 use record::Origin;
 use refutation::Derivations;
@@ -163,6 +166,8 @@ pub(crate) struct Solver {
     is_contradictory: bool,
     /// What is decided first, until it is refuted.
     assumption: Option<Literal>,
+    /// What is decided next, as in an earlier solution.
+    neighborhood: Neighborhood,
     /// The decisions that led to the last solution that broke something, and how many of them the search may still make
     /// again on its way to where it leaves them.
     left: Vec<Literal>,
@@ -241,6 +246,7 @@ impl Solver {
             analysis: Analysis::default(),
             is_contradictory: false,
             assumption: None,
+            neighborhood: Neighborhood::default(),
             left: Vec::new(),
             num_left: 0,
             is_returning: false,
@@ -435,7 +441,7 @@ impl Solver {
                     self.retract(0);
                     return Answer::Stopped;
                 }
-                if self.decide(Deciding::OneByOne) {
+                if problem.dispatch(self) || self.decide(Deciding::OneByOne) {
                     self.single_decisions += 1;
                     if self.burst == 0 && self.single_decisions >= SINGLE_DECISIONS {
                         (self.burst, self.single_decisions) = (1, 0);
@@ -489,6 +495,13 @@ impl Solver {
             Err(conflict) => self.is_contradictory = !self.learn(&conflict),
         }
         Ok(())
+    }
+
+    /// Whether propagation alone shows that there is no solution; `None` if it was stopped before. What it finds stays.
+    pub(crate) fn is_refuted_at_root(&mut self, stop: &mut dyn FnMut() -> bool) -> Option<bool> {
+        self.record = None;
+        self.propagate_at_root(stop).ok()?;
+        Some(self.is_contradictory)
     }
 
     /// Whether to stop, by a look at that from time to time; so many steps were made since the last one.
@@ -730,6 +743,7 @@ impl Solver {
                 }
             }
         });
+        self.neighborhood.retract(level);
         self.head = self.head.min(self.trail.events.len());
         self.theory_head = self.theory_head.min(self.trail.events.len());
         if let Some(&head) = self.theory_heads.get(level as usize) {
@@ -751,9 +765,11 @@ impl Solver {
     /// others made at once have not moved yet.
     fn decide(&mut self, deciding: Deciding) -> bool {
         if let Some(assumed) = self.assumption.filter(|&assumed| self.trail.is_open(assumed)) {
-            self.trail.open_level();
-            let _ = self.trail.set(assumed, trail::Cause::Decision);
-            self.follow(assumed);
+            self.decide_on(assumed);
+            return true;
+        }
+        if let Some(kept) = self.neighborhood.decide(&self.trail) {
+            self.decide_on(kept);
             return true;
         }
         while let Some(id) = self.activity.pop() {
@@ -767,16 +783,20 @@ impl Solver {
                 return false;
             }
             let Some(option) = self.preferred(choice_point) else { continue };
-            // Levels that were opened elsewhere begin with everything propagated.
-            self.theory_heads.resize(self.trail.level() as usize, usize::MAX);
-            self.theory_heads.push(self.theory_head);
-            self.trail.open_level();
-            // An open Boolean can be either.
-            let _ = self.trail.set(option, trail::Cause::Decision);
-            self.follow(option);
+            self.decide_on(option);
             return true;
         }
         false
+    }
+
+    fn decide_on(&mut self, option: Literal) {
+        // Levels that were opened elsewhere begin with everything propagated.
+        self.theory_heads.resize(self.trail.level() as usize, usize::MAX);
+        self.theory_heads.push(self.theory_head);
+        self.trail.open_level();
+        // An open Boolean can be either.
+        let _ = self.trail.set(option, trail::Cause::Decision);
+        self.follow(option);
     }
 
     /// The decisions are taken back that led to a solution which broke something.

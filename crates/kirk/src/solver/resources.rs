@@ -21,7 +21,7 @@ use crate::failure::Member;
 use crate::trace::{Event, TreeChoice};
 
 /// Of larger sets of uses that exclude each other, only those in each other's way are ordered.
-const MAX_PAIRS: usize = 4_000;
+const MAX_PAIRS: usize = 20_000;
 
 /// A use of a resource in the solver.
 #[derive(Clone, Copy, Debug)]
@@ -204,6 +204,19 @@ impl Problem<'_> {
     pub(super) fn uses_ordered(&self, solver: &Solver) -> Vec<(UseId, UseId)> {
         let held = self.shares.orders.iter().filter(|(_, order)| solver.trail.holds(**order));
         held.map(|(&pair, _)| pair).collect()
+    }
+
+    /// The same of all resources that are shared.
+    pub(super) fn exclude_all(&mut self, solver: &mut Solver) {
+        for index in 0..self.shares.all.len() {
+            if !self.shares.all[index].has_exclusion {
+                self.exclude(solver, index);
+            }
+        }
+    }
+
+    pub(super) fn order_of_uses(&self, first: UseId, then: UseId) -> Option<Literal> {
+        self.shares.orders.get(&(first, then)).copied()
     }
 
     /// Tells the solver of the uses that exclude each other two by two.

@@ -11,7 +11,7 @@ use super::trail::{Conflict, Trail};
 use crate::ids::TourId;
 
 /// Of more movements nothing is said: there would be too many sets of them.
-pub(super) const MAX_MOVEMENTS: usize = 12;
+pub(super) const MAX_MOVEMENTS: usize = 15;
 /// No way leads there.
 const NO_WAY: i64 = i64::MAX / 4;
 

@@ -93,7 +93,7 @@ impl Parser<'_> {
                 self.report_expected("`=` and the level at the start");
             }
         } else {
-            self.report_expected("`..` and the maximum level, or `capacity` before the number,");
+            self.report_expected("`..` and the maximum level, or `capacity` before the number");
         }
         self.close(node, SyntaxKind::Range);
     }
