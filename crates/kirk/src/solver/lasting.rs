@@ -300,12 +300,8 @@ impl Problem<'_> {
         let is_certain = solver.are_certain(&presences);
         let right_first = if is_certain { !left_first } else { solver.boolean() };
         solver.resize();
+        // As of other pairs, an order says nothing where they are not both there.
         if !is_certain {
-            for order in [left_first, right_first] {
-                for presence in presences {
-                    solver.imply(order, presence);
-                }
-            }
             solver.at_least_one([!presences[0], !presences[1], left_first, right_first]);
         }
         let first = solver.differences.len();
@@ -390,8 +386,6 @@ impl Problem<'_> {
                         let after = solver.boolean();
                         kept_before.push((Ordering { first: ask, then: threat }, after));
                         solver.resize();
-                        solver.imply(after, asked.presence);
-                        solver.imply(after, threatening.presence);
                         let first = solver.differences.len();
                         solver.difference(threatening.start, asked.end, 0, [after; 2]);
                         solver.check_differences(first);

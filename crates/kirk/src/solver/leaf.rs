@@ -200,12 +200,8 @@ impl Solver {
         let is_certain = touch.is_empty() && self.are_certain(&when);
         let right_first = if is_certain { !left_first } else { self.boolean() };
         self.resize();
+        // An order of intervals that are not both there says nothing: that it fails would only be more to propagate.
         if !is_certain {
-            for order in [left_first, right_first] {
-                for presence in when {
-                    self.imply(order, presence);
-                }
-            }
             let orders = [!when[0], !when[1], left_first, right_first];
             self.at_least_one(orders.into_iter().chain(touch.iter().copied()));
         }

@@ -768,7 +768,7 @@ impl Solver {
             self.decide_on(assumed);
             return true;
         }
-        if let Some(kept) = self.neighborhood.decide(&self.trail) {
+        if let Some(kept) = self.neighborhood.decide(&self.trail, &self.choice_points) {
             self.decide_on(kept);
             return true;
         }

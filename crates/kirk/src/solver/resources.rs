@@ -321,8 +321,11 @@ impl Problem<'_> {
         solver.resize();
         // What the literal means; that it must hold is said elsewhere.
         solver.tell_structure();
-        solver.imply(order, first.interval.presence);
-        solver.imply(order, then.interval.presence);
+        // Where uses overlap all of them are there anyway; what mends a level has to be there for it.
+        if first.change != Change::Uses {
+            solver.imply(order, first.interval.presence);
+            solver.imply(order, then.interval.presence);
+        }
         let differences = solver.differences.len();
         solver.difference(begun, over, 0, [order; 2]);
         solver.check_differences(differences);
