@@ -160,6 +160,7 @@ struct Grounder<'task> {
 /// Replaces parameters by objects.
 pub(super) fn ground(task: &Task) -> Result<Ground, PddlError> {
     let mut grounder = Grounder::new(task);
+    grounder.check_initial()?;
     let mut actions = Vec::new();
     for schema in &task.schemas {
         grounder.instances(schema, &mut actions)?;
@@ -228,6 +229,17 @@ impl<'task> Grounder<'task> {
         }
     }
 
+    /// Whether what is so at first is about objects.
+    fn check_initial(&self) -> Result<(), PddlError> {
+        let timed = self.task.timed.iter().map(|(_, application, _)| application);
+        let values = self.task.values.iter().map(|(fluent, _)| fluent);
+        let terms = self.task.facts.iter().chain(timed).chain(values).flat_map(|it| &it[1..]);
+        for term in terms {
+            self.object(term, &Bindings::new(), ":init")?;
+        }
+        Ok(())
+    }
+
     /// The objects that may replace a parameter of these types.
     fn objects_of(&self, kinds: &[String]) -> Vec<&'task str> {
         let is_one = |object: &str| {
@@ -243,6 +255,11 @@ impl<'task> Grounder<'task> {
     fn instances(&mut self, schema: &'task Schema, actions: &mut Vec<Action>) -> Result<(), PddlError> {
         if schema.parameters.len() > MAX_PARAMETERS {
             return Err(PddlError::TooMany { what: "parameters of an action", most: MAX_PARAMETERS });
+        }
+        let mut names = BTreeSet::new();
+        if !schema.parameters.iter().all(|(name, _)| names.insert(name)) {
+            let place = format!("{} in line {}", schema.name, schema.line);
+            return Err(PddlError::Said { place, what: "a parameter of the same name as another one" });
         }
         let choices: Vec<Vec<&str>> =
             schema.parameters.iter().map(|(_, kinds)| self.objects_of(kinds)).collect();
@@ -776,6 +793,16 @@ impl Ground {
     fn keep_relevant(&mut self) {
         let (mut wanted, mut numbers) = (BTreeSet::new(), BTreeSet::new());
         let mut open = vec![self.goal.clone()];
+        // What lowers the metric is worth doing for itself.
+        let factors = self.metric.as_ref().map(|metric| metric.factors.clone()).unwrap_or_default();
+        let is_worth_it = |action: &Action| {
+            let mut changes = action.snaps().into_iter().flat_map(|snap| &snap.changes);
+            changes.any(|(fluent, change)| {
+                factors
+                    .get(fluent)
+                    .is_some_and(|factor| factor.is_negative() != change.is_negative() && !change.is_zero())
+            })
+        };
         let mut waiting = std::mem::take(&mut self.actions);
         while !open.is_empty() {
             for conditions in open.drain(..) {
@@ -783,10 +810,11 @@ impl Ground {
                 numbers.extend(conditions.needs.into_iter().map(|need| need.fluent));
             }
             let helps = |action: &Action| {
-                action.snaps().into_iter().any(|snap| {
-                    snap.sets.iter().any(|(atom, value)| wanted.contains(&(*atom, *value)))
-                        || snap.changes.keys().any(|fluent| numbers.contains(fluent))
-                })
+                is_worth_it(action)
+                    || action.snaps().into_iter().any(|snap| {
+                        snap.sets.iter().any(|(atom, value)| wanted.contains(&(*atom, *value)))
+                            || snap.changes.keys().any(|fluent| numbers.contains(fluent))
+                    })
             };
             let (found, rest): (Vec<_>, Vec<_>) = waiting.into_iter().partition(helps);
             waiting = rest;

@@ -388,6 +388,13 @@ impl<'ground> Writer<'ground> {
             ));
             return String::new();
         }
+        if let Some(last) =
+            self.ground.timed.iter().map(|(time, _, _)| *time).max().filter(|_| metric.of_time.is_positive())
+        {
+            self.remarks.push(format!(
+                "the mission ends after the last timed change, at {last}, even if the goal is reached earlier"
+            ));
+        }
         format!("\nobjective minimize {};\n", terms.join(" "))
     }
 

@@ -117,3 +117,38 @@ fn what_is_not_well_formed_has_its_line() {
     );
     assert!(told(&"(".repeat(1000)).contains("nest deeper"));
 }
+
+#[test]
+fn facts_and_parameters_are_checked() {
+    let of = |domain: &str, problem: &str| translate(("d.pddl", domain), ("x.pddl", problem), ONCE);
+    for (fact, unknown) in [("(at d)", "d"), ("(at 5 (at e))", "e"), ("(= (fuel f) 1)", "f")] {
+        let text = problem("(at b)").replace("(at a)", &format!("(at a) {fact}"));
+        let expected = PddlError::Unknown { place: ":init".to_owned(), name: unknown.to_owned() };
+        assert_eq!(of(DOMAIN, &text), Err(expected), "{fact}");
+    }
+    let twice = DOMAIN.replace(":parameters (?a ?b", ":parameters (?a ?a ?b");
+    let refused = of(&twice, &problem("(at b)")).expect_err("one name twice").to_string();
+    assert!(refused.contains("a parameter of the same name"), "{refused}");
+}
+
+#[test]
+fn what_only_improves_the_metric_is_kept() {
+    let domain = DOMAIN.replace("(:functions (fuel))", "(:functions (fuel) (photos))").replacen(
+        "(:durative-action",
+        "(:durative-action shoot :parameters () :duration (= ?duration 1) :condition () \
+         :effect (at end (increase (photos) 1))) (:durative-action",
+        1,
+    );
+    let with = |metric: &str| {
+        let text = problem("(at b)").replace("(= (fuel) 5)", "(= (fuel) 5) (= (photos) 0) (at 7 (at c))");
+        let text = text.replace("(:goal", &format!("{metric} (:goal"));
+        translate(("d.pddl", &domain), ("x.pddl", &text), ONCE).expect(metric)
+    };
+    let kept = with("(:metric maximize (photos))");
+    assert!(kept.mission.contains("primitive shoot__()[1,1] rewards 1;"), "{}", kept.mission);
+    assert!(kept.mission.contains("objective minimize -reward;"), "{}", kept.mission);
+    assert!(!with("(:metric minimize (photos))").mission.contains("shoot"));
+    let timed = with("(:metric minimize (total-time))");
+    let remark = "the mission ends after the last timed change, at 7, even if the goal is reached earlier";
+    assert!(timed.remarks.iter().any(|it| it == remark), "{:?}", timed.remarks);
+}
