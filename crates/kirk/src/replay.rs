@@ -200,6 +200,8 @@ impl Replay {
             if let Some((orders, uses)) = frames.last().and_then(|frame| frame.kept.as_ref()) {
                 result.orders.clone_from(orders);
                 result.uses.clone_from(uses);
+                // A plan keeps the orders of uses, but not when they start.
+                result.starts.clear();
             }
         }
         let windows = self.windows(result);

@@ -4,6 +4,8 @@
 //!
 //! Only tasks that exist for sure count. Everything is told for one direction of time and done for both.
 
+use std::collections::BTreeMap;
+
 use typed_index_collections::TiVec;
 
 use super::interval::Interval;
@@ -15,6 +17,9 @@ use crate::ids::CumulativeId;
 
 /// Larger sets are left to the orders of those that are too much together.
 const MAX_TASKS: usize = 4_000;
+
+/// The work of more tasks is only added up before anything is decided: each end is compared with each task.
+const MANY_TASKS: usize = 500;
 
 #[derive(Clone, Debug)]
 struct Shared {
@@ -117,14 +122,18 @@ impl Cumulatives {
             self.present.extend(present.map(|(task, amount)| Task::new(trail, task, *amount, is_forward)));
             if is_forward {
                 self.present.sort_by_key(|task| std::cmp::Reverse(task.earliest_start));
-                check_work(&self.present, *capacity, trail.level() == 0)?;
+                let is_root = trail.level() == 0;
+                if is_root || self.present.len() <= MANY_TASKS {
+                    check_work(&self.present, *capacity, is_root)?;
+                }
             }
             find_profile(&self.present, &mut self.profile);
+            let mut sure = Sure::new(&self.present);
             if let Some(over) = self.profile.iter().find(|segment| segment.taken > *capacity) {
-                return Err(surely_on(&self.present, over.from, *capacity, None));
+                return Err(sure.reason(over.from, *capacity, None));
             }
             for task in &self.present {
-                push(trail, task, &self.present, &self.profile, *capacity)?;
+                push(trail, task, &mut sure, &self.profile, *capacity)?;
             }
         }
         Ok(true)
@@ -153,7 +162,7 @@ fn find_profile(tasks: &[Task], profile: &mut Vec<Segment>) {
 fn push(
     trail: &mut Trail,
     task: &Task,
-    tasks: &[Task],
+    sure: &mut Sure<'_>,
     profile: &[Segment],
     capacity: i64,
 ) -> Result<(), Conflict> {
@@ -168,30 +177,46 @@ fn push(
     if time < task.earliest_start || task.is_on(time) {
         return Ok(());
     }
-    let mut reason = surely_on(tasks, time, capacity - task.amount, Some(task));
+    let mut reason = sure.reason(time, capacity - task.amount, Some(task));
     reason.extend([Literal::new(task.ends_after, -(time + 1)), task.presence]);
     reason.retain(|literal| *literal != Literal::TRUE);
     let cause = trail.note(reason);
     trail.set(Literal::new(task.starts_after, -(time + 1)), cause)
 }
 
-/// That tasks go on at a time which together take more than `room`: as few as suffice.
-fn surely_on(tasks: &[Task], time: i64, room: i64, besides: Option<&Task>) -> Conflict {
-    // Not by its start: branches of one block begin at one event.
-    let is_other = |task: &&Task| besides.is_none_or(|besides| !std::ptr::eq(besides, *task));
-    let mut on: Vec<&Task> = tasks.iter().filter(|task| task.is_on(time)).filter(is_other).collect();
-    on.sort_by_key(|task| (std::cmp::Reverse(task.amount), task.starts_after));
-    let mut taken = 0;
-    let mut reason = Vec::new();
-    for task in on {
-        if taken > room {
-            break;
-        }
-        taken += task.amount;
-        reason.extend(task.reason_on(time));
+/// The tasks that go on at some time whenever they start and end.
+struct Sure<'a> {
+    tasks: Vec<&'a Task>,
+    /// Those at one time, the largest first, of the times that were asked for.
+    at: BTreeMap<i64, Vec<&'a Task>>,
+}
+
+impl<'a> Sure<'a> {
+    fn new(tasks: &'a [Task]) -> Self {
+        let tasks = tasks.iter().filter(|task| task.latest_start < task.earliest_end).collect();
+        Self { tasks, at: BTreeMap::new() }
     }
-    reason.retain(|literal| *literal != Literal::TRUE);
-    reason
+
+    /// That tasks go on at a time which together take more than `room`: as few as suffice.
+    fn reason(&mut self, time: i64, room: i64, besides: Option<&Task>) -> Conflict {
+        let on = self.at.entry(time).or_insert_with(|| {
+            let mut on: Vec<&Task> = self.tasks.iter().copied().filter(|task| task.is_on(time)).collect();
+            on.sort_by_key(|task| (std::cmp::Reverse(task.amount), task.starts_after));
+            on
+        });
+        let mut taken = 0;
+        let mut reason = Vec::new();
+        // Not by its start: branches of one block begin at one event.
+        for task in on.iter().filter(|task| besides.is_none_or(|besides| !std::ptr::eq(besides, **task))) {
+            if taken > room {
+                break;
+            }
+            taken += task.amount;
+            reason.extend(task.reason_on(time));
+        }
+        reason.retain(|literal| *literal != Literal::TRUE);
+        reason
+    }
 }
 
 /// Whether tasks that lie between two times are more work than fits there: as they are, and as what goes with none of a

@@ -8,14 +8,26 @@ use tpn::{NodeId, UseId};
 
 use super::Solver;
 use super::encode::Problem;
-use super::literal::Literal;
+use super::literal::{Literal, Variable};
 use super::resources::Task;
-use super::trail::Cause;
 use crate::demands::ModelSupply;
 use crate::ids::ChoicePointId;
+use crate::trace::TreeChoice;
 
-/// Where dispatching takes more looks at uses than this, it is left out.
-const MAX_LOOKS: usize = 200_000_000;
+/// Orders of fewer uses are soon gone through.
+const MIN_USES: usize = 20;
+
+/// From so many uses on what starts mean is looked at after many of them.
+pub(super) const MANY_USES: usize = 1_000;
+
+/// More uses are not dispatched: each looks at all.
+const MAX_USES: usize = 5_000;
+
+/// Where bounds put more uses before others, they are not dispatched.
+const MAX_BEFORE: usize = 2_000_000;
+
+/// Starts that are decided before their consequences are looked at.
+const BURST: usize = 64;
 
 /// Failures after which the search goes on in its own order.
 const MAX_FAILURES: u64 = 20;
@@ -25,16 +37,38 @@ const MAX_FAILURES: u64 = 20;
 pub(super) struct Dispatching {
     /// The greatest number of conflicts at which it goes on.
     until: u64,
+    /// The number of conflicts of the last look: after another one, uses may not have started any more.
+    conflicts: u64,
     resources: Vec<Pool>,
     /// By use: those that end before it starts.
     before: BTreeMap<UseId, Vec<Task>>,
+    /// The uses of one activity, by when it starts and that it happens: which ones of which resources.
+    together: BTreeMap<(Variable, Literal), Vec<(usize, usize)>>,
 }
 
 /// A reusable resource.
 #[derive(Clone, Debug)]
 struct Pool {
     capacity: i64,
-    tasks: Vec<Task>,
+    tasks: Vec<Waiting>,
+    /// What has started, by its end.
+    started: Vec<Started>,
+}
+
+/// A use that may start.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    task: Task,
+    /// There was no room for it before.
+    earliest: i64,
+    is_started: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Started {
+    start: i64,
+    end: i64,
+    amount: i64,
 }
 
 /// A use that has not started.
@@ -47,41 +81,61 @@ struct Candidate {
 }
 
 impl Problem<'_> {
-    /// Begins to dispatch, unless there are too many uses, or nature chooses durations: times that fit say nothing then.
+    /// Begins to dispatch from the start, where there are enough uses for it to matter.
     pub(crate) fn begin_dispatch(&mut self, solver: &mut Solver) {
-        if self.faces_nature {
-            return;
+        if self.num_uses() >= MIN_USES && self.can_dispatch() {
+            self.exclude_all(solver);
+            self.go_on_dispatching(solver);
         }
+    }
+
+    /// Whether uses can be dispatched: not too many, and not where nature chooses durations, because times that fit say nothing
+    /// then.
+    pub(super) fn can_dispatch(&self) -> bool {
+        !self.faces_nature && self.num_uses() <= MAX_USES
+    }
+
+    /// How many uses all resources have.
+    pub(super) fn num_uses(&self) -> usize {
+        self.shares.tasks().iter().map(|(_, tasks)| tasks.len()).sum()
+    }
+
+    /// Dispatches what has not started.
+    pub(super) fn go_on_dispatching(&mut self, solver: &Solver) {
+        let waiting = |task| Waiting { task, earliest: i64::MIN, is_started: false };
         let resources = self.shares.tasks().into_iter().filter_map(|(supply, tasks)| match supply {
-            ModelSupply::Reusable { capacity } => Some(Pool { capacity, tasks }),
+            ModelSupply::Reusable { capacity } => {
+                let tasks = tasks.into_iter().filter(|task| task.is_active).map(waiting).collect();
+                Some(Pool { capacity, tasks, started: Vec::new() })
+            }
             ModelSupply::Reservoir { .. } => None,
         });
         let resources: Vec<Pool> = resources.collect();
-        let count: usize = resources.iter().map(|pool| pool.tasks.len()).sum();
-        let looks: usize =
-            resources.iter().map(|pool| pool.tasks.len().saturating_mul(pool.tasks.len())).sum();
-        let looks = looks + self.model.arcs.len();
-        if looks.saturating_mul(count) > MAX_LOOKS {
-            return;
+        let Some(before) = self.earlier_uses(&resources) else { return };
+        let mut together: BTreeMap<(Variable, Literal), Vec<(usize, usize)>> = BTreeMap::new();
+        for (resource, pool) in resources.iter().enumerate() {
+            for (at, it) in pool.tasks.iter().enumerate() {
+                together.entry(activity(&it.task)).or_default().push((resource, at));
+            }
         }
-        self.exclude_all(solver);
-        let before = self.earlier_uses(&resources);
-        let until = solver.stats.conflicts + MAX_FAILURES;
-        self.dispatching = Some(Dispatching { until, resources, before });
+        let conflicts = solver.stats.conflicts;
+        let until = conflicts + MAX_FAILURES;
+        self.dispatching = Some(Dispatching { until, conflicts, resources, before, together });
     }
 
-    /// By use: those that bounds make end before it starts.
-    fn earlier_uses(&self, resources: &[Pool]) -> BTreeMap<UseId, Vec<Task>> {
+    /// By use: those that bounds make end before it starts. `None` if these are too many.
+    fn earlier_uses(&self, resources: &[Pool]) -> Option<BTreeMap<UseId, Vec<Task>>> {
         let mut from: Vec<Vec<NodeId>> = vec![Vec::new(); self.model.num_nodes];
         for arc in self.model.arcs.iter().filter(|arc| arc.lower >= 0 && arc.to != self.model.start) {
             from[arc.from.index()].push(arc.to);
         }
-        let tasks: Vec<Task> = resources.iter().flat_map(|pool| &pool.tasks).copied().collect();
+        let tasks: Vec<Task> = resources.iter().flat_map(|pool| &pool.tasks).map(|it| it.task).collect();
         let mut starting: BTreeMap<NodeId, Vec<UseId>> = BTreeMap::new();
         for task in &tasks {
             starting.entry(task.start).or_default().push(task.id);
         }
         let mut before: BTreeMap<UseId, Vec<Task>> = BTreeMap::new();
+        let mut left = MAX_BEFORE;
         for task in tasks.iter().filter(|task| task.start != task.end) {
             let mut reached = FixedBitSet::with_capacity(self.model.num_nodes);
             let mut open = vec![task.end];
@@ -92,60 +146,101 @@ impl Problem<'_> {
                 for &used in starting.get(&node).into_iter().flatten() {
                     before.entry(used).or_default().push(*task);
                 }
+                left = left.checked_sub(1)?;
                 open.extend(&from[node.index()]);
             }
         }
-        before
+        Some(before)
     }
 
-    /// Decides that the next use happens, what it comes after, or when it starts. `false` if all have started.
+    /// Decides that the next use happens, what it comes after, or when it starts; of uses that wait for nothing but their
+    /// resource the starts of many. `false` if all have started.
     pub(super) fn dispatch(&mut self, solver: &mut Solver) -> bool {
-        let Some(dispatching) = &self.dispatching else { return false };
-        let next = if solver.stats.conflicts > dispatching.until { None } else { dispatching.next(solver) };
-        let Some(Candidate { task, resource, start, .. }) = next else {
-            self.dispatching = None;
+        let Some(mut dispatching) = self.dispatching.take() else { return false };
+        if solver.stats.conflicts > dispatching.until {
             return false;
-        };
-        if solver.trail.is_open(task.interval.presence) {
-            solver.decide_on(task.interval.presence);
-            return true;
         }
-        let others = dispatching.resources[resource].tasks.iter().filter(|other| other.id != task.id);
-        let order = others.filter(|other| is_started(solver, other)).find_map(|other| {
-            let is_before = solver.trail.least(other.interval.end) <= start;
-            let (first, then) = if is_before { (other.id, task.id) } else { (task.id, other.id) };
-            self.order_of_uses(first, then).filter(|&order| solver.trail.is_open(order))
-        });
-        if let Some(order) = order {
-            solver.decide_on(order);
-            return true;
+        let mut has_decided = false;
+        let burst = if self.num_uses() < MANY_USES { 1 } else { BURST };
+        for _ in 0..burst {
+            let Some(Candidate { task, resource, start, .. }) = dispatching.next(solver) else { break };
+            let is_open = solver.trail.is_open(task.interval.presence);
+            let others = dispatching.resources[resource].tasks.iter().filter(|other| other.is_started);
+            let order = others.map(|other| other.task).find_map(|other| {
+                let is_before = solver.trail.least(other.interval.end) <= start;
+                let (first, then) = if is_before { (other.id, task.id) } else { (task.id, other.id) };
+                self.order_of_uses(first, then).filter(|&order| solver.trail.is_open(order))
+            });
+            let is_free = !is_open && order.is_none() && !dispatching.before.contains_key(&task.id);
+            if has_decided && !is_free {
+                break;
+            }
+            has_decided = true;
+            if is_open {
+                solver.decide_on(task.interval.presence);
+            } else if let Some(order) = order {
+                solver.decide_on(order);
+            } else {
+                self.start_at(solver, &task, start);
+                dispatching.start(&task, start);
+            }
+            if !is_free {
+                break;
+            }
         }
-        let begins = task.interval.start;
-        let is_later = solver.trail.least(begins) < start;
-        let option =
-            if is_later { Literal::new(begins.lower(), -start) } else { Literal::new(begins.upper(), start) };
-        solver.trail.open_level();
-        // An open bound can be decided.
-        let _ = solver.trail.set(option, Cause::Decision);
-        solver.stats.expanded += 1;
-        solver.record_start(option, (task.id, self.model.time(start)));
-        true
+        self.dispatching = has_decided.then_some(dispatching);
+        has_decided
+    }
+}
+
+impl Problem<'_> {
+    /// Decides that a use starts at a time: not before, where that is possible, and not after.
+    fn start_at(&self, solver: &mut Solver, task: &Task, start: i64) {
+        let (used, begins) = (task.id, task.interval.start);
+        let later = TreeChoice::Later { used, than: self.model.time(start - 1) };
+        let by = TreeChoice::Start { used, by: self.model.time(start) };
+        for (option, choice) in
+            [(Literal::new(begins.lower(), -start), later), (Literal::new(begins.upper(), start), by)]
+        {
+            if solver.trail.is_open(option) {
+                solver.open_level_for(option);
+                solver.stats.expanded += 1;
+                solver.record_start(option, choice);
+            }
+        }
     }
 }
 
 impl Dispatching {
     /// The use that starts next.
-    fn next(&self, solver: &Solver) -> Option<Candidate> {
+    fn next(&mut self, solver: &Solver) -> Option<Candidate> {
+        if self.conflicts != solver.stats.conflicts {
+            self.conflicts = solver.stats.conflicts;
+            for pool in &mut self.resources {
+                pool.started.clear();
+                for it in &mut pool.tasks {
+                    (it.is_started, it.earliest) = (false, i64::MIN);
+                }
+            }
+        }
+        for pool in &mut self.resources {
+            pool.note_started(solver);
+        }
         let mut candidates: Vec<Candidate> = Vec::new();
-        for (resource, pool) in self.resources.iter().enumerate() {
-            let present = pool.tasks.iter().filter(|task| !solver.trail.fails(task.interval.presence));
-            let (started, open): (Vec<&Task>, Vec<&Task>) =
-                present.partition(|task| is_started(solver, task));
-            for &task in open.iter().filter(|task| self.may_start(solver, task)) {
-                let start = earliest(solver, task, &started, pool.capacity);
+        for resource in 0..self.resources.len() {
+            for at in 0..self.resources[resource].tasks.len() {
+                let Waiting { task, is_started, .. } = self.resources[resource].tasks[at];
+                let mut before = self.before.get(&task.id).into_iter().flatten();
+                if is_started
+                    || solver.trail.fails(task.interval.presence)
+                    || !before.all(|it| is_over(solver, it))
+                {
+                    continue;
+                }
+                let start = self.earliest(solver, (resource, at));
                 if start <= solver.trail.most(task.interval.start) {
                     let end = start + task.interval.duration;
-                    candidates.push(Candidate { task: *task, resource, start, end });
+                    candidates.push(Candidate { task, resource, start, end });
                 }
             }
         }
@@ -169,31 +264,79 @@ impl Dispatching {
         competing.min_by_key(|it| (solver.trail.most(it.task.interval.start), it.start, it.task.id)).copied()
     }
 
-    /// Whether all has started that ends before a use.
-    fn may_start(&self, solver: &Solver, task: &Task) -> bool {
-        let mut earlier = self.before.get(&task.id).into_iter().flatten();
-        earlier.all(|it| solver.trail.fails(it.interval.presence) || is_started(solver, it))
+    /// The earliest time at which all resources of what a use belongs to have room.
+    fn earliest(&mut self, solver: &Solver, (resource, at): (usize, usize)) -> i64 {
+        let task = self.resources[resource].tasks[at].task;
+        let mut start = solver.trail.least(task.interval.start);
+        let together = self.together.get(&activity(&task)).map_or(&[] as &[_], Vec::as_slice);
+        loop {
+            let before = start;
+            for &(resource, at) in together {
+                start = self.resources[resource].earliest(at, start);
+            }
+            if start == before {
+                return start;
+            }
+        }
     }
+
+    /// All uses of the activity of a use have started.
+    fn start(&mut self, task: &Task, start: i64) {
+        for &(resource, at) in self.together.get(&activity(task)).into_iter().flatten() {
+            self.resources[resource].start(at, start);
+        }
+    }
+}
+
+impl Pool {
+    fn note_started(&mut self, solver: &Solver) {
+        for at in 0..self.tasks.len() {
+            let Waiting { task, is_started: is_known, .. } = self.tasks[at];
+            if !is_known && is_started(solver, &task) {
+                self.start(at, solver.trail.least(task.interval.start));
+            }
+        }
+    }
+
+    fn start(&mut self, at: usize, start: i64) {
+        self.tasks[at].is_started = true;
+        let Task { interval, amount, .. } = self.tasks[at].task;
+        let end = start + interval.duration;
+        let after = self.started.partition_point(|other| other.end <= end);
+        self.started.insert(after, Started { start, end, amount });
+    }
+
+    /// The earliest start from a time on at which there is room for a use beside those that have started.
+    fn earliest(&mut self, at: usize, from: i64) -> i64 {
+        let Waiting { task, earliest, .. } = self.tasks[at];
+        let least = from.max(earliest);
+        let placed = &self.started[self.started.partition_point(|other| other.end <= least)..];
+        let has_room = |&start: &i64| {
+            let end = start + task.interval.duration.max(1);
+            let later = &placed[placed.partition_point(|other| other.end <= start)..];
+            let taken: i64 = later.iter().filter(|other| other.start < end).map(|other| other.amount).sum();
+            taken + task.amount <= self.capacity
+        };
+        let mut starts = std::iter::once(least).chain(placed.iter().map(|other| other.end));
+        let start = starts.find(has_room).unwrap_or(least);
+        if from <= earliest {
+            self.tasks[at].earliest = start;
+        }
+        start
+    }
+}
+
+/// What a use is a part of.
+const fn activity(task: &Task) -> (Variable, Literal) {
+    (task.interval.start, task.interval.presence)
+}
+
+/// Whether an earlier use is in nobody's way any more.
+fn is_over(solver: &Solver, task: &Task) -> bool {
+    solver.trail.fails(task.interval.presence) || is_started(solver, task)
 }
 
 fn is_started(solver: &Solver, task: &Task) -> bool {
     let start = task.interval.start;
     solver.trail.holds(task.interval.presence) && solver.trail.least(start) == solver.trail.most(start)
-}
-
-/// The earliest start at which a resource has room for a use beside those that have started.
-fn earliest(solver: &Solver, task: &Task, started: &[&Task], capacity: i64) -> i64 {
-    let times = |task: &&Task| {
-        (solver.trail.least(task.interval.start), solver.trail.least(task.interval.end), task.amount)
-    };
-    let least = solver.trail.least(task.interval.start);
-    let placed: Vec<(i64, i64, i64)> = started.iter().map(times).filter(|it| it.1 > least).collect();
-    let mut starts: Vec<i64> = placed.iter().map(|it| it.1).chain([least]).collect();
-    starts.sort_unstable();
-    let has_room = |&start: &i64| {
-        let end = start + task.interval.duration.max(1);
-        let overlapping = placed.iter().filter(|it| it.0 < end && it.1 > start);
-        overlapping.map(|it| it.2).sum::<i64>() + task.amount <= capacity
-    };
-    starts.into_iter().find(has_room).unwrap_or(least)
 }

@@ -790,13 +790,18 @@ impl Solver {
     }
 
     fn decide_on(&mut self, option: Literal) {
+        self.open_level_for(option);
+        self.follow(option);
+    }
+
+    /// Makes an open literal hold in a new level.
+    fn open_level_for(&mut self, option: Literal) {
         // Levels that were opened elsewhere begin with everything propagated.
         self.theory_heads.resize(self.trail.level() as usize, usize::MAX);
         self.theory_heads.push(self.theory_head);
         self.trail.open_level();
-        // An open Boolean can be either.
+        // What is open can be either.
         let _ = self.trail.set(option, trail::Cause::Decision);
-        self.follow(option);
     }
 
     /// The decisions are taken back that led to a solution which broke something.

@@ -9,7 +9,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
-use exact::{Rational, Time};
+use exact::Rational;
 use stn::{Inconsistency, Stn};
 use tpn::UseId;
 
@@ -292,10 +292,10 @@ impl Solver {
         record.tell(event);
     }
 
-    /// Tells the decision just made, that a use starts by a time.
-    pub(super) fn record_start(&mut self, option: Literal, (used, by): (UseId, Time)) {
+    /// Tells the decision just made, when a use starts.
+    pub(super) fn record_start(&mut self, option: Literal, choice: TreeChoice) {
         if let Some(record) = self.recording() {
-            record.starts.insert(option, TreeChoice::Start { used, by });
+            record.starts.insert(option, choice);
         }
         self.record_decision(option);
     }

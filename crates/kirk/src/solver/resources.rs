@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rmpl::program::Change;
 use tpn::{NodeId, UseId, UseOrdering};
 
+use super::dispatch::MANY_USES;
 use super::encode::{Part, Problem};
 use super::instants::Instants;
 use super::interval::Interval;
@@ -21,7 +22,10 @@ use crate::failure::Member;
 use crate::trace::{Event, TreeChoice};
 
 /// Of larger sets of uses that exclude each other, only those in each other's way are ordered.
-const MAX_PAIRS: usize = 20_000;
+const MAX_PAIRS: usize = 4_000;
+
+/// The same where uses are dispatched.
+const MAX_DISPATCHED_PAIRS: usize = 20_000;
 
 /// A use of a resource in the solver.
 #[derive(Clone, Copy, Debug)]
@@ -170,6 +174,9 @@ impl Problem<'_> {
             && excluding.is_empty()
             && let Some(first) = found.iter().find_map(|critical| first_to_start(solver, critical))
         {
+            if self.num_uses() >= MANY_USES && self.can_dispatch() {
+                self.go_on_dispatching(solver);
+            }
             self.decide_start(solver, &first);
             return Sharing::Decided;
         }
@@ -178,7 +185,7 @@ impl Problem<'_> {
         }
         solver.retract(0);
         for index in excluding {
-            self.exclude(solver, index);
+            self.exclude(solver, index, MAX_PAIRS);
         }
         for critical in found {
             match critical {
@@ -197,7 +204,8 @@ impl Problem<'_> {
         solver.trail.open_level();
         // An open bound can be decided.
         let _ = solver.trail.set(option, Cause::Decision);
-        solver.record_start(option, (task.id, self.model.time(least)));
+        let by = self.model.time(least);
+        solver.record_start(option, TreeChoice::Start { used: task.id, by });
     }
 
     /// Which uses the solution orders.
@@ -210,7 +218,7 @@ impl Problem<'_> {
     pub(super) fn exclude_all(&mut self, solver: &mut Solver) {
         for index in 0..self.shares.all.len() {
             if !self.shares.all[index].has_exclusion {
-                self.exclude(solver, index);
+                self.exclude(solver, index, MAX_DISPATCHED_PAIRS);
             }
         }
     }
@@ -219,8 +227,8 @@ impl Problem<'_> {
         self.shares.orders.get(&(first, then)).copied()
     }
 
-    /// Tells the solver of the uses that exclude each other two by two.
-    fn exclude(&mut self, solver: &mut Solver, index: usize) {
+    /// Tells the solver of the uses that exclude each other two by two, of at most so many pairs.
+    fn exclude(&mut self, solver: &mut Solver, index: usize, most_pairs: usize) {
         self.shares.all[index].has_exclusion = true;
         let Shared { supply: ModelSupply::Reusable { capacity }, tasks, .. } = self.shares.all[index].clone()
         else {
@@ -235,7 +243,7 @@ impl Problem<'_> {
         if large.len() > 2 {
             solver.disjunctives.add_tasks(large.iter().map(|task| task.interval).collect(), premise);
         }
-        if large.len() * large.len() / 2 > MAX_PAIRS {
+        if large.len() * large.len() / 2 > most_pairs {
             self.shares.all[index].is_crowded = true;
             return;
         }
