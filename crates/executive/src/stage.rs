@@ -230,11 +230,12 @@ fn guided(network: &Network) -> Network {
     network
 }
 
-/// Arcs lead forwards in time; only those by which facts hold the past lead back to the start.
+/// Arcs lead forwards in time, but for those by which facts hold the past, which lead back to the start, and for bounds between
+/// threads whose minimum is negative: either of their events may come first.
 fn before(network: &Network, plan: &Plan) -> Vec<Vec<NodeId>> {
     let mut before = vec![Vec::new(); network.nodes.len()];
     for (arc, _) in network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected) {
-        if arc.to != network.start && arc.from != arc.to {
+        if arc.to != network.start && arc.from != arc.to && !arc.lower.is_negative() {
             before[arc.to.index()].push(arc.from);
         }
     }

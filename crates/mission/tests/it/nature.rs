@@ -1,6 +1,6 @@
 //! What nature chooses, in simulation and in many runs (SPEC 13.2): within its ranges a controllable plan never fails.
 
-use exact::Time;
+use exact::{Rational, Time};
 use executive::{Disturbance, Ending, Happening, Script};
 use mission::execution::{self, Ran};
 use mission::sampling::Sampler;
@@ -135,4 +135,43 @@ fn a_vehicle_drives_at_the_speed_that_natures_duration_needs() {
     }
     assert!([Time::from(30), Time::from(60)].contains(&durations[1]), "{durations:?}");
     assert_ne!(durations[0], durations[1]);
+}
+
+/// Runs keep bounds between threads of which either event may come first, and what else the plan orders.
+#[test]
+fn either_event_of_a_bound_may_come_first_in_runs() {
+    let mut random = tpn::generate::Rng::new(11);
+    let mut planned = 0;
+    for case in 0..48 {
+        let (low, high) = (random.between(-20, 4), random.between(0, 12));
+        let ends = ["start", "end"];
+        let (from, to) = (ends[random.below(2) as usize], ends[random.below(2) as usize]);
+        let kind = ["", "contingent "][random.below(2) as usize];
+        let source = format!(
+            "resource Link; primitive Send() {kind}[2,5] uses Link;
+             scenario M[0,60] = {{ {{ delay; Send() as One }}, {{ delay; Send() as Other }} }}
+             constrain One.{from} to Other.{to} [{low},{high}];"
+        );
+        let mission = Mission::read(&source);
+        let has_plan = mission.with_plan((kirk::Options::default(), 0), |_, planned, _, _| {
+            mission::planning::has_plan(&planned.planning.outcome)
+        });
+        if !has_plan {
+            continue;
+        }
+        planned += 1;
+        for seed in 0..3 {
+            let outcome = mission.execute(seed, &Script::default()).outcome;
+            assert_eq!(outcome.ending, Ending::Finished, "case {case}: {:?}\n{source}", outcome.log);
+            for entry in &outcome.log {
+                let is_kept = match &entry.happening {
+                    Happening::Violation { .. } => false,
+                    Happening::Level { level, .. } => *level <= Rational::ONE,
+                    _ => true,
+                };
+                assert!(is_kept, "case {case}: {entry:?}\n{source}");
+            }
+        }
+    }
+    assert!(planned > 20, "{planned} plans");
 }
