@@ -71,8 +71,11 @@ pub(crate) fn sight(
     let mut frames = frames.filter(|it| it.vehicle as usize == index);
     let driven = frames.find_map(|it| it.at(at.to_f64()));
     let program = &evaluated.compiled.program;
-    let place_m =
-        driven.map(|frame| frame.position_m).or_else(|| snapshot::standing::start_m(program, index))?;
+    let start_m = || {
+        let starts = snapshot::standing::starts(program, &evaluated.planned.network.occurrences);
+        starts.get(index).copied().flatten().map(|start| start.place_m)
+    };
+    let place_m = driven.map(|frame| frame.position_m).or_else(start_m)?;
     let is_seen = Seeing::new(world, map).sees(vehicle, place_m, location)?;
     Some(Sight { is_seen, from_m: place_m.coords.into() })
 }

@@ -742,14 +742,14 @@ fn with_parked(mut motions: Vec<VehicleMotion>, problem: &Problem<'_>) -> Vec<Ve
     if motions.is_empty() {
         return motions;
     }
-    let starts = standing::own_starts_m(program);
-    for (vehicle, start_m) in starts.into_iter().enumerate() {
+    let starts = standing::starts(program, &problem.network.occurrences);
+    for (vehicle, start) in starts.into_iter().enumerate() {
         let is_moved = |motion: &VehicleMotion| motion.vehicle as usize == vehicle;
         let has_stopped = places(problem).iter().any(|stopped| stopped.vehicle as usize == vehicle);
-        let Some(position_m) = start_m.filter(|_| !has_stopped && !motions.iter().any(is_moved)) else {
+        let Some(start) = start.filter(|_| !has_stopped && !motions.iter().any(is_moved)) else {
             continue;
         };
-        let frame = Keyframe { time: Time::ZERO, position_m, heading_rad: 0.0 };
+        let frame = Keyframe { time: Time::ZERO, position_m: start.place_m, heading_rad: 0.0 };
         motions.push(VehicleMotion { vehicle: vehicle as u32, keyframes: vec![frame] });
     }
     motions.sort_by_key(|motion| motion.vehicle);

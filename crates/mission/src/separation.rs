@@ -174,15 +174,17 @@ fn parts(
 ) -> BTreeMap<u32, Vec<Part>> {
     let mut parts: BTreeMap<u32, Vec<Part>> = BTreeMap::new();
     let mut stands: BTreeMap<u32, (NodeId, Point2<f64>)> = BTreeMap::new();
-    let starts = standing::own_starts_m(program);
+    let starts = standing::starts(program, &network.occurrences);
     for (drive, tracks) in drives.iter().zip(tracks) {
         let of = &network.occurrences[drive.occurrence.index()];
         let least = least_duration(network, drive.occurrence);
-        for (&vehicle, mut track) in drive.vehicles.iter().zip(tracks) {
+        for (index, (&vehicle, mut track)) in drive.vehicles.iter().zip(tracks).enumerate() {
             let Some(first) = track.first().map(|place| place.position_m) else { continue };
             let (since, stands_m) = stands.get(&vehicle).copied().unwrap_or_else(|| {
                 let own = starts.get(vehicle as usize).copied().flatten();
-                (network.start, own.unwrap_or(first))
+                // Who follows from the beginning stands in the formation already.
+                let own = own.filter(|start| index == 0 || !start.is_shared);
+                (network.start, own.map_or(first, |start| start.place_m))
             });
             if distance(&stands_m, &first) > driving::EVEN_M {
                 track = driving::joined_from(&track, stands_m);

@@ -20,6 +20,7 @@ use motion::FineWorld;
 use nalgebra::{Point2, distance};
 use rmpl::program::Program;
 use smol_str::SmolStr;
+use snapshot::standing::Start;
 use snapshot::vehicle;
 use snapshot::{DriveFrame, Keyframe, SimulatedDrive, SimulatedVehicle, VehicleMotion, standing};
 use terrain::{Obstacle, Terrain};
@@ -105,7 +106,7 @@ pub(crate) struct Driving<'run> {
     /// Where vehicles are that have driven, with their headings.
     stand: BTreeMap<u32, (Point2<f64>, f64)>,
     /// Where vehicles stand before they first drive.
-    starts_m: Vec<Option<Point2<f64>>>,
+    starts: Vec<Option<Start>>,
     /// When vehicles touch first in what was driven.
     contact: Option<Contact>,
     drives: Vec<SimulatedDrive>,
@@ -139,7 +140,7 @@ impl<'run> Driving<'run> {
         let world = FineWorld::new(map, &obstacles, MIN_ROCK_M);
         let (stand, drives, chosen) = (BTreeMap::new(), Vec::new(), BTreeMap::new());
         let seen = SeenMap::default();
-        let (starts_m, contact) = (standing::own_starts_m(problem.program), None);
+        let (starts, contact) = (standing::starts(problem.program, &problem.network.occurrences), None);
         Self {
             problem,
             map,
@@ -148,7 +149,7 @@ impl<'run> Driving<'run> {
             seed,
             world,
             stand,
-            starts_m,
+            starts,
             contact,
             drives,
             seen,
@@ -158,10 +159,26 @@ impl<'run> Driving<'run> {
 
     /// Where vehicles stand that do not drive at the moment or have not driven yet, with their numbers.
     fn standing_m(&self) -> impl Iterator<Item = (u32, Point2<f64>)> + '_ {
-        let starts = self.starts_m.iter().enumerate();
-        let starts = starts.filter_map(|(vehicle, place)| Some((vehicle as u32, (*place)?)));
+        let starts = self.starts.iter().enumerate();
+        let starts = starts.filter_map(|(vehicle, start)| Some((vehicle as u32, (*start)?)));
         let parked = starts.filter(|(vehicle, _)| !self.stand.contains_key(vehicle));
+        let parked = parked.map(|(vehicle, start)| (vehicle, self.start_m(vehicle, start)));
         self.stand.iter().map(|(&vehicle, &(place, _))| (vehicle, place)).chain(parked)
+    }
+
+    /// Where a vehicle stands that has not driven yet: who first drives as a follower stands in the formation already.
+    fn start_m(&self, vehicle: u32, start: Start) -> Point2<f64> {
+        if !start.is_shared {
+            return start.place_m;
+        }
+        let courses = self.courses.borrow();
+        let drives = courses.known.values().map(|course| &course.drive);
+        let first = drives.filter(|drive| drive.vehicles.contains(&vehicle)).min_by_key(|drive| drive.start);
+        let track = first.and_then(|drive| {
+            let index = drive.vehicles.iter().position(|&it| it == vehicle).filter(|&index| index > 0)?;
+            driving::tracks_m(drive).into_iter().nth(index)
+        });
+        track.and_then(|track| track.points_m.first().copied()).unwrap_or(start.place_m)
     }
 
     /// That the leader of a traverse is not at the location that the traverse leads to, but beside it, and who stands there.

@@ -62,10 +62,12 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
     let spacings_m = [false, true].map(|fly| standing::spacing_m(program, fly));
     let flies = |vehicle: usize| vehicle::flies(world, vehicle as u32);
     let spacing_m = |vehicle: usize| spacings_m[usize::from(flies(vehicle))];
-    let starts = world.vehicles.iter().zip(standing::start_slots(program)).enumerate();
-    let mut positions: Vec<Option<Waypoint>> = starts
-        .map(|(index, (vehicle, slot))| {
-            Some(waypoint(world, &vehicle.start.text)?.at_slot(slot, spacing_m(index)))
+    let starts = standing::starts(program, &network.occurrences).into_iter();
+    let starts = starts.zip(standing::start_slots(program, &network.occurrences));
+    let mut positions: Vec<Option<Waypoint>> = (world.vehicles.iter().zip(starts))
+        .map(|(vehicle, (start, slot))| {
+            let (name, position_m) = (vehicle.start.text.clone(), start?.place_m);
+            Some(Waypoint { name, position_m, slot })
         })
         .collect();
     let mut moving: Vec<(OccurrenceId, Moving<'_>)> = network
@@ -188,7 +190,14 @@ fn route(
         return None;
     }
     waypoints.extend(named);
-    waypoints.dedup_by(|next, before| next.position_m == before.position_m);
+    // Of two locations with one position, the vehicle is at the one that the call names.
+    waypoints.dedup_by(|next, before| {
+        let is_same = next.position_m == before.position_m;
+        if is_same {
+            std::mem::swap(next, before);
+        }
+        is_same
+    });
     let least_mps = models().map(|model| model.least_speed_mps).fold(0.0, f64::max);
     let own_speed_mps = (
         Rational::from_f64_nearest(least_mps.min(own_mps), 1000)?,

@@ -4,10 +4,12 @@
 //! Vehicles that start together and are moved together by one traverse keep formation and count as one here. Those that fly
 //! are above those that drive, and neither makes the other go aside.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Point2, Vector2, distance};
-use rmpl::program::{Program, World};
+use rmpl::program::{PrimitiveDecl, Program, World};
+use smol_str::SmolStr;
+use tpn::Occurrence;
 
 use crate::vehicle;
 
@@ -16,15 +18,22 @@ const ON_FIRST_RING: usize = 6;
 /// Meters more than vehicles need to keep apart.
 const ROOM_M: f64 = 0.1;
 
-/// The place that each vehicle has where it starts: 0 for the location itself.
-pub fn start_slots(program: &Program) -> Vec<usize> {
+/// The place that each vehicle has where it starts: 0 for the location itself. Those that one of `occurrences` moves together,
+/// whether it is selected or not, share one.
+pub fn start_slots(program: &Program, occurrences: &[Occurrence]) -> Vec<usize> {
     let vehicles = &program.world.vehicles;
+    let moves_several =
+        |it: &&PrimitiveDecl| it.moves.as_ref().is_some_and(|moves| moves.vehicles.len() > 1);
+    let primitives: Vec<&PrimitiveDecl> = program.primitives.iter().filter(moves_several).collect();
+    let convoys: BTreeSet<Vec<&SmolStr>> = (occurrences.iter())
+        .filter_map(|occurrence| {
+            let primitive = primitives.iter().find(|it| it.name.text == occurrence.activity)?;
+            Some(primitive.moved(&occurrence.arguments).collect())
+        })
+        .collect();
     let drive_together = |one: usize, other: usize| {
         let names = [one, other].map(|vehicle| &vehicles[vehicle].name.text);
-        let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
-        moves
-            .into_iter()
-            .any(|moves| names.iter().all(|name| moves.vehicles.iter().any(|it| it.text == **name)))
+        convoys.iter().any(|convoy| names.iter().all(|name| convoy.contains(name)))
     };
     let mut slots: Vec<usize> = Vec::with_capacity(vehicles.len());
     // The vehicles so far that start at a location, those that fly apart from those that drive.
@@ -43,14 +52,18 @@ pub fn start_slots(program: &Program) -> Vec<usize> {
 /// Meters between places at one location, of the vehicles that fly or of those that do not: twice the room that any two of
 /// them need, so that one can drive between two others, and room for what follows them in formation.
 pub fn spacing_m(program: &Program, fly: bool) -> f64 {
-    let world = &program.world;
+    let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
+    let most = moves.map(|moves| moves.vehicles.len()).max().unwrap_or(1).max(1);
+    2.0 * room_m(&program.world, fly) * most as f64
+}
+
+/// Meters between the centers of any two vehicles that fly, or do not, when they keep apart.
+fn room_m(world: &World, fly: bool) -> f64 {
     let all = (0..world.vehicles.len() as u32).filter(|&vehicle| vehicle::flies(world, vehicle) == fly);
     let mut widest: Vec<f64> = all.map(|vehicle| vehicle::radius_m(world, vehicle)).collect();
     widest.sort_by(f64::total_cmp);
     let two: f64 = widest.iter().rev().take(2).sum();
-    let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
-    let most = moves.map(|moves| moves.vehicles.len()).max().unwrap_or(1).max(1);
-    2.0 * (two + vehicle::GAP_M + ROOM_M) * most as f64
+    two + vehicle::GAP_M + ROOM_M
 }
 
 /// The place with a number at a location. Rings lie a spacing apart, and so do the places on each.
@@ -72,39 +85,44 @@ pub fn place_m(location_m: Point2<f64>, slot: usize, spacing_m: f64) -> Point2<f
     location_m + (from + (to - from) * part) * (spacing_m * ring as f64)
 }
 
-/// Where a vehicle stands before it first moves, in meters; `None` if its start is not declared.
-pub fn start_m(program: &Program, vehicle: usize) -> Option<Point2<f64>> {
-    let start = &program.world.vehicles.get(vehicle)?.start.text;
-    let location = program.world.locations.iter().find(|location| location.name.text == *start)?;
-    let slot = start_slots(program).get(vehicle).copied().unwrap_or(0);
-    let spacing_m = spacing_m(program, vehicle::flies(&program.world, vehicle as u32));
-    Some(place_m(location.position_m.into(), slot, spacing_m))
+/// Where a vehicle stands from the beginning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// In meters. Of those that share a place for their formation, the first is there, and the others stand around it.
+    pub place_m: Point2<f64>,
+    /// Whether others share its place, so that its formation says where it stands if it moves in it.
+    pub is_shared: bool,
 }
 
-/// Where each vehicle stands before it first moves that has a place of its own there, in meters; nothing for one that
-/// starts in a formation with another.
-pub fn own_starts_m(program: &Program) -> Vec<Option<Point2<f64>>> {
+/// Where each vehicle stands before it first moves; `None` if its start is not declared.
+pub fn starts(program: &Program, occurrences: &[Occurrence]) -> Vec<Option<Start>> {
     let world = &program.world;
     let spacings_m = [false, true].map(|fly| spacing_m(program, fly));
+    let rooms_m = [false, true].map(|fly| room_m(world, fly));
     let mut locations: BTreeMap<&str, Point2<f64>> = BTreeMap::new();
     for location in &world.locations {
         locations.entry(&location.name.text).or_insert_with(|| location.position_m.into());
     }
-    let slots = start_slots(program);
-    let starts = world.vehicles.iter().zip(slots).enumerate().map(|(vehicle, (declared, slot))| {
+    let slots = start_slots(program, occurrences);
+    let keys = world.vehicles.iter().zip(slots).enumerate().map(|(vehicle, (declared, slot))| {
         (declared.start.text.as_str(), slot, vehicle::flies(world, vehicle as u32))
     });
-    let starts: Vec<(&str, usize, bool)> = starts.collect();
+    let keys: Vec<(&str, usize, bool)> = keys.collect();
     let mut counts: BTreeMap<(&str, usize, bool), usize> = BTreeMap::new();
-    for &start in &starts {
-        *counts.entry(start).or_default() += 1;
+    for &key in &keys {
+        *counts.entry(key).or_default() += 1;
     }
-    let own = starts.into_iter().map(|start| {
-        let (location, slot, flies) = start;
-        let location_m = locations.get(location).filter(|_| counts[&start] == 1)?;
-        Some(place_m(*location_m, slot, spacings_m[usize::from(flies)]))
+    let mut before: BTreeMap<(&str, usize, bool), usize> = BTreeMap::new();
+    let starts = keys.into_iter().map(|key| {
+        let (location, slot, flies) = key;
+        let (spacing_m, room_m) = (spacings_m[usize::from(flies)], rooms_m[usize::from(flies)]);
+        let before = before.entry(key).or_default();
+        let middle_m = place_m(*locations.get(location)?, slot, spacing_m);
+        let start = Start { place_m: place_m(middle_m, *before, room_m), is_shared: counts[&key] > 1 };
+        *before += 1;
+        Some(start)
     });
-    own.collect()
+    starts.collect()
 }
 
 /// The vehicle that is nearest to a place and nearer than so many meters, of those with `places` that are none of `vehicles` and,

@@ -132,15 +132,9 @@ pub fn vehicle_pose(snapshot: &Snapshot, vehicle: usize, time: f64) -> Option<(V
         return Some((place(position), smooth_heading(motion, time).unwrap_or(heading as f32)));
     }
     // Vehicles that share a start stand beside each other.
-    let start_m = snapshot::standing::start_m(&snapshot.program, vehicle)?;
-    let world = &snapshot.program.world;
-    let start = &world.vehicles.get(vehicle)?.start.text;
-    let slots = snapshot::standing::start_slots(&snapshot.program);
-    // Those that drive off together are drawn behind each other.
-    let is_with =
-        |other: &usize| world.vehicles[*other].start.text == *start && slots[*other] == slots[vehicle];
-    let before = (0..vehicle).filter(is_with).count();
-    Some((place(start_m) + Vec2::new(0.0, -2.0 * before as f32), 0.0))
+    let occurrences = snapshot.network.as_ref().map_or(&[][..], |network| &network.occurrences);
+    let start = snapshot::standing::starts(&snapshot.program, occurrences).get(vehicle).copied().flatten()?;
+    Some((place(start.place_m), 0.0))
 }
 
 /// The direction in which a moving vehicle turns its nose: it takes corners of its path over a short way, as wheels do.

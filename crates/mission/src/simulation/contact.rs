@@ -4,7 +4,6 @@
 use exact::Time;
 use executive::Contact;
 use motion::TimedPoint;
-use nalgebra::Point2;
 use rmpl::program::Program;
 use snapshot::vehicle::{flies, radius_m};
 use snapshot::{Executed, SimulatedDrive, standing};
@@ -19,7 +18,7 @@ pub(super) fn first_contact(
     network: &Network,
     drives: &[SimulatedDrive],
 ) -> Option<Contact> {
-    let (touch, pair) = first_touch(program, &tracks(program, drives))?;
+    let (touch, pair) = first_touch(program, &tracks(program, network, drives))?;
     let under_way = drives.iter().rev().find(|drive| {
         let is_in_it = drive.vehicles.iter().any(|it| pair.contains(&it.vehicle));
         is_in_it && drive.start.to_f64() <= touch.time_s
@@ -30,7 +29,7 @@ pub(super) fn first_contact(
 /// The first contact of any two vehicles in a run whose traverses are not driven: vehicles keep an even pace along the
 /// paths of the plan that is executed at the time.
 pub(crate) fn first_on_paths(program: &Program, plans: &[Executed]) -> Option<Contact> {
-    let mut tracks = starts(program);
+    let mut tracks = vec![Vec::new(); program.world.vehicles.len()];
     for (index, executed) in plans.iter().enumerate() {
         let from = executed.from.to_f64();
         let until = plans.get(index + 1).map_or(f64::INFINITY, |next| next.from.to_f64());
@@ -101,16 +100,19 @@ fn contact(
     Some(Contact { at, name: network.occurrences.get(under_way.index())?.name.clone(), reason })
 }
 
-/// The tracks of vehicles that have not moved yet.
-fn starts(program: &Program) -> Vec<Vec<TimedPoint>> {
-    let start = |place: Option<Point2<f64>>| place.map(|position_m| TimedPoint { time_s: 0.0, position_m });
-    let starts = standing::own_starts_m(program).into_iter().map(start);
-    starts.map(|start| start.into_iter().collect()).collect()
-}
-
 /// Where each vehicle is over time, in mission units.
-fn tracks(program: &Program, drives: &[SimulatedDrive]) -> Vec<Vec<TimedPoint>> {
-    let mut tracks = starts(program);
+fn tracks(program: &Program, network: &Network, drives: &[SimulatedDrive]) -> Vec<Vec<TimedPoint>> {
+    let starts =
+        standing::starts(program, &network.occurrences).into_iter().zip(0..).map(|(start, vehicle)| {
+            let start = start?;
+            // Who first drives as a follower stands in the formation already.
+            let first = drives.iter().flat_map(|drive| drive.vehicles.iter().enumerate());
+            let mut first = first.filter(|(_, it)| start.is_shared && it.vehicle == vehicle);
+            let frame = first.next().filter(|(index, _)| *index > 0).and_then(|(_, it)| it.frames.first());
+            let position_m = frame.map_or(start.place_m, |frame| frame.position_m);
+            Some(TimedPoint { time_s: 0.0, position_m })
+        });
+    let mut tracks: Vec<Vec<TimedPoint>> = starts.map(|start| start.into_iter().collect()).collect();
     for drive in drives {
         for vehicle in &drive.vehicles {
             let Some(track) = tracks.get_mut(vehicle.vehicle as usize) else { continue };

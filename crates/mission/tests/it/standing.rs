@@ -66,11 +66,61 @@ fn vehicles_that_drive_together_keep_formation_and_one_place() {
         "primitive Convoy(to) moves R1, R2 speed (0.1, 0.5);
         scenario S[0,2000] = { Convoy(EAST); Drive(R3, WEST) }",
     );
-    let slots: Vec<usize> = {
-        let program = rmpl::parse(&format!("{WORLD}primitive Convoy(to) moves R1, R2;")).program();
-        snapshot::standing::start_slots(&program)
+    let slots = |rest: &str| {
+        let Mission { program, network } = Mission::read(&format!("{WORLD}{rest}"));
+        snapshot::standing::start_slots(&program, &network.occurrences)
     };
-    assert_eq!(slots, [0, 0, 1, 2]);
+    let convoy = "primitive Convoy(to) moves R1, R2; scenario S[0,99] = { choose { Convoy(EAST), delay } }";
+    assert_eq!(slots(convoy), [0, 0, 1, 2]);
+    let by_parameters = "primitive Convoy(a, b, to) moves a, b; scenario S[0,99] = { choose { Convoy(R4, R2, EAST), delay } }";
+    assert_eq!(slots(by_parameters), [0, 1, 2, 1]);
+    assert_eq!(slots("scenario S[0,99] = { Drive(R1, EAST) }"), [0, 1, 2, 3]);
     assert_apart(&places(&planned, 0.0), 4);
     assert_apart(&places(&planned, 1e6), 4);
+}
+
+/// Vehicles that parameters name set out in formation as those do that the primitive names.
+#[test]
+fn vehicles_that_parameters_name_set_out_in_formation() {
+    let source = "location A (0, 0); location B (40, 10); vehicle F[1..3] : ATRV at A;
+         primitive Convoy(a, b, c, to)[1,90] moves a, b, c; scenario S[0,100] = { Convoy(F[1], F[2], F[3], B) }";
+    let mission = Mission::read(source);
+    let execution = mission.executed(0, &[]);
+    assert_eq!(execution.ending, executive::Ending::Finished, "{:?}", execution.log);
+}
+
+/// Vehicles that a formation shares a place with stand there when no plan moves them: others keep apart from them.
+#[test]
+fn a_formation_that_does_not_set_out_is_in_the_way() {
+    let source = "location A (20, 0); location B (40, 0); location C (0, 0); location D (40, 30);
+         vehicle L, F : ATRV at A; vehicle X : ATRV at C;
+         primitive Convoy(to)[1,90] moves L, F; primitive Drive(to)[1,90] moves X;
+         scenario S[0,100] = { choose { delay, Convoy(D) }, Drive(B) }";
+    let planned = Mission::read(source).with_plan((kirk::Options::default(), 0), |_, planned, _, _| planned);
+    assert!(planned.separation_violations.is_empty(), "{:?}", planned.separation_violations);
+    let place = |vehicle: u32, time: f64| {
+        planned
+            .motions
+            .iter()
+            .find(|it| it.vehicle == vehicle)
+            .and_then(|it| it.at(time))
+            .expect("it is there")
+            .0
+    };
+    for step in 0..=400 {
+        let time = f64::from(step) / 100.0;
+        for other in [0, 1] {
+            let away_m = distance(&place(2, time), &place(other, time));
+            assert!(away_m > 2.32 - 0.05, "{away_m} at {time}");
+        }
+    }
+}
+
+/// Of two locations with one position, a vehicle is at the one that it was sent to.
+#[test]
+fn a_drive_to_another_name_of_the_same_place_leads_there() {
+    let source = "location A (0, 0); location HERE (0, 0); location C (1, 0); vehicle R : ATRV at A;
+         primitive Go(to)[0,60] moves R; scenario S[0,200] = { Go(HERE); Go(C) }";
+    let execution = Mission::read(source).executed(0, &[]);
+    assert_eq!(execution.ending, executive::Ending::Finished, "{:?}", execution.log);
 }
