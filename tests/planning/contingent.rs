@@ -288,6 +288,31 @@ fn a_branch_that_chooses_what_the_world_does_is_the_worlds() {
     );
 }
 
+/// Members, orders and activities are as good as alternatives and statements that are written out.
+#[test]
+fn what_the_world_does_is_the_worlds_however_it_is_written() {
+    let told = |rest: &str| {
+        let text = format!(
+            "var L : {{A, B}}; group G = A, B; group One = A; primitive Dig()[4,4] requires L=A;
+             Weather() = {{ choose {{ L=A [60,60], L=B [60,60] }} }} Late() = {{ delay[2,9]; Storm() }}
+             Storm() = {{ L=B [5,5] }} Rain() = {{ Storm(); Dig() }} {rest}"
+        );
+        exogenous(&text).0.iter().map(|&place| place.to_owned()).collect::<Vec<String>>()
+    };
+    let scenario = |branch: &str| told(&format!("scenario S[0,60] = {{ {{ delay; Dig() }}, {branch} }}"));
+    assert_eq!(scenario("any x in G { L=x [60,60] }"), ["any"]);
+    assert_eq!(scenario("unordered { L=A [20,20]; L=B [20,20] }"), ["unordered"]);
+    assert_eq!(scenario("each x in G unordered { L=x [20,20] }"), ["each"]);
+    assert_eq!(scenario("Weather()"), ["choose"]);
+    assert_eq!(scenario("{ delay[1,1]; Late() }"), ["[2,9]"]);
+    // One member leaves no choice, the order of a sequence neither, and what digs is the mission.
+    for branch in
+        ["any x in One { L=x [60,60] }", "each x in G in sequence { L=x [20,20] }", "Storm()", "Rain()"]
+    {
+        assert_eq!(scenario(branch), [""; 0], "{branch}");
+    }
+}
+
 #[test]
 fn every_branch_of_the_worlds_is_told_of_once_and_a_scenario_of_one_branch_has_one() {
     let (places, _) = exogenous(

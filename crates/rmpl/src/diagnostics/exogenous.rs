@@ -15,12 +15,13 @@ pub const EXPLANATION: Explanation = Explanation {
     meaning: "A branch of the scenario that calls no activity, and only waits and asserts, describes external events. If its
 times are flexible, as in `delay[5,20]`, the planner picks the time that suits the plan, for example a storm after the
 survey. A `delay` without bounds is flexible too. After `contingent`, the environment chooses the time, and the plan must
-work for every choice. With `choose`, the planner picks the alternative that suits the plan, such as clear weather.",
+work for every choice. With `choose` or `any`, the planner picks the alternative that suits the plan, such as clear weather; with
+`unordered`, it picks the order.",
     example: "var GO : {OK, NO};
 primitive Dig()[4,4];
 scenario Day[0,60] = { { delay; do { Dig() } maintaining GO=OK }, { delay[5,20]; GO=OK [10,10] } }",
     fix: "If the environment decides, write `contingent` before finite bounds. If the time is known, make both bounds equal.
-If the branch has a `choose`, keep one alternative, and plan for each of the others in a separate scenario.",
+If the branch has alternatives, keep one, and plan for each of the others in a separate scenario.",
     mended: "var GO : {OK, NO};
 primitive Dig()[4,4];
 scenario Day[0,60] = { { delay; do { Dig() } maintaining GO=OK }, { delay contingent [5,20]; GO=OK [10,10] } }",
@@ -47,17 +48,37 @@ pub const WHEN: &str = "the planner chooses when this external event happens: ";
 /// How the messages begin whose branch leaves alternatives to the plan; their number follows.
 pub const WHAT: &str = "the planner chooses which external event happens: ";
 
-/// A branch of the world's that leaves alternatives to the plan: how many the first `choose` has and where that word
-/// stands, and how many more such statements there are.
-pub fn alternatives(count: usize, word: Span, more: usize) -> Diagnostic {
+/// What a statement of the world's leaves to the plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Alternatives {
+    /// One of so many parts of a `choose`.
+    Choose(usize),
+    /// One member of this group.
+    Any(String),
+    /// The order of the parts.
+    Unordered,
+}
+
+/// A branch of the world's that leaves alternatives to the plan: those of the first such statement and where its word stands,
+/// and how many more such statements there are.
+pub fn alternatives(of: &Alternatives, word: Span, more: usize) -> Diagnostic {
+    let what = match of {
+        Alternatives::Choose(count) => format!("one of the {count} alternatives of `choose`"),
+        Alternatives::Any(group) => format!("one for a member of `{group}`"),
+        Alternatives::Unordered => "the first one of `unordered`".to_owned(),
+    };
     let more = match more {
         0 => String::new(),
-        1 => ", and of 1 more choice".to_owned(),
-        more => format!(", and of {more} more choices"),
+        1 => ", and 1 more choice".to_owned(),
+        more => format!(", and {more} more choices"),
     };
-    let message = format!("{WHAT}one of the {count} alternatives of `choose`{more}");
-    Diagnostic::warning(CODE, word, message)
-        .with_hint("keep one alternative, and plan for each of the others in a separate scenario")
+    let hint = match of {
+        Alternatives::Unordered => "write the events in the order in which they happen",
+        Alternatives::Choose(_) | Alternatives::Any(_) => {
+            "keep one alternative, and plan for each of the others in a separate scenario"
+        }
+    };
+    Diagnostic::warning(CODE, word, format!("{WHAT}{what}{more}")).with_hint(hint)
 }
 
 /// A branch of the world's that leaves `choices` to the plan; none if it leaves none.

@@ -2,26 +2,34 @@
 //! does (SPEC 13.3).
 
 use exact::Bound;
-use rmpl::diagnostics::exogenous::{Choice, alternatives, branch};
-use rmpl::program::{Bounds, Condition, Program, ScenarioDecl, Statement, StatementKind};
+use rmpl::diagnostics::exogenous::{Alternatives, Choice, alternatives, branch};
+use rmpl::program::{Bounds, Condition, MembersForm, Program, ScenarioDecl, Statement, StatementKind};
 use rmpl::{Diagnostic, Span};
 
 use super::bounds::{self, Interval};
 use super::constants::Constants;
 use super::names::Fact;
 
-/// Warnings for each branch of `scenario` that calls nothing: one if it leaves times to the plan, and one if it leaves
+/// Warnings for each branch of `scenario` that calls no primitive: one if it leaves times to the plan, and one if it leaves
 /// alternatives.
-pub(super) fn check(scenario: &ScenarioDecl, constants: &Constants<'_>) -> Vec<Diagnostic> {
-    let warnings = |of| branch(&choices(of, constants)).into_iter().chain(decisions(of));
-    branches(scenario).iter().flat_map(warnings).collect()
+pub(super) fn check(
+    program: &Program,
+    scenario: &ScenarioDecl,
+    constants: &Constants<'_>,
+) -> Vec<Diagnostic> {
+    let warnings = |of| {
+        let statements = of_the_world(program, of)?;
+        Some(branch(&choices(&statements, constants)).into_iter().chain(decisions(program, &statements)))
+    };
+    branches(scenario).iter().filter_map(warnings).flatten().collect()
 }
 
 /// The delays and assertions of the world's whose times the plan of a scenario chooses, where they are written.
 pub fn assumed(program: &Program) -> Vec<Span> {
     let (constants, _) = Constants::new(program);
     let branches = program.scenarios.iter().flat_map(branches);
-    branches.flat_map(|of| choices(of, &constants)).map(|choice| choice.statement).collect()
+    let statements = branches.filter_map(|of| of_the_world(program, of));
+    statements.flat_map(|of| choices(&of, &constants)).map(|choice| choice.statement).collect()
 }
 
 /// The branches of a scenario, one of which may be the world's.
@@ -32,46 +40,90 @@ fn branches(scenario: &ScenarioDecl) -> &[Statement] {
     }
 }
 
-/// A warning if `part` calls nothing and leaves alternatives to the plan. Those of `choose` alone: an `if` is decided by its
-/// condition, and what is optional is never the world's (SPEC 13.3).
-fn decisions(part: &Statement) -> Option<Diagnostic> {
-    let mut found: Vec<(usize, Span)> = Vec::new();
-    let mut is_of_plan = false;
-    part.for_each(&mut |statement| match &statement.kind {
-        StatementKind::Call(..) => is_of_plan = true,
-        StatementKind::Choose(parts) if parts.len() > 1 => {
-            let start = statement.span.start;
-            // What stands for a choice has alternatives that begin with the whole statement.
-            if parts.iter().all(|alternative| alternative.span.start > start) {
-                found.push((parts.len(), Span::new(start, start + "choose".len() as u32)));
+/// All statements of a branch in textual order, with those of the activities that it calls; `None` if it calls anything but
+/// activities that only wait and assert.
+fn of_the_world<'program>(
+    program: &'program Program,
+    branch: &'program Statement,
+) -> Option<Vec<&'program Statement>> {
+    let mut statements = Vec::new();
+    let mut called: Vec<&str> = Vec::new();
+    let mut open = vec![branch];
+    while let Some(part) = open.pop() {
+        let mut is_of_plan = false;
+        part.for_each(&mut |statement| {
+            statements.push(statement);
+            let StatementKind::Call(name, _) = &statement.kind else { return };
+            match program.activities.iter().find(|activity| activity.name.text == name.text) {
+                Some(activity) if !called.contains(&name.text.as_str()) => {
+                    called.push(&activity.name.text);
+                    open.push(&activity.body);
+                }
+                Some(_) => {}
+                None => is_of_plan = true,
             }
+        });
+        if is_of_plan {
+            return None;
         }
-        _ => {}
-    });
-    let (count, word) = *found.first()?;
-    (!is_of_plan).then(|| alternatives(count, word, found.len() - 1))
+    }
+    Some(statements)
 }
 
-/// What `part` leaves to the plan, in textual order; nothing if it calls anything.
-fn choices(part: &Statement, constants: &Constants<'_>) -> Vec<Choice> {
-    let mut found: Vec<Choice> = Vec::new();
-    let mut is_of_plan = false;
-    part.for_each(&mut |statement| match &statement.kind {
-        StatementKind::Call(..) => is_of_plan = true,
+/// A warning if statements of the world's leave to the plan what happens, or in which order. An `if` is decided by its
+/// condition, and what is optional is never the world's (SPEC 13.3).
+fn decisions(program: &Program, statements: &[&Statement]) -> Option<Diagnostic> {
+    let found = statements.iter().filter_map(|statement| {
+        let start = statement.span.start;
+        let at = |word: &str| Span::new(start, start + word.len() as u32);
+        match &statement.kind {
+            // What stands for a choice has alternatives that begin with the whole statement.
+            StatementKind::Choose(parts)
+                if parts.len() > 1 && parts.iter().all(|it| it.span.start > start) =>
+            {
+                Some((Alternatives::Choose(parts.len()), at("choose")))
+            }
+            StatementKind::Unordered(parts) if parts.len() > 1 => {
+                Some((Alternatives::Unordered, at("unordered")))
+            }
+            StatementKind::Members(members) if has_several(program, &members.group.text) => {
+                match members.form {
+                    MembersForm::Any => Some((Alternatives::Any(members.group.text.to_string()), at("any"))),
+                    MembersForm::Unordered => Some((Alternatives::Unordered, at("each"))),
+                    MembersForm::Parallel | MembersForm::Sequence => None,
+                }
+            }
+            _ => None,
+        }
+    });
+    let found: Vec<(Alternatives, Span)> = found.collect();
+    let (first, word) = found.first()?;
+    Some(alternatives(first, *word, found.len() - 1))
+}
+
+/// Whether a group or a fleet has more than one member.
+fn has_several(program: &Program, group: &str) -> bool {
+    let is_group = program.groups.iter().any(|it| it.name.text == *group && it.members.len() > 1);
+    is_group || program.fleets.iter().any(|it| it.name.text == *group && it.members().count() > 1)
+}
+
+/// What statements of the world's leave to the plan.
+fn choices(statements: &[&Statement], constants: &Constants<'_>) -> Vec<Choice> {
+    let left = |statement: &&Statement| match &statement.kind {
         StatementKind::Delay => {
             let name_end = statement.span.start + "delay".len() as u32;
             let at = statement.bounds.as_ref().map_or(name_end, |bounds| bounds.span.start);
             let is_tight = at == name_end;
-            found.extend(choice(statement, "delay".to_owned(), is_tight, Interval::ANY, constants));
+            choice(statement, "delay".to_owned(), is_tight, Interval::ANY, constants)
         }
         StatementKind::Condition(_, condition) => {
             let name = Fact::written(condition).text().to_string();
             let is_tight = statement.bounds.as_ref().is_some_and(|bounds| needs_blank(condition, bounds));
-            found.extend(choice(statement, name, is_tight, Interval::ZERO, constants));
+            choice(statement, name, is_tight, Interval::ZERO, constants)
         }
-        _ => {}
-    });
-    if is_of_plan { Vec::new() } else { found }
+        _ => None,
+    };
+    statements.iter().filter_map(left).collect()
 }
 
 /// What one delay or assertion leaves to the plan, which lasts `unwritten` where it has no bounds.

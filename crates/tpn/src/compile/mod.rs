@@ -107,7 +107,7 @@ pub fn compile_scenarios(
     let declared = Declared::new(program, constants, ground);
     let mut names = BTreeSet::new();
     for scenario in program.scenarios.iter().filter(|scenario| names.insert(&scenario.name.text)) {
-        let (network, found) = expand_scenario(Expander::new(declared.clone()), scenario);
+        let (network, found) = expand_scenario(program, Expander::new(declared.clone()), scenario);
         let is_sound = found.iter().all(|found| found.severity != Severity::Error);
         diagnostics.extend(found);
         take(network.filter(|_| is_sound));
@@ -128,7 +128,7 @@ fn expand<'program>(
     let mut expander = Expander::new(declared);
     match top {
         Top::Scenario(name) => match find_scenario(program, name.as_ref()) {
-            Ok(scenario) => expand_scenario(expander, scenario),
+            Ok(scenario) => expand_scenario(program, expander, scenario),
             Err(error) => with_first(error, expander.finish(None)),
         },
         Top::Activity { name, lower, upper } => match expander.top_activity(name, *lower, *upper) {
@@ -142,10 +142,11 @@ fn expand<'program>(
 }
 
 fn expand_scenario<'program>(
+    program: &'program Program,
     mut expander: Expander<'program>,
     scenario: &'program ScenarioDecl,
 ) -> (Option<Network>, Vec<Diagnostic>) {
-    let mut diagnostics = exogenous::check(scenario, &expander.constants);
+    let mut diagnostics = exogenous::check(program, scenario, &expander.constants);
     let root = expander.scenario(scenario);
     expander.constrain();
     let (network, found) = expander.finish(Some(root));
