@@ -78,10 +78,9 @@ impl<'a> Present<'a> {
         approval: &Entry,
         subject: &Subject,
     ) -> Option<&'static str> {
-        let is_known = !approval.plan_hash.is_empty();
         match self.plan_hash {
             _ if approval.content_hash != self.content_hash => Some("text, map, goal or seed are others"),
-            Some(plan_hash) if is_known && approval.plan_hash != plan_hash => Some("the plan is another one"),
+            Some(plan_hash) if approval.plan_hash != plan_hash => Some("the plan is another one"),
             _ if subject.rules != *self.rules => Some("the flight rules are others"),
             _ if !accepted.hold_for(approval, self.review) => Some("the acknowledgments are others"),
             _ => None,

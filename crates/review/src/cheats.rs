@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use snapshot::{Goal, Robustness, RobustnessSettings, Tally, Uncertainty};
 
 use super::board::{PlanStatus, Present, standing};
-use super::check::Signature;
+use super::check::{Check, Signature};
 use super::keys::{KeyError, KeyRing, Person, PublicKey, SecretKey};
 use super::record::{Act, Entry, LineKey, Record, RecordError, Runs, Said, Subject, Who};
 use super::record_tests::{NOW, judged, key, trust};
@@ -52,8 +52,7 @@ impl Board {
     /// Somebody says something, signed by a key. Returns the entry's digest.
     fn say_with(&mut self, by: &str, act: Act, secret: &SecretKey) -> String {
         let who = self.who(by);
-        self.record.add(who, act, secret);
-        self.last()
+        self.record.add(who, act, secret)
     }
 
     fn say(&mut self, by: &str, act: Act) -> String {
@@ -65,16 +64,11 @@ impl Board {
         let subject = Subject::new(&self.review, &self.source, Goal::Default, 0, plan, None);
         let relied_on = standing(&self.record, &Present::of_review(&self.review)).relied_on;
         let who = self.who(by);
-        self.record.approve(who, subject, String::new(), relied_on, secret);
-        self.last()
+        self.record.approve(who, subject, String::new(), relied_on, secret)
     }
 
     fn approve(&mut self, by: &str) -> String {
         self.approve_with(by, &key(by))
-    }
-
-    fn last(&self) -> String {
-        self.record.entries().last().expect("an entry").digest().to_owned()
     }
 
     fn status(&self) -> PlanStatus {
@@ -560,8 +554,9 @@ fn an_entry_from_the_future_keeps_nobody_from_taking_an_approval_back() {
         };
         board.record = with_entry(&board.record, &Entry::signed(said, &secret));
         assert!(last_check(&board.record).1.contains("in the future"), "{:?}", last_check(&board.record));
-        board.say("Ada", Act::Withdraw { of, text: "Not read.".to_owned() });
-        assert_eq!(last_check(&board.record), (Signature::Valid, String::new()));
+        let taken_back = board.say("Ada", Act::Withdraw { of, text: "Not read.".to_owned() });
+        assert!(board.record.check_of(&taken_back).is_some_and(Check::counts));
+        assert_eq!(board.record.number(&taken_back), 4, "before the entry from the future");
         assert_eq!(board.status(), PlanStatus::InReview, "{by}");
         // Not even when its day has come.
         board.record.judge(&trust(&PEOPLE), "2026-04-01T00:00:00Z");
@@ -668,15 +663,142 @@ fn a_waiver_lapses_on_its_date() {
     };
     assert_eq!(unseen("2026-02-04T23:59:59Z"), PlanStatus::Approved);
     assert!(!unseen("2026-02-05T00:00:00Z").is_approved());
-    // Without a reason or a date there is no waiver.
+    // Without a reason or a day there is no waiver: not with a day that does not exist, or that depends on where one is.
     let line = board.record.waivers()[0].line.clone();
-    for (text, until) in [(" ", "2026-02-05"), ("Fine.", "soon"), ("Fine.", "")] {
+    for (text, until) in [
+        (" ", "2026-02-05"),
+        ("Fine.", "soon"),
+        ("Fine.", ""),
+        ("Fine.", "2026-02-30"),
+        ("Fine.", "2026-13-01"),
+        ("Fine.", "20260205"),
+        ("Fine.", " 2026-02-05"),
+        ("Fine.", "2026-02-05T00:00:00"),
+        ("Fine.", "2026-02-05T23:59:59+14:00"),
+        ("Fine.", "2026-02-05T00:00:00Z"),
+        ("Fine.", "2026-02-05[Pacific/Kiritimati]"),
+    ] {
         let waive = Act::Waive { line: line.clone(), text: text.to_owned(), until: until.to_owned() };
         board.say("Chair", waive);
         assert!(last_check(&board.record).1.starts_with("a waiver needs"), "{:?}", last_check(&board.record));
+    }
+    // Nobody waives for a day that has passed, or that ends with the present one.
+    for until in ["2025-12-31", "2026-01-01"] {
+        let text = "Fine.".to_owned();
+        board.say("Chair", Act::Waive { line: line.clone(), text, until: until.to_owned() });
+        assert!(last_check(&board.record).1.contains("after the day"), "{:?}", last_check(&board.record));
     }
     // Taken back by its signer, it is none.
     let of = board.record.waivers()[0].entry.digest().to_owned();
     board.say("Chair", Act::Withdraw { of, text: "Mended.".to_owned() });
     assert_eq!(board.status(), PlanStatus::InReview);
+}
+
+/// Two people set flight rules at the same time, and each history has both.
+#[test]
+fn the_order_of_a_document_s_entries_does_not_choose_the_flight_rules() {
+    let mut board = Board::new(LASTING);
+    let mut other = board.record.clone();
+    let strict = FlightRules { board: vec![Seat::new("Reviewer", 3)], ..board.record.rules().clone() };
+    let lax = FlightRules { board: vec![Seat::new("Reviewer", 1)], ..strict.clone() };
+    board.say("Ada", Act::Rules { rules: lax });
+    let who = board.who("Grace");
+    other.add(who, Act::Rules { rules: strict.clone() }, &key("Grace"));
+    board.record.merge(other);
+    assert_eq!((board.record.heads().count(), board.record.rules()), (2, &strict));
+    let swapped = board.read(|it| it["entries"].as_array_mut().expect("a list").swap(1, 2));
+    let swapped = swapped.expect("each entry follows the first one");
+    assert_eq!(swapped.rules(), &strict);
+    assert_eq!(swapped, board.record);
+}
+
+#[test]
+fn rules_that_change_between_two_approvals_leave_one_approval() {
+    let mut board = Board::new(LASTING);
+    let rules = board.record.rules().clone();
+    board.approve("Ada");
+    let flat = FlightRules { slope_deg: Some(1.0), ..rules.clone() };
+    board.say("Chair", Act::Rules { rules: flat.clone() });
+    board.review.judge(&flat, None);
+    board.approve("Grace");
+    assert_eq!((board.seats(), board.status()), ("Reviewer 1 of 2".to_owned(), PlanStatus::InReview));
+    // With the former rules, the approval of the others does not count.
+    board.say("Chair", Act::Rules { rules: rules.clone() });
+    board.review.judge(&rules, None);
+    assert_eq!((board.seats(), board.status()), ("Reviewer 1 of 2".to_owned(), PlanStatus::InReview));
+}
+
+#[test]
+fn a_key_that_is_trusted_later_counts_from_then_on_and_one_that_no_one_trusts_no_longer_does() {
+    let mut board = approved();
+    let of = |index: usize| board.record.entries()[index].digest().to_owned();
+    let back = Act::Withdraw { of: of(1), text: "Not read.".to_owned() };
+    let mut record = board.record.clone();
+    for (people, expected) in [
+        (&["Chair", "Ada"][..], PlanStatus::InReview),
+        (&PEOPLE[..], PlanStatus::Approved),
+        // Without the rules of the chair, the usual board decides, and nobody approved under its rules.
+        (&["Ada", "Grace"][..], PlanStatus::Lapsed),
+        (&["Chair"][..], PlanStatus::Draft),
+    ] {
+        record.judge(&trust(people), NOW);
+        assert_eq!(board.status_of(&record), expected, "{people:?}");
+    }
+    // What an unknown key takes back stays, when the key is trusted too.
+    board.say_with("Eve", back, &key("Eve"));
+    for people in [&PEOPLE[..], &["Chair", "Ada", "Grace", "Eve"][..]] {
+        board.record.judge(&trust(people), NOW);
+        assert_eq!(board.status(), PlanStatus::Approved, "{people:?}");
+    }
+}
+
+#[test]
+fn an_approval_of_no_plan_does_not_count_for_every_plan() {
+    let mut board = Board::new(LASTING);
+    board.approve("Grace");
+    let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, None);
+    let who = Who { plan_hash: String::new(), ..board.who("Ada") };
+    board.record.approve(who, subject, String::new(), Vec::new(), &key("Ada"));
+    assert_eq!(last_check(&board.record), (Signature::Valid, String::new()));
+    assert_eq!((board.seats(), board.status()), ("Reviewer 1 of 2".to_owned(), PlanStatus::InReview));
+}
+
+#[test]
+fn names_and_roles_with_characters_that_cannot_be_seen_are_refused() {
+    let board = approved();
+    for hidden in ["\n   9  Grace approved [valid]", "\u{202e}", "\u{200b}", "\u{1b}[2K"] {
+        for member in ["by", "role", "time"] {
+            let mut forger = Board::new(LASTING);
+            let mut who = forger.who("Ada");
+            let part = match member {
+                "by" => &mut who.by,
+                "role" => &mut who.role,
+                _ => &mut who.time,
+            };
+            part.push_str(hidden);
+            forger.record.add(who, Act::Comment { about: None, to: None, text: "Fine.".into() }, &key("Ada"));
+            assert!(last_check(&forger.record).1.contains("invisible"), "{member} {hidden:?}");
+            let read = forger.read(|_| ());
+            assert!(
+                matches!(&read, Err(RecordError::Damaged(why)) if why.contains("entry 2") && !why.contains(hidden)),
+                "{member} {hidden:?}: {read:?}"
+            );
+        }
+    }
+    // Spaces around a name and another spelling of its letters are the same name.
+    let mut spaced = board.record.clone();
+    spaced.add(
+        Who { by: " Ada\u{a0}".to_owned(), ..super::record_tests::who("Ada", NOW) },
+        Act::Comment { about: None, to: None, text: "Fine.".to_owned() },
+        &key("Ada"),
+    );
+    assert_eq!(last_check(&spaced), (Signature::Valid, String::new()));
+    // Two roles are not told apart by what only looks like a difference.
+    for role in ["Reviewer ", "reviewer", "R\u{435}viewer", "Re\u{200b}viewer", "Réviewer", "\u{3000}"] {
+        let rules = FlightRules {
+            board: vec![Seat::new("Reviewer", 1), Seat::new(role, 1)],
+            ..FlightRules::default()
+        };
+        assert!(rules.problem().is_some_and(|why| why.contains("role")), "{role:?}");
+    }
 }

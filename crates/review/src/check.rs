@@ -3,10 +3,12 @@
 //! What an entry says of its signer is in its signature; what counts is decided here, for a list of trusted keys and a
 //! time. An entry that does not count stays in the history, and is shown with the reason.
 
+use jiff::tz::TimeZone;
 use jiff::{SignedDuration, Timestamp, civil};
 use serde::Serialize;
 
 use super::keys::{PublicKey, Trust};
+use super::names;
 use super::record::{Act, Entry, Record};
 
 /// What the signature of an entry is.
@@ -58,6 +60,9 @@ impl Check {
     }
 }
 
+/// What is said of an entry with characters that cannot be seen.
+pub(super) const HIDDEN: &str = "its name, role or time contains line breaks or invisible characters";
+
 /// How far clocks may be apart.
 const CLOCK_TOLERANCE: SignedDuration = SignedDuration::from_mins(10);
 
@@ -78,8 +83,10 @@ pub(super) fn check(record: &Record, entry: &Entry, trust: &Trust, now: Option<T
 }
 
 fn problem_of_name(entry: &Entry, known: Option<&str>, trust: &Trust) -> Option<String> {
-    let name = entry.by.as_str();
+    let name = names::tidy(&entry.by);
+    let name = name.as_str();
     match known {
+        _ if !entry.is_visible() => Some(HIDDEN.to_owned()),
         Some(known) if known != name => {
             Some(format!("the key is that of “{known}”, and the entry names “{name}”"))
         }
@@ -92,7 +99,7 @@ fn problem_of_mission(record: &Record, entry: &Entry) -> Option<String> {
     let is_elsewhere = entry.key.is_some() && entry.mission != record.mission;
     is_elsewhere.then(|| match entry.mission.as_str() {
         "" => "it does not name its mission; sign it again".to_owned(),
-        mission => format!("it belongs to the history of “{mission}”"),
+        mission => format!("it belongs to the history of “{}”", names::one_line(mission)),
     })
 }
 
@@ -107,7 +114,8 @@ fn problem_of_time(record: &Record, entry: &Entry, now: Option<Timestamp>) -> Op
 }
 
 fn problem_of_act(record: &Record, entry: &Entry) -> Option<String> {
-    if let Some(objection) = objection(record, entry.key.as_ref(), &entry.act) {
+    let signed = moment(&entry.time).map(day_of);
+    if let Some(objection) = objection(record, entry.key.as_ref(), &entry.act, signed) {
         return Some(objection.words(&entry.act).to_owned());
     }
     match &entry.act {
@@ -128,6 +136,8 @@ pub enum Objection {
     NoReason,
     /// It takes a date.
     NoDate,
+    /// Its date has come when it is signed.
+    PastDate,
     /// Only the person who signed an entry withdraws it.
     NotSigner,
     /// Only comments, acknowledgments, waivers and approvals are withdrawn.
@@ -144,6 +154,7 @@ impl Objection {
             (Self::NoReason, Act::Waive { .. }) => "a waiver needs a reason",
             (Self::NoReason, _) => "an acknowledgment needs a reason",
             (Self::NoDate, _) => "a waiver needs a date",
+            (Self::PastDate, _) => "a waiver must lapse after the day on which it is signed (UTC)",
             (Self::NotSigner, _) => "only the person who signed an entry can withdraw it",
             (Self::Permanent, _) => "only comments, acknowledgments, waivers and approvals can be withdrawn",
             (Self::NotConcerned, _) => {
@@ -153,8 +164,13 @@ impl Objection {
     }
 }
 
-/// What there is to say against `act` of the owner of a key, after what `record` has.
-pub fn objection(record: &Record, key: Option<&PublicKey>, act: &Act) -> Option<Objection> {
+/// What there is to say against `act` of the owner of a key, after what `record` has, on the day `signed`.
+pub fn objection(
+    record: &Record,
+    key: Option<&PublicKey>,
+    act: &Act,
+    signed: Option<civil::Date>,
+) -> Option<Objection> {
     let of = || act.of().and_then(|of| record.entry(of));
     let is_signer = || key.is_some() && of().is_some_and(|of| of.key.as_ref() == key);
     let is_concerned = || key.zip(of()).is_some_and(|(key, of)| is_concerned(key, of));
@@ -163,7 +179,11 @@ pub fn objection(record: &Record, key: Option<&PublicKey>, act: &Act) -> Option<
         Act::Resolve { .. } | Act::Acknowledge { .. } | Act::Waive { .. } if is_silent() => {
             Some(Objection::NoReason)
         }
-        Act::Waive { until, .. } if day(until).is_none() => Some(Objection::NoDate),
+        Act::Waive { until, .. } => match day(until) {
+            None => Some(Objection::NoDate),
+            Some(until) if signed.is_none_or(|signed| until <= signed) => Some(Objection::PastDate),
+            Some(_) => None,
+        },
         Act::Withdraw { .. } if !is_signer() => Some(Objection::NotSigner),
         Act::Withdraw { .. } if of().is_some_and(|of| is_permanent(&of.act)) => Some(Objection::Permanent),
         Act::Resolve { .. } | Act::Reopen { .. } if !is_concerned() => Some(Objection::NotConcerned),
@@ -197,7 +217,13 @@ pub(super) fn moment(text: &str) -> Option<Timestamp> {
     (time.strftime("%Y-%m-%dT%H:%M:%SZ").to_string() == text).then_some(time)
 }
 
-/// Reads a day such as `2026-01-02`.
+/// The day of a time, in UTC.
+pub(super) fn day_of(time: Timestamp) -> civil::Date {
+    time.to_zoned(TimeZone::UTC).date()
+}
+
+/// Reads a day such as `2026-01-02`, and nothing else: a day with a time or a zone is another one elsewhere.
 pub(super) fn day(text: &str) -> Option<civil::Date> {
-    text.parse().ok()
+    let day: civil::Date = text.parse().ok()?;
+    (day.to_string() == text).then_some(day)
 }

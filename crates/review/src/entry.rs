@@ -8,6 +8,7 @@ use snapshot::Goal;
 use snapshot::{Robustness, RobustnessSettings, Tally, Uncertainty};
 
 use super::keys::{PublicKey, SecretKey};
+use super::names;
 use super::sealed::Sealed;
 use super::{FlightRules, Line, Review, Section, Status};
 
@@ -104,6 +105,13 @@ pub struct Said {
     pub former: Vec<String>,
     /// What was done.
     pub act: Act,
+}
+
+impl Said {
+    /// Whether the name, the role and the time can be seen as they are.
+    pub fn is_visible(&self) -> bool {
+        [&self.by, &self.role, &self.time].into_iter().all(|text| names::is_visible(text))
+    }
 }
 
 /// What somebody did. `of` is the digest of the entry that it is about.

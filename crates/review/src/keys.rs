@@ -112,7 +112,7 @@ pub struct Person {
 impl Person {
     /// Somebody with a new key.
     pub fn new(name: &str, secret: SecretKey) -> Self {
-        Self { name: name.trim().to_owned(), key: secret.public(), secret: Some(secret) }
+        Self { name: names::tidy(name), key: secret.public(), secret: Some(secret) }
     }
 
     fn to_json(&self, with_secret: bool) -> Value {
@@ -170,7 +170,8 @@ impl KeyRing {
 
     /// The person of this very name whose secret key is here.
     pub fn own_named(&self, name: &str) -> Option<&Person> {
-        self.own().find(|person| person.name == name.trim())
+        let name = names::tidy(name);
+        self.own().find(|person| person.name == name)
     }
 
     /// Whose signatures count.
@@ -180,6 +181,7 @@ impl KeyRing {
 
     /// Trusts a person. A secret key of somebody who is trusted already is added.
     pub fn add(&mut self, person: Person) -> Result<(), KeyError> {
+        let person = Person { name: names::tidy(&person.name), ..person };
         if let Some(known) = self.people.iter_mut().find(|known| known.key == person.key) {
             if known.name != person.name {
                 let fingerprint = person.key.fingerprint();
@@ -195,7 +197,7 @@ impl KeyRing {
 
     /// Whether a new person may have this name.
     pub fn may_be_called(&self, name: &str) -> Result<(), KeyError> {
-        if let Some(problem) = names::problem(name) {
+        if let Some(problem) = names::problem(&names::tidy(name)) {
             return Err(KeyError::Name(problem));
         }
         match self.people.iter().find(|known| names::are_alike(&known.name, name)) {

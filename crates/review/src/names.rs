@@ -4,23 +4,50 @@ use std::collections::BTreeSet;
 
 use unicode_normalization::UnicodeNormalization as _;
 use unicode_normalization::char::is_combining_mark;
-use unicode_security::MixedScript as _;
 use unicode_security::confusable_detection::skeleton;
+use unicode_security::general_security_profile::IdentifierType;
+use unicode_security::{GeneralSecurityProfile as _, MixedScript as _};
 
 /// The longest name of a person, in characters.
 const MAX_NAME_LENGTH: usize = 80;
 
-/// What is wrong with a name, whoever has it.
+/// A name in one spelling: composed letters, and single spaces between words.
+pub fn tidy(name: &str) -> String {
+    let composed: String = name.nfc().collect();
+    composed.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Whether all characters of a text of one line can be seen. Others break the line, reorder it, or hide in it.
+pub fn is_visible(text: &str) -> bool {
+    !text.chars().any(is_hidden)
+}
+
+/// A text in one line, with spaces for the characters that cannot be seen.
+pub fn one_line(text: &str) -> String {
+    text.chars().map(|letter| if is_hidden(letter) { ' ' } else { letter }).collect()
+}
+
+/// Whether a character is a control, a line break, or one that leaves no mark, such as the override that makes a text run
+/// from right to left.
+fn is_hidden(letter: char) -> bool {
+    let hides = || {
+        let kind = letter.identifier_type();
+        matches!(kind, Some(IdentifierType::Default_Ignorable | IdentifierType::Deprecated))
+    };
+    letter.is_control() || matches!(letter, '\u{2028}' | '\u{2029}') || hides()
+}
+
+/// What is wrong with a name, no matter who has it.
 pub fn problem(name: &str) -> Option<String> {
     let is_word_mixed = |word: &str| !word.is_single_script();
+    if !is_visible(name) {
+        return Some("a name must not contain line breaks or invisible characters".to_owned());
+    }
     if forms(name).iter().all(String::is_empty) {
-        return Some("a key needs a name with letters or digits".to_owned());
+        return Some("a name must contain letters or digits".to_owned());
     }
     if name.chars().count() > MAX_NAME_LENGTH {
-        return Some(format!("a name has at most {MAX_NAME_LENGTH} characters"));
-    }
-    if name.chars().any(char::is_control) {
-        return Some("a name is one line".to_owned());
+        return Some(format!("a name must have at most {MAX_NAME_LENGTH} characters"));
     }
     let mixed = name.split_whitespace().find(|word| is_word_mixed(word))?;
     Some(format!("“{mixed}” mixes letters of several scripts, so it can look like another name"))
@@ -76,9 +103,26 @@ mod tests {
         for name in ["Ada", "Àda", "Ян", "田中 Ada", "O'Neil", "Maria-Luise 2"] {
             assert_eq!(problem(name), None, "{name}");
         }
-        for name in ["", " \u{200b}", "...", "А\u{64}а", "Ada\nGrace"] {
+        for name in ["", " \u{200b}", "...", "\u{2800}", "А\u{64}а", "Ada\nGrace"] {
             assert!(problem(name).is_some(), "{name:?}");
         }
         assert!(problem(&"a".repeat(81)).is_some());
+        // Zero width, right to left, a mark that hides, a filler that is a letter, a line of its own.
+        for hidden in
+            ["\u{200b}", "\u{202e}", "\u{200f}", "\u{2067}", "\u{ad}", "\u{3164}", "\u{2028}", "\u{1b}"]
+        {
+            let name = format!("{hidden}ecarG");
+            let refused = problem(&name).unwrap_or_default();
+            assert!(refused.contains("invisible"), "{hidden:?}: {refused}");
+            assert!(are_alike(&format!("Ada{hidden}"), "Ada"), "{hidden:?}");
+            assert_eq!(one_line(&name), " ecarG");
+        }
+    }
+
+    #[test]
+    fn a_name_has_one_spelling() {
+        for spelled in [" Zoë Ada ", "Zoe\u{308} Ada", "Zoë\u{a0}Ada", "Zoë\tAda", "Zoë\u{3000} Ada"] {
+            assert_eq!(tidy(spelled), "Zoë Ada", "{spelled:?}");
+        }
     }
 }

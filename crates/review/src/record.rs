@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 use jiff::Timestamp;
 use serde_json::{Map, Value, json};
 
-use super::check::{Check, check, is_after, moment};
+use super::check::{Check, HIDDEN, check, is_after, moment};
 pub use super::entry::{Act, Entry, LineKey, Rate, Runs, Said, SeenLine, Subject, Who, seen_lines};
 use super::keys::{SecretKey, Trust};
 use super::sealed::Sealed;
@@ -151,6 +151,11 @@ impl Record {
         self.entries.get(*self.numbers.get(digest)?)
     }
 
+    /// What was found of the entry of this digest.
+    pub fn check_of(&self, digest: &str) -> Option<&Check> {
+        self.checks.get(*self.numbers.get(digest)?)
+    }
+
     /// The number of an entry, from 1; 0 if there is none.
     pub fn number(&self, digest: &str) -> usize {
         self.numbers.get(digest).map_or(0, |index| index + 1)
@@ -206,10 +211,17 @@ impl Record {
         })
     }
 
-    /// Adds an entry after all others, signed.
-    pub fn add(&mut self, who: Who, act: Act, secret: &SecretKey) {
+    /// Adds an entry after all others that are not dated later, signed. Returns its digest.
+    pub fn add(&mut self, who: Who, act: Act, secret: &SecretKey) -> String {
         let said = Said { rules: self.rules().digest(), ..self.said(who, act) };
-        self.push(Entry::signed(said, secret));
+        self.insert(Entry::signed(said, secret))
+    }
+
+    fn insert(&mut self, entry: Entry) -> String {
+        let digest = entry.digest().to_owned();
+        self.push(entry);
+        self.put_in_order();
+        digest
     }
 
     /// Adds an entry as earlier versions wrote it: without a signature, so that it does not count.
@@ -241,7 +253,7 @@ impl Record {
         last.into_iter().collect()
     }
 
-    /// Adds an approval of `subject`, signed; `acknowledged` are the digests of what it relies on: see
+    /// Adds an approval of `subject`, signed, and returns its digest; `acknowledged` are the digests of what it relies on: see
     /// [`Standing::relied_on`](super::Standing::relied_on).
     pub fn approve(
         &mut self,
@@ -250,11 +262,11 @@ impl Record {
         text: String,
         acknowledged: Vec<String>,
         secret: &SecretKey,
-    ) {
+    ) -> String {
         let rules = subject.rules.digest();
         let subject = self.keep_subject(subject);
         let said = Said { rules, acknowledged, ..self.said(who, Act::Approve { subject, text }) };
-        self.push(Entry::signed(said, secret));
+        self.insert(Entry::signed(said, secret))
     }
 
     /// Keeps what is approved. Returns its digest.
@@ -356,6 +368,9 @@ impl Record {
             // An index would make a member of what is no object, or panic.
             let said = entry.get_mut("said").map(Value::take).unwrap_or_default();
             let said = Sealed::<Said>::read(said).map_err(damaged)?;
+            if !said.is_visible() {
+                return Err(RecordError::Damaged(format!("of entry {}, {HIDDEN}", index + 1)));
+            }
             record.is_next(&said, entry["digest"].as_str().unwrap_or_default(), &known).map_err(|why| {
                 RecordError::Broken(format!("entry {} ({}, {}) {why}", index + 1, said.by, said.time))
             })?;
@@ -366,6 +381,7 @@ impl Record {
         if heads != record.heads {
             return Err(RecordError::Broken("its last entry is not the one that was last".to_owned()));
         }
+        record.put_in_order();
         Ok(record)
     }
 
@@ -404,22 +420,26 @@ impl Record {
                 Some(_) => {}
             }
         }
-        if !new.is_empty() {
-            let all = std::mem::take(&mut self.entries).into_iter().chain(new).collect();
-            self.heads.clear();
-            self.numbers.clear();
-            self.checks.clear();
-            for entry in in_order(all) {
-                self.push(entry);
-            }
-        }
-        self.check_again();
+        self.entries.extend(new);
+        self.put_in_order();
         for runs in other.runs {
             if self.runs_of(&runs.content_hash).is_none_or(|known| known.tally.runs < runs.tally.runs) {
                 self.keep_runs(runs);
             }
         }
         self.entries.len() - before
+    }
+
+    /// Puts the entries in the one order that they have, whatever order a document has them in: which flight rules were set
+    /// last must not depend on that.
+    fn put_in_order(&mut self) {
+        let entries = in_order(std::mem::take(&mut self.entries));
+        self.heads.clear();
+        self.numbers.clear();
+        self.checks.clear();
+        for entry in entries {
+            self.push(entry);
+        }
     }
 }
 

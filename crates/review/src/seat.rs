@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 use super::keys::PublicKey;
+use super::names;
 
 /// A role of the board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,12 +48,19 @@ pub(super) fn default_board() -> Vec<Seat> {
 
 /// What is wrong with a board, if something is.
 pub(super) fn problem(board: &[Seat]) -> Option<&'static str> {
-    let roles: BTreeSet<&str> = board.iter().map(|seat| seat.role.trim()).collect();
+    let are_alike = |(index, seat): (usize, &Seat)| {
+        board[..index].iter().any(|other| names::are_alike(&seat.role, &other.role))
+    };
     match board {
         [] => Some("someone must approve"),
         _ if board.len() > MAX_SEATS => Some("a board has at most 12 roles"),
-        _ if roles.contains("") => Some("every role needs a name"),
-        _ if roles.len() < board.len() => Some("every role needs a different name"),
+        _ if board.iter().any(|seat| seat.role.trim().is_empty()) => Some("every role needs a name"),
+        _ if board.iter().any(|seat| names::problem(&seat.role).is_some()) => {
+            Some("a role's name must have visible letters, of one script in each word")
+        }
+        _ if board.iter().enumerate().any(are_alike) => {
+            Some("the names of two roles must differ in more than case, accents, spaces or signs")
+        }
         _ if board.iter().any(|seat| !(1..=MAX_APPROVALS).contains(&seat.approvals)) => {
             Some("a role needs 1 to 9 approvals")
         }

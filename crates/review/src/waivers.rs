@@ -1,10 +1,9 @@
 //! Waivers: items that need attention and may be as they are until some day (SPEC 16.3).
 
 use jiff::civil::Date;
-use jiff::tz::TimeZone;
 use serde::Serialize;
 
-use super::check::day;
+use super::check::{day, day_of};
 use super::record::{Act, Entry, LineKey, Record};
 
 /// How a waiver stands.
@@ -49,9 +48,19 @@ pub struct Waiver<'a> {
 const DAYS_OF_NOTICE: i32 = 7;
 
 impl Record {
+    /// The day, in UTC, on which the entries were last checked.
+    pub fn today(&self) -> Option<Date> {
+        self.now().map(day_of)
+    }
+
+    /// Whether a waiver that is signed now can lapse on this day, such as `2026-01-31`.
+    pub fn may_lapse_on(&self, text: &str) -> bool {
+        self.today().zip(day(text)).is_some_and(|(today, until)| today < until)
+    }
+
     /// The waivers that count, oldest first.
     pub fn waivers(&self) -> Vec<Waiver<'_>> {
-        let today = self.now().map(|now| now.to_zoned(TimeZone::UTC).date());
+        let today = self.today();
         let mut waivers = Vec::new();
         for entry in self.standing_entries() {
             if let Act::Waive { line, until, .. } = &entry.act {
@@ -60,11 +69,6 @@ impl Record {
         }
         waivers
     }
-}
-
-/// Whether a text names a day, such as `2026-01-31`.
-pub fn is_day(text: &str) -> bool {
-    day(text).is_some()
 }
 
 fn state(until: &str, today: Option<Date>) -> WaiverState {

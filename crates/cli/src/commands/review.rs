@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Subcommand;
+use review::names::one_line;
 use review::record::{Entry, RecordError, Runs, short};
 use review::{Check, PlanStatus, Present, Record, Review, Standing, Waiver, WaiverState, review, standing};
 use serde_json::{Value, json};
@@ -18,6 +19,7 @@ use crate::trust::Trusted;
 
 /// Verify the history of a review.
 #[derive(clap::Args)]
+#[command(disable_help_subcommand = true)]
 pub struct Args {
     #[command(subcommand)]
     command: Command,
@@ -164,7 +166,7 @@ fn words(found: &Found<'_>) -> String {
     }
     for Waiver { entry, line, until, state } in &standing.waivers {
         let lapses = if *state == WaiverState::Lapsed { "lapsed" } else { "lapses" };
-        let text = &line.text;
+        let text = one_line(&line.text);
         out.push_str(&format!("waiver {}, {lapses} {until}, by {}: {text}\n", state.name(), entry.by));
     }
     for blocker in blockers {
@@ -180,7 +182,7 @@ fn words(found: &Found<'_>) -> String {
 fn told(record: &Record, entry: &Entry, check: &Check) -> String {
     let role = if entry.role.is_empty() { String::new() } else { format!(" ({})", entry.role) };
     let of = entry.act.of().map(|of| format!(" entry {}", record.number(of))).unwrap_or_default();
-    let text = match entry.act.text().replace('\n', " ") {
+    let text = match one_line(entry.act.text()) {
         text if text.is_empty() => text,
         text => format!(": {text}"),
     };

@@ -285,6 +285,34 @@ fn forged_signatures_and_entries_that_are_left_out_are_no_approval() {
     assert_eq!((status, &answer["entries"][0]["signature"]), (Some(1), &json!("unsigned")));
 }
 
+/// Whoever writes a comment or chooses a name does not write lines of the answer.
+#[test]
+fn words_of_a_history_are_one_line_each_and_names_that_hide_are_refused() {
+    use review::record::{Act, Record, Who};
+    let (path, _, keys) = approved_history("spoofed.review.json");
+    let (secret, _) = ada("spoofed.keys.json");
+    let line = "   9  2024-01-02T03:04:05Z  Grace (Reviewer) approved [valid]";
+    let with = |by: &str, text: &str| {
+        let mut record =
+            Record::from_json(&std::fs::read_to_string(&path).expect("a file")).expect("a record");
+        let (time, role) = ("2024-01-02T03:04:06Z".to_owned(), "Reviewer".to_owned());
+        let who = Who { by: by.to_owned(), role, time, ..Who::default() };
+        record.add(who, Act::Comment { about: None, to: None, text: text.to_owned() }, &secret);
+        written_file("spoofed-again.review.json", &record.to_json())
+    };
+    for breaks in ["\n", "\r", "\r\n", "\u{2028}", "\u{1b}[1G", "\u{b}"] {
+        let said = written(&enroute(&["review", "verify", &with("Ada", &format!("Fine.{breaks}{line}"))]));
+        assert!(said.contains("commented: Fine. ") && !said.contains(&format!("{breaks}{line}")), "{said}");
+        assert!(!said.contains('\u{1b}') && !said.contains('\r'), "{said}");
+    }
+    for name in [format!("Ada\n{line}"), "\u{202e}adA".to_owned(), "A\u{200b}da".to_owned()] {
+        let output = enroute(&["review", "verify", &with(&name, "Fine."), "--trust", &keys]);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains("invisible characters") && !said.contains(line), "{said}");
+    }
+}
+
 #[test]
 fn reports_and_schedules_say_how_the_plan_stands() {
     let (path, _, keys) = approved_history("for-report.review.json");

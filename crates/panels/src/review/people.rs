@@ -6,7 +6,6 @@ use egui::{Button, ComboBox, Frame, Margin, RichText, TextEdit, Ui};
 use review::check::is_concerned;
 use review::keys::PublicKey;
 use review::record::{Act, Entry, LineKey};
-use review::waivers::is_day;
 use review::{Check, Line, Section, Standing, WaiverState};
 use theme::icon::{self, Icon};
 use theme::{space, strong};
@@ -172,8 +171,8 @@ impl People {
                     self.ask(ui, &acknowledged, "Acknowledge…", &line.text);
                     self.ask(ui, &waived, "Waive…", &line.text);
                 });
-                self.answer(ui, &acknowledged, commands);
-                self.answer(ui, &waived, commands);
+                self.answer(ui, context, &acknowledged, commands);
+                self.answer(ui, context, &waived, commands);
             });
             return;
         };
@@ -191,7 +190,7 @@ impl People {
                     self.ask(ui, &about, "Withdraw…", &line.text);
                 }
             });
-            self.answer(ui, &about, commands);
+            self.answer(ui, context, &about, commands);
         });
     }
 
@@ -234,7 +233,7 @@ impl People {
                     if self.is_own(waiver.entry) {
                         self.ask(ui, &about, "Withdraw…", &waiver.line.text);
                     }
-                    self.answer(ui, &about, commands);
+                    self.answer(ui, context, &about, commands);
                 });
             });
         }
@@ -250,7 +249,7 @@ impl People {
     }
 
     /// The words about something, if they are being written.
-    fn answer(&mut self, ui: &mut Ui, about: &About, commands: &mut CommandSender) {
+    fn answer(&mut self, ui: &mut Ui, context: &Context<'_>, about: &About, commands: &mut CommandSender) {
         let has_key = self.has_key();
         let Some(answer) = self.answer.as_mut().filter(|answer| answer.about == *about) else { return };
         let (send, hint) = about.words();
@@ -268,7 +267,7 @@ impl People {
             });
         }
         let needs_words = is_waiver || matches!(about, About::Line(_) | About::Resolved(_));
-        let is_dated = !is_waiver || is_day(answer.until.trim());
+        let is_dated = !is_waiver || context.state.review.record().may_lapse_on(answer.until.trim());
         let is_ready = has_key && is_dated && !(needs_words && answer.text.trim().is_empty());
         let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
         let (mut is_sent, mut is_left) = (is_entered && is_ready, false);
@@ -276,7 +275,7 @@ impl People {
             let button = ui.add_enabled(is_ready, Button::new(send));
             let why = match (has_key, is_dated) {
                 (false, _) => "create a key first",
-                (true, false) => "enter a date such as 2026-01-31",
+                (true, false) => "enter a date after today, such as 2026-01-31",
                 (true, true) => "enter a reason first",
             };
             is_sent |= button.on_disabled_hover_text(why).clicked();
@@ -385,8 +384,8 @@ impl People {
                         self.ask(ui, &About::Withdrawn(id.clone()), "Withdraw…", text);
                     }
                 });
-                self.answer(ui, &change, commands);
-                self.answer(ui, &About::Withdrawn(id), commands);
+                self.answer(ui, context, &change, commands);
+                self.answer(ui, context, &About::Withdrawn(id), commands);
             }
         });
     }
@@ -481,7 +480,7 @@ impl People {
                                 self.ask(ui, &about, "Withdraw…", &entry.by);
                             }
                         });
-                        self.answer(ui, &about, commands);
+                        self.answer(ui, context, &about, commands);
                     });
                 }
             }

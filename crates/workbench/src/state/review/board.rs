@@ -3,6 +3,7 @@
 use review::board::open_comments;
 use review::check::{Objection, objection};
 use review::keys::{PublicKey, SecretKey};
+use review::names;
 use review::record::{Act, Record, Runs, Subject, Who};
 use review::{Present, Standing, standing};
 use serde_json::Value;
@@ -42,7 +43,7 @@ impl ReviewState {
             let open = open_comments(record);
             open.iter().any(|comment| comment.digest() == of)
         };
-        let objection = objection(record, Some(key), act);
+        let objection = objection(record, Some(key), act, record.today());
         match act {
             _ if self.hash().is_none() => Err("Wait until planning ends, then try again".to_owned()),
             Act::Comment { .. } if act.text().trim().is_empty() => Err("Comment is empty".to_owned()),
@@ -53,6 +54,9 @@ impl ReviewState {
             }),
             _ if objection == Some(Objection::NoDate) => {
                 Err("Enter the date on which the waiver lapses, such as 2026-01-31".to_owned())
+            }
+            _ if objection == Some(Objection::PastDate) => {
+                Err("Enter a date after the day on which you sign (UTC)".to_owned())
             }
             Act::Resolve { of, .. } if !is_open(of) => Err("This comment is already resolved".to_owned()),
             Act::Reopen { of, .. } if is_open(of) => Err("This comment is already open".to_owned()),
@@ -89,7 +93,7 @@ impl Reviewing<'_> {
         self.settings.reviewer_role.clone_from(&by.role);
         let plan_hash = self.review.current().map(|review| review.plan_hash.clone()).unwrap_or_default();
         Who {
-            by: by.name,
+            by: names::tidy(&by.name),
             role: by.role,
             time: self.utc_now(),
             content_hash: self.review.hash().unwrap_or_default().to_owned(),
@@ -119,7 +123,7 @@ impl Reviewing<'_> {
         let relied_on = self.review.standing().map(|standing| standing.relied_on).unwrap_or_default();
         let words = format!("Approved by {} ({})", by.name, by.role);
         let approve = |record: &mut Record, who: Who, secret: &SecretKey| {
-            record.approve(who, subject, text.to_owned(), relied_on, secret);
+            record.approve(who, subject, text.to_owned(), relied_on, secret)
         };
         if self.sign_with(by, approve) {
             self.window.done(words);
@@ -141,7 +145,7 @@ impl Reviewing<'_> {
         self.sign_with(by, |record, who, secret| record.add(who, act, secret))
     }
 
-    fn sign_with(&mut self, by: Person, add: impl FnOnce(&mut Record, Who, &SecretKey)) -> bool {
+    fn sign_with(&mut self, by: Person, add: impl FnOnce(&mut Record, Who, &SecretKey) -> String) -> bool {
         let (_, secret) = match self.keys.secret(&by.name) {
             Ok(secret) => secret,
             Err(reason) => {
@@ -153,9 +157,8 @@ impl Reviewing<'_> {
         self.name_record();
         self.judge_record();
         let mut record = self.review.record.clone();
-        add(&mut record, who, &secret);
-        let last = record.checked().next_back().map(|(_, check)| check);
-        if let Some(check) = last.filter(|check| !check.counts()) {
+        let added = add(&mut record, who, &secret);
+        if let Some(check) = record.check_of(&added).filter(|check| !check.counts()) {
             let problem = check.problem.as_deref().unwrap_or(check.signature.name());
             self.window.failed(format!("Not signed: {problem}"));
             return false;
