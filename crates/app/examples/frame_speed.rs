@@ -93,5 +93,5 @@ fn drag_event(app: &mut support::App) -> Vec<Duration> {
 fn report(nodes: usize, what: &str, mut times: Vec<Duration>) {
     times.sort();
     let at = |part: usize| times[(times.len() * part / 100).min(times.len() - 1)];
-    println!("{nodes} nodes, {what}: median {:?}, 90 % {:?}, most {:?}", at(50), at(90), at(100));
+    println!("{nodes} nodes, {what}: median {:?}, 90% {:?}, most {:?}", at(50), at(90), at(100));
 }

@@ -15,7 +15,7 @@ const RUNS: u64 = 200;
 
 fn main() {
     println!(
-        "| map | radius | planner | success | first path ms (median) | 90 % | length | smoothing ms | smoothed | of reference | worst | within 5 % |"
+        "| map | radius | planner | success | first path ms (median) | 90% | length | smoothing ms | smoothed | of reference | worst | within 5% |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     for map in ["map_1", "map_2"] {

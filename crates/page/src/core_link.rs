@@ -112,7 +112,7 @@ impl Shared {
                 let text = self.link.text_under_way().cloned().unwrap_or_default();
                 match self.end.read(&Uint8Array::new(payload).to_vec(), text) {
                     Ok(response) => News::Answer(response),
-                    Err(reason) => News::Failed(format!("an answer cannot be read: {reason}")),
+                    Err(reason) => News::Failed(format!("couldn't read an answer of the core: {reason}")),
                 }
             }
             "finished" => News::Finished,

@@ -145,7 +145,10 @@ impl FrontEnd {
                 if let Some(page) = kept.as_mut() {
                     page.move_to(egui, renderer);
                 } else {
-                    *kept = Some(Page::start(&glue, egui, renderer).ok_or("this is no page")?);
+                    *kept = Some(
+                        Page::start(&glue, egui, renderer)
+                            .ok_or("this document is not the page of Enroute")?,
+                    );
                 }
                 drop(kept);
                 Ok(Box::new(PageApp { page, glue }))

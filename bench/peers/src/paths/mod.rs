@@ -33,14 +33,14 @@ pub(crate) fn compare(tools: &mut Tools, quick: bool) -> Result<()> {
             "program",
             "success",
             "first ms",
-            "90 %",
+            "90%",
             "worst ms",
             "length",
             "cut corners",
             "simplify ms",
             "simplified",
             "of shortest",
-            "within 5 %",
+            "within 5%",
             "cut corners",
         ],
     );
@@ -73,7 +73,7 @@ pub(crate) fn compare(tools: &mut Tools, quick: bool) -> Result<()> {
         let programs = [
             ("ours", Ok(ours)),
             ("OMPL, edges checked every cell", by_ompl("1")),
-            ("OMPL, edges checked every 1 % of the map", by_ompl("7.24")),
+            ("OMPL, edges checked every 1% of the map", by_ompl("7.24")),
         ];
         let as_in_missions = (planner == PlannerKind::RrtConnect).then(|| {
             let found =
@@ -90,7 +90,7 @@ pub(crate) fn compare(tools: &mut Tools, quick: bool) -> Result<()> {
         }
     }
     let lengths: Vec<String> = shortest.iter().map(|length| format!("{length:.1}")).collect();
-    table.note(format!("{runs} searches on each map. Times and lengths are the medians of the maps, from the least to the greatest; 90 % and worst over all. A path cuts corners if it passes through an occupied cell by more than a millionth of its width, checked apart from all planners. The shortest paths, found in the visibility graph: {}.", lengths.join(", ")));
+    table.note(format!("{runs} searches on each map. Times and lengths are the medians of the maps, from the least to the greatest; 90% and worst over all. A path cuts corners if it passes through an occupied cell by more than a millionth of its width, checked apart from all planners. The shortest paths, found in the visibility graph: {}.", lengths.join(", ")));
     table.note("OMPL's time is that of `solve` alone, until its first exact solution; its simplification is `PathSimplifier::simplifyMax`. Ours is from the query to the path.");
     table.print();
     Ok(())

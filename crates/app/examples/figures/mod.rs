@@ -7,5 +7,5 @@ use std::time::Duration;
 pub fn report(what: &str, mut times: Vec<Duration>) {
     times.sort();
     let at = |part: usize| times[(times.len() * part / 100).min(times.len() - 1)];
-    println!("{what}: median {:?}, 95 % {:?}, most {:?}", at(50), at(95), at(100));
+    println!("{what}: median {:?}, 95% {:?}, most {:?}", at(50), at(95), at(100));
 }

@@ -293,6 +293,42 @@ fn bar_names(labels: &[(String, egui::Rect)]) -> Vec<String> {
     whole.flat_map(|whole| [name(whole), whole.split('#').next().unwrap_or(whole).to_owned()]).collect()
 }
 
+/// Nouns that the panels count, in the plural.
+const COUNTED: [&str; 18] = [
+    "alternatives",
+    "choices",
+    "components",
+    "decisions",
+    "diagnoses",
+    "entries",
+    "errors",
+    "events",
+    "failures",
+    "items",
+    "lines",
+    "orderings",
+    "places",
+    "samples",
+    "states",
+    "steps",
+    "vertices",
+    "warnings",
+];
+
+/// Whether a text says “1 decisions”, or has code in raw backticks.
+fn is_badly_put(text: &str) -> bool {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let is_wrong =
+        |pair: &[&str]| pair[0] == "1" && COUNTED.contains(&pair[1].trim_end_matches([',', '.', ':']));
+    text.contains('`') || words.windows(2).any(is_wrong)
+}
+
+#[test]
+fn numbers_agree_with_nouns_and_code_is_rendered() {
+    assert!(is_badly_put("D1 has 1 alternatives.") && is_badly_put("the delay `delay`"));
+    assert!(!is_badly_put("1 alternative, 21 alternatives, step 1"));
+}
+
 #[test]
 fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read_or_makes_it_small() {
     let mut app = opened("", [1280.0, 800.0]);
@@ -309,6 +345,8 @@ fn no_stop_of_any_lesson_cuts_off_what_is_to_be_read_or_makes_it_small() {
             let with = |is_such: fn(&str) -> bool| {
                 labels.iter().filter(move |(label, _)| is_such(label)).map(|&(_, rect)| rect).collect()
             };
+            let badly_put = labels.iter().filter(|(label, _)| is_badly_put(label));
+            cut.extend(badly_put.map(|(label, _)| format!("{place}: {label}")));
             let drawn: Vec<egui::Rect> = with(|label| label.ends_with(" in the network"));
             // Of a network that is larger than its panel, what the stop is about has to be there.
             let json = app.json();

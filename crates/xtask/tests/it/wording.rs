@@ -26,7 +26,7 @@ const FOLDERS: [&str; 7] = [
 
 /// Where other texts are that users read: answers of the command line, diagnostics, reports, messages of the planner. These
 /// quote code in backticks, and have sentences such as “there is no plan”.
-const MORE_FOLDERS: [&str; 16] = [
+const MORE_FOLDERS: [&str; 18] = [
     "crates/cli/src",
     "crates/executive/src",
     "crates/hca/src",
@@ -35,6 +35,7 @@ const MORE_FOLDERS: [&str; 16] = [
     "crates/link/src",
     "crates/mission/src",
     "crates/motion/src",
+    "crates/page/src",
     "crates/plant/src",
     "crates/report/src",
     "crates/review/src",
@@ -43,13 +44,11 @@ const MORE_FOLDERS: [&str; 16] = [
     "crates/terrain/src",
     "crates/tpn/src",
     "crates/verify/src",
+    "crates/worker/src",
 ];
 
 /// Documents whose prose is not checked, and why.
-const OTHER_DOCUMENTS: [(&str, &str); 6] = [
-    ("accessibility.md", "evidence"),
-    ("attacks.md", "evidence"),
-    ("benchmarks.md", "evidence"),
+const OTHER_DOCUMENTS: [(&str, &str); 3] = [
     ("command-line.md", "help texts, which are checked in the sources"),
     ("key-sentences.md", "made of lessons and messages, which are checked in the sources"),
     ("specification.md", "definitions in the terms of mathematics"),
@@ -77,7 +76,7 @@ const BANNED_IN_THE_INTERFACE: [(&str, &str); 6] = [
 ];
 
 /// Patterns that no text contains at all.
-const BANNED: [(&str, &str); 37] = [
+const BANNED: [(&str, &str); 40] = [
     (
         r"^(Shows|Gives|Goes|Hides|Keeps|Opens|Leaves|Brings|Adds|Checks|Marks|Runs|Works|Collapses) ",
         "a tooltip starts with an imperative",
@@ -124,6 +123,9 @@ const BANNED: [(&str, &str); 37] = [
     ),
     (r"\bwho (has|have) to\b", "say required"),
     (r"^Worth$", "say objective"),
+    (r"\w\(s\)", "plurals are real: 1 decision, 2 decisions"),
+    (r"\b(this|it|that|which|what) (is|are) no ([^l]|l[^o])", "say is not a"),
+    (r"\bso and (pass|fail)", "name what is printed"),
 ];
 
 /// Texts in which a banned pattern is right, by the file's end and a part of the text, and why.
@@ -374,26 +376,49 @@ fn no_label_tooltip_or_toast_is_too_long() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+static CODE_OR_TARGET: LazyLock<Regex> =
+    LazyLock::new(|| Regex::new(r"`[^`]*`|\]\([^)]*\)").expect("a pattern"));
+
+/// The lines of a Markdown text outside of blocks of code.
+fn lines(markdown: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut is_code = false;
+    markdown.lines().enumerate().filter_map(move |(number, line)| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        (!is_code && !is_fence).then_some((number + 1, line))
+    })
+}
+
 /// The prose of a Markdown text, line by line, without code and the targets of links.
 fn prose(markdown: &str) -> Vec<(usize, String)> {
-    static CODE_OR_TARGET: LazyLock<Regex> =
-        LazyLock::new(|| Regex::new(r"`[^`]*`|\]\([^)]*\)").expect("a pattern"));
-    let mut is_code = false;
-    let mut found = Vec::new();
-    for (number, line) in markdown.lines().enumerate() {
-        if line.trim_start().starts_with("```") {
-            is_code = !is_code;
-        } else if !is_code {
-            found.push((number + 1, CODE_OR_TARGET.replace_all(line, "").into_owned()));
-        }
-    }
-    found
+    lines(markdown)
+        .map(|(number, line)| (number, CODE_OR_TARGET.replace_all(line, "").into_owned()))
+        .collect()
 }
 
 #[test]
-fn prose_is_what_is_no_code() {
+fn prose_has_neither_code_nor_targets() {
     let lines = prose("A `behind` [link](behind.md).\n```\nbehind\n```\nEnd\n");
     assert_eq!(lines, [(1, "A  [link.".to_owned()), (5, "End".to_owned())]);
+}
+
+/// The documents that people read, with their texts, without those of [`OTHER_DOCUMENTS`].
+fn documents() -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (path, text) in crate::citations::texts() {
+        let name = path.to_string_lossy().replace('\\', "/");
+        let is_for_users = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].contains(&name.as_str())
+            || name.starts_with("docs/panels/")
+            || name.starts_with("docs/evidence/")
+            || name.strip_prefix("docs/").is_some_and(|name| !name.contains('/'))
+            || name.starts_with("assets/");
+        let is_other = OTHER_DOCUMENTS.iter().any(|(other, _)| name.ends_with(other));
+        if is_for_users && !is_other && path.extension().is_some_and(|extension| extension == "md") {
+            found.push((name, text));
+        }
+    }
+    assert!(found.len() > 65, "only {} documents", found.len());
+    found
 }
 
 #[test]
@@ -402,18 +427,7 @@ fn no_document_for_users_has_a_banned_word() {
     let patterns = patterns(&BANNED).into_iter().filter(|(pattern, _)| !pattern.as_str().contains('^'));
     let patterns: Vec<(Regex, &str)> = patterns.collect();
     let mut wrong = Vec::new();
-    let mut count = 0;
-    for (path, text) in crate::citations::texts() {
-        let name = path.to_string_lossy().replace('\\', "/");
-        let is_for_users = name == "README.md"
-            || name.starts_with("docs/panels/")
-            || name.strip_prefix("docs/").is_some_and(|name| !name.contains('/'))
-            || name.starts_with("assets/");
-        let is_other = OTHER_DOCUMENTS.iter().any(|(other, _)| name.ends_with(other));
-        if !is_for_users || is_other || path.extension().is_none_or(|extension| extension != "md") {
-            continue;
-        }
-        count += 1;
+    for (name, text) in documents() {
         for (line, words) in prose(&text) {
             for (pattern, instead) in patterns.iter().filter(|(pattern, _)| pattern.is_match(&words)) {
                 // The word is in quotes where its meaning is explained.
@@ -423,6 +437,69 @@ fn no_document_for_users_has_a_banned_word() {
             }
         }
     }
-    assert!(count > 60, "only {count} documents");
     assert!(wrong.is_empty(), "{} lines:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// The most words of a sentence in a document.
+const MAX_WORDS: usize = 35;
+
+/// Documents with longer sentences, and why.
+const LONG_SENTENCES: [(&str, &str); 2] =
+    [("benchmarks.md", "the conditions of measurements"), ("contracts.md", "formats, for programs")];
+
+/// The sentences of a document's paragraphs and lists, with the line where each paragraph starts; without tables.
+fn sentences(markdown: &str) -> Vec<(usize, String)> {
+    static END: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"[.!?][)”*]*\s+").expect("a pattern"));
+    static ITEM: LazyLock<Regex> = LazyLock::new(|| Regex::new(r"^([*-]|\d+\.)\s").expect("a pattern"));
+    let mut paragraphs: Vec<(usize, String)> = Vec::new();
+    let mut last_line = 0;
+    for (line, words) in lines(markdown) {
+        let words = words.trim();
+        if words.is_empty() || words.starts_with(['#', '|', '<']) {
+            continue;
+        }
+        match paragraphs.last_mut() {
+            Some((_, paragraph)) if line == last_line + 1 && !ITEM.is_match(words) => {
+                paragraph.push(' ');
+                paragraph.push_str(words);
+            }
+            _ => paragraphs.push((line, words.to_owned())),
+        }
+        last_line = line;
+    }
+    let split = |(line, paragraph): &(usize, String)| {
+        let prose = CODE_OR_TARGET.replace_all(paragraph, "");
+        let ended = END.replace_all(&prose, "$0\n");
+        ended.lines().map(|sentence| (*line, sentence.trim().to_owned())).collect::<Vec<_>>()
+    };
+    paragraphs.iter().flat_map(split).collect()
+}
+
+#[test]
+fn sentences_end_at_full_stops_and_items_start_their_own() {
+    let found =
+        sentences("# Title\n\nOne\nand two. (Three.) Four\n* five\n* six\n\n```\ncode\n```\n| table |\n");
+    let expected = [(3, "One and two."), (3, "(Three.)"), (3, "Four"), (5, "* five"), (6, "* six")];
+    assert_eq!(found, expected.map(|(line, words)| (line, words.to_owned())));
+}
+
+#[test]
+fn no_sentence_of_a_document_is_too_long() {
+    let mut wrong = Vec::new();
+    let mut count = 0;
+    for (name, text) in documents() {
+        if LONG_SENTENCES.iter().any(|(other, _)| name.ends_with(other)) {
+            continue;
+        }
+        for (line, sentence) in sentences(&text) {
+            count += 1;
+            let words = sentence.split_whitespace().filter(|word| word.chars().any(char::is_alphanumeric));
+            let words = words.count();
+            if words > MAX_WORDS {
+                wrong.push(format!("{name}:{line}: {words} words: {sentence}"));
+            }
+        }
+    }
+    assert!(count > 2_000, "only {count} sentences");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
