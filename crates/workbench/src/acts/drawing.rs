@@ -7,6 +7,7 @@ use crate::effect::Effect;
 use crate::panel_kind::PanelKind;
 use crate::state::AppState;
 use crate::state::drawing::{self, Change, DrawCommand, Drawn, Place};
+use crate::state::files;
 
 /// A preview of a change has at most this many lines.
 const PREVIEW_LINES: usize = 8;
@@ -23,7 +24,7 @@ impl AppState {
     /// The lines of the text that a change would change; `Err` says why it cannot be made.
     pub fn drawing_preview(&self, change: &Change) -> Result<String, String> {
         let parse = self.drawn_text()?;
-        Ok(drawing::draw(parse, change)?.preview(parse.text(), PREVIEW_LINES))
+        Ok(drawing::draw(parse, files::shown(&self.document), change)?.preview(parse.text(), PREVIEW_LINES))
     }
 
     /// The text, if the drawings are up to date with it.
@@ -58,11 +59,12 @@ impl AppState {
             DrawCommand::Paste(text) => {
                 let text = text.replace("\r\n", "\n");
                 let text = text.trim().trim_end_matches([';', ',']).to_owned();
-                (!text.is_empty()).then_some(Change::Insert { text, at: after })
+                (!text.is_empty()).then_some(Change::Paste { text, at: after })
             }
         };
         let Some(change) = change else { return };
-        match self.drawn_text().and_then(|parse| drawing::draw(parse, &change)) {
+        match self.drawn_text().and_then(|parse| drawing::draw(parse, files::shown(&self.document), &change))
+        {
             Ok(drawn) => self.take_drawn(&drawn),
             Err(reason) => self.window.failed(reason),
         }

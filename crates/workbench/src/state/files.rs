@@ -36,6 +36,12 @@ pub(crate) fn at_caret(document: &Document) -> usize {
     document.headings().partition_point(|&heading| heading <= line)
 }
 
+/// The file that the text shows, which new declarations go to: that of the caret.
+pub(crate) fn shown(document: &Document) -> Span {
+    let range = document.file_range(document.caret().head);
+    Span::new(range.start as u32, range.end as u32)
+}
+
 impl Writing<'_> {
     pub(crate) fn apply_to_files(&mut self, command: FileCommand) {
         self.window.dialog = None;

@@ -65,9 +65,9 @@ enum Kind {
     Vehicle,
 }
 
-/// The edits that declare `thing` in `text`, whose meaning is `program`, under a name that the text does not use.
-pub fn declare(text: &str, program: &Program, thing: &NewThing) -> Declared {
-    let world = &program.world;
+/// The edits that declare `thing` in one file of `text`, whose meaning is `program`, under a name that the text does not use.
+pub fn declare(text: &str, file: Span, program: &Program, thing: &NewThing) -> Declared {
+    let here = Here { text, file, world: &program.world };
     let mut names = Names::of(text);
     let (kind, declaration, selection, start) = match thing {
         NewThing::Location(at_m) => {
@@ -97,20 +97,26 @@ pub fn declare(text: &str, program: &Program, thing: &NewThing) -> Declared {
     };
     let mut edits = Vec::new();
     if let Some(start) = start {
-        insert(&mut edits, text, world, Kind::Location, &start);
+        here.insert(&mut edits, Kind::Location, &start);
     }
-    insert(&mut edits, text, world, kind, &declaration);
+    here.insert(&mut edits, kind, &declaration);
     Declared { edits, selection, text: declaration }
 }
 
 /// The edits that make a declared vehicle start elsewhere, in textual order.
-pub fn move_start(text: &str, program: &Program, vehicle: &str, start: &VehicleStart) -> Option<Vec<Edit>> {
-    let world = &program.world;
-    let declared = world.vehicles.iter().find(|it| it.name.text == vehicle)?;
+pub fn move_start(
+    text: &str,
+    file: Span,
+    program: &Program,
+    vehicle: &str,
+    start: &VehicleStart,
+) -> Option<Vec<Edit>> {
+    let here = Here { text, file, world: &program.world };
+    let declared = here.world.vehicles.iter().find(|it| it.name.text == vehicle)?;
     let (at, new) = Names::of(text).start(start);
     let mut edits = vec![Edit { span: declared.start.span, text: at.to_string() }];
     if let Some(new) = new {
-        insert(&mut edits, text, world, Kind::Location, &new);
+        here.insert(&mut edits, Kind::Location, &new);
     }
     edits.sort_by_key(|edit| edit.span);
     Some(edits)
@@ -181,40 +187,53 @@ impl Names {
     }
 }
 
-/// Adds the edit that puts a declaration behind the last one of its kind, or behind the kinds that come before it, or
-/// in front of everything.
-fn insert(edits: &mut Vec<Edit>, text: &str, world: &World, kind: Kind, declaration: &str) {
-    let (offset, inserted) = if let Some((span, last)) = last_before(world, kind) {
-        let between = if last == kind { "\n" } else { "\n\n" };
-        (behind(text, span.end), format!("{between}{declaration}"))
-    } else {
-        let offset = first_code(text);
-        let after = if offset == text.len() { "\n" } else { "\n\n" };
-        (offset as u32, format!("{declaration}{after}"))
-    };
-    // Edits are disjoint: what goes to the same place goes there at once.
-    if let Some(same) = edits.iter_mut().find(|edit| edit.span == Span::new(offset, offset)) {
-        same.text = if same.text.ends_with('\n') {
-            format!("{}{inserted}", same.text)
-        } else {
-            format!("{}\n{}", same.text, inserted.trim_start_matches('\n'))
-        };
-    } else {
-        edits.push(Edit { span: Span::new(offset, offset), text: inserted });
-        edits.sort_by_key(|edit| edit.span);
-    }
+/// Where new declarations go.
+struct Here<'a> {
+    text: &'a str,
+    /// The file that takes them.
+    file: Span,
+    world: &'a World,
 }
 
-/// The last declaration of the kind, or of the nearest kind before it that the world has.
-fn last_before(world: &World, kind: Kind) -> Option<(Span, Kind)> {
-    let last = |kind| match kind {
-        Kind::Terrain => world.terrain.as_ref().map(|it| it.span),
-        Kind::Location => world.locations.last().map(|it| it.span),
-        Kind::Obstacle => world.obstacles.last().map(|it| it.span),
-        Kind::Vehicle => world.vehicles.last().map(|it| it.span),
-    };
-    let kinds = [Kind::Vehicle, Kind::Obstacle, Kind::Location, Kind::Terrain];
-    kinds.into_iter().filter(|&other| other <= kind).find_map(|other| Some((last(other)?, other)))
+impl Here<'_> {
+    /// Adds the edit that puts a declaration behind the last one of its kind in the file, or behind the kinds that come
+    /// before it, or in front of everything.
+    fn insert(&self, edits: &mut Vec<Edit>, kind: Kind, declaration: &str) {
+        let (offset, inserted) = if let Some((span, last)) = self.last_before(kind) {
+            let between = if last == kind { "\n" } else { "\n\n" };
+            (behind(self.text, span.end), format!("{between}{declaration}"))
+        } else {
+            let own = self.text.get(self.file.range()).unwrap_or_default();
+            let offset = first_code(own);
+            let after = if offset == own.len() { "\n" } else { "\n\n" };
+            (self.file.start + offset as u32, format!("{declaration}{after}"))
+        };
+        // Edits are disjoint: what goes to the same place goes there at once.
+        if let Some(same) = edits.iter_mut().find(|edit| edit.span == Span::new(offset, offset)) {
+            same.text = if same.text.ends_with('\n') {
+                format!("{}{inserted}", same.text)
+            } else {
+                format!("{}\n{}", same.text, inserted.trim_start_matches('\n'))
+            };
+        } else {
+            edits.push(Edit { span: Span::new(offset, offset), text: inserted });
+            edits.sort_by_key(|edit| edit.span);
+        }
+    }
+
+    /// The last declaration of the kind in the file, or of the nearest kind before it that the file has.
+    fn last_before(&self, kind: Kind) -> Option<(Span, Kind)> {
+        let world = self.world;
+        let is_here = |span: &Span| self.file.start <= span.start && span.end <= self.file.end;
+        let last = |kind| match kind {
+            Kind::Terrain => world.terrain.iter().map(|it| it.span).rfind(is_here),
+            Kind::Location => world.locations.iter().map(|it| it.span).rfind(is_here),
+            Kind::Obstacle => world.obstacles.iter().map(|it| it.span).rfind(is_here),
+            Kind::Vehicle => world.vehicles.iter().map(|it| it.span).rfind(is_here),
+        };
+        let kinds = [Kind::Vehicle, Kind::Obstacle, Kind::Location, Kind::Terrain];
+        kinds.into_iter().filter(|&other| other <= kind).find_map(|other| Some((last(other)?, other)))
+    }
 }
 
 /// The place after the end of a piece of text, and after a comment that ends its line.
@@ -245,7 +264,7 @@ mod tests {
 
     fn after(text: &str, thing: &NewThing) -> String {
         let mut document = text_editing::Document::new(text);
-        let declared = declare(text, &rmpl::parse(text).program(), thing);
+        let declared = declare(text, Span::new(0, text.len() as u32), &rmpl::parse(text).program(), thing);
         document.edit(&declared.edits, text_editing::EditKind::Single, None);
         let declared_text = document.text().to_owned();
         document.undo();
@@ -300,6 +319,36 @@ mod tests {
     }
 
     #[test]
+    fn a_declaration_goes_to_the_file_that_is_shown() {
+        let world = "location A (1, 2);\n";
+        let whole =
+            rmpl::files::joined([("", "scenario S = { }\n"), ("world.rmpl", world), ("more.rmpl", "")]);
+        let files = rmpl::files::Files::of(&whole);
+        let declared = |name: &str| {
+            let file = files.named(name).expect("it is there");
+            let program = rmpl::parse(&whole).program();
+            let thing = NewThing::Location(Point2::new(3.0, 4.0));
+            let mut document = text_editing::Document::new(&whole);
+            let range = document.file_range(file.start as usize);
+            let span = Span::new(range.start as u32, range.end as u32);
+            document.edit(
+                &declare(&whole, span, &program, &thing).edits,
+                text_editing::EditKind::Single,
+                None,
+            );
+            let text = document.text().to_owned();
+            let files: Vec<(String, String)> = rmpl::files::split(&text)
+                .into_iter()
+                .map(|(name, text)| (name.to_owned(), text.trim_end().to_owned()))
+                .collect();
+            files.into_iter().map(|(_, text)| text).collect::<Vec<_>>()
+        };
+        assert_eq!(declared(""), ["location P1 (3, 4);\n\nscenario S = { }", "location A (1, 2);", ""]);
+        assert_eq!(declared("world.rmpl")[1], "location A (1, 2);\nlocation P1 (3, 4);");
+        assert_eq!(declared("more.rmpl"), ["scenario S = { }", "location A (1, 2);", "location P1 (3, 4);"]);
+    }
+
+    #[test]
     fn a_text_without_a_world_gets_its_first_place_in_front_of_its_code() {
         let text = after("// A title.\n\nscenario S = { }\n", &NewThing::Location(Point2::new(3.0, 4.0)));
         assert_eq!(text, "// A title.\n\nlocation P1 (3, 4);\n\nscenario S = { }\n");
@@ -310,7 +359,8 @@ mod tests {
         let program = rmpl::parse(WORLD).program();
         let moved = |start| {
             let mut document = text_editing::Document::new(WORLD);
-            let edits = move_start(WORLD, &program, "Rover1", &start).expect("it is declared");
+            let edits = move_start(WORLD, Span::new(0, WORLD.len() as u32), &program, "Rover1", &start)
+                .expect("it is declared");
             document.edit(&edits, text_editing::EditKind::Single, None);
             document.text().to_owned()
         };

@@ -8,6 +8,7 @@ use text_editing::{Caret, EditKind};
 use crate::panel_effect::ViewAction;
 use crate::panel_kind::PanelKind;
 use crate::state::editing::Writing;
+use crate::state::files;
 use crate::state::growth::{Growth, GrowthCommand};
 use crate::state::part::Part;
 use crate::state::placing::{self, NewThing, VehicleStart};
@@ -166,7 +167,9 @@ impl Writing<'_> {
     /// Makes a vehicle start elsewhere, and selects it.
     fn move_start(&mut self, vehicle: SmolStr, start: &VehicleStart) {
         let Some(program) = self.language.parse().map(rmpl::Parse::program) else { return };
-        if let Some(edits) = placing::move_start(self.document.text(), &program, &vehicle, start) {
+        if let Some(edits) =
+            placing::move_start(self.document.text(), files::shown(self.document), &program, &vehicle, start)
+        {
             self.document.edit(&edits, EditKind::Single, None);
             **self.selection = Selection::Vehicle(vehicle);
         }
@@ -178,7 +181,7 @@ impl Writing<'_> {
             self.window.failed("Control programs have no map. Open a mission first.");
             return false;
         };
-        let declared = placing::declare(self.document.text(), &program, thing);
+        let declared = placing::declare(self.document.text(), files::shown(self.document), &program, thing);
         self.document.edit(&declared.edits, EditKind::Single, None);
         if let Some(start) = self.document.text().find(&declared.text) {
             let name = name_span(start, &declared.text);

@@ -1,8 +1,11 @@
 //! The calls that a mission offers with their arguments, and activities that are not declared yet.
 
+use std::collections::BTreeSet;
+
 use rmpl::program::{PrimitiveDecl, Program};
-use rmpl::syntax::SyntaxKind;
+use rmpl::syntax::{SyntaxKind, SyntaxNode};
 use rmpl::{Edit, Parse, Span};
+use smol_str::SmolStr;
 
 use super::list::insertion;
 use super::{Drawn, Place, insert, site};
@@ -108,10 +111,10 @@ fn written_kind(program: &Program, kind: Option<&str>) -> Option<Kind> {
 }
 
 /// Adds a call of an activity that is new, and declares it; the author types its name over both.
-pub(super) fn new_activity(parse: &Parse, at: Place) -> Result<Drawn, String> {
+pub(super) fn new_activity(parse: &Parse, file: Span, at: Place) -> Result<Drawn, String> {
     let name = Names::of(parse.text()).fresh("Activity");
-    let mut edits = insert(parse, &format!("{name}()"), at)?;
-    add(&mut edits, declare(parse, &format!("primitive {name}(){NEW_BOUNDS};")));
+    let mut edits = insert(parse, file, &format!("{name}()"), at)?;
+    add(&mut edits, declare(parse, file, &format!("primitive {name}(){NEW_BOUNDS};")));
     edits.sort_by_key(|edit| edit.span);
     let mut drawn = Drawn { edits, ..Drawn::default() };
     let changed = drawn.apply(parse.text());
@@ -120,9 +123,42 @@ pub(super) fn new_activity(parse: &Parse, at: Place) -> Result<Drawn, String> {
     Ok(drawn)
 }
 
-/// Declares something after the last primitive, or else before the first definition, or at the end.
-pub(super) fn declare(parse: &Parse, declaration: &str) -> Edit {
-    let find = |kind: SyntaxKind| parse.declarations().filter_map(move |root| root.child(kind));
+/// Adds statements, and declares the activities that they call and the mission lacks.
+pub(super) fn paste(parse: &Parse, file: Span, text: &str, at: Place) -> Result<Vec<Edit>, String> {
+    let mut edits = insert(parse, file, text, at)?;
+    let declared = undeclared(parse, text);
+    if !declared.is_empty() {
+        add(&mut edits, declare(parse, file, &declared.join("\n")));
+    }
+    Ok(edits)
+}
+
+/// A declaration for each activity that statements call and the mission lacks, with a parameter for each argument.
+fn undeclared(parse: &Parse, text: &str) -> Vec<String> {
+    let program = parse.program();
+    let mut known: BTreeSet<SmolStr> = program.primitives.iter().map(|it| it.name.text.clone()).collect();
+    known.extend(program.activities.iter().map(|it| it.name.text.clone()));
+    let statements = rmpl::parse(&format!("scenario S = {{ {text} }}"));
+    let nodes = statements.declarations().flat_map(SyntaxNode::descendants);
+    let mut declared = Vec::new();
+    for call in nodes.filter(|node| node.kind() == SyntaxKind::Call) {
+        let called = call.tokens().find(|token| token.kind == SyntaxKind::Name);
+        let Some(name) = called.map(|token| token.text) else { continue };
+        if !known.insert(name.into()) {
+            continue;
+        }
+        let arguments = call.child(SyntaxKind::Arguments).map_or(0, |all| all.children().count());
+        let formals: Vec<String> = (1..=arguments).map(|at| format!("p{at}")).collect();
+        declared.push(format!("primitive {name}({}){NEW_BOUNDS};", formals.join(", ")));
+    }
+    declared
+}
+
+/// Declares something in a file: after its last primitive, or else before its first definition, or at its end.
+pub(super) fn declare(parse: &Parse, file: Span, declaration: &str) -> Edit {
+    let is_there = move |it: &SyntaxNode<'_>| file.start <= it.span().start && it.span().end <= file.end;
+    let find =
+        |kind: SyntaxKind| parse.declarations().filter_map(move |root| root.child(kind)).filter(is_there);
     if let Some(last) = find(SyntaxKind::PrimitiveDecl).last() {
         return insertion(last.span().end, format!("\n{declaration}"));
     }
@@ -131,8 +167,14 @@ pub(super) fn declare(parse: &Parse, declaration: &str) -> Edit {
     let first = activity.into_iter().chain(scenario).map(|it| it.span().start).min();
     match first {
         Some(first) => insertion(first, format!("{declaration}\n\n")),
-        None => insertion(parse.text().len() as u32, format!("{}{declaration}\n", gap(parse.text()))),
+        None => at_end(parse, file, declaration),
     }
+}
+
+/// Adds lines at the end of a file.
+fn at_end(parse: &Parse, file: Span, lines: &str) -> Edit {
+    let text = parse.text().get(file.range()).unwrap_or_default();
+    insertion(file.end, format!("{}{lines}\n", gap(text)))
 }
 
 /// Adds a declaration to edits. Both may go to the end of a text that has neither activities nor a scenario.
@@ -155,9 +197,8 @@ pub fn gap(text: &str) -> &'static str {
 }
 
 /// Puts statements into a scenario that the mission does not have yet.
-pub(super) fn new_scenario(parse: &Parse, text: &str) -> Option<Edit> {
+pub(super) fn new_scenario(parse: &Parse, file: Span, text: &str) -> Option<Edit> {
     let has_one = site::scenario_block(parse).is_ok();
-    let end = parse.text().len() as u32;
     let lines = super::list::braced("scenario Mission = ", &[text.to_owned()], "");
-    (!has_one).then(|| insertion(end, format!("{}{lines}\n", gap(parse.text()))))
+    (!has_one).then(|| at_end(parse, file, &lines))
 }

@@ -24,6 +24,8 @@ use site::Site;
 pub enum Change {
     /// Adds statements, separated by `;`.
     Insert { text: String, at: Place },
+    /// Adds statements from elsewhere, and declares the activities that they call and the mission lacks.
+    Paste { text: String, at: Place },
     /// Adds an activity that is not declared yet, with its declaration.
     New { at: Place },
     /// Moves a statement.
@@ -127,18 +129,19 @@ impl Drawn {
     }
 }
 
-/// The edits that make a change; `Err` says why it cannot be made.
-pub fn draw(parse: &Parse, change: &Change) -> Result<Drawn, String> {
+/// The edits that make a change; `Err` says why it cannot be made. What is declared goes to the file that is shown, `file`.
+pub fn draw(parse: &Parse, file: Span, change: &Change) -> Result<Drawn, String> {
     let mut drawn = match change {
-        Change::Insert { text, at } => Drawn::of(insert(parse, text, *at)?),
-        Change::New { at } => call::new_activity(parse, *at)?,
-        Change::Move { what, at } => Drawn::of(relocate(parse, *what, *at)?),
+        Change::Insert { text, at } => Drawn::of(insert(parse, file, text, *at)?),
+        Change::Paste { text, at } => Drawn::of(call::paste(parse, file, text, *at)?),
+        Change::New { at } => call::new_activity(parse, file, *at)?,
+        Change::Move { what, at } => Drawn::of(relocate(parse, file, *what, *at)?),
         Change::Delete(what) => Drawn::of(list::delete(parse, &Site::of(parse, *what)?)),
         Change::Wrap(what, wrapping) => Drawn::of(wrap::wrap(parse, &Site::of(parse, *what)?, wrapping)?),
         Change::Unwrap(what) => Drawn::of(wrap::unwrap(parse, &Site::of(parse, *what)?)?),
         Change::Bound(what, bounds) => wrap::bound(&Site::of(parse, *what)?, bounds),
         Change::Connect { from, to } => wrap::connect(parse, *from, *to)?,
-        Change::Visit { vehicle, location } => Drawn::of(visit::visit(parse, vehicle, location)?),
+        Change::Visit { vehicle, location } => Drawn::of(visit::visit(parse, file, vehicle, location)?),
     };
     drawn.edits.sort_by_key(|edit| edit.span);
     drawn.made = drawn.made.or_else(|| made(parse, change, &drawn.edits));
@@ -156,7 +159,7 @@ pub fn draw(parse: &Parse, change: &Change) -> Result<Drawn, String> {
 /// Where what a change adds or moves begins in the new text.
 fn made(parse: &Parse, change: &Change, edits: &[Edit]) -> Option<u32> {
     let text = match change {
-        Change::Insert { text, .. } => text.clone(),
+        Change::Insert { text, .. } | Change::Paste { text, .. } => text.clone(),
         Change::Move { what, .. } => statement_text(parse, *what)?,
         Change::Visit { vehicle, .. } => vehicle.clone(),
         _ => return None,
@@ -195,19 +198,19 @@ pub fn neighbor(parse: &Parse, what: Span, forwards: bool) -> Option<Span> {
     Site::of(parse, what).ok()?.neighbor(forwards).map(rmpl::syntax::SyntaxNode::span)
 }
 
-fn insert(parse: &Parse, text: &str, at: Place) -> Result<Vec<Edit>, String> {
+fn insert(parse: &Parse, file: Span, text: &str, at: Place) -> Result<Vec<Edit>, String> {
     Ok(match at {
         Place::After(other) => list::beside(parse, &Site::of(parse, other)?, text, list::Side::After),
         Place::Before(other) => list::beside(parse, &Site::of(parse, other)?, text, list::Side::Before),
         Place::Beside(other) => list::parallel(parse, &Site::of(parse, other)?, text),
         Place::Instead(other) => list::alternative(parse, &Site::of(parse, other)?, text),
-        Place::End | Place::Thread if let Some(edit) = call::new_scenario(parse, text) => vec![edit],
+        Place::End | Place::Thread if let Some(edit) = call::new_scenario(parse, file, text) => vec![edit],
         Place::End => list::at_end(parse, &site::scenario_block(parse)?, text),
         Place::Thread => list::thread(parse, &site::scenario_block(parse)?, text),
     })
 }
 
-fn relocate(parse: &Parse, what: Span, at: Place) -> Result<Vec<Edit>, String> {
+fn relocate(parse: &Parse, file: Span, what: Span, at: Place) -> Result<Vec<Edit>, String> {
     let site = Site::of(parse, what)?;
     if let Place::After(other) | Place::Before(other) | Place::Beside(other) | Place::Instead(other) = at {
         let target = Site::of(parse, other)?;
@@ -222,7 +225,7 @@ fn relocate(parse: &Parse, what: Span, at: Place) -> Result<Vec<Edit>, String> {
     }
     let text = list::outdented(parse.text(), site.span());
     let mut edits = list::delete(parse, &site);
-    for added in insert(parse, &text, at)? {
+    for added in insert(parse, file, &text, at)? {
         let is_in_gap = |edit: &Edit| edit.span.start < added.span.start && added.span.start < edit.span.end;
         if edits.iter().any(is_in_gap) {
             return Err("It is there already".to_owned());

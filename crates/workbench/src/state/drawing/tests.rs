@@ -10,9 +10,16 @@ fn at(text: &str, piece: &str) -> Span {
     Span::new(start as u32, (start + piece.len()) as u32)
 }
 
+/// The only file.
+fn whole(parse: &rmpl::Parse) -> Span {
+    Span::new(0, parse.text().len() as u32)
+}
+
 fn changed(text: &str, change: &Change) -> String {
     let parse = rmpl::parse(text);
-    draw(&parse, change).unwrap_or_else(|reason| panic!("{change:?}: {reason}\n{text}")).apply(text)
+    draw(&parse, whole(&parse), change)
+        .unwrap_or_else(|reason| panic!("{change:?}: {reason}\n{text}"))
+        .apply(text)
 }
 
 /// Changes the body of a scenario, and returns the new body.
@@ -68,7 +75,7 @@ fn an_empty_scenario_and_a_text_without_one_take_the_first_activity() {
     let new = Change::New { at: Place::End };
     let expected = "primitive Activity1()[1,5];\n\nscenario Mission = {\n  Activity1()\n}\n";
     assert_eq!(changed("", &new), expected);
-    let drawn = draw(&rmpl::parse(""), &new).expect("it can be drawn");
+    let drawn = draw(&rmpl::parse(""), Span::default(), &new).expect("it can be drawn");
     let named: Vec<&str> = drawn.typed_over.iter().map(|span| &expected[span.range()]).collect();
     assert_eq!(named, ["Activity1", "Activity1"], "a name that is typed goes to both");
 }
@@ -100,9 +107,9 @@ fn what_is_moved_takes_its_bounds_and_its_name_along() {
     assert_eq!(to(" A(), B() ", Place::After, "B()"), " { B(); A() } ");
     let parse = rmpl::parse("scenario S = { A(); B() }");
     let same = Change::Move { what: at(parse.text(), "B()"), at: Place::After(at(parse.text(), "A()")) };
-    assert_eq!(draw(&parse, &same), Err("It is there already".to_owned()));
+    assert_eq!(draw(&parse, whole(&parse), &same), Err("It is there already".to_owned()));
     let inside = Change::Move { what: at(parse.text(), "A()"), at: Place::After(at(parse.text(), "A()")) };
-    assert!(draw(&parse, &inside).is_err());
+    assert!(draw(&parse, whole(&parse), &inside).is_err());
     assert_eq!(neighbor(&parse, at(parse.text(), "A()"), true), Some(at(parse.text(), "B()")));
     assert_eq!(neighbor(&parse, at(parse.text(), "A()"), false), None);
 }
@@ -130,7 +137,8 @@ fn bounds_are_written_or_replaced_and_typed_over() {
     assert_eq!(bound(" A(); B() "), " A()[3,4]; B() ");
     assert_eq!(bound(" A()[1,2] as X; B() "), " A()[3,4] as X; B() ");
     let parse = rmpl::parse("scenario S = { A() }");
-    let drawn = draw(&parse, &Change::Bound(at(parse.text(), "A()"), "[3,4]".to_owned())).expect("bounds");
+    let drawn = draw(&parse, whole(&parse), &Change::Bound(at(parse.text(), "A()"), "[3,4]".to_owned()))
+        .expect("bounds");
     assert_eq!(&drawn.apply(parse.text())[drawn.typed_over[0].range()], "3,4");
 }
 
@@ -172,7 +180,8 @@ fn a_vehicle_is_sent_to_a_place_behind_all_else_that_it_does() {
     // What is not declared is not written.
     for (vehicle, location, part) in [("X", "ROCK", "Unknown vehicle X"), ("R", "Y", "Unknown location Y")] {
         let change = Change::Visit { vehicle: vehicle.to_owned(), location: location.to_owned() };
-        let refused = draw(&rmpl::parse(WORLD), &change).expect_err("it is not declared");
+        let refused = draw(&rmpl::parse(WORLD), Span::new(0, WORLD.len() as u32), &change)
+            .expect_err("it is not declared");
         assert!(refused.contains(part), "{refused}");
     }
     // The mission's own activities are used, and a choice is left as it is.

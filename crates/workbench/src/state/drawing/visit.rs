@@ -11,7 +11,7 @@ use crate::state::placing::Names;
 
 /// Adds a drive of a vehicle to a location and a visit of it after all else that the vehicle does, or in a thread of its
 /// own. Declares the activities that the mission lacks.
-pub(super) fn visit(parse: &Parse, vehicle: &str, location: &str) -> Result<Vec<Edit>, String> {
+pub(super) fn visit(parse: &Parse, file: Span, vehicle: &str, location: &str) -> Result<Vec<Edit>, String> {
     let program = parse.program();
     if !program.world.vehicles.iter().any(|it| it.name.text == vehicle) {
         return Err(format!("Unknown vehicle {vehicle}: declare it first"));
@@ -39,9 +39,9 @@ pub(super) fn visit(parse: &Parse, vehicle: &str, location: &str) -> Result<Vec<
         format!("{name}({vehicle}, {location})")
     };
     let place = last.map_or(Place::Thread, |(span, _)| Place::After(span));
-    let mut edits = insert(parse, &format!("{drive};\n{visit}"), place)?;
+    let mut edits = insert(parse, file, &format!("{drive};\n{visit}"), place)?;
     if !declared.is_empty() {
-        add(&mut edits, declare(parse, &declared.join("\n")));
+        add(&mut edits, declare(parse, file, &declared.join("\n")));
     }
     Ok(edits)
 }
