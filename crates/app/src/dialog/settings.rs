@@ -115,7 +115,10 @@ fn layouts(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ui.horizontal(|ui| {
         let field = TextEdit::singleline(&mut name).hint_text("Name").desired_width(160.0);
         ui.add(field).accessible_name("Layout name");
-        let button = ui.add_enabled(!name.trim().is_empty(), Button::new("Save layout"));
+        let is_lesson = context.state.lesson.is_beside();
+        let button = ui.add_enabled(!name.trim().is_empty() && !is_lesson, Button::new("Save layout"));
+        let missing = if is_lesson { "Close the lesson to save a layout" } else { "Enter a name" };
+        let button = button.on_disabled_hover_text(missing);
         if button.on_hover_text("Save the panels of this workspace with the mission").clicked() {
             send(LibraryCommand::SaveLayout(std::mem::take(&mut name)));
         }

@@ -62,14 +62,7 @@ impl AppState {
                 self.window.done(format!("Saved version “{name}”"));
             }
             LibraryCommand::RestoreVersion(index) => self.restore_version(index),
-            LibraryCommand::SaveLayout(name) => {
-                self.mission_of_its_own();
-                let workspace = self.window.workspace.name();
-                if let Some(number) = self.library.add_layout(name.trim(), workspace, now_millis) {
-                    self.window.panel_effects.push(PanelEffect::SaveLayout(number));
-                    self.window.done(format!("Saved layout “{}” with the mission", name.trim()));
-                }
-            }
+            LibraryCommand::SaveLayout(name) => self.save_layout(name.trim()),
             LibraryCommand::ShowLayout(number) => {
                 let layout = self.library.open_mission().and_then(|it| it.layouts.get(number));
                 let workspace = layout.and_then(|layout| Workspace::by_name(&layout.workspace));
@@ -89,6 +82,24 @@ impl AppState {
                     self.window.save_file(format!("{name}.json"), bytes);
                 }
             }
+        }
+    }
+
+    /// Saves the panels of the workspace with the mission, under a name.
+    fn save_layout(&mut self, name: &str) {
+        if name.is_empty() {
+            self.window.failed("A layout needs a name. Enter one.");
+            return;
+        }
+        if self.lesson.is_beside() {
+            self.window.failed("Lessons arrange the panels. Close the lesson to save a layout.");
+            return;
+        }
+        self.mission_of_its_own();
+        let workspace = self.window.workspace.name();
+        if let Some(number) = self.library.add_layout(name, workspace, self.frame.unix_millis) {
+            self.window.panel_effects.push(PanelEffect::SaveLayout(number));
+            self.window.done(format!("Saved layout “{name}” with the mission"));
         }
     }
 

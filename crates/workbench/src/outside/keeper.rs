@@ -15,14 +15,17 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use smol_str::SmolStr;
 
+use crate::command::Command;
 use crate::host::{Host, ShelfContent, ShelfNews, ShelfRequest, StorageError};
-use crate::library::{Change, Keeping, Mission, MissionError, MissionId, MissionKind, Unreadable};
+use crate::library::{Change, Keeping, Mission, MissionError, MissionId, MissionKind, Open, Unreadable};
 use crate::mission_file;
 use crate::state::AppState;
 
 /// The mission that was open last, and since when.
 const LAST_KEY: &str = "enroute/open-1";
-/// The same on the shelf.
+/// The example that was open last, and since when.
+const EXAMPLE_KEY: &str = "enroute/example-1";
+/// The same as [`LAST_KEY`] on the shelf.
 const LAST_ON_SHELF: &str = "open";
 /// Where the latest texts are written at once: by mission, and by the tab that writes.
 const WRITING: &str = "enroute/writing-1/";
@@ -82,6 +85,8 @@ pub struct Keeper {
     has_told_private: bool,
     /// The mission that was noted as the one that was open last.
     last: Option<MissionId>,
+    /// The example that was noted as the one that was open last.
+    example: Option<SmolStr>,
     /// The mission that the shelf has noted so.
     last_on_shelf: Option<MissionId>,
     /// The one that was open last in earlier runs, as the shelf has it.
@@ -90,7 +95,7 @@ pub struct Keeper {
     wants_last: bool,
 }
 
-/// A mission that was open, and since when, in milliseconds since 1970.
+/// A mission or an example that was open, and since when, in milliseconds since 1970.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Last {
     id: MissionId,
@@ -142,6 +147,7 @@ impl Keeper {
             is_private: false,
             has_told_private: false,
             last: None,
+            example: None,
             last_on_shelf: None,
             found_last: None,
             wants_last: false,
@@ -154,12 +160,22 @@ impl Keeper {
         keeper
     }
 
-    /// Opens the mission of the last run, since nothing else was asked for.
+    /// Opens what was open last in earlier runs, since nothing else was asked for: a mission, or an example.
     pub fn reopen(&mut self, state: &mut AppState, host: &dyn Host) {
-        match self.last_mission(state, host) {
-            Some(id) => {
+        let mission = self.last_mission(state, host);
+        // A mission that was open later may still be on its way from the shelf.
+        let small = host.stored(LAST_KEY).map_or(0, |text| Last::read(&text).since_millis);
+        let since = mission.as_ref().map_or(small, |last| last.since_millis);
+        let example = host.stored(EXAMPLE_KEY).map(|text| Last::read(&text));
+        if let Some(example) = example.filter(|example| example.since_millis > since) {
+            self.wants_last = false;
+            state.apply(Command::OpenExample(example.id.0));
+            return;
+        }
+        match mission {
+            Some(last) => {
                 self.wants_last = false;
-                state.open_mission(&id);
+                state.open_mission(&last.id);
                 let name = state.mission.clone();
                 state.window.done(format!("Restored “{name}” from your last session"));
             }
@@ -170,8 +186,8 @@ impl Keeper {
     /// Tells of the mission of the last run where the address names another one: a browser that was killed may open an
     /// address of before the edit that made the mission.
     pub fn mention_last(&self, state: &mut AppState, host: &dyn Host) {
-        let last = self.last_mission(state, host).filter(|id| state.library.open_id() != Some(id));
-        let Some(mission) = last.and_then(|id| state.library.mission(&id)) else { return };
+        let last = self.last_mission(state, host).filter(|it| state.library.open_id() != Some(&it.id));
+        let Some(mission) = last.and_then(|it| state.library.mission(&it.id)) else { return };
         if state.frame.unix_millis - mission.changed_millis < MILLIS_UNTIL_OLD {
             let text = format!("“{}”, which you edited last, is in File > Missions", mission.name);
             state.window.info(&text);
@@ -179,12 +195,12 @@ impl Keeper {
     }
 
     /// The mission that was open last, if it is still there.
-    fn last_mission(&self, state: &AppState, host: &dyn Host) -> Option<MissionId> {
+    fn last_mission(&self, state: &AppState, host: &dyn Host) -> Option<Last> {
         let small = host.stored(LAST_KEY).map(|text| Last::read(&text));
         let is_there =
             |last: &Last| state.library.mission(&last.id).is_some_and(|it| it.deleted_millis.is_none());
         let all = [self.found_last.clone(), small].into_iter().flatten().filter(is_there);
-        all.max_by_key(|last| last.since_millis).map(|last| last.id)
+        all.max_by_key(|last| last.since_millis)
     }
 
     /// Writes down what has changed. Returns after how many seconds it wants to be asked again, if it does.
@@ -301,8 +317,10 @@ impl Keeper {
             // What is opened again later is the last one from then on.
             self.last = None;
             self.last_on_shelf = None;
+            self.note_example(state, host);
             return;
         };
+        self.example = None;
         let last = Last { id: id.clone(), since_millis: state.frame.unix_millis };
         if self.last.as_ref() != Some(id) {
             // Without it another mission is open at the next start, and nothing is lost.
@@ -314,6 +332,18 @@ impl Keeper {
             host.use_shelf(ShelfRequest::Write { key: LAST_ON_SHELF.to_owned(), bytes, token: 0 });
             self.last_on_shelf = Some(id.clone());
         }
+    }
+
+    /// Notes which example is open, unless what was open last is still to be opened.
+    fn note_example(&mut self, state: &AppState, host: &mut dyn Host) {
+        let is_example = matches!(state.library.open(), Open::Original { kind: MissionKind::Example, .. });
+        if !is_example || self.wants_last || self.example.as_ref() == Some(&state.mission) {
+            return;
+        }
+        let last = Last { id: MissionId(state.mission.clone()), since_millis: state.frame.unix_millis };
+        // Without it another mission is open at the next start, and nothing is lost.
+        let _ = host.store(EXAMPLE_KEY, &last.write());
+        self.example = Some(state.mission.clone());
     }
 
     fn write_small_copy(&mut self, state: &AppState, host: &mut dyn Host, id: &MissionId) {

@@ -156,8 +156,11 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         |_| Command::Window(WindowCommand::Maximize(None)),
     ),
     called("view.saveLayout", "Save layout with mission", Group::View, |_, arguments| {
-        let name = text_argument(arguments, "name")?.to_owned();
-        Ok(Command::Library(LibraryCommand::SaveLayout(name)))
+        let name = text_argument(arguments, "name")?.trim();
+        if name.is_empty() {
+            return Err("\"name\" must not be empty: a layout needs a name".into());
+        }
+        Ok(Command::Library(LibraryCommand::SaveLayout(name.to_owned())))
     }),
     called("view.showLayout", "Show saved layout", Group::View, |state, arguments| {
         let name = text_argument(arguments, "name")?;

@@ -326,7 +326,9 @@ fn an_example_that_was_not_edited_is_no_mission_of_the_library() {
     assert!(names(&first).is_empty());
     drop(first);
     world.fragment.borrow_mut().clear();
-    assert_eq!(start_in(world).session.state().mission, "both-paths");
+    let again = start_in(world);
+    assert!(names(&again).is_empty());
+    assert_eq!(again.session.state().mission, "backjump", "it was open last");
 }
 
 #[test]
@@ -636,4 +638,61 @@ fn kept_settings_that_cannot_be_used_are_brought_within_reason() {
         assert_eq!(settings.text_scale, scale, "{kept}");
         assert_eq!(settings.views.terrain.height_scale, 5.0);
     }
+}
+
+/// A new tab has no address.
+fn new_tab(world: &Rc<World>) -> App {
+    world.fragment.borrow_mut().clear();
+    world.now_secs.set(world.now_secs.get() + 60.0);
+    let mut app = start_in(Rc::clone(world));
+    wait(&mut app);
+    app
+}
+
+#[test]
+fn a_new_tab_opens_what_was_open_last_be_it_a_mission_or_an_example() {
+    let world = Rc::new(World::default());
+    let mut app = new_tab(&world);
+    assert_eq!(app.json()["mission"], "enroute", "nothing was open before");
+    app.run(Command::OpenExample("storm".into()));
+    wait(&mut app);
+    let app = new_tab(&world);
+    assert_eq!(app.json()["mission"], "storm");
+    drop(app);
+    let mut app = new_tab(&world);
+    edit(&mut app, EDITED);
+    wait(&mut app);
+    drop(app);
+    let mut app = new_tab(&world);
+    assert_eq!(text_of(&app), EDITED, "the mission was open later");
+    // A slow shelf brings the mission after the start.
+    app.run(Command::OpenExample("sol".into()));
+    wait(&mut app);
+    drop(app);
+    world.shelf_does.set(Shelf::Slow);
+    let mut app = new_tab(&world);
+    assert_eq!(app.json()["mission"], "sol");
+    world.let_shelf_answer();
+    wait(&mut app);
+    assert_eq!(app.json()["mission"], "sol", "what came from the shelf is older");
+    app.run(Command::Library(LibraryCommand::Open(app.session.state().library.missions()[0].id.clone())));
+    wait(&mut app);
+    drop(app);
+    world.shelf_does.set(Shelf::Slow);
+    let mut app = new_tab(&world);
+    world.let_shelf_answer();
+    wait(&mut app);
+    assert_eq!(text_of(&app), EDITED);
+}
+
+#[test]
+fn a_layout_has_a_name_and_is_of_no_lesson() {
+    let mut app = start_in(Rc::new(World::default()));
+    app.session.dispatch("view.saveLayout", &json!("  ")).expect_err("it has no name");
+    app.run(Command::Library(LibraryCommand::SaveLayout(" ".to_owned())));
+    assert!(toasts(&app).contains("A layout needs a name"), "{}", toasts(&app));
+    app.dispatch("learn.open", &json!("first-line"));
+    app.dispatch("view.saveLayout", &json!("Mine"));
+    assert!(toasts(&app).contains("Close the lesson to save a layout"), "{}", toasts(&app));
+    assert!(app.session.state().library.missions().is_empty(), "the lesson's text is no mission");
 }
