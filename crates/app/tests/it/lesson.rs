@@ -249,9 +249,11 @@ fn a_best_first_search_shows_what_each_state_may_lead_to() {
         let app = opened(&format!("lesson=objectives&stop={stop}"), [1280.0, 800.0]);
         app.texts(egui::Rect::EVERYTHING).iter().any(|(text, _)| text.contains(words))
     };
-    assert!(shown(2, "start · 4") && !shown(2, "D1=0 · 9"), "nothing is opened below the start");
-    assert!(shown(3, "D1=1 · 10") && !shown(3, "D2=0 · 12"));
-    assert!(shown(5, "D1=0 · 9") && shown(5, "D2=0 · 12") && shown(5, "2 other states are open"));
+    assert!(shown(2, "start · 4") && !shown(2, "Crater_fast#1 · 9"), "nothing is opened below the start");
+    assert!(shown(3, "Crater_slowly#1 · 10") && !shown(3, "Ridge_fast#1 · 12"));
+    assert!(
+        shown(5, "Crater_fast#1 · 9") && shown(5, "Ridge_fast#1 · 12") && shown(5, "2 other states are open")
+    );
     // A step of the search is not worth anything yet.
     assert!(shown(6, "3 of 3 decisions made") && !shown(6, "cost 10"));
     assert!(shown(7, "cost 10"));

@@ -195,13 +195,13 @@ fn steps_turn_with_one_key_and_the_trees_of_the_lesson_are_worked_with_keys() {
         chosen.join(", ")
     };
     let before = (selected(&app), announced(&app));
-    assert!(before.0.starts_with("D2 = 0: Core#1, failed"), "{}", before.0);
+    assert!(before.0.starts_with("D2: Core#1, failed"), "{}", before.0);
     press(&mut app, Key::ArrowUp);
-    assert!(selected(&app).starts_with("D1 = 0: Long-Way#1"), "{}", selected(&app));
+    assert!(selected(&app).starts_with("D1: Long-Way#1"), "{}", selected(&app));
     assert_ne!(announced(&app), before.1);
     press(&mut app, Key::ArrowDown);
     // It is told as it is at its own step, at which it has not failed yet.
-    assert!(selected(&app).starts_with("D2 = 0: Core#1"), "{}", selected(&app));
+    assert!(selected(&app).starts_with("D2: Core#1"), "{}", selected(&app));
 }
 
 #[test]

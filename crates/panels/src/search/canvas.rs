@@ -590,7 +590,7 @@ impl Scene<'_> {
     /// What the label of a state says where there is room for all, and what it says with less room.
     fn label_forms(&self, id: TreeNodeId) -> Vec<String> {
         let choice = self.tree.trace.tree[id as usize].choice;
-        let name = short_label(self.tree.network, choice);
+        let (name, short) = (label(self.tree.network, choice), short_label(self.tree.network, choice));
         let bound = self.bound(id).map(|bound| format!(" · {bound}")).unwrap_or_default();
         let learned = self.tree.learned(id);
         let learned = learned.map(|it| format!(" · {}", wording::never(self.tree.network, it)));
@@ -599,7 +599,9 @@ impl Scene<'_> {
         let mut forms = vec![
             format!("{name}{bound}{}{below}", learned.unwrap_or_default()),
             format!("{name}{bound}{below}"),
+            format!("{short}{bound}{below}"),
             format!("{name}{below}"),
+            format!("{short}{below}"),
         ];
         // How many are folded says more than which alternative it is.
         forms.extend(folded.or_else(|| shortest_label(choice)));
@@ -623,6 +625,16 @@ impl Scene<'_> {
         );
         job.wrap = egui::text::TextWrapping::truncate_at_width(room);
         self.painter.layout_job(job)
+    }
+}
+
+/// A name for a state by what was chosen: of a decision, what the alternative does.
+fn label(network: &Network, choice: Option<TreeChoice>) -> String {
+    match choice {
+        Some(TreeChoice::Decision { decision, alternative }) => {
+            network.alternative_name(decision, alternative)
+        }
+        _ => short_label(network, choice),
     }
 }
 

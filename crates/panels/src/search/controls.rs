@@ -27,8 +27,10 @@ pub fn show(
     egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| {
         ui.spacing_mut().item_spacing = egui::vec2(space::XS, space::XS);
         ui.horizontal_wrapped(|ui| show_steps(ui, context, recordings, commands));
-        ui.horizontal_wrapped(|ui| show_choices(ui, context, [folds_failed, merges], commands));
-        ui.horizontal_wrapped(|ui| show_breakpoints(ui, context, commands));
+        ui.horizontal_wrapped(|ui| {
+            show_choices(ui, context, [folds_failed, merges], commands);
+            show_breakpoints(ui, context, commands);
+        });
     });
 }
 

@@ -112,7 +112,7 @@ fn listed(tree: &Tree<'_>, path: Option<&[TreeNodeId]>) -> Vec<Item> {
     found
 }
 
-/// The choice that leads to a state, and the result: `D1 = 0: Survey#1, failed: …`.
+/// The choice that leads to a state, and the result: `D1: Survey#1, failed: …`.
 fn name(tree: &Tree<'_>, id: TreeNodeId) -> String {
     let trace = tree.trace;
     let chosen = wording::choice(tree.network, trace.tree.get(id as usize).and_then(|node| node.choice));

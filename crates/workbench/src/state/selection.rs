@@ -8,7 +8,7 @@ use rmpl::program::World;
 use serde_json::{Value, json};
 use smol_str::SmolStr;
 use snapshot::Snapshot;
-use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Ordering};
+use tpn::{ArcId, CausalLink, DecisionId, LabelId, Network, NodeId, OccurrenceId, Ordering};
 
 /// The one thing that is selected in all panels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -338,31 +338,5 @@ fn offer_network(network: &Network, offer: &mut impl FnMut(Option<Span>, Selecti
         if !is_assertion {
             offer(it.span, Selection::Label(LabelId::from_index(index)));
         }
-    }
-}
-
-/// What an alternative is about: the first activity in it.
-pub fn alternative_text(network: &Network, decision: DecisionId, alternative: u32) -> String {
-    let span = network
-        .decisions
-        .get(decision.index())
-        .and_then(|decision| decision.alternative_spans.get(alternative as usize));
-    let first = span.and_then(|span| {
-        let is_inside = |occurrence: &&tpn::Occurrence| {
-            occurrence.span.is_some_and(|at| span.start <= at.start && at.end <= span.end)
-        };
-        let is_activity = |occurrence: &&tpn::Occurrence| {
-            matches!(occurrence.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity)
-        };
-        let inside = || network.occurrences.iter().filter(is_inside);
-        // An alternative without activities is called by what it asserts or waits for.
-        let is_named = |occurrence: &&tpn::Occurrence| {
-            matches!(occurrence.kind, OccurrenceKind::Assertion | OccurrenceKind::Delay)
-        };
-        inside().find(is_activity).or_else(|| inside().find(is_named))
-    });
-    match first {
-        Some(occurrence) => format!("{alternative}: {}", occurrence.name),
-        None => format!("{alternative}"),
     }
 }

@@ -91,7 +91,8 @@ impl Told<'_> {
             match &entry.event {
                 Event::Decide { decision, alternative } => {
                     let chosen = TreeChoice::Decision { decision: *decision, alternative: *alternative };
-                    says(&format!("{} = {alternative}", Network::decision_name(*decision)))?;
+                    let name = self.network.alternative_name(*decision, *alternative);
+                    says(&format!("{}: {name}", Network::decision_name(*decision)))?;
                     holds(self.choice_of(entry.tree_node) == Some(chosen), "the state has another choice")
                 }
                 Event::Inconsistent { cycle } => {
@@ -188,7 +189,8 @@ impl Told<'_> {
                     for &choice in &blamed {
                         match choice {
                             TreeChoice::Decision { decision, alternative } if self.is_by_solver() => {
-                                says(&format!("{}={alternative}", Network::decision_name(decision)))?;
+                                let name = self.network.alternative_name(decision, alternative);
+                                says(&format!("{name} in {}", Network::decision_name(decision)))?;
                             }
                             _ => says(&wording::choice(self.network, Some(choice)))?,
                         }

@@ -5,7 +5,7 @@ mod conflict_driven;
 use kirk::{Constraint, CycleMember, Event, Trace, TreeChoice, TreeNodeId};
 use tpn::Network;
 
-use crate::state::selection::{alternative_text, node_name};
+use crate::state::selection::node_name;
 
 use conflict_driven::{decided, gives, named};
 pub use conflict_driven::{learned, never};
@@ -15,8 +15,8 @@ pub fn choice(network: &Network, choice: Option<TreeChoice>) -> String {
     match choice {
         None => "Initial state".to_owned(),
         Some(TreeChoice::Decision { decision, alternative }) => {
-            let text = alternative_text(network, decision, alternative);
-            format!("{} = {text}", Network::decision_name(decision))
+            let name = network.alternative_name(decision, alternative);
+            format!("{}: {name}", Network::decision_name(decision))
         }
         Some(TreeChoice::Link(link)) => gives(network, link.ask, Some(link.tell)),
         Some(TreeChoice::Order(order)) => {

@@ -157,7 +157,8 @@ pub fn never(network: &Network, choices: &[TreeChoice]) -> String {
 pub fn fact(network: &Network, choice: TreeChoice) -> String {
     match choice {
         TreeChoice::Decision { decision, alternative } => {
-            format!("{}={alternative}", Network::decision_name(decision))
+            let name = network.alternative_name(decision, alternative);
+            format!("{name} in {}", Network::decision_name(decision))
         }
         TreeChoice::Link(link) => {
             let (ask, tell) = (owner(network, link.ask), giver(network, link.tell));
