@@ -71,11 +71,21 @@ fn with_ranges(network: &mut Network, seed: u64) {
     let resources = &network.resources;
     let is_range =
         |used: &&mut Use| matches!(resources[used.resource.index()].supply, Supply::Reservoir { .. });
-    for used in network.uses.iter_mut().filter(is_range) {
+    for used in network.uses.iter_mut().filter(is_range).filter(|used| used.level.is_none()) {
         if rng.chance(60) {
             used.at_least = Rational::from_integer(rng.between(0, used.amount.numerator()));
         }
     }
+}
+
+#[test]
+fn conditions_on_levels_are_planned_exactly() {
+    compare_all(Kind::LEVELS).tell(Kind::LEVELS);
+}
+
+#[test]
+fn conditions_on_levels_hold_for_all_amounts() {
+    compare_all_with(Kind::LEVELS, with_ranges).tell(Kind::LEVELS);
 }
 
 /// Compares [`MISSIONS`] missions of a kind; all must agree.

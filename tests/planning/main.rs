@@ -12,6 +12,7 @@ mod interchange;
 mod language;
 mod larger_missions;
 mod lasting;
+mod levels;
 mod metamorphic;
 mod missions;
 mod paths;

@@ -10,8 +10,8 @@
 use std::collections::BTreeSet;
 
 use exact::Rational;
-use rmpl::program::{Change, LabelMode};
-use tpn::{Extent, LabelId, Network, NodeId, Supply, ValueSet};
+use rmpl::program::{Change, LabelMode, Order};
+use tpn::{Extent, LabelId, LevelCondition, Network, NodeId, Supply, ValueSet};
 
 use crate::distances::{FAR, Matrix, Scale, of_arcs};
 
@@ -80,6 +80,8 @@ struct Use {
     /// The minimum and the maximum amount: drives differ in length.
     amounts: [Rational; 2],
     is_production: bool,
+    /// Of a condition on a level.
+    level: Option<LevelCondition>,
 }
 
 /// One resource with its selected uses.
@@ -200,7 +202,8 @@ impl Exhaustive<'_> {
             if arcs[used.arc.index()] {
                 let (start, end) = (leaf.event(used.start), leaf.event(used.end));
                 let is_production = used.change == Change::Produces;
-                let used_here = Use { start, end, amounts: [used.at_least, used.amount], is_production };
+                let amounts = [used.at_least, used.amount];
+                let used_here = Use { start, end, amounts, is_production, level: used.level };
                 leaf.pools[used.resource.index()].uses.push(used_here);
             }
         }
@@ -448,19 +451,43 @@ fn is_enough(pool: &Pool, times: &[usize]) -> bool {
             sum(&mut around.into_iter().chain(own)) <= capacity
         }),
         Supply::Reservoir { least, greatest, level } => {
+            let (conditions, changes): (Vec<&Use>, Vec<&Use>) =
+                pool.uses.iter().partition(|used| used.level.is_some());
             let moment = |used: &Use| times[if used.is_production { used.end } else { used.start }];
-            pool.uses.iter().map(moment).all(|now| {
+            // The least and the greatest level after everything up to a place, or before it.
+            let levels_at = |now: usize, is_included: bool| {
                 let happened = |is_production: bool, end: usize| {
-                    let happened = pool.uses.iter().filter(|it| moment(it) <= now);
-                    let its = happened.filter(|it| it.is_production == is_production);
+                    let has_come = |it: &&&Use| moment(it) < now || (is_included && moment(it) == now);
+                    let its = changes.iter().filter(has_come).filter(|it| it.is_production == is_production);
                     sum(&mut its.map(|it| it.amounts[end]))
                 };
-                let level = |given: usize, taken: usize| {
+                [(0, 1), (1, 0)].map(|(given, taken)| {
                     level.checked_add(happened(true, given))?.checked_sub(happened(false, taken))
+                })
+            };
+            let is_kept = |condition: &&Use| {
+                let (from, to) = (times[condition.start], times[condition.end]);
+                let holds = |levels: [Option<Rational>; 2]| {
+                    levels.into_iter().all(|level| {
+                        let asked = condition.level.zip(level);
+                        asked.is_some_and(|(LevelCondition { order, bound }, level)| match order {
+                            Order::Below => level < bound,
+                            Order::AtMost => level <= bound,
+                            Order::Above => level > bound,
+                            Order::AtLeast => level >= bound,
+                        })
+                    })
                 };
-                level(0, 1).is_some_and(|low| least <= low)
-                    && level(1, 0).is_some_and(|high| high <= greatest)
-            })
+                if condition.start == condition.end {
+                    return holds(levels_at(from, false));
+                }
+                (from..=to).all(|now| holds(levels_at(now, true)))
+            };
+            let is_in_range = |now: usize| {
+                let [low, high] = levels_at(now, true);
+                low.is_some_and(|low| least <= low) && high.is_some_and(|high| high <= greatest)
+            };
+            conditions.iter().all(is_kept) && changes.iter().all(|used| is_in_range(moment(used)))
         }
     }
 }

@@ -9,15 +9,19 @@ pub struct Kind {
     pub has_states: bool,
     /// Reusable resources and reservoirs.
     pub has_resources: bool,
+    /// Conditions on the level of the reservoir.
+    pub has_levels: bool,
 }
 
 impl Kind {
     /// States without resources.
-    pub const STATES: Self = Self { has_states: true, has_resources: false };
+    pub const STATES: Self = Self { has_states: true, has_resources: false, has_levels: false };
     /// Resources without states.
-    pub const RESOURCES: Self = Self { has_states: false, has_resources: true };
+    pub const RESOURCES: Self = Self { has_states: false, has_resources: true, has_levels: false };
     /// Both states and resources.
-    pub const BOTH: Self = Self { has_states: true, has_resources: true };
+    pub const BOTH: Self = Self { has_states: true, has_resources: true, has_levels: false };
+    /// Resources and conditions on levels.
+    pub const LEVELS: Self = Self { has_states: false, has_resources: true, has_levels: true };
 }
 
 /// The text of mission number `seed` of a kind. All its bounds are whole and its horizon is at most 12.
@@ -102,6 +106,10 @@ impl Maker {
                 clauses.push_str(&format!(" produces T {}", self.rng.between(0, self.room.min(3))));
             }
         }
+        if self.kind.has_levels && self.rng.chance(50) {
+            let moment = if self.rng.chance(40) { " at start" } else { "" };
+            clauses.push_str(&format!(" requires {}{moment}", self.level()));
+        }
         format!("primitive P{index}(){clauses};\n")
     }
 
@@ -139,6 +147,15 @@ impl Maker {
         self.left -= 1;
         let bounds = self.bounds();
         let call = format!("P{}(){bounds}", self.rng.below(PRIMITIVES));
+        if self.kind.has_levels {
+            return match self.rng.below(12) {
+                0 => format!("ask {} {bounds}", self.level()),
+                1 => format!("do {{ {call}; delay[0,1] }} maintaining {}", self.level()),
+                2 => format!("if {} thennext {call}", self.level()),
+                3 => format!("if {} thennext {call} else delay[0,1]", self.level()),
+                _ => call,
+            };
+        }
         if !self.kind.has_states {
             return call;
         }
@@ -152,6 +169,12 @@ impl Maker {
             4 => format!("do {call} maintaining {}", self.condition()),
             _ => call,
         }
+    }
+
+    fn level(&mut self) -> String {
+        let order = ["<", "<=", ">", ">="][self.rng.below(4) as usize];
+        let bound = self.rng.between(0, self.room + 1);
+        format!("{}T {order} {bound}", if self.rng.chance(15) { "not " } else { "" })
     }
 
     fn condition(&mut self) -> String {

@@ -289,6 +289,7 @@ fn add_level(network: &mut Network, resource: ResourceId, by: Rational, at: Time
         start: node,
         end: node,
         owner: Some(owner),
+        level: None,
         span: None,
     });
 }

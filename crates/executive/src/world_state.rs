@@ -32,6 +32,8 @@ pub(crate) struct Effects {
     pub(crate) carriers: BTreeMap<LabelId, LabelId>,
     /// What the plan takes of reservoirs and gives to them.
     pub(crate) moves: Vec<UseId>,
+    /// What the plan asks of levels.
+    pub(crate) conditions: Vec<UseId>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -82,7 +84,9 @@ impl Effects {
             if !plan.selected_arcs[used.arc.index()] {
                 continue;
             }
-            if used.change == Change::Uses {
+            if used.level.is_some() {
+                effects.conditions.push(id);
+            } else if used.change == Change::Uses {
                 add(used.start, Effect::Takes(id));
                 add(used.end, Effect::Frees(id));
             } else {
@@ -141,6 +145,10 @@ pub(crate) struct WorldState {
     /// What may be otherwise, or be needed, since the present instant.
     touched: BTreeSet<VariableId>,
     moved: BTreeSet<ResourceId>,
+    /// The conditions on levels that go on.
+    kept: BTreeSet<UseId>,
+    /// Those that did not hold at some moment of the present instant.
+    unmet: Vec<UseId>,
 }
 
 /// Something that is not as an activity needs it.
@@ -150,6 +158,8 @@ pub(crate) enum Lack {
     Value(LabelId),
     /// A resource outside its range, or of which more is in use than there is.
     Level(ResourceId),
+    /// A condition on a level that did not hold.
+    Condition(UseId),
 }
 
 impl WorldState {
@@ -173,6 +183,8 @@ impl WorldState {
             held,
             levels,
             momentary: Vec::new(),
+            kept: BTreeSet::new(),
+            unmet: Vec::new(),
         }
     }
 
@@ -193,6 +205,12 @@ impl WorldState {
                 self.require(network, requirement);
             }
         }
+        let goes_on = |id: &&UseId| {
+            let condition = &network.uses[id.index()];
+            has_happened(condition.start) && !has_happened(condition.end)
+        };
+        self.kept = effects.conditions.iter().filter(goes_on).copied().collect();
+        self.unmet.clear();
         self.levels.resize(start.len(), Rational::ZERO);
         for (index, _) in network.resources.iter().enumerate().filter(|(_, it)| is_unnamed(it)) {
             let own = network.uses.iter().filter(|used| used.resource.index() == index);
@@ -230,6 +248,7 @@ impl WorldState {
     pub(crate) fn advance(&mut self) {
         self.momentary.clear();
         self.moved.clear();
+        self.unmet.clear();
         for variable in std::mem::take(&mut self.touched) {
             let held = &mut self.held[variable.index()];
             held.seen.clear();
@@ -253,6 +272,10 @@ impl WorldState {
     /// An event happens. Returns what changes.
     pub(crate) fn happen(&mut self, network: &Network, effects: &Effects, node: NodeId) -> Vec<Happening> {
         let mut happenings = Vec::new();
+        let starting = || effects.conditions.iter().filter(move |id| network.uses[id.index()].start == node);
+        for &id in starting().filter(|id| network.uses[id.index()].end == node) {
+            self.ask(network, id);
+        }
         for &effect in effects.by_node.get(&node).into_iter().flatten() {
             match effect {
                 Effect::Changes(label) => {
@@ -283,7 +306,25 @@ impl WorldState {
                 }
             }
         }
+        self.kept.extend(starting().filter(|id| network.uses[id.index()].end != node));
+        self.ask_kept(network);
+        self.kept.retain(|id| network.uses[id.index()].end != node);
         happenings
+    }
+
+    /// Takes note of conditions on levels that go on and do not hold now: what changes at one event is one change.
+    pub(crate) fn ask_kept(&mut self, network: &Network) {
+        for condition in self.kept.clone() {
+            self.ask(network, condition);
+        }
+    }
+
+    /// Takes note of a condition on a level if it does not hold now.
+    fn ask(&mut self, network: &Network, condition: UseId) {
+        let of = &network.uses[condition.index()];
+        if of.level.is_some_and(|level| !level.order.holds(self.level(of.resource), level.bound)) {
+            self.unmet.push(condition);
+        }
     }
 
     /// A label gives its value. Of two without length at one instant the plan says which is the later one.
@@ -325,10 +366,11 @@ impl WorldState {
         let level = self.levels.get_mut(resource.index())?;
         self.moved.insert(resource);
         *level = level.checked_add(by).unwrap_or(*level);
+        let level = *level;
         let of = &network.resources[resource.index()];
         (!by.is_zero() && !is_unnamed(of)).then(|| Happening::Level {
             resource: of.name.clone(),
-            level: *level,
+            level,
             by: owner.map(|owner| network.occurrences[owner.index()].name.clone()),
         })
     }
@@ -395,6 +437,9 @@ impl WorldState {
         };
         if let Some(&label) = momentary.or_else(lasting) {
             return Some(Lack::Value(label));
+        }
+        if let Some(&condition) = self.unmet.first() {
+            return Some(Lack::Condition(condition));
         }
         let is_kept = |resource: &ResourceId| {
             let level = self.level(*resource);

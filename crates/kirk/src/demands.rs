@@ -7,8 +7,8 @@ use exact::{Rational, Scale};
 use num_integer::Integer as _;
 use rmpl::program::{Change, LabelMode, Measure};
 use tpn::{
-    ArcId, ArcKind, Extent, LabelId, Network, NodeId, Plan, Quality, ResourceId, StateOrder, Supply, UseId,
-    ValueId, Window, Worth,
+    ArcId, ArcKind, Extent, LabelId, LevelCondition, Network, NodeId, Plan, Quality, ResourceId, StateOrder,
+    Supply, UseId, ValueId, Window, Worth,
 };
 
 use crate::conditions::Conditions;
@@ -54,12 +54,24 @@ pub(crate) struct ModelUse {
     pub(crate) amount: i64,
     /// The minimum amount.
     pub(crate) at_least: i64,
+    /// Of a condition on a level, which changes nothing: the level that it may not fall below, or not rise above.
+    pub(crate) level: Option<i64>,
 }
 
 impl ModelUse {
-    /// When a reservoir is consumed from, or produced into.
+    /// When a reservoir is consumed from, or produced into, or a condition on its level begins to hold.
     pub(crate) fn moment(&self) -> NodeId {
-        if self.change == Change::Produces { self.end } else { self.start }
+        if self.change == Change::Produces && self.level.is_none() { self.end } else { self.start }
+    }
+
+    /// When it is over with a reservoir.
+    pub(crate) fn last_moment(&self) -> NodeId {
+        if self.level.is_some() { self.end } else { self.moment() }
+    }
+
+    /// Whether a level is fine with the bound of what `self` does to it.
+    pub(crate) fn allows(&self, level: i64, bound: i64) -> bool {
+        if self.change == Change::Produces { level <= bound } else { level >= bound }
     }
 
     /// The change of a reservoir's level, in units: the greatest possible one if `is_most`, otherwise the least.
@@ -238,7 +250,9 @@ fn resources(network: &Network) -> Result<Vec<ResourceDemand>, Unplannable> {
             Supply::Reusable { capacity } => vec![capacity],
             Supply::Reservoir { least, greatest, level } => vec![least, greatest, level],
         };
-        let amounts = used().flat_map(|(_, used)| [used.at_least, used.amount]);
+        let amounts = used().flat_map(|(_, used)| {
+            [used.at_least, used.amount, used.level.map_or(Rational::ZERO, |level| level.bound)]
+        });
         let Some(unit) = common_unit(supply.into_iter().chain(amounts)) else {
             return Err(Unplannable::at(network.start));
         };
@@ -262,6 +276,15 @@ fn resources(network: &Network) -> Result<Vec<ResourceDemand>, Unplannable> {
                 change: used.change,
                 amount: units(used.amount, used.start)?,
                 at_least: units(used.at_least, used.start)?,
+                level: match used.level {
+                    None => None,
+                    Some(LevelCondition { order, bound }) => {
+                        let bound = units(bound, used.start)?;
+                        // Levels are whole multiples of the unit.
+                        let inside = if order.is_minimum() { 1 } else { -1 };
+                        Some(if order.is_strict() { bound + inside } else { bound })
+                    }
+                },
             });
         }
         demands.push(ResourceDemand { supply, uses, unit });

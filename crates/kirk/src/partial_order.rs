@@ -602,55 +602,102 @@ impl Making<'_> {
         Ok(())
     }
 
-    /// Orders what is consumed and produced until no schedule leaves the range (Laborie 2003).
+    /// Orders what is consumed and produced until no schedule leaves the range (Laborie 2003), and every condition on the level
+    /// holds.
     fn keep_level(
         &mut self,
         uses: &[ModelUse],
-        range: (i64, i64),
+        (least, greatest): (i64, i64),
         level: i64,
         added: &mut Vec<UseOrdering>,
     ) -> Result<(), Unplannable> {
-        let mut in_order: Vec<&ModelUse> = uses.iter().collect();
-        in_order.sort_by_key(|used| (self.position(used.moment()), used.id));
-        for used in in_order {
-            let (now, at) = (self.time(used.moment()), self.position(used.moment()));
-            let mut others: Vec<&ModelUse> = uses.iter().filter(|other| other.id != used.id).collect();
-            // First what the times order for good, then what they let happen at one time.
-            others.sort_by_key(|other| {
-                let then = self.time(other.moment());
-                (then == now, then.abs_diff(now), other.id)
-            });
-            for other in others {
-                if self.is_in_range(uses, used, range, level)? {
-                    break;
-                }
-                let then = self.position(other.moment());
-                // Of its own kind the others come later, of the other kind before.
-                let is_same_change = other.change == used.change;
-                let (first, later) = if is_same_change { (used, other) } else { (other, used) };
-                let fits = if is_same_change { at <= then } else { then <= at };
-                let ordering = UseOrdering { first: first.id, then: later.id };
-                if fits && self.ensure(first.moment(), later.moment(), InOrder::Uses(ordering))? {
-                    added.push(ordering);
-                }
+        let (mut conditions, mut changes): (Vec<ModelUse>, Vec<ModelUse>) =
+            uses.iter().copied().partition(|used| used.level.is_some());
+        for list in [&mut conditions, &mut changes] {
+            list.sort_by_key(|used| (self.position(used.moment()), used.id));
+        }
+        for used in &changes {
+            let bound = if used.change == Change::Produces { greatest } else { least };
+            self.keep_within(&changes, used, bound, level, added)?;
+        }
+        for condition in &conditions {
+            let Some(bound) = condition.level else { continue };
+            if condition.start == condition.end {
+                self.keep_within(&changes, condition, bound, level, added)?;
+                continue;
+            }
+            for used in changes.iter().filter(|used| used.change == condition.change) {
+                self.keep_condition(&changes, (condition, used), bound, level, added)?;
             }
         }
         Ok(())
     }
 
-    /// Whether the level after one consumption is not too low, or after one production not too high, in any schedule.
-    fn is_in_range(
+    /// Orders the others until the level after one use, or just before a condition, is within its bound in any schedule.
+    fn keep_within(
         &mut self,
-        uses: &[ModelUse],
+        changes: &[ModelUse],
         used: &ModelUse,
-        (least, greatest): (i64, i64),
+        bound: i64,
         level: i64,
-    ) -> Result<bool, Unplannable> {
-        let extreme = self.extreme(uses, used, level)?;
-        Ok(if used.change == Change::Produces { extreme <= greatest } else { extreme >= least })
+        added: &mut Vec<UseOrdering>,
+    ) -> Result<(), Unplannable> {
+        let (now, at) = (self.time(used.moment()), self.position(used.moment()));
+        let mut others: Vec<&ModelUse> = changes.iter().filter(|other| other.id != used.id).collect();
+        // First what the times order for good, then what they let happen at one time.
+        others.sort_by_key(|other| {
+            let then = self.time(other.moment());
+            (then == now, then.abs_diff(now), other.id)
+        });
+        for other in others {
+            if used.allows(self.extreme(changes, used, level)?, bound) {
+                break;
+            }
+            let then = self.position(other.moment());
+            // Of its own kind the others come later, of the other kind before.
+            let is_same_change = other.change == used.change;
+            let (first, later) = if is_same_change { (used, other) } else { (other, used) };
+            let fits = if is_same_change { at <= then } else { then <= at };
+            let ordering = UseOrdering { first: first.id, then: later.id };
+            if fits && self.ensure(first.moment(), later.moment(), InOrder::Uses(ordering))? {
+                added.push(ordering);
+            }
+        }
+        Ok(())
     }
 
-    /// The lowest level after a consumption, or the highest after a production (SPEC 11).
+    /// Where a condition on a level goes on, a change of the kind that may break it comes before or after it, or leaves the
+    /// level within the bound.
+    fn keep_condition(
+        &mut self,
+        changes: &[ModelUse],
+        (condition, used): (&ModelUse, &ModelUse),
+        bound: i64,
+        level: i64,
+        added: &mut Vec<UseOrdering>,
+    ) -> Result<(), Unplannable> {
+        let (moment, ModelUse { start, end, .. }) = (used.moment(), *condition);
+        let is_apart = (moment != start && self.happens_before(moment, start)?)
+            || (moment != end && self.happens_before(end, moment)?);
+        if is_apart || used.allows(self.extreme(changes, used, level)?, bound) {
+            return Ok(());
+        }
+        let (at, from, to) = (self.position(moment), self.position(start), self.position(end));
+        let (first, then) = if at < from {
+            (used, condition)
+        } else if at > to {
+            (condition, used)
+        } else {
+            return self.keep_within(changes, used, bound, level, added);
+        };
+        let ordering = UseOrdering { first: first.id, then: then.id };
+        if self.ensure(first.last_moment(), then.moment(), InOrder::Uses(ordering))? {
+            added.push(ordering);
+        }
+        Ok(())
+    }
+
+    /// The lowest level after a consumption, or the highest after a production (SPEC 11); of a condition the one just before it.
     fn extreme(&mut self, uses: &[ModelUse], used: &ModelUse, level: i64) -> Result<i64, Unplannable> {
         let mut extreme = level;
         let now = used.moment();
@@ -672,6 +719,8 @@ impl Making<'_> {
             let then = other.moment();
             let counts = if other.id == used.id {
                 true
+            } else if used.level.is_some() && now == then {
+                false
             } else if other.change == used.change {
                 // Unless it comes after; what changes at the same event counts.
                 now == then || !happens_before(self, now, then)?
@@ -705,9 +754,10 @@ impl Making<'_> {
                 Ok(Levels::Peak(resource.amount(heaviest_antichain(&weights, &is_before).weight)))
             }
             ModelSupply::Reservoir { level, .. } => {
+                let changes: Vec<ModelUse> = uses.into_iter().filter(|used| used.level.is_none()).collect();
                 let (mut low, mut high) = (level, level);
-                for used in &uses {
-                    let extreme = self.extreme(&uses, used, level)?;
+                for used in &changes {
+                    let extreme = self.extreme(&changes, used, level)?;
                     low = low.min(extreme);
                     high = high.max(extreme);
                 }

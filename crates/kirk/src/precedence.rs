@@ -58,7 +58,7 @@ fn use_order(model: &Model, order: UseOrdering) -> Option<StnEdge> {
     let ((supply, first), (_, then)) = (find_use(model, order.first)?, find_use(model, order.then)?);
     let (earlier, later) = match supply {
         ModelSupply::Reusable { .. } => (first.end, then.start),
-        ModelSupply::Reservoir { .. } => (first.moment(), then.moment()),
+        ModelSupply::Reservoir { .. } => (first.last_moment(), then.moment()),
     };
     Some((point(later), point(earlier), 0))
 }

@@ -141,6 +141,9 @@ impl Told<'_> {
                 joined(&shared)
             );
         }
+        if let Some(told) = self.level(&uses) {
+            return told;
+        }
         let sum = |change: Change| {
             let amounts = uses.iter().filter(|used| used.change == change).map(|used| used.amount);
             amounts.fold(Rational::default(), |sum, amount| sum.checked_add(amount).unwrap_or(sum))
@@ -190,6 +193,43 @@ impl Told<'_> {
             Some(bounds) => format!("{what}: {bounds}"),
             None => what,
         }
+    }
+
+    /// A condition on a level among these uses of one reservoir, and what keeps it from holding.
+    fn level(&self, uses: &[&Use]) -> Option<String> {
+        let condition = uses.iter().find(|used| used.level.is_some())?;
+        let asks = condition.level_text(&self.network.resources)?;
+        let Supply::Reservoir { level, .. } = self.network.resources[condition.resource.index()].supply
+        else {
+            return None;
+        };
+        let mut others: Vec<String> = Vec::new();
+        let mut after = level;
+        for used in uses.iter().filter(|used| used.level.is_none()) {
+            let [less, more] = used.level_changes();
+            let by = if condition.change == Change::Produces { more } else { less };
+            after = after.checked_add(by).unwrap_or(after);
+            let owner = use_owner(self.network, used);
+            if !others.contains(&owner) {
+                others.push(owner);
+            }
+        }
+        let name = use_owner(self.network, condition);
+        let verb = if condition.change == Change::Produces { "consumed" } else { "produced" };
+        let what = match others.as_slice() {
+            [] => format!(
+                "{name} requires {asks}, but the level at the start is {level}, and not enough is {verb} in time"
+            ),
+            others => format!(
+                "{name} requires {asks}, but with {} the level would be {after}, and not enough is {verb} in time{}",
+                joined(others),
+                driven(self.network, uses)
+            ),
+        };
+        Some(match self.room() {
+            Some(bounds) => format!("{what}: {bounds}"),
+            None => what,
+        })
     }
 
     /// What nature chooses, and what that leaves no times for.

@@ -208,6 +208,7 @@ fn with_order(network: &Network, first: OccurrenceId, then: OccurrenceId) -> Net
             start,
             end,
             owner: Some(owner),
+            level: None,
             span,
         });
     }

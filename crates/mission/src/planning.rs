@@ -15,7 +15,7 @@ use executive::facts::StandingPlace;
 use kirk::{Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
 use rmpl::Diagnostic;
-use rmpl::program::{Change, Program, World};
+use rmpl::program::{self, Change, Program, World};
 use snapshot::blocked::name_blocked;
 use snapshot::standing;
 use snapshot::{
@@ -25,7 +25,7 @@ use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::worth;
 use tpn::worth::rounded_up;
-use tpn::{ArcId, ArcKind, Choice, Departure, Network, OccurrenceId, Plan, Supply};
+use tpn::{ArcId, ArcKind, Choice, Departure, LevelCondition, Network, OccurrenceId, Plan, Supply};
 
 use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
@@ -271,9 +271,16 @@ pub(crate) fn without_upper_limits(
         }
         let gains = own().filter(|used| used.change == Change::Produces).map(|used| used.amount);
         let highest = gains.into_iter().try_fold(level, Rational::checked_add);
-        if let Some(greatest) = highest.filter(|&highest| highest > level) {
+        let is_limit = |used: &&tpn::Use| used.level.is_some() && used.change == Change::Produces;
+        let has_limits = own().any(|used| is_limit(&used));
+        if let Some(greatest) = highest.filter(|&highest| highest > level || has_limits) {
             let relaxed = relaxed.get_or_insert_with(|| network.as_ref().clone());
             relaxed.resources[index].supply = Supply::Reservoir { least, greatest, level };
+            for used in relaxed.uses.iter_mut().filter(|used| used.resource.index() == index) {
+                if used.change == Change::Produces && used.level.is_some() {
+                    used.level = Some(LevelCondition { order: program::Order::AtMost, bound: greatest });
+                }
+            }
         }
     }
     relaxed.map(Arc::new)

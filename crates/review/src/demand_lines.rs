@@ -6,7 +6,9 @@ use exact::Rational;
 use rmpl::program::LabelMode;
 use smol_str::SmolStr;
 use snapshot::Planning;
-use tpn::{CausalLink, Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Variable};
+use tpn::{
+    CausalLink, Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Use, UseId, Variable,
+};
 
 use super::lines::Places;
 use super::{Line, ResourceReview, Status};
@@ -76,6 +78,7 @@ impl DemandLines<'_> {
     pub(super) fn states(&self) -> Vec<Line> {
         let mut lines: Vec<Line> = self.requirements().into_iter().collect();
         lines.extend(self.sights());
+        lines.extend(self.levels());
         for (index, variable) in self.network.variables.iter().enumerate() {
             if !variable.is_lasting {
                 continue;
@@ -126,6 +129,36 @@ impl DemandLines<'_> {
             let (start, end) = self.network.interval(link.ask);
             let span = self.network.labels[link.ask.index()].span;
             lines.push(self.places.line(self.status, text, span, names, vec![start, end]));
+        }
+        lines
+    }
+
+    /// What activities require of levels (SPEC 17).
+    fn levels(&self) -> Vec<Line> {
+        let mut lines = Vec::new();
+        let uses = &self.network.uses;
+        for (index, used) in uses.iter().enumerate() {
+            let Some(level) = used.level_text(&self.network.resources) else { continue };
+            // A condition that lasts is written as one before the start, too, which is part of it.
+            let lasts =
+                |other: &Use| (other.owner, other.start) == (used.owner, used.start) && other.is_lasting();
+            let is_part = !used.is_lasting()
+                && uses[index + 1..].first().is_some_and(|other| lasts(other) && other.span == used.span);
+            if is_part || self.plan.selected_arcs.get(used.arc.index()) != Some(&true) {
+                continue;
+            }
+            let owner = used.owner.and_then(|owner| self.network.occurrences.get(owner.index()));
+            let name = owner
+                .map_or_else(|| self.network.use_name(UseId::from_index(index)), |it| it.name.to_string());
+            let when = if used.is_lasting() { "from its start to its end" } else { "at its start" };
+            let text = format!("{name} requires {level} {when}");
+            lines.push(self.places.line(
+                self.status,
+                text,
+                used.span,
+                vec![name],
+                vec![used.start, used.end],
+            ));
         }
         lines
     }

@@ -180,8 +180,10 @@ impl<'input> PlanLines<'input> {
         let event = |used: tpn::UseId, is_first: bool| {
             let used = &network.uses[used.index()];
             match (used.change, is_first) {
-                (Change::Uses, true) | (Change::Produces, _) => used.end,
-                (Change::Uses, false) | (Change::Consumes, _) => used.start,
+                (Change::Uses, true) => used.end,
+                (Change::Uses, false) => used.start,
+                (Change::Consumes | Change::Produces, true) => used.last_moment(),
+                (Change::Consumes | Change::Produces, false) => used.moment(),
             }
         };
         let pairs: Vec<(NodeId, NodeId)> = plan

@@ -359,6 +359,73 @@ impl Change {
     }
 }
 
+/// How an amount compares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Order {
+    /// `<`
+    Below,
+    /// `<=`
+    AtMost,
+    /// `>`
+    Above,
+    /// `>=`
+    AtLeast,
+}
+
+impl Order {
+    /// As it is written.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Below => "<",
+            Self::AtMost => "<=",
+            Self::Above => ">",
+            Self::AtLeast => ">=",
+        }
+    }
+
+    /// The one that is written so.
+    pub fn by_symbol(symbol: &str) -> Self {
+        match symbol {
+            "<" => Self::Below,
+            "<=" => Self::AtMost,
+            ">" => Self::Above,
+            _ => Self::AtLeast,
+        }
+    }
+
+    /// What holds exactly when this does not.
+    #[must_use]
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Below => Self::AtLeast,
+            Self::AtMost => Self::Above,
+            Self::Above => Self::AtMost,
+            Self::AtLeast => Self::Below,
+        }
+    }
+
+    /// Whether it asks for much, so that what is taken breaks it.
+    pub const fn is_minimum(self) -> bool {
+        matches!(self, Self::Above | Self::AtLeast)
+    }
+
+    /// Whether the bound itself is excluded.
+    pub const fn is_strict(self) -> bool {
+        matches!(self, Self::Above | Self::Below)
+    }
+
+    /// Whether an amount compares so with a bound.
+    pub fn holds(self, amount: Rational, bound: Rational) -> bool {
+        match self {
+            Self::Below => amount < bound,
+            Self::AtMost => amount <= bound,
+            Self::Above => amount > bound,
+            Self::AtLeast => amount >= bound,
+        }
+    }
+}
+
 /// `3`, `2 per minute`, `0.5 per metre`
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Amount {
@@ -730,10 +797,21 @@ pub struct Condition {
     pub values: Vec<Name>,
     /// The location that is in sight from where the vehicle is, or a formal that stands for one (SPEC 10.5).
     pub sees: Option<Name>,
+    /// What the level of a reservoir is compared with; the variable is the reservoir then (SPEC 17).
+    pub level: Option<Level>,
     /// Whether the literal is negated an odd number of times (`not`, `!`, `!=`).
     pub negated: bool,
     /// Where it stands.
     pub span: Span,
+}
+
+/// What a level is compared with: `>= 30 at start`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Level {
+    pub order: Order,
+    pub bound: Expr,
+    /// Whether it is asked for only when what needs it starts.
+    pub is_at_start: bool,
 }
 
 /// Options of a mission.

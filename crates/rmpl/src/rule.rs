@@ -22,6 +22,7 @@ use crate::diagnostics::{arity, syntax, undefined, value};
 use crate::lower::bounds::expression;
 use crate::lower::condition::literal;
 use crate::parser::{parse_rule, replacement};
+pub use crate::program::Order;
 use crate::program::{Name, Program};
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
@@ -66,19 +67,6 @@ pub struct Activity {
     pub name: SmolStr,
     /// With these arguments; otherwise with any.
     pub arguments: Option<Vec<SmolStr>>,
-}
-
-/// How an amount compares.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    /// `<`
-    Below,
-    /// `<=`
-    AtMost,
-    /// `>`
-    Above,
-    /// `>=`
-    AtLeast,
 }
 
 /// When a rule has to hold.
@@ -266,12 +254,7 @@ impl Reader<'_> {
             self.report(undefined::CODE, place, "expected an amount: a number, or a constant of the mission");
             return None;
         };
-        let order = match order.text {
-            "<" => Order::Below,
-            "<=" => Order::AtMost,
-            ">" => Order::Above,
-            _ => Order::AtLeast,
-        };
+        let order = Order::by_symbol(order.text);
         Some(Formula::Amount { resource: name.into(), order, amount: amount.units() })
     }
 
@@ -601,8 +584,10 @@ scenario Day[0,60] = { Drive(Rock); Dig(), LIGHT [1,1] }";
     }
 
     #[test]
-    fn orders_are_no_part_of_missions() {
-        let found = crate::parse("scenario S[0,9] = { A < B }").diagnostics();
-        assert!(found.iter().any(|it| it.code.0 == "E-LEX"), "{found:?}");
+    fn a_mission_requires_a_level_but_does_not_assert_one() {
+        let found = crate::parse("resource A 0..9 = 5; scenario S[0,9] = { A < 3 }").diagnostics();
+        assert!(found.iter().any(|it| it.code.0 == "E-VALUE"), "{found:?}");
+        let found = crate::parse("resource A 0..9 = 5; scenario S[0,9] = { ask A < 9 }").diagnostics();
+        assert!(found.is_empty(), "{found:?}");
     }
 }

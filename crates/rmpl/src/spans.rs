@@ -8,9 +8,9 @@ use crate::edits::Shift;
 use crate::program::{
     ActivityDecl, Amount, Argument, ArgumentValue, Bounds, Condition, ConstantDecl, ConstrainDecl,
     ControlDecl, Effect, EventName, Expr, ExprKind, FleetDecl, GoalDecl, GroupDecl, HeaderBound,
-    HeaderBounds, ImportDecl, LocationDecl, Members, ModelDecl, Moves, Name, ObjectiveDecl, ObstacleDecl,
-    ObstacleKind, PrimitiveDecl, Program, PropertyDecl, Requirement, ResourceDecl, ResourceUse, Runs,
-    ScenarioDecl, Statement, StatementKind, Supply, TerrainDecl, VariableDecl, VehicleDecl, World,
+    HeaderBounds, ImportDecl, Level, LocationDecl, Members, ModelDecl, Moves, Name, ObjectiveDecl,
+    ObstacleDecl, ObstacleKind, PrimitiveDecl, Program, PropertyDecl, Requirement, ResourceDecl, ResourceUse,
+    Runs, ScenarioDecl, Statement, StatementKind, Supply, TerrainDecl, VariableDecl, VehicleDecl, World,
 };
 use crate::span::Span;
 
@@ -106,7 +106,8 @@ spans! {
     Expr { kind, span }
     Statement { kind, bounds, span }
     Argument { value, span }
-    Condition { variable, values, sees, span }
+    Condition { variable, values, sees, level, span }
+    Level { bound }
     World { terrain, locations, obstacles, vehicles, models }
     TerrainDecl { asset_span, span }
     LocationDecl { name, numbers_span, span }

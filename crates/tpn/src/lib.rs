@@ -22,9 +22,9 @@ pub mod worth;
 pub use compile::{Ground, Level, Top, assumed, compile, compile_on, compile_scenarios, merge_diagnostics};
 pub use network::{
     Arc, ArcId, ArcKind, Block, BlockId, BlockKind, Decision, DecisionId, Departure, Distance, EventEnd,
-    EventRef, Extent, Goal, Label, LabelId, Literal, Network, Node, NodeId, Occurrence, OccurrenceId,
-    OccurrenceKind, Resource, ResourceId, Role, Supply, Use, UseId, ValueId, ValueSet, Variable, VariableId,
-    Worth,
+    EventRef, Extent, Goal, Label, LabelId, LevelCondition, Literal, Network, Node, NodeId, Occurrence,
+    OccurrenceId, OccurrenceKind, Resource, ResourceId, Role, Supply, Use, UseId, ValueId, ValueSet,
+    Variable, VariableId, Worth,
 };
 pub use plan::{
     CausalLink, Choice, DistinctPlans, Levels, Ordering, Plan, PlanOrder, Precedence, Quality, StateOrder,

@@ -5,7 +5,7 @@
 
 use exact::{Bound, Rational, Time};
 use rmpl::Span;
-use rmpl::program::{Change, Controllability, LabelMode, Measure, component_of_state};
+use rmpl::program::{Change, Controllability, LabelMode, Measure, Order, component_of_state};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 
@@ -324,8 +324,19 @@ pub struct Use {
     pub start: NodeId,
     pub end: NodeId,
     pub owner: Option<OccurrenceId>,
+    /// What the level of a reservoir must be, of a use that changes nothing (SPEC 17): just before `start` if both events are
+    /// one, otherwise from then to `end`. What breaks a minimum is what consumes does, so that `change` says which it is.
+    #[serde(default)]
+    pub level: Option<LevelCondition>,
     /// Where it is written.
     pub span: Option<Span>,
+}
+
+/// What a level is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LevelCondition {
+    pub order: Order,
+    pub bound: Rational,
 }
 
 /// What an activity costs and is rewarded with.
@@ -545,9 +556,25 @@ pub enum BlockKind {
 }
 
 impl Use {
-    /// When a reservoir is consumed from, or produced into.
+    /// When a reservoir is consumed from, or produced into, or a condition on its level begins to hold.
     pub fn moment(&self) -> NodeId {
-        if self.change == Change::Produces { self.end } else { self.start }
+        if self.change == Change::Produces && self.level.is_none() { self.end } else { self.start }
+    }
+
+    /// When it is over with a reservoir: a condition on its level at its end, all else the moment it happens.
+    pub fn last_moment(&self) -> NodeId {
+        if self.level.is_some() { self.end } else { self.moment() }
+    }
+
+    /// Whether it requires a level from one event to another, and not only before one.
+    pub fn is_lasting(&self) -> bool {
+        self.level.is_some() && self.start != self.end
+    }
+
+    /// A condition on a level as people read it: `R1.battery >= 30`.
+    pub fn level_text(&self, resources: &[Resource]) -> Option<String> {
+        let LevelCondition { order, bound } = self.level?;
+        Some(format!("{} {} {}", resources[self.resource.index()].name, order.symbol(), bound.readable()))
     }
 
     /// The minimum and maximum change of a reservoir's level.
@@ -719,13 +746,16 @@ impl Network {
     pub fn use_name(&self, used: UseId) -> String {
         let of = &self.uses[used.index()];
         let verb = match of.change {
+            _ if of.level.is_some() => "Requires",
             Change::Uses => "Uses",
             Change::Consumes => "Consumes",
             Change::Produces => "Produces",
         };
         let resource = &self.resources[of.resource.index()].name;
         let is_alike = |other: &&Use| {
-            (other.resource, other.change, other.owner) == (of.resource, of.change, of.owner)
+            (other.resource, other.owner) == (of.resource, of.owner)
+                && other.level.is_some() == of.level.is_some()
+                && (of.level.is_some() || other.change == of.change)
                 && (of.owner.is_some() || other.arc == of.arc)
         };
         let count = ordinal(self.uses[..used.index()].iter().filter(is_alike).count());

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
-use rmpl::program::{Controllability, LabelMode};
+use rmpl::program::{Change, Controllability, LabelMode};
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
 
 use crate::network::{
     Arc, ArcId, ArcKind, Decision, DecisionId, EventEnd, EventRef, Extent, Label, LabelId, Network, Node,
-    NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Use, Variable, Worth,
+    NodeId, Occurrence, OccurrenceId, OccurrenceKind, Resource, Role, Supply, Use, Variable, Worth,
 };
 use crate::sight::Sight;
 use crate::text::kind_name;
@@ -188,6 +188,18 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
     };
     if !uses.iter().all(is_known) {
         return Err(error("uses", "names a resource, an arc or a node that does not exist"));
+    }
+    let is_condition = |used: &Use| {
+        used.level.is_none_or(|level| {
+            let change = if level.order.is_minimum() { Change::Consumes } else { Change::Produces };
+            matches!(resources[used.resource.index()].supply, Supply::Reservoir { .. })
+                && used.change == change
+                && used.amount.is_zero()
+        })
+    };
+    if !uses.iter().all(is_condition) {
+        let problem = "compares the level of what is not a reservoir, or of a use that changes it";
+        return Err(error("uses", problem));
     }
     if worths.iter().any(|worth| worth.arc.index() >= reader.arcs.len()) {
         return Err(error("worths", "names an arc that does not exist"));

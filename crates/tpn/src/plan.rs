@@ -193,7 +193,7 @@ impl UseOrdering {
         let (first, then) = (&network.uses[self.first.index()], &network.uses[self.then.index()]);
         let (earlier, later) = match network.resources[first.resource.index()].supply {
             Supply::Reusable { .. } => (first.end, then.start),
-            Supply::Reservoir { .. } => (first.moment(), then.moment()),
+            Supply::Reservoir { .. } => (first.last_moment(), then.moment()),
         };
         Precedence { earlier, later, least: Time::ZERO }
     }

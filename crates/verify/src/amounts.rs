@@ -2,7 +2,7 @@
 
 use exact::Rational;
 use num_integer::Integer as _;
-use tpn::{Network, NodeId, Plan, ResourceId, Supply, UseId};
+use tpn::{LevelCondition, Network, NodeId, Plan, ResourceId, Supply, UseId};
 
 /// A resource with its selected uses.
 #[derive(Clone, Debug)]
@@ -30,14 +30,27 @@ pub(crate) struct Taken {
     pub(crate) amount: i128,
     /// The minimum amount.
     pub(crate) at_least: i128,
-    /// It gives instead of taking.
+    /// It gives instead of taking; a condition on a level asks for no more, which what gives breaks.
     pub(crate) is_production: bool,
+    /// Of a condition on a level, which changes nothing: the last level that is allowed (SPEC 17).
+    pub(crate) level: Option<i128>,
 }
 
 impl Taken {
-    /// When it changes the level of a reservoir: a production at its end, a consumption at its start (SPEC 11).
+    /// When it changes the level of a reservoir: a production at its end, a consumption at its start (SPEC 11). A condition on
+    /// the level begins at its start.
     pub(crate) fn moment(&self) -> NodeId {
-        if self.is_production { self.end } else { self.start }
+        if self.is_production && self.level.is_none() { self.end } else { self.start }
+    }
+
+    /// When it is over with a reservoir.
+    pub(crate) fn last_moment(&self) -> NodeId {
+        if self.level.is_some() { self.end } else { self.moment() }
+    }
+
+    /// Whether it lets the level be so, if it is a condition.
+    pub(crate) fn allows(&self, level: i128) -> bool {
+        self.level.is_none_or(|bound| if self.is_production { level <= bound } else { level >= bound })
     }
 
     /// The least and the greatest change of a reservoir's level.
@@ -50,7 +63,7 @@ impl Taken {
 pub(crate) fn taken(network: &Network, used: UseId, [at_least, amount]: [i128; 2]) -> Taken {
     let of = &network.uses[used.index()];
     let is_production = of.change == rmpl::program::Change::Produces;
-    Taken { used, start: of.start, end: of.end, amount, at_least, is_production }
+    Taken { used, start: of.start, end: of.end, amount, at_least, is_production, level: None }
 }
 
 /// Whether the plan selects a use.
@@ -72,6 +85,9 @@ impl Shared {
         for used in &network.uses {
             let scale = &mut scales[used.resource.index()];
             *scale = [used.amount, used.at_least].into_iter().try_fold(*scale, common_denominator)?;
+            if let Some(level) = used.level {
+                *scale = common_denominator(*scale, level.bound)?;
+            }
         }
         let mut all: Vec<Self> = (network.resources.iter().zip(scales).enumerate())
             .map(|(index, (resource, scale))| {
@@ -93,7 +109,12 @@ impl Shared {
                 let of = &network.uses[used.index()];
                 let shared = &mut all[of.resource.index()];
                 let amounts = [of.at_least, of.amount].map(|amount| scaled(amount, shared.scale));
-                shared.uses.push(taken(network, used, amounts));
+                // The extremes of levels are whole multiples of the unit.
+                let level = of.level.map(|LevelCondition { order, bound }| {
+                    let inside = if order.is_minimum() { 1 } else { -1 };
+                    scaled(bound, shared.scale) + if order.is_strict() { inside } else { 0 }
+                });
+                shared.uses.push(Taken { level, ..taken(network, used, amounts) });
             }
         }
         Some(all)

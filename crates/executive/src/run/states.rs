@@ -171,6 +171,12 @@ impl Run<'_> {
                     format!("{} needs {}, but {name} is {is} at {now}", self.needing(label), of.text);
                 (network.interval(label).0, reason)
             }
+            Lack::Condition(used) => {
+                let of = &network.uses[used.index()];
+                let asks = of.level_text(&network.resources).unwrap_or_default();
+                let level = self.state.level(of.resource).readable();
+                (of.start, format!("{} needs {asks}, but the level is {level} at {now}", self.user(used)))
+            }
             Lack::Level(resource) => {
                 let of = &network.resources[resource.index()];
                 let (name, level) = (&of.name, self.state.level(resource));
@@ -196,6 +202,16 @@ impl Run<'_> {
         let owner = network.labels[label.index()].owner;
         owner.map_or_else(
             || network.label_name(label),
+            |owner| network.occurrences[owner.index()].name.to_string(),
+        )
+    }
+
+    /// Who uses a resource, or asks for its level.
+    fn user(&self, used: UseId) -> String {
+        let network = &self.stage.network;
+        let owner = network.uses[used.index()].owner;
+        owner.map_or_else(
+            || network.use_name(used),
             |owner| network.occurrences[owner.index()].name.to_string(),
         )
     }
@@ -342,6 +358,7 @@ impl Run<'_> {
     ) -> Option<Violation> {
         let network = std::sync::Arc::clone(&self.stage.network);
         let happening = self.state.move_level(&network, resource, by, owner)?;
+        self.state.ask_kept(&network);
         self.write(happening);
         self.news.levels.push((resource, by, self.now));
         let off = self.off_plan.entry(resource).or_default();
@@ -359,7 +376,8 @@ impl Run<'_> {
                 coming.push((self.stage.window(point).0.max(self.now), used));
             }
         }
-        if self.keeps_range(resource, &coming, (least, greatest)) {
+        let lost = self.lost_condition(resource, &coming);
+        if lost.is_none() && self.keeps_range(resource, &coming, (least, greatest)) {
             return None;
         }
         let name = &network.resources[resource.index()].name;
@@ -371,7 +389,93 @@ impl Run<'_> {
             if off.is_negative() { "less" } else { "more" },
             cause.map_or_else(String::new, |cause| format!(", for {cause}"))
         );
+        if let Some(condition) = lost {
+            let of = &network.uses[condition.index()];
+            let asks = of.level_text(&network.resources).unwrap_or_default();
+            let reason = format!(
+                "{} needs {asks}, which the plan no longer keeps in every schedule: {stands}",
+                self.user(condition)
+            );
+            return Some(Violation::new(self.stage.name(of.start).into(), reason, News::None));
+        }
         Some(self.lost_range(resource, coming, (least, greatest), &stands))
+    }
+
+    /// The first condition on a level, still to come or going on, that what is to come does not keep in every schedule from
+    /// where the level is now (SPEC 17).
+    fn lost_condition(&self, resource: ResourceId, coming: &[(Time, UseId)]) -> Option<UseId> {
+        let network = &self.stage.network;
+        let moment = |used: UseId| network.uses[used.index()].moment();
+        let is_before = |one: NodeId, other: NodeId| one != other && self.stage.happens_before(one, other);
+        let has_come = |node: NodeId| self.stage.times[node.index()].is_some();
+        let is_lost = |id: &&UseId| {
+            let of = &network.uses[id.index()];
+            let Some(level) = of.level.filter(|_| of.resource == resource && !has_come(of.end)) else {
+                return false;
+            };
+            let is_maximum = of.change == Change::Produces;
+            let breaks = |reached: Option<Rational>| {
+                reached.is_some_and(|reached| !level.order.holds(reached, level.bound))
+            };
+            if of.start == of.end {
+                let counts = |&&(_, used): &&(Time, UseId)| {
+                    let event = moment(used);
+                    if network.uses[used.index()].change == of.change {
+                        event != of.start && !is_before(of.start, event)
+                    } else {
+                        is_before(event, of.start)
+                    }
+                };
+                return breaks(self.level_after(resource, is_maximum, coming.iter().filter(counts)));
+            }
+            if has_come(of.start) && breaks(self.level_after(resource, is_maximum, [].iter())) {
+                return true;
+            }
+            coming.iter().any(|&(_, at)| {
+                let event = moment(at);
+                let is_apart =
+                    is_before(of.end, event) || (!has_come(of.start) && is_before(event, of.start));
+                network.uses[at.index()].change == of.change
+                    && !is_apart
+                    && breaks(self.level_after(resource, is_maximum, self.worst_before(coming, at)))
+            })
+        };
+        self.stage.effects.conditions.iter().find(is_lost).copied()
+    }
+
+    /// What counts of what is to come when one use happens, where as much of its own kind has happened as may, and of the other
+    /// kind what must.
+    fn worst_before<'c>(
+        &'c self,
+        coming: &'c [(Time, UseId)],
+        at: UseId,
+    ) -> impl Iterator<Item = &'c (Time, UseId)> {
+        let network = &self.stage.network;
+        let is_gain = move |used: UseId| network.uses[used.index()].change == Change::Produces;
+        let moment = move |used: UseId| network.uses[used.index()].moment();
+        coming.iter().filter(move |&&(_, other)| {
+            if is_gain(other) == is_gain(at) {
+                // What happens after it does not count.
+                let is_later = self.stage.happens_before(moment(at), moment(other));
+                !is_later || self.stage.happens_before(moment(other), moment(at))
+            } else {
+                self.stage.happens_before(moment(other), moment(at))
+            }
+        })
+    }
+
+    /// The greatest possible level after these if `is_most`, otherwise the least.
+    fn level_after<'c>(
+        &self,
+        resource: ResourceId,
+        is_most: bool,
+        mut uses: impl Iterator<Item = &'c (Time, UseId)>,
+    ) -> Option<Rational> {
+        let now = self.possible_levels(resource)?[usize::from(is_most)];
+        uses.try_fold(now, |level, &(_, used)| {
+            let changes = self.stage.network.uses[used.index()].level_changes();
+            level.checked_add(changes[usize::from(is_most)])
+        })
     }
 
     /// That a level will not stay in its range: what takes it out of it, if what is to come comes as early as it may.
@@ -386,10 +490,7 @@ impl Run<'_> {
         let (node, reason) =
             if let Some((at, used, level)) = self.first_out_of_range(resource, coming, (least, greatest)) {
                 let of = &network.uses[used.index()];
-                let who = of.owner.map_or_else(
-                    || network.use_name(used),
-                    |owner| network.occurrences[owner.index()].name.to_string(),
-                );
+                let who = self.user(used);
                 let (verb, with, limit) = if level < least {
                     ("needs", "of", format!("below {}", least.readable()))
                 } else {
@@ -414,27 +515,9 @@ impl Run<'_> {
         coming: &[(Time, UseId)],
         (least, greatest): (Rational, Rational),
     ) -> bool {
-        let network = &self.stage.network;
-        let is_gain = |used: UseId| network.uses[used.index()].change == Change::Produces;
-        let moment = |used: UseId| network.uses[used.index()].moment();
-        let Some([now, most]) = self.possible_levels(resource) else { return true };
+        let is_gain = |used: UseId| self.stage.network.uses[used.index()].change == Change::Produces;
         coming.iter().all(|&(_, at)| {
-            let counts = |&&(_, other): &&(Time, UseId)| {
-                if is_gain(other) == is_gain(at) {
-                    // What happens after it does not count.
-                    let is_later = self.stage.happens_before(moment(at), moment(other));
-                    !is_later || self.stage.happens_before(moment(other), moment(at))
-                } else {
-                    self.stage.happens_before(moment(other), moment(at))
-                }
-            };
-            let level = coming.iter().filter(counts).try_fold(
-                if is_gain(at) { most } else { now },
-                |level, &(_, used)| {
-                    let [less, more] = network.uses[used.index()].level_changes();
-                    level.checked_add(if is_gain(at) { more } else { less })
-                },
-            );
+            let level = self.level_after(resource, is_gain(at), self.worst_before(coming, at));
             level.is_none_or(|level| if is_gain(at) { level <= greatest } else { level >= least })
         })
     }

@@ -321,3 +321,37 @@ fn a_delay_does_not_end_before_what_its_successor_waits_for() {
         assert_eq!(outcome.log.last().map(|entry| entry.time), Some(Time::from(lasts + 1)));
     }
 }
+
+const LEVELS: &str = "resource Battery 0..100 = 80;
+    primitive Drive()[10,10] requires Battery >= 30 at start consumes Battery 40;
+    primitive Survey()[20,20] requires Battery > 35;
+    primitive Charge()[10,10] produces Battery 40;
+    scenario S[0,200] = { Drive(); delay[5,5]; Survey(); delay[5,5]; optional Charge(); delay; Drive() }
+    objective minimize end;";
+
+#[test]
+fn conditions_on_levels_hold_in_a_run_without_disturbances() {
+    assert_eq!(execute(LEVELS, &[]).ending, Ending::Finished);
+}
+
+#[test]
+fn a_level_that_will_not_be_high_enough_breaks_the_plan_at_once() {
+    // That is enough for the survey; the second drive takes 40, and needs a charge.
+    let outcome = execute(LEVELS, &[level("Battery", 36, 20)]);
+    assert_eq!(outcome.ending, Ending::Finished, "{:?}", outcome.log);
+    let outcome = execute(LEVELS, &[level("Battery", 30, 20)]);
+    let told = format!("{:?}", outcome.log);
+    assert!(told.contains("Survey#1 needs Battery > 35"), "{told}");
+    assert_ne!(outcome.ending, Ending::Finished);
+}
+
+#[test]
+fn planning_again_gives_a_condition_the_level_that_it_needs() {
+    let outcome = execute(LEVELS, &[level("Battery", 20, 37)]);
+    assert_eq!(outcome.ending, Ending::Finished, "{:?}", outcome.log);
+    let told = format!("{:?}", outcome.log);
+    assert!(
+        told.contains("Drive#2 needs Battery >= 30, which the plan no longer keeps in every schedule"),
+        "{told}"
+    );
+}

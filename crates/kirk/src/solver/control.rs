@@ -278,13 +278,22 @@ impl Problem<'_> {
                 }
                 ModelSupply::Reservoir { least, greatest, level } => {
                     let critical = out_of_range(&mut stn, in_force, &present, (least, greatest), level)?;
-                    let Some(Excess { used, counted, mending }) = critical else { continue };
-                    let late: Vec<Task> = tasks
-                        .iter()
-                        .filter(|task| task.change != used.change && !mending.contains(&task.id))
-                        .copied()
+                    let Some(Excess { used, counted, mending, held: around }) = critical else { continue };
+                    let is_late = |task: &&Task| {
+                        let is_own = used.level.is_some() && task.moment_node() == used.start;
+                        task.change != used.change
+                            && task.level.is_none()
+                            && !is_own
+                            && !mending.contains(&task.id)
+                    };
+                    let late: Vec<Task> = tasks.iter().filter(is_late).copied().collect();
+                    // Another one of its kind comes after it, or one of the other kind before it; or it comes before or after
+                    // the level is asked for.
+                    let orders: Vec<(Task, Task)> = (late.iter().map(|&other| (other, used)))
+                        .chain(counted.iter().map(|&other| (used, other)))
+                        .chain(around.iter().flat_map(|&around| Self::apart(used, around)))
                         .collect();
-                    let is_known = self.is_resolved(solver, &used, &counted, &late);
+                    let is_known = self.is_resolved(solver, &orders);
                     let held = self.decided(solver);
                     if is_known {
                         solver.stats.conflicts += 1;
@@ -299,13 +308,23 @@ impl Problem<'_> {
                         solver.tell_from_premises([Premise::Unknown]);
                         solver.at_least_one(held.into_iter().map(|literal| !literal));
                     } else {
-                        self.resolve_level(solver, &used, &counted, &late);
+                        let present: Vec<Task> = counted.into_iter().chain([used]).chain(around).collect();
+                        self.resolve_by(solver, &orders, &present);
                     }
                     return Some(true);
                 }
             }
         }
         Some(false)
+    }
+
+    /// The orders in which a change is not part of a condition on the level that lasts: what happens at the events of the
+    /// condition is.
+    fn apart(used: Task, condition: Task) -> Vec<(Task, Task)> {
+        let moment = used.moment_node();
+        let before = (moment != condition.start).then_some((used, condition));
+        let after = (moment != condition.end).then_some((condition, used));
+        before.into_iter().chain(after).collect()
     }
 
     /// All decisions that hold.
@@ -382,6 +401,8 @@ struct Excess {
     counted: Vec<Task>,
     /// Those of the other kind that do.
     mending: Vec<UseId>,
+    /// The condition on the level that may go on then, if the range alone would allow it.
+    held: Option<Task>,
 }
 
 /// The first excess.
@@ -398,15 +419,21 @@ fn out_of_range(
     for &moment in &moments {
         order.push(is_before(stn, in_force, moment, &moments)?);
     }
+    let held: Vec<(Task, usize, Vec<bool>)> = (tasks.iter().enumerate())
+        .filter(|(_, task)| task.is_active && task.is_held())
+        .map(|(at, task)| Some((*task, at, is_before(stn, in_force, task.interval.end, &moments)?)))
+        .collect::<Option<_>>()?;
     for (now, used) in tasks.iter().enumerate() {
-        if !used.is_active {
+        if !used.is_active || used.is_held() {
             continue;
         }
         let (mut extreme, mut counted, mut mending) = (level, Vec::new(), Vec::new());
-        for (then, other) in tasks.iter().enumerate() {
+        for (then, other) in tasks.iter().enumerate().filter(|(_, other)| other.level.is_none()) {
             let is_same = other.change == used.change;
             let counts = if then == now {
                 true
+            } else if used.level.is_some() && other.moment_node() == used.start {
+                false
             } else if is_same {
                 other.is_active && (!order[now][then] || order[then][now])
             } else {
@@ -421,9 +448,25 @@ fn out_of_range(
                 }
             }
         }
-        let is_out = if used.change == Change::Produces { extreme > greatest } else { extreme < least };
-        if is_out {
-            return Some(Some(Excess { used: *used, counted, mending }));
+        let limit = if used.change == Change::Produces { greatest } else { least };
+        let mut excess = |held: Option<Task>| {
+            let (counted, mending) = (std::mem::take(&mut counted), std::mem::take(&mut mending));
+            Some(Some(Excess { used: *used, counted, mending, held }))
+        };
+        if used.excess(extreme, used.level.unwrap_or(limit)) > 0 {
+            return excess(None);
+        }
+        let around = held.iter().find(|(condition, at, after)| {
+            let node = used.moment_node();
+            let is_apart =
+                (order[now][*at] && node != condition.start) || (after[now] && node != condition.end);
+            used.level.is_none()
+                && condition.change == used.change
+                && !is_apart
+                && condition.level.is_some_and(|bound| used.excess(extreme, bound) > 0)
+        });
+        if let Some(&(condition, ..)) = around {
+            return excess(Some(condition));
         }
     }
     Some(None)

@@ -41,7 +41,7 @@ pub(crate) fn turns(model: &Model) -> TiVec<NodeId, Turn> {
         turn[node] = Some(if turn[node].is_none_or(|known| known == own) { own } else { Turn::Neither });
     };
     for resource in &model.demands.resources {
-        for used in &resource.uses {
+        for used in resource.uses.iter().filter(|used| used.level.is_none()) {
             match (resource.supply, used.change) {
                 (ModelSupply::Reusable { .. }, _) => {
                     add(used.start, Turn::Takes);
@@ -138,7 +138,7 @@ impl Problem<'_> {
             };
             match supply {
                 ModelSupply::Reusable { .. } => add(first.end, then.start, order),
-                ModelSupply::Reservoir { .. } => add(first.moment(), then.moment(), order),
+                ModelSupply::Reservoir { .. } => add(first.last_moment(), then.moment(), order),
             }
         }
         before

@@ -41,17 +41,38 @@ pub(super) struct Task {
     pub(super) is_active: bool,
     pub(super) start: NodeId,
     pub(super) end: NodeId,
+    /// Of a condition on a level: what the level may not fall below, or not rise above.
+    pub(super) level: Option<i64>,
 }
 
 impl Task {
-    /// The event at which it changes a reservoir's level.
-    pub(super) fn moment_node(&self) -> NodeId {
-        if self.change == Change::Produces { self.end } else { self.start }
+    fn is_at_end(&self) -> bool {
+        self.change == Change::Produces && self.level.is_none()
     }
 
-    /// When it changes a reservoir's level.
+    /// The event at which it changes a reservoir's level, or begins to ask for one.
+    pub(super) fn moment_node(&self) -> NodeId {
+        if self.is_at_end() { self.end } else { self.start }
+    }
+
+    /// When it changes a reservoir's level, or begins to ask for one.
     pub(super) fn moment(&self) -> Variable {
-        if self.change == Change::Produces { self.interval.end } else { self.interval.start }
+        if self.is_at_end() { self.interval.end } else { self.interval.start }
+    }
+
+    /// When it is over with a reservoir.
+    pub(super) fn last_moment(&self) -> Variable {
+        if self.level.is_some() { self.interval.end } else { self.moment() }
+    }
+
+    /// Whether it asks for a level from one event to another, and not just before one.
+    pub(super) fn is_held(&self) -> bool {
+        self.level.is_some() && self.start != self.end
+    }
+
+    /// By how much a level is on the wrong side of the bound of what it does.
+    pub(super) fn excess(&self, level: i64, bound: i64) -> i64 {
+        if self.change == Change::Produces { level - bound } else { bound - level }
     }
 
     /// The change of a reservoir's level: the greatest possible one if `is_most`, otherwise the least.
@@ -109,7 +130,7 @@ impl Shares {
 impl Problem<'_> {
     pub(super) fn add_resources(&mut self, solver: &Solver, part: Part<'_>) {
         for resource in &self.model.demands.resources {
-            let tasks = resource.uses.iter().filter(|used| used.amount > 0);
+            let tasks = resource.uses.iter().filter(|used| used.amount > 0 || used.level.is_some());
             let tasks = tasks.map(|used| {
                 let is_active = part.active_uses.is_none_or(|active| active[used.id.index()]);
                 let arc = &self.model.arcs[used.arc];
@@ -119,8 +140,8 @@ impl Problem<'_> {
                     presence: self.presence(arc.context),
                     duration: if (arc.from, arc.to) == (used.start, used.end) { arc.lower.max(0) } else { 0 },
                 };
-                let ModelUse { id, change, amount, at_least, start, end, .. } = *used;
-                Task { id, interval, change, amount, at_least, is_active, start, end }
+                let ModelUse { id, change, amount, at_least, start, end, level, .. } = *used;
+                Task { id, interval, change, amount, at_least, is_active, start, end, level }
             });
             let exists = |task: &Task| {
                 solver.takes_nothing_for_granted() || !solver.trail.fails(task.interval.presence)
@@ -191,6 +212,7 @@ impl Problem<'_> {
             match critical {
                 Critical::Overload { tasks, .. } => self.resolve_overload(solver, &tasks),
                 Critical::Late { early, late } => self.resolve_late(solver, &early, &late),
+                Critical::Level { orders, present, .. } => self.resolve_by(solver, &orders, &present),
             }
         }
         Sharing::Restarted
@@ -286,32 +308,20 @@ impl Problem<'_> {
         add_resolvers(solver, options, early);
     }
 
-    /// After a use the level would be out of range in some schedule: another one of its kind comes after it, or one of the
-    /// other kind before it.
-    pub(super) fn resolve_level(
-        &mut self,
-        solver: &mut Solver,
-        used: &Task,
-        counted: &[Task],
-        late: &[Task],
-    ) {
-        let after = counted.iter().map(|other| (*used, *other));
-        let before = late.iter().map(|other| (*other, *used));
-        let pairs: Vec<(Task, Task)> = before.chain(after).collect();
-        let options: Vec<Literal> = pairs
+    /// One of these pairs is in this order where all the tasks are present.
+    pub(super) fn resolve_by(&mut self, solver: &mut Solver, orders: &[(Task, Task)], present: &[Task]) {
+        let options: Vec<Literal> = orders
             .iter()
-            .map(|(first, then)| self.use_order(solver, first, then, (first.moment(), then.moment())))
+            .map(|(first, then)| self.use_order(solver, first, then, (first.last_moment(), then.moment())))
             .collect();
-        let present: Vec<Task> = counted.iter().chain([used]).copied().collect();
-        from_uses(solver, &present);
-        add_resolvers(solver, options, &present);
+        from_uses(solver, present);
+        add_resolvers(solver, options, present);
     }
 
-    /// Whether one of the orders that [`Problem::resolve_level`] offers holds already.
-    pub(super) fn is_resolved(&self, solver: &Solver, used: &Task, counted: &[Task], late: &[Task]) -> bool {
-        let after = counted.iter().map(|other| (used.id, other.id));
-        let mut pairs = late.iter().map(|other| (other.id, used.id)).chain(after);
-        pairs.any(|pair| self.shares.orders.get(&pair).is_some_and(|&order| solver.trail.holds(order)))
+    /// Whether one of these pairs is in this order already.
+    pub(super) fn is_resolved(&self, solver: &Solver, orders: &[(Task, Task)]) -> bool {
+        let order = |(first, then): &(Task, Task)| self.shares.orders.get(&(first.id, then.id));
+        orders.iter().any(|pair| order(pair).is_some_and(|&order| solver.trail.holds(order)))
     }
 
     /// The literal that one use comes before another.
@@ -387,13 +397,17 @@ enum Critical {
     Overload { tasks: Vec<Task>, is_crowded: bool },
     /// Unless one of the late ones comes before one of the early ones, the early ones are too much.
     Late { early: Vec<Task>, late: Vec<Task> },
+    /// Unless one of these pairs is in this order, a condition on the level does not hold.
+    Level { orders: Vec<(Task, Task)>, present: Vec<Task>, late: Vec<Task> },
 }
 
 impl Critical {
     fn event(&self) -> Event {
         match self {
             Self::Overload { tasks, .. } => Event::Overload { uses: ids(tasks) },
-            Self::Late { early, late } => Event::OutOfRange { early: ids(early), late: ids(late) },
+            Self::Late { early, late } | Self::Level { present: early, late, .. } => {
+                Event::OutOfRange { early: ids(early), late: ids(late) }
+            }
         }
     }
 }
@@ -459,17 +473,35 @@ fn out_of_range(
     in_order.sort_by_key(|task| (instants.position(task.moment_node()), task.id));
     // What is not active counts only where it helps.
     let (mut low, mut high) = (initial, initial);
+    let held: Vec<&Task> = in_order.iter().copied().filter(|task| task.is_active && task.is_held()).collect();
     let mut from = 0;
     while from < in_order.len() {
         // Changes at one event are one change.
         let event = in_order[from].moment_node();
         let count = in_order[from..].iter().take_while(|task| task.moment_node() == event).count();
+        let broken = |condition: &Task, (low, high): (i64, i64), upto: usize| {
+            let level = if condition.change == Change::Produces { high } else { low };
+            let excess = condition.excess(level, condition.level?);
+            (excess > 0).then(|| broken_level(tasks, &in_order[..upto], condition, excess))
+        };
+        let asked = in_order[from..from + count].iter().filter(|task| task.is_active && task.level.is_some());
+        let mut before = asked.filter(|task| !task.is_held());
+        if let Some(critical) = before.find_map(|&condition| broken(condition, (low, high), from)) {
+            return Some(critical);
+        }
         for task in &in_order[from..from + count] {
             let gives = task.change == Change::Produces;
             low += if task.is_active || gives { task.level_change(false) } else { 0 };
             high += if task.is_active || !gives { task.level_change(true) } else { 0 };
         }
         from += count;
+        let here = instants.position(event);
+        let is_within =
+            |task: &&&Task| (instants.position(task.start)..=instants.position(task.end)).contains(&here);
+        let mut during = held.iter().filter(is_within);
+        if let Some(critical) = during.find_map(|&condition| broken(condition, (low, high), from)) {
+            return Some(critical);
+        }
         let (excess, early_change) = if low < least {
             (least - low, Change::Consumes)
         } else if high > greatest {
@@ -477,13 +509,41 @@ fn out_of_range(
         } else {
             continue;
         };
+        let changes = in_order[..from].iter().copied().filter(|task| task.level.is_none());
         let (counted, mending): (Vec<&Task>, Vec<&Task>) =
-            in_order[..from].iter().copied().partition(|task| task.change == early_change);
+            changes.partition(|task| task.change == early_change);
         let counted = counted.into_iter().filter(|task| task.is_active).collect();
-        let is_late =
-            |task: &&Task| task.change != early_change && mending.iter().all(|counted| counted.id != task.id);
+        let is_late = |task: &&Task| {
+            task.change != early_change
+                && task.level.is_none()
+                && mending.iter().all(|counted| counted.id != task.id)
+        };
         let late = tasks.iter().filter(is_late).copied().collect();
         return Some(Critical::Late { early: minimal(counted, excess), late });
     }
     None
+}
+
+/// What may mend a condition on a level that does not hold after the changes of `happened`, which its own kind of change
+/// has taken too far by `excess`: enough of these come later, or something of the other kind comes earlier.
+fn broken_level(tasks: &[Task], happened: &[&Task], condition: &Task, excess: i64) -> Critical {
+    let counted = |task: &&&Task| task.change == condition.change && task.is_active && task.level.is_none();
+    let early = minimal(happened.iter().filter(counted).copied().collect(), excess);
+    let has_happened = |task: &Task| happened.iter().any(|other| other.id == task.id);
+    let is_late =
+        |task: &&Task| task.change != condition.change && task.level.is_none() && !has_happened(task);
+    let late: Vec<Task> = tasks.iter().filter(is_late).copied().collect();
+    let mut orders: Vec<(Task, Task)> = Vec::new();
+    // What changes the level at the event that a condition begins or ends at is neither before nor after it.
+    orders.extend(
+        late.iter().filter(|task| task.moment_node() != condition.start).map(|&task| (task, *condition)),
+    );
+    orders.extend(
+        early.iter().filter(|task| task.moment_node() != condition.end).map(|&task| (*condition, task)),
+    );
+    if condition.is_held() {
+        orders.extend(early.iter().flat_map(|&task| late.iter().map(move |&other| (other, task))));
+    }
+    let present = early.into_iter().chain([*condition]).collect();
+    Critical::Level { orders, present, late }
 }

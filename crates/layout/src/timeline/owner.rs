@@ -58,7 +58,9 @@ impl Owners {
         let of_resource = resources(network, &found);
         // What is taken for its time is closer to an activity than what it consumes.
         for wanted in [true, false] {
-            for used in network.uses.iter().filter(|used| (used.change == Change::Uses) == wanted) {
+            let is_wanted =
+                |used: &&tpn::Use| used.level.is_none() && (used.change == Change::Uses) == wanted;
+            for used in network.uses.iter().filter(is_wanted) {
                 let resource = used.resource.index();
                 let owner = used.owner.and_then(|owner| found.get_mut(owner.index()));
                 if let Some(owner) = owner.filter(|_| is_named(&network.resources[resource])) {
@@ -153,7 +155,7 @@ impl<'a> Vehicles<'a> {
 
 /// By resource: the vehicles that alone use it, or itself.
 fn resources(network: &Network, found: &[Option<Owner>]) -> Vec<Owner> {
-    let takers = network.uses.iter().filter_map(|used| {
+    let takers = network.uses.iter().filter(|used| used.level.is_none()).filter_map(|used| {
         let owner = found[used.owner?.index()].as_ref()?;
         Some((used.resource.index(), owner))
     });

@@ -4,7 +4,7 @@
 use exact::Rational;
 use rmpl::program::Change;
 use smol_str::{SmolStr, format_smolstr};
-use tpn::{Levels, Network, NodeId, OccurrenceId, Plan, Resource, Supply, UseId};
+use tpn::{LevelCondition, Levels, Network, NodeId, OccurrenceId, Plan, Resource, Supply, UseId};
 
 use super::row::{Item, ProfilePart, RowKind, times};
 
@@ -37,6 +37,8 @@ pub struct Taker {
     pub change: Change,
     /// What is counted: of a drive the most that it takes, or the least that it gives.
     pub amount: Rational,
+    /// What it asks of the level, if it changes nothing.
+    pub level: Option<LevelCondition>,
     /// Its first and its last event.
     pub events: [NodeId; 2],
     /// Its start and end in the earliest schedule, in mission units.
@@ -88,6 +90,7 @@ impl Profile {
                 name: owner.map_or_else(|| SmolStr::new_static("a block"), |owner| owner.name.clone()),
                 change: used.change,
                 amount: used.counted(),
+                level: used.level,
                 events,
                 span: earliest(plan, events)?,
             })
@@ -152,8 +155,14 @@ impl Profile {
             Some(Levels::Range { low, high }) => [low, high],
             None => [self.initial(), self.initial()],
         };
-        let levels = self.steps.iter().map(|step| step.level).chain(of_plan);
+        let asked = self.conditions().map(|(_, condition)| condition.bound);
+        let levels = self.steps.iter().map(|step| step.level).chain(of_plan).chain(asked);
         levels.fold([low, high], |[low, high], level| [low.min(level), high.max(level)])
+    }
+
+    /// What is asked of its level, and by whom.
+    pub fn conditions(&self) -> impl Iterator<Item = (&Taker, LevelCondition)> {
+        self.takers.iter().filter_map(|taker| Some((taker, taker.level?)))
     }
 
     /// The plan's extremes over all schedules, and what they leave, as two short lines.
@@ -198,7 +207,7 @@ impl Profile {
     /// The levels of the earliest schedule, as far as they can be added exactly.
     fn steps(&self) -> Vec<Step> {
         let mut changes: Vec<(f64, bool, Rational)> = Vec::new();
-        for taker in &self.takers {
+        for taker in self.takers.iter().filter(|taker| taker.level.is_none()) {
             let (start, end) = (taker.span[0], taker.span[1]);
             let less = taker.amount.checked_neg().unwrap_or_default();
             match taker.change {
@@ -230,6 +239,9 @@ impl Taker {
     /// What it does, in words.
     pub fn words(&self) -> String {
         let amount = self.amount.readable();
+        if let Some(LevelCondition { order, bound }) = self.level {
+            return format!("{} requires {} {}", self.name, order.symbol(), bound.readable());
+        }
         match self.change {
             Change::Uses => format!("{} uses {amount}", self.name),
             Change::Consumes => format!("{} consumes {amount} at start", self.name),
@@ -253,9 +265,22 @@ mod tests {
             name: name.into(),
             change,
             amount: amount.into(),
+            level: None,
             events: [NodeId(0); 2],
             span,
         }
+    }
+
+    #[test]
+    fn a_condition_on_a_level_moves_nothing_and_is_told() {
+        let condition = LevelCondition { order: rmpl::program::Order::AtLeast, bound: 12.into() };
+        let asking = Taker { level: Some(condition), ..taker("Survey#1", Change::Consumes, 0, [2.0, 6.0]) };
+        let supply = Supply::Reservoir { least: 0.into(), greatest: 10.into(), level: 8.into() };
+        let profile = profile(supply, None, vec![asking, taker("Drive#1", Change::Consumes, 3, [1.0, 4.0])]);
+        assert_eq!(profile.steps, [Step { time: 1.0, level: 5.into() }]);
+        assert_eq!(profile.range(), [0.into(), 12.into()]);
+        assert_eq!(profile.words(3.0)[1], "Survey#1 requires >= 12");
+        assert_eq!(profile.conditions().count(), 1);
     }
 
     fn profile(supply: Supply, levels: Option<Levels>, takers: Vec<Taker>) -> Profile {

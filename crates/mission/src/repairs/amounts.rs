@@ -137,16 +137,23 @@ fn unit(network: &Network, id: ResourceId, resource: &Resource) -> Option<Ration
         unit = unit.common_part(used.amount)?.common_part(used.per_meter.checked_mul(of_meters)?)?;
     }
     if let Supply::Reservoir { least, greatest, .. } = resource.supply {
-        unit = unit.common_part(greatest.checked_sub(least)?)?;
+        let asked = network.uses.iter().filter(|used| used.resource == id).filter_map(|used| used.level);
+        for level in asked.map(|level| level.bound).chain([greatest]) {
+            let above = level.checked_sub(least)?;
+            unit = unit.common_part(if above.is_negative() { above.checked_neg()? } else { above })?;
+        }
     }
     (!unit.is_zero()).then_some(unit)
 }
 
 /// Whether a reservoir with this level has too little for `uses`, not too much.
-fn is_short(uses: &[&Use], lowest: Rational, level: Rational) -> Option<bool> {
+fn is_short(uses: &[&Use], mut lowest: Rational, level: Rational) -> Option<bool> {
     let mut after = level;
     let mut counts_meters = false;
     for used in uses {
+        if let Some(level) = used.level.filter(|level| level.order.is_minimum()) {
+            lowest = lowest.max(level.bound);
+        }
         after = match used.change {
             Change::Produces => after.checked_add(used.at_least)?,
             Change::Consumes => after.checked_sub(used.amount)?,

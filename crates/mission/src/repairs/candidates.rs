@@ -231,7 +231,8 @@ impl Candidates<'_> {
         let Supply::Reservoir { .. } = resource.supply else {
             return self.orders(&arcs);
         };
-        let own = self.network.uses.iter().filter(|used| used.resource == first.resource);
+        let is_change = |used: &&Use| used.resource == first.resource && used.level.is_none();
+        let own = self.network.uses.iter().filter(is_change);
         let (givers, takers): (Vec<&Use>, Vec<&Use>) = own.partition(|used| used.change == Change::Produces);
         let is_short = first.change != Change::Produces;
         let (waiting, others) = if is_short { (uses, &givers) } else { (uses, &takers) };

@@ -297,7 +297,7 @@ impl<'a> Checker<'a> {
     fn name_use(&mut self, used: &Use) {
         let (namespace, what) = match used.kind {
             // What members are, and whether they are of one kind, all groups together decide.
-            UseKind::Argument(_) | UseKind::HeaderBound | UseKind::Member => return,
+            UseKind::Argument(_) | UseKind::HeaderBound | UseKind::Member | UseKind::Level => return,
             UseKind::Number => {
                 self.number(used);
                 return;

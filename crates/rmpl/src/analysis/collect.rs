@@ -210,11 +210,11 @@ impl Collector<'_> {
     }
 
     /// A use of a resource; what a parameter stands for, or whose vehicle it does, is known at the call.
-    fn resource(&mut self, change: Change, name: &Name) {
+    fn resource(&mut self, kind: UseKind, name: &Name) {
         let owner = name.text.split_once('.').map(|(owner, _)| SmolStr::new(owner));
         let is_formal = |name: &SmolStr| self.formals.contains(name);
         if !is_formal(&name.text) && !owner.as_ref().is_some_and(is_formal) {
-            self.name_use(UseKind::Resource(change), &name.text, name.span);
+            self.name_use(kind, &name.text, name.span);
         }
     }
 
@@ -247,13 +247,14 @@ impl Collector<'_> {
                 variable: effect.variable.clone(),
                 values: vec![effect.value.clone()],
                 sees: None,
+                level: None,
                 negated: false,
                 span: effect.span,
             };
             self.literal(LabelMode::Tell, &condition, Origin::Effect, false);
         }
         for used in &decl.uses {
-            self.resource(used.change, &used.resource);
+            self.resource(UseKind::Resource(used.change), &used.resource);
         }
         let amounts = decl.uses.iter().filter_map(|used| used.amount.as_ref()).chain(&decl.costs);
         for expression in amounts.map(|amount| &amount.value).chain(&decl.rewards) {
@@ -390,7 +391,7 @@ impl Collector<'_> {
             }
             StatementKind::Using(body, resource, amount) => {
                 self.statement(body);
-                self.resource(Change::Uses, resource);
+                self.resource(UseKind::Resource(Change::Uses), resource);
                 if let Some(amount) = amount {
                     self.expression(amount);
                 }
@@ -452,6 +453,11 @@ impl Collector<'_> {
 
     fn literal(&mut self, mode: LabelMode, condition: &Condition, origin: Origin, is_bare: bool) {
         let text = &condition.variable.text;
+        if let Some(level) = &condition.level {
+            self.resource(UseKind::Level, &condition.variable);
+            self.expression(&level.bound);
+            return;
+        }
         let vehicle = text.strip_suffix(".at").map(|owner| {
             // What is written may be longer than what is meant, where a dash stands for a hyphen.
             let Span { start, end } = condition.variable.span;

@@ -498,7 +498,7 @@ impl Index {
                 UseKind::Start => step(&mut facts.starts),
                 UseKind::Vehicle => step(&mut facts.vehicles),
                 UseKind::Place => step(&mut facts.places),
-                UseKind::Resource(_) => step(&mut facts.resources),
+                UseKind::Resource(_) | UseKind::Level => step(&mut facts.resources),
                 UseKind::Occurrence => step(&mut facts.constraints),
                 UseKind::Number | UseKind::HeaderBound => step(&mut facts.numbers),
                 // To close an area to something is not to use it.

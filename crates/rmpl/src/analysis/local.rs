@@ -11,8 +11,8 @@ use crate::diagnostic::Diagnostic;
 use crate::diagnostics::{bounds, choice, duplicate, mixed, option, syntax, value};
 use crate::lower::{Item, OptionDecl, OptionValue};
 use crate::program::{
-    Bounds, ConstrainDecl, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, Measure, Name,
-    ObstacleShape, PrimitiveDecl, Statement, StatementKind, VariableDecl,
+    Bounds, ConstrainDecl, Controllability, Expr, GoalDecl, HeaderBound, HeaderBounds, LabelMode, Measure,
+    Name, ObstacleShape, PrimitiveDecl, Statement, StatementKind, VariableDecl,
 };
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode};
@@ -281,6 +281,17 @@ impl Local {
 
     fn statement(&mut self, statement: &Statement) {
         self.bounds(statement.bounds.as_ref());
+        match &statement.kind {
+            StatementKind::Condition(LabelMode::Tell, told) | StatementKind::Telling(_, told)
+                if told.level.is_some() =>
+            {
+                self.found.push(value::level_told(&told.variable.text, told.span));
+            }
+            StatementKind::Watching(_, watched) if watched.level.is_some() => {
+                self.found.push(value::level_watched(&watched.variable.text, watched.span));
+            }
+            _ => {}
+        }
         statement.parts().iter().for_each(|part| self.statement(part));
     }
 

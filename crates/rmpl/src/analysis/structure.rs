@@ -180,7 +180,10 @@ impl Structure<'_> {
 
     /// The duration of a bare name that is a call.
     fn called(&self, condition: &Condition) -> Option<Interval> {
-        let is_plain = condition.values.is_empty() && condition.sees.is_none() && !condition.negated;
+        let is_plain = condition.values.is_empty()
+            && condition.sees.is_none()
+            && condition.level.is_none()
+            && !condition.negated;
         let symbol = self.meaning.names.find(&condition.variable.text).filter(|_| is_plain)?;
         self.meaning.index.definition(Namespace::Callable, symbol)?;
         Some(self.declared(&condition.variable.text))
@@ -282,7 +285,7 @@ impl Structure<'_> {
     fn resolve(&self, condition: &Condition) -> Option<(String, Option<String>, bool)> {
         let text = condition.variable.text.as_str();
         match condition.values.as_slice() {
-            [] if condition.sees.is_some() => return None,
+            [] if condition.sees.is_some() || condition.level.is_some() => return None,
             [] => {}
             [value] => return Some((text.to_owned(), Some(value.text.to_string()), condition.negated)),
             _ => return None,

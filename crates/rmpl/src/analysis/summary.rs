@@ -171,6 +171,8 @@ pub(crate) enum UseKind {
     ClosedTo,
     /// A resource that something is done to.
     Resource(Change),
+    /// A reservoir whose level is compared. Compilation says what has none.
+    Level,
     /// An occurrence that a bound between events names.
     Occurrence,
     /// A number in an expression: a constant, for parameters are no uses.

@@ -16,7 +16,7 @@ pub const EXPLANATION: Explanation = Explanation {
     meaning: "A parameter stands for one kind of thing: a vehicle, a vehicle of one model, a location, a number, a resource,
 a condition, or a value of one state. The kind is the written one, as in `r : vehicle`. If none is written, the uses of the
 parameter decide. A second use or an argument of another kind is an error, and a note marks the place that decides. The
-members of a group must be of one kind, too.",
+members of a group must be of one kind, too. Only reservoirs have levels that can be compared.",
     example: "location BASE (0, 0);
 location ROCK (9, 9);
 vehicle R1 : ATRV at BASE;
@@ -71,6 +71,12 @@ pub(crate) fn unknown(kind: &Name) -> Diagnostic {
     Diagnostic::error(CODE, kind.span, format!("unknown kind `{}`", kind.text)).with_hint(
         "write `vehicle`, `location`, `number`, `resource`, `condition`, or the name of a model or a state",
     )
+}
+
+/// A comparison of what has no level; `is` says what it is.
+pub fn no_level(name: &str, is: &str, span: Span) -> Diagnostic {
+    Diagnostic::error(CODE, span, format!("only a reservoir has a level, but `{name}` is {is}"))
+        .with_hint("a reservoir is declared with a range: `resource R 0..100 = 50;`")
 }
 
 /// Members of one group of different kinds.

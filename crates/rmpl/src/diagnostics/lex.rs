@@ -51,11 +51,6 @@ fn unknown(span: Span, written: &str) -> Diagnostic {
     if let Some(plain) = plain_form(written) {
         diagnostic = diagnostic.with_fix(replacement(format!("Replace with `{plain}`"), span, plain));
     }
-    if written.contains(['<', '>']) {
-        diagnostic = diagnostic.with_hint(
-            "conditions only compare with `=` and `!=`; the range of a resource, such as `20..100`, limits its level",
-        );
-    }
     diagnostic.with_fix(replacement("Remove", span, ""))
 }
 
@@ -79,6 +74,8 @@ fn plain_form(written: &str) -> Option<&'static str> {
         "“" | "”" | "„" => "\"",
         "–" | "−" | "—" | "‐" => "-",
         "≠" => "!=",
+        "≤" => "<=",
+        "≥" => ">=",
         "×" | "·" => "*",
         "÷" => "/",
         "¬" => "not ",

@@ -30,6 +30,7 @@ scenario Sol[0,60] = { Look() }",
 /// A property that no vehicle can have.
 pub(crate) fn impossible(problem: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, problem)
+        .with_hint("correct the value, or remove the property to keep that of the extended model")
 }
 
 /// A property of driving for a model that flies.

@@ -114,6 +114,11 @@ pub(crate) fn one_bound(span: Span) -> Diagnostic {
         .with_fix(insertion("Insert `, inf`", span.start, ", inf"))
 }
 
+pub(crate) fn level_as_argument(span: Span) -> Diagnostic {
+    error(span, "a condition on a level cannot be an argument")
+        .with_hint("pass the resource and the number, and compare them in the activity")
+}
+
 pub(crate) fn negative_bound(span: Span) -> Diagnostic {
     error(span, "a bound cannot be negative").with_fix(replacement("Remove `-`", span, ""))
 }

@@ -94,6 +94,20 @@ pub(crate) fn sight_told(variable: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, message).with_fix(insertion("Write `ask`", span.start, "ask "))
 }
 
+/// An assertion about a level, which activities decide.
+pub(crate) fn level_told(resource: &str, span: Span) -> Diagnostic {
+    let message =
+        format!("the level of `{resource}` follows from activities: it can be required, but not asserted");
+    Diagnostic::error(CODE, span, message).with_fix(insertion("Write `ask`", span.start, "ask "))
+}
+
+/// A level behind `watching`, which asserts that something does not hold.
+pub(crate) fn level_watched(resource: &str, span: Span) -> Diagnostic {
+    let message = format!("the level of `{resource}` follows from activities, so nothing can watch for it");
+    Diagnostic::error(CODE, span, message)
+        .with_hint("write `maintaining` and the opposite comparison to require it")
+}
+
 /// How many values are offered as fixes.
 const MAX_FIXES: usize = 5;
 

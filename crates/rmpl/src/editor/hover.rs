@@ -330,6 +330,10 @@ fn word(token: SyntaxToken<'_>) -> Option<&'static str> {
             "`option name = value;` The options are `threat_gap`, `strict`, `time_unit`, `control_step` and `controllability`."
         }
         SyntaxKind::Infinity => "`inf`: no maximum.",
+        SyntaxKind::Order => {
+            "`R >= n`: the level of the reservoir R must be at least n for as long as the condition is required; with `at start`, \
+             only just before the start."
+        }
         SyntaxKind::Name => return word_in_its_place(token.text),
         _ => return None,
     })

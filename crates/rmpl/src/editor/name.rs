@@ -395,6 +395,13 @@ impl<'a> Collector<'a> {
     }
 
     fn condition(&mut self, node: SyntaxNode<'a>) {
+        if node.token(SyntaxKind::Order).is_some() {
+            // Of a vehicle's own resource the parts are named where its name is.
+            if node.child(SyntaxKind::Dotted).is_none() {
+                self.resource(node.token(SyntaxKind::Name));
+            }
+            return;
+        }
         if let Some(dotted) = node.child(SyntaxKind::Dotted) {
             if is_mode(dotted) {
                 return;

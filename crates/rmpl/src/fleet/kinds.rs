@@ -315,6 +315,11 @@ impl<'program> Kinds<'program> {
     }
 
     fn condition(&mut self, condition: &Condition) {
+        if let Some(level) = &condition.level {
+            self.resource(&condition.variable);
+            self.expression(&level.bound);
+            return;
+        }
         self.variable(&condition.variable);
         let is_place = condition.variable.text.ends_with(".at");
         for place in condition.values.iter().filter(|_| is_place).chain(&condition.sees) {

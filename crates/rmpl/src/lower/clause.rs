@@ -51,7 +51,11 @@ impl Lowering<'_> {
                 self.diagnostics.push(syntax::choice_required(choice));
                 continue;
             }
-            out.extend(literals.into_iter().map(|condition| Requirement { condition, is_at_start }));
+            out.extend(literals.into_iter().map(|condition| {
+                let is_at_start =
+                    is_at_start || condition.level.as_ref().is_some_and(|level| level.is_at_start);
+                Requirement { condition, is_at_start }
+            }));
         }
     }
 

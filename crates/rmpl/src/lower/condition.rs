@@ -4,10 +4,11 @@
 //! stands for "one of several". Of what is asserted there is no choice.
 
 use crate::diagnostics::{limit, syntax};
-use crate::program::{Bounds, Condition, LabelMode, Name, Statement, StatementKind};
+use crate::program::{Bounds, Condition, LabelMode, Level, Name, Order, Statement, StatementKind};
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
+use super::bounds::expression;
 use super::{Lowering, name_of, names, variable_in};
 
 /// A declaration grows by no more statements than this where `or` copies what it stands beside.
@@ -114,10 +115,20 @@ pub(crate) fn literal(node: SyntaxNode<'_>) -> Option<Condition> {
         compared = sees.is_none();
         values.clear();
     }
+    let order = node.token(SyntaxKind::Order);
+    let level = match order {
+        None => None,
+        Some(order) => Some(Level {
+            order: Order::by_symbol(order.text),
+            bound: node.children().find_map(expression)?,
+            is_at_start: names(node).any(|word| word.text == "start" && word.span.start > order.span.end),
+        }),
+    };
     (compared != values.is_empty()).then_some(Condition {
         variable: variable?,
         values,
         sees,
+        level,
         negated,
         span: node.span(),
     })

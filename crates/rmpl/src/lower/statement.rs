@@ -127,7 +127,7 @@ impl Lowering<'_> {
         let span = name.span;
         StatementKind::Condition(
             LabelMode::Tell,
-            Condition { variable: name, values: Vec::new(), sees: None, negated: false, span },
+            Condition { variable: name, values: Vec::new(), sees: None, level: None, negated: false, span },
         )
     }
 

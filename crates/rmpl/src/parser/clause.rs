@@ -278,7 +278,7 @@ impl Parser<'_> {
     }
 
     /// Whether `at start` and a condition stand at `index`.
-    fn at_start_of_activity(&mut self, index: u32) -> bool {
+    pub(super) fn at_start_of_activity(&mut self, index: u32) -> bool {
         let next = self.index_after(index);
         self.kind_at(index) == SyntaxKind::Name
             && self.text_of(index) == "at"

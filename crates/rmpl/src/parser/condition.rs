@@ -1,6 +1,7 @@
 //! Conditions: literals with `not`, `!` and parentheses (SPEC 1.2), joined by `and` and `or` (SPEC 14).
 //!
-//! `and`, `or` and `in` are words of the language only behind a literal, and `visible` only behind `in`.
+//! `and`, `or` and `in` are words of the language only behind a literal, `visible` only behind `in`, and `at start` only
+//! behind the bound of a level.
 
 use super::{MAX_NESTING, Mark, Parser};
 use crate::diagnostics::syntax;
@@ -75,7 +76,9 @@ impl Parser<'_> {
         if matches!(self.kind_at(index), SyntaxKind::Equals | SyntaxKind::NotEquals) {
             index = self.index_after(index);
             index = self.index_after(index);
-        } else if self.is_rule && matches!(self.kind_at(index), SyntaxKind::Order | SyntaxKind::LeftParen) {
+        } else if self.kind_at(index) == SyntaxKind::Order
+            || (self.is_rule && self.kind_at(index) == SyntaxKind::LeftParen)
+        {
             index = self.behind_rule_atom(index);
         } else if self.kind_at(index) == SyntaxKind::Name && self.text_of(index) == "in" {
             let set = self.index_after(index);
@@ -175,8 +178,14 @@ impl Parser<'_> {
         if matches!(self.kind, SyntaxKind::Equals | SyntaxKind::NotEquals) {
             self.bump();
             self.value();
+        } else if self.eat(SyntaxKind::Order) {
+            self.sum();
+            if self.at_start_of_activity(self.current) {
+                self.bump();
+                self.bump();
+            }
         } else if is_place {
-            self.report_expected("`=` and a location or a value");
+            self.report_expected("`=` and a location or a value, or a comparison of a level such as `>= 30`");
             self.skip_until(|parser| !parser.at(SyntaxKind::LeftParen));
         }
     }

@@ -58,7 +58,7 @@ pub(crate) fn parse_declaration(text: &str, scratch: &mut Scratch) -> ParsedDecl
 
 /// Parses a flight rule, which is no declaration of a mission.
 pub(crate) fn parse_rule(text: &str) -> ParsedDeclaration {
-    let mut parser = Parser::of(text, Lexer::of_rule(text), Scratch::default());
+    let mut parser = Parser::new(text, Scratch::default());
     parser.flight_rule();
     parser.finish(&mut Scratch::default())
 }
@@ -89,13 +89,9 @@ struct Parser<'t> {
 
 impl<'t> Parser<'t> {
     fn new(text: &'t str, scratch: Scratch) -> Self {
-        Self::of(text, Lexer::new(text), scratch)
-    }
-
-    fn of(text: &'t str, lexer: Lexer<'t>, scratch: Scratch) -> Self {
         let mut parser = Self {
             text,
-            lexer,
+            lexer: Lexer::new(text),
             tokens: scratch.tokens,
             current: 0,
             kind: SyntaxKind::End,

@@ -82,7 +82,11 @@ impl Parser<'_> {
             let kind = self.kind_at(index);
             let is_joint = kind == SyntaxKind::Name && matches!(self.text_of(index), "and" | "or" | "while");
             match kind {
-                SyntaxKind::End => return index,
+                SyntaxKind::End
+                | SyntaxKind::Semicolon
+                | SyntaxKind::LeftBrace
+                | SyntaxKind::RightBrace
+                | SyntaxKind::ThennextKeyword => return index,
                 SyntaxKind::LeftParen => depth += 1,
                 SyntaxKind::RightParen if depth == 0 => return index,
                 SyntaxKind::RightParen => depth -= 1,

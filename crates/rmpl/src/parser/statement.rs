@@ -225,7 +225,8 @@ impl Parser<'_> {
             SyntaxKind::Name => {
                 let next = self.peek();
                 let is_call = matches!(next, SyntaxKind::LeftParen | SyntaxKind::Dot);
-                let is_condition = matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals);
+                let is_condition =
+                    matches!(next, SyntaxKind::Equals | SyntaxKind::NotEquals | SyntaxKind::Order);
                 let is_outer_using = self.at_word("using") && next == SyntaxKind::Name;
                 let is_else = self.at_word("else");
                 let is_bounds = self.at_word(CONTINGENT) && next == SyntaxKind::LeftBracket;
@@ -286,7 +287,9 @@ impl Parser<'_> {
                 self.arguments();
                 self.close(node, SyntaxKind::Call);
             }
-            SyntaxKind::Equals | SyntaxKind::NotEquals | SyntaxKind::Dot => self.assertion(),
+            SyntaxKind::Equals | SyntaxKind::NotEquals | SyntaxKind::Order | SyntaxKind::Dot => {
+                self.assertion();
+            }
             _ if self.at_joined_literal() => self.assertion(),
             _ => {
                 let node = self.open();
@@ -388,7 +391,7 @@ impl Parser<'_> {
     fn argument(&mut self) {
         let node = self.open();
         self.join_index(self.current);
-        let next = self.peek();
+        let (first, next) = (self.current, self.peek());
         let is_operator = matches!(
             next,
             SyntaxKind::Plus | SyntaxKind::Minus | SyntaxKind::Star | SyntaxKind::Slash | SyntaxKind::Percent
@@ -416,8 +419,13 @@ impl Parser<'_> {
             }
             _ => self.report_expected("a name or a number"),
         }
-        if self.at_word("and") || self.at_word("or") {
-            let diagnostic = syntax::joined_argument(self.here());
+        let order = (first..=self.current).find(|&index| self.kind_at(index) == SyntaxKind::Order);
+        let is_joined = self.at_word("and") || self.at_word("or");
+        if order.is_some() || is_joined {
+            let diagnostic = match order {
+                Some(order) => syntax::level_as_argument(self.span_of(order)),
+                None => syntax::joined_argument(self.here()),
+            };
             self.report(diagnostic);
             self.skip_until(|parser| {
                 matches!(parser.kind, SyntaxKind::Comma | SyntaxKind::RightParen) || parser.at_statement_end()

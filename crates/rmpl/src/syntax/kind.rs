@@ -66,7 +66,7 @@ pub enum SyntaxKind {
     Dot,
     /// `..`
     DotDot,
-    /// `<`, `<=`, `>` or `>=`, which only flight rules have.
+    /// `<`, `<=`, `>` or `>=`
     Order,
     /// `choose`
     ChooseKeyword,

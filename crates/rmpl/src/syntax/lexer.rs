@@ -38,8 +38,6 @@ pub(crate) struct Lexer<'t> {
     bracket_depth: u32,
     /// Whether the token before is a name.
     is_behind_name: bool,
-    /// Whether amounts are compared: in flight rules.
-    has_orders: bool,
     pub(crate) problems: Vec<LexProblem>,
 }
 
@@ -76,19 +74,7 @@ const MAX_DIGITS: usize = 15;
 
 impl<'t> Lexer<'t> {
     pub(crate) fn new(text: &'t str) -> Self {
-        Self {
-            text,
-            position: 0,
-            bracket_depth: 0,
-            is_behind_name: false,
-            has_orders: false,
-            problems: Vec::new(),
-        }
-    }
-
-    /// The lexer of a flight rule, in which amounts are compared.
-    pub(crate) fn of_rule(text: &'t str) -> Self {
-        Self { has_orders: true, ..Self::new(text) }
+        Self { text, position: 0, bracket_depth: 0, is_behind_name: false, problems: Vec::new() }
     }
 
     /// The next token's kind and the offset of its end; `End` without width when nothing is left.
@@ -233,7 +219,7 @@ impl<'t> Lexer<'t> {
                 SyntaxKind::NotEquals
             }
             b'!' => SyntaxKind::Bang,
-            b'<' | b'>' if self.has_orders => {
+            b'<' | b'>' => {
                 let is_or_equal = self.byte(start + 1) == b'=';
                 self.position = start + 1 + usize::from(is_or_equal);
                 SyntaxKind::Order

@@ -38,6 +38,10 @@ fn models_fleets_and_their_statements_are_completed() {
     completes("primitive P(r)[1,2] uses R1.$0", &["battery"], &["shovel"]);
     completes("primitive P(r)[1,2] uses $0", &["r", "R2"], &["BASE"]);
     completes("primitive P(r)[1,2] requires R1.drill=$0", &["STOWED", "OUT"], &["BASE"]);
+    completes("const L = 3; primitive P(r)[1,2] requires R1.battery >= $0", &["L"], &["STOWED"]);
+    completes("primitive P(r)[1,2] requires R1.battery >= 3 $0", &["at start", "and", "uses"], &["L"]);
+    completes("primitive P(r)[1,2] requires R1.battery >= 3 at $0", &["start"], &["and"]);
+    completes("scenario X = { if R1.battery < $0", &[], &["STOWED"]);
     completes("scenario X = { $0", &["any", "each"], &[]);
     completes("scenario X = { any r in $0", &["Team", "S"], &["R1", "BASE"]);
     completes("scenario X = { each r in Team { P($0", &["r", "R1"], &[]);
@@ -57,6 +61,8 @@ fn hovering_shows_declarations_and_what_words_mean() {
     hovers("scenario X = { an$0y r in Team { delay } }", &["one member"]);
     hovers("scenario X = { ea$0ch r in Team { delay } }", &["every member"]);
     hovers("model M { tur$0ning 3; }", &["tightest turn"]);
+    hovers("primitive P(r)[1,2] requires r.bat$0tery >= 3;", &["model Scout { resource battery"]);
+    hovers("primitive P(r)[1,2] requires r.battery >$0= 3;", &["just before the start"]);
 }
 
 #[test]
@@ -70,6 +76,11 @@ fn names_are_renamed_wherever_they_stand() {
         "resource arm;\nmodel M { resource arm; }\nlocation A (0, 0);\nvehicle R : M at A;\nprimitive P(r)[1,2] uses r.ar$0m, R.arm, arm;",
         "tool",
         "resource arm;\nmodel M { resource tool; }\nlocation A (0, 0);\nvehicle R : M at A;\nprimitive P(r)[1,2] uses r.tool, R.tool, arm;",
+    );
+    renames(
+        "resource Fu$0el 0..9 = 5;\nprimitive P()[1,2] requires Fuel >= 3 at start consumes Fuel 1;\nscenario X = { if Fuel < 2 thennext P() }",
+        "Tank",
+        "resource Tank 0..9 = 5;\nprimitive P()[1,2] requires Tank >= 3 at start consumes Tank 1;\nscenario X = { if Tank < 2 thennext P() }",
     );
     renames(
         "model M { mast 1; }\nmodel N extends M { mast 2; }\nlocation A (0, 0);\nvehicle R : M at A;\nprimitive P(r : M$0)[1,2];",

@@ -10,6 +10,7 @@ use smol_str::{SmolStr, format_smolstr};
 use super::bounds::{E_BOUNDS, Interval};
 use super::expander::{Expander, Piece};
 use super::names::{E_UNDEF, Fact, substituted};
+use super::resource::Asked;
 use super::scope::Scope;
 use crate::network::{ArcId, Extent, OccurrenceId, Worth};
 
@@ -33,6 +34,17 @@ impl Expander<'_> {
     pub(super) fn clauses(&mut self, activity: &Activity<'_>, piece: &Piece, called: Span) {
         let effects = self.effects(activity, called);
         for required in &activity.declared.requires {
+            if required.condition.level.is_some() {
+                let asked = Asked {
+                    arc: activity.arc,
+                    start: piece.start,
+                    end: piece.end,
+                    owner: Some(activity.occurrence),
+                    is_at_start: required.is_at_start,
+                };
+                self.level(&required.condition, &asked, activity.scope, called);
+                continue;
+            }
             let Some(fact) = self.fact(&required.condition, activity.scope) else { continue };
             let is_set = effects.iter().any(|(effect, _)| effect.variable == fact.variable);
             let extent = if required.is_at_start || is_set { Extent::Start } else { Extent::Whole };
@@ -77,6 +89,7 @@ impl Expander<'_> {
                 variable: effect.variable.clone(),
                 values: vec![effect.value.clone()],
                 sees: None,
+                level: None,
                 negated: false,
                 span: effect.span,
             };

@@ -6,6 +6,7 @@ use rmpl::{Diagnostic, Span};
 use super::bounds::Interval;
 use super::expander::{End, Entry, Expander, Piece};
 use super::names::{E_VALUE, Fact};
+use super::resource::Asked;
 use super::scope::Scope;
 use crate::network::{ArcId, ArcKind, BlockKind, Extent, OccurrenceId, OccurrenceKind};
 
@@ -20,6 +21,9 @@ impl<'program> Expander<'program> {
         entry: Entry,
         scope: &Scope,
     ) -> Piece {
+        if condition.level.is_some() {
+            return self.with_level(body, mode, condition, span, entry, scope);
+        }
         let fact = self.fact(condition, scope).map(|fact| match mode {
             LabelMode::Ask => fact,
             LabelMode::Tell => fact.negation(),
@@ -28,6 +32,25 @@ impl<'program> Expander<'program> {
         let is_lasting = fact.as_ref().is_some_and(|fact| self.vocabulary.is_lasting(&fact.variable));
         let mode = if is_lasting { LabelMode::Ask } else { mode };
         self.labeled(body, fact, mode, condition, span, entry, scope)
+    }
+
+    /// `body` while a level is as `condition` says. Nothing asserts a level, which the language has said.
+    fn with_level(
+        &mut self,
+        body: &'program Statement,
+        mode: LabelMode,
+        condition: &'program Condition,
+        span: Span,
+        entry: Entry,
+        scope: &Scope,
+    ) -> Piece {
+        let (piece, arc, owner) = self.with_arc(body, span, entry, scope);
+        if let (Some(arc), LabelMode::Ask) = (arc, mode) {
+            let is_at_start = condition.level.as_ref().is_some_and(|level| level.is_at_start);
+            let asked = Asked { arc, start: piece.start, end: piece.end, owner, is_at_start };
+            self.level(condition, &asked, scope, condition.variable.span);
+        }
+        piece
     }
 
     /// `body` with a label of `condition`, which says `fact`.
@@ -89,7 +112,10 @@ impl<'program> Expander<'program> {
         let owner =
             self.builder.occurrence("if".into(), OccurrenceKind::Scope, Vec::new(), scope.occurrence, span);
         self.builder.own(owner, arc);
-        if let Some(fact) = self.fact(condition, scope) {
+        if condition.level.is_some() {
+            let asked = Asked { arc, start, end: start, owner: Some(owner), is_at_start: true };
+            self.level(condition, &asked, scope, condition.variable.span);
+        } else if let Some(fact) = self.fact(condition, scope) {
             self.builder.label(arc, (LabelMode::Ask, Extent::Whole), fact, Some(owner), condition.span);
         }
         let piece = self.statement(body, Entry::Free, scope);
@@ -113,10 +139,14 @@ impl<'program> Expander<'program> {
         let interval = written.map_or(Interval::ZERO, |written| self.interval(written, scope));
         let arc_span = written.map_or(span, |written| written.span);
         let fact = match mode {
+            _ if condition.level.is_some() => None,
             LabelMode::Ask => self.fact(condition, scope),
             LabelMode::Tell => self.told(condition, scope),
         };
-        let text = fact.as_ref().map_or_else(|| condition.variable.text.clone(), Fact::text);
+        let text = match &condition.level {
+            Some(level) => self.level_text(condition, level, scope),
+            None => fact.as_ref().map_or_else(|| condition.variable.text.clone(), Fact::text),
+        };
         let activity = match mode {
             LabelMode::Ask => format!("Ask({text})"),
             LabelMode::Tell => format!("Tell({text})"),
@@ -134,6 +164,11 @@ impl<'program> Expander<'program> {
         }
         if let (Some(arc), Some(fact)) = (piece.arc, fact) {
             self.builder.label(arc, (mode, Extent::Whole), fact, Some(occurrence), condition.span);
+        }
+        if let (Some(arc), Some(level), LabelMode::Ask) = (piece.arc, &condition.level, mode) {
+            let (start, end) = (piece.start, piece.end);
+            let asked = Asked { arc, start, end, owner: Some(occurrence), is_at_start: level.is_at_start };
+            self.level(condition, &asked, scope, condition.variable.span);
         }
         piece
     }

@@ -1,20 +1,35 @@
 //! Resources (SPEC 11): their declarations, who uses how much of them, blocks that use one for their whole length, and
 //! `unordered` blocks, whose branches share an unnamed one (SPEC 14). Objectives (SPEC 12) are read here, too.
 
-use exact::{Rational, Time};
-use rmpl::diagnostics::fleet;
-use rmpl::program::{self, Amount, Change, DurationUnit, Expr, Name, Per, ResourceUse, Statement};
+use exact::{Bound, Rational, Time};
+use rmpl::diagnostics::{fleet, kind};
+use rmpl::program::{
+    self, Amount, Change, Condition, DurationUnit, Expr, Level, Name, Per, ResourceUse, Statement,
+};
 use rmpl::{Code, Diagnostic, Span};
-use smol_str::format_smolstr;
+use smol_str::{SmolStr, format_smolstr};
 
 use super::bounds::{self, E_BOUNDS, Interval};
 use super::clauses::Activity;
 use super::expander::{Branch, End, Entry, Expander, Piece};
 use super::names::E_UNDEF;
-use crate::network::{ArcKind, BlockKind, Goal, Resource, ResourceId, Supply, Use};
+use super::scope::Scope;
+use crate::network::{
+    ArcId, ArcKind, BlockKind, Goal, LevelCondition, NodeId, OccurrenceId, Resource, ResourceId, Supply, Use,
+};
 
 /// More is asked of a resource than it can ever give, or something that its kind does not do.
 const E_RESOURCE: Code = Code("E-RESOURCE");
+
+/// When and by whom something is asked.
+pub(super) struct Asked {
+    /// It counts where this arc is selected.
+    pub(super) arc: ArcId,
+    pub(super) start: NodeId,
+    pub(super) end: NodeId,
+    pub(super) owner: Option<OccurrenceId>,
+    pub(super) is_at_start: bool,
+}
 
 impl<'program> Expander<'program> {
     /// Evaluates the declared resources.
@@ -115,6 +130,7 @@ impl<'program> Expander<'program> {
             start: piece.start,
             end: piece.end,
             owner: Some(activity.occurrence),
+            level: None,
             span: Some(written.span),
         };
         self.add_use(used, called, written.span);
@@ -216,6 +232,64 @@ impl<'program> Expander<'program> {
         self.builder.uses.push(used);
     }
 
+    /// What `condition` asks of a level where `asked` is selected (SPEC 17); `called` is where the call stands that says what
+    /// parameters are.
+    pub(super) fn level(&mut self, condition: &Condition, asked: &Asked, scope: &Scope, called: Span) {
+        let Some(level) = &condition.level else { return };
+        let name = scope.owned_name(&condition.variable.text);
+        let span = if name == condition.variable.text { condition.variable.span } else { called };
+        if let Some(is) = self.without_level(&name) {
+            self.diagnostics.push(kind::no_level(&name, is, span));
+            return;
+        }
+        let Some(resource) = self.resource(&condition.variable, scope, called) else { return };
+        let order = if condition.negated { level.order.opposite() } else { level.order };
+        let bound = self.amount(&level.bound, scope);
+        let starts = [Some(asked.start), (!asked.is_at_start).then_some(asked.end)];
+        for end in starts.into_iter().flatten() {
+            self.builder.uses.push(Use {
+                resource,
+                change: if order.is_minimum() { Change::Consumes } else { Change::Produces },
+                amount: Rational::ZERO,
+                at_least: Rational::ZERO,
+                per_meter: Rational::ZERO,
+                arc: asked.arc,
+                start: asked.start,
+                end,
+                owner: asked.owner,
+                level: Some(LevelCondition { order, bound }),
+                span: Some(condition.span),
+            });
+        }
+    }
+
+    /// `R1.battery>=30`
+    pub(super) fn level_text(&self, condition: &Condition, level: &Level, scope: &Scope) -> SmolStr {
+        let name = scope.owned_name(&condition.variable.text);
+        let order = if condition.negated { level.order.opposite() } else { level.order };
+        // What has no value is an error of its own.
+        let bound = bounds::value(&level.bound, &scope.values(&self.constants)).unwrap_or(Bound::ZERO);
+        format_smolstr!("{name}{}{bound}", order.symbol())
+    }
+
+    /// What a name is, if something without a level is called so.
+    fn without_level(&self, name: &str) -> Option<&'static str> {
+        if let Some(resource) = self.resources.get(name) {
+            let supply = resource.map(|resource| self.builder.resources[resource.index()].supply);
+            let is_reusable = matches!(supply, Some(Supply::Reusable { .. }));
+            return is_reusable.then_some("a resource with a capacity");
+        }
+        if self.vocabulary.is_lasting(name) {
+            Some(if name.strip_suffix(".at").is_some() { "the place of a vehicle" } else { "a state" })
+        } else if self.program.variables.iter().any(|it| it.name.text == name) {
+            Some("a variable")
+        } else if self.program.constants.iter().any(|it| it.name.text == name) {
+            Some("a constant")
+        } else {
+            None
+        }
+    }
+
     /// `do body using resource amount`.
     pub(super) fn using(
         &mut self,
@@ -240,6 +314,7 @@ impl<'program> Expander<'program> {
                 start: piece.start,
                 end: piece.end,
                 owner,
+                level: None,
                 span: Some(resource.span),
             };
             self.add_use(used, resource.span, resource.span);
@@ -278,6 +353,7 @@ impl<'program> Expander<'program> {
                 start: piece.start,
                 end: piece.end,
                 owner: piece.occurrence.or_else(|| self.builder.made(first)),
+                level: None,
                 span: Some(span),
             });
             ends.push((piece.end, span));

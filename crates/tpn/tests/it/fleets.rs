@@ -182,16 +182,6 @@ fn a_group_may_be_handed_to_an_activity() {
 }
 
 #[test]
-fn a_level_is_no_condition() {
-    let (network, told) = compiled(
-        "location A (0, 0); model M { resource b 0..9 = 5; } vehicle R : M at A;
-         primitive P(r)[1,2] requires r.b >= 3; scenario Sol[0,99] = { P(R) }",
-    );
-    assert!(network.is_none());
-    assert!(told.iter().any(|(code, place, _)| (*code, place.as_str()) == ("E-LEX", ">")), "{told:?}");
-}
-
-#[test]
 fn a_name_in_each_copy_is_that_copys() {
     let world = "location A (0, 0); vehicle S[1..2] : ATRV at A; primitive P(r)[1,2]; primitive Q(r)[1,2];";
     let network = network(&format!(
@@ -378,4 +368,99 @@ fn nested_members_end_at_the_limit_of_a_network() {
     ));
     assert!(network.is_none());
     assert_eq!(told.iter().map(|it| it.0).collect::<Vec<_>>(), ["E-LIMIT"]);
+}
+
+#[test]
+fn only_reservoirs_have_levels() {
+    let own = "model Scout { resource battery 0..9 = 5; resource arm; state drill : {IN, OUT} = IN; }
+               vehicle R1 : Scout at BASE; resource Crew capacity 3; const C = 2;";
+    let text = |condition: &str| {
+        format!(
+            "{WORLD}{own} primitive Work(r)[1,2] requires {condition} consumes r.battery 1;
+             scenario S[0,9] = {{ Work(R1) }}"
+        )
+    };
+    let no = |name: &str, is: &str, place: &str| {
+        tells(
+            &text(&format!("{} >= 2", if name == "R1.arm" { "r.arm" } else { name })),
+            &[("E-KIND", place, &format!("only a reservoir has a level, but `{name}` is {is}"))],
+        );
+    };
+    no("Crew", "a resource with a capacity", "Crew");
+    no("R1.drill", "a state", "R1.drill");
+    no("R1.at", "the place of a vehicle", "R1.at");
+    no("R1.arm", "a resource with a capacity", "Work");
+    no("C", "a constant", "C");
+    tells(&text("Oil >= 2"), &[("E-UNDEF", "Oil", "unknown resource `Oil`")]);
+    tells(&text("r.wheel >= 2"), &[("E-UNDEF", "Work", "`R1` has no resource `wheel`")]);
+    tells(&text("r.battery >= C - 3"), &[("E-BOUNDS", "C - 3", "an amount must not be negative")]);
+    tells(&text("r.battery >= 2, not r.battery > C + 2 at start"), &[]);
+}
+
+#[test]
+fn a_condition_on_a_level_is_asked_before_the_start_and_as_long_as_it_lasts() {
+    let network = network(&format!(
+        "{WORLD} model Scout {{ resource battery 0..9 = 5; }} vehicle R1 : Scout at BASE;
+         primitive Work(r)[1,2] requires r.battery >= 3, not r.battery > 8 at start;
+         scenario S[0,9] = {{ Work(R1); if not R1.battery < 2 thennext Work(R1) }}"
+    ));
+    let asked: Vec<String> = (network.uses.iter().enumerate())
+        .map(|(at, used)| {
+            let name = network.use_name(tpn::UseId::from_index(at));
+            let span = if used.start == used.end { "before" } else { "during" };
+            format!("{name} {} {span}", used.level_text(&network.resources).expect("it asks for a level"))
+        })
+        .collect();
+    assert_eq!(
+        asked,
+        [
+            "Requires(R1.battery)@Work#1 R1.battery >= 3 before",
+            "Requires(R1.battery)#2@Work#1 R1.battery >= 3 during",
+            "Requires(R1.battery)#3@Work#1 R1.battery <= 8 before",
+            "Requires(R1.battery)@if#1 R1.battery >= 2 before",
+            "Requires(R1.battery)@Work#2 R1.battery >= 3 before",
+            "Requires(R1.battery)#2@Work#2 R1.battery >= 3 during",
+            "Requires(R1.battery)#3@Work#2 R1.battery <= 8 before",
+        ]
+    );
+}
+
+/// Ten wrong programs: the code, the place, and what to do about each.
+#[test]
+fn each_mistake_has_its_place_and_what_to_do() {
+    let own = "location BASE (0, 0); location ROCK (9, 9);
+               model Scout { speed (0.01, 0.8); resource battery 0..9 = 5; resource arm; state drill : {IN, OUT} = IN; }
+               vehicle R1, R2 : Scout at BASE; vehicle S[1..3] : Scout at BASE; vehicle T : ATRV at BASE;
+               primitive Rest(r : Scout, site : location)[1,2] requires r.at=site; primitive Wait()[1,2];";
+    let cases = [
+        ("model M { body 0 x 1; }", "{ Wait() }", "E-MODEL", "body 0 x 1", "correct the value"),
+        (
+            "model M extends N { mast 1; } model N extends M { mast 2; }",
+            "{ Wait() }",
+            "E-RECURSION",
+            "M",
+            "remove one `extends`",
+        ),
+        ("vehicle V[4..1] : Scout at BASE;", "{ Wait() }", "E-BOUNDS", "[4..1]", "Change to `[1..4]`"),
+        ("group G = R1, ROCK;", "{ Wait() }", "E-KIND", "ROCK", "declare two groups"),
+        ("model M extends Scout { resource arm; }", "{ Wait() }", "E-DUP", "arm", "choose another name"),
+        ("", "{ Rest(T, BASE) }", "E-KIND", "T", "pass a vehicle of the model `Scout`"),
+        ("", "{ Rest(R1, R2) }", "E-KIND", "R2", "pass a location"),
+        ("", "{ Wait(); R1.battery >= 3 }", "E-VALUE", "R1.battery >= 3", "Write `ask`"),
+        ("", "{ do { Wait() } maintaining R1.arm >= 1 }", "E-KIND", "R1.arm", "`resource R 0..100 = 50;`"),
+        ("", "{ each r in Scouts { Rest(r, BASE) } }", "E-UNDEF", "Scouts", "group Scouts = R1, R2;"),
+    ];
+    for (declared, body, code, place, advice) in cases {
+        let text = format!("{own} {declared} scenario Sol[0,99] = {body}");
+        let parsed = rmpl::parse(&text);
+        let mut diagnostics = parsed.diagnostics();
+        let (_, found) = tpn::compile(&parsed.program(), &Top::Scenario(None));
+        tpn::merge_diagnostics(&mut diagnostics, found);
+        let errors: Vec<_> = diagnostics.iter().filter(|it| it.severity == Severity::Error).collect();
+        let [error] = errors.as_slice() else { panic!("{text}\n{errors:#?}") };
+        assert_eq!((error.code.0, &text[error.span.range()]), (code, place), "{text}\n{error:?}");
+        let fixes = error.fixes.iter().map(|fix| fix.label.as_str());
+        let told: Vec<&str> = error.hint.as_deref().into_iter().chain(fixes).collect();
+        assert!(told.iter().any(|it| it.contains(advice)), "{text}\n{told:?}");
+    }
 }

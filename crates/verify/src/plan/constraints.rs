@@ -210,10 +210,14 @@ fn ordered_events(network: &Network, plan: &Plan, ordering: Ordering) -> (NodeId
 /// The events that two ordered uses keep in order: the end and the start of uses of a reusable resource, the moments at
 /// which the level of a reservoir changes (SPEC 11).
 pub(super) fn ordered_moments(network: &Network, ordering: UseOrdering) -> (NodeId, NodeId) {
-    let [first, then] = [ordering.first, ordering.then].map(|used| amounts::taken(network, used, [0, 0]));
+    let [first, then] = [ordering.first, ordering.then].map(|used| {
+        // Which level is asked for says nothing of when.
+        let level = network.uses[used.index()].level.map(|_| 0);
+        amounts::Taken { level, ..amounts::taken(network, used, [0, 0]) }
+    });
     match network.resources[network.uses[first.used.index()].resource.index()].supply {
         tpn::Supply::Reusable { .. } => (first.end, then.start),
-        tpn::Supply::Reservoir { .. } => (first.moment(), then.moment()),
+        tpn::Supply::Reservoir { .. } => (first.last_moment(), then.moment()),
     }
 }
 

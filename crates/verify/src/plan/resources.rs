@@ -1,6 +1,6 @@
 //! The check of resources (SPEC 11): no schedule of the plan uses more than there is, and the plan tells how much.
 
-use tpn::{Levels, Network, Plan};
+use tpn::{Levels, Network, NodeId, Plan};
 
 use super::Checker;
 use crate::amounts::{ScaledSupply, Shared, Taken, is_selected, list, user_name};
@@ -26,6 +26,15 @@ pub(super) fn check_use_orderings(network: &Network, plan: &Plan, violations: &m
         let message = format!("{wrong}: {} and {}", names[0], names[1]);
         violations.push(Violation::new(Rule::Resource, message).with_intervals(names));
     }
+}
+
+/// A condition on a level (SPEC 17) that some schedule does not keep.
+struct Broken {
+    condition: Taken,
+    /// The level that it may meet.
+    level: i128,
+    /// What takes the level there; nothing of what holds before the start.
+    by: Option<Taken>,
 }
 
 impl Checker<'_> {
@@ -103,28 +112,69 @@ impl Checker<'_> {
         [least, greatest, level]: [i128; 3],
         violations: &mut Vec<Violation>,
     ) -> Option<Levels> {
-        let spans: Vec<Span> =
-            shared.uses.iter().map(|it| Span { start: it.moment(), end: it.moment() }).collect();
+        let (conditions, changes): (Vec<Taken>, Vec<Taken>) =
+            shared.uses.iter().copied().partition(|it| it.level.is_some());
+        let alone = |event: NodeId| Span { start: event, end: event };
+        let moments = changes.iter().chain(&conditions).map(|it| alone(it.moment()));
+        let spans: Vec<Span> = moments.chain(conditions.iter().map(|it| alone(it.end))).collect();
         let order = Precedence::new(&self.entailment, &spans);
-        let (mut low, mut high) = (level, level);
-        for (index, event) in shared.uses.iter().enumerate() {
+        // The worst case after an event counts all that may have happened in its own direction, and of the other direction
+        // only what must have.
+        let worst = |index: usize, is_production: bool, is_counted: &dyn Fn(usize) -> Option<bool>| {
             let mut reached = level;
-            for (other, another) in shared.uses.iter().enumerate() {
+            for (other, another) in changes.iter().enumerate() {
                 let happens_before = other == index || order.is_before(other, index);
                 let happens_after = other == index || order.is_before(index, other);
-                let may_come_first = !happens_after || happens_before;
-                // The worst case counts all that may have happened in its own direction, and of the other direction
-                // only what must have.
-                let is_counted = if another.is_production == event.is_production {
-                    may_come_first
+                let by_order = if another.is_production == is_production {
+                    !happens_after || happens_before
                 } else {
                     happens_before
                 };
-                if is_counted {
+                if is_counted(other).unwrap_or(by_order) {
                     let [least, most] = another.changes();
-                    reached += if event.is_production { most } else { least };
+                    reached += if is_production { most } else { least };
                 }
             }
+            reached
+        };
+        let after: Vec<i128> = (changes.iter().enumerate())
+            .map(|(index, event)| worst(index, event.is_production, &|_| None))
+            .collect();
+        let broken = (conditions.iter().enumerate()).filter_map(|(number, &condition)| {
+            let (start, end) = (changes.len() + number, changes.len() + conditions.len() + number);
+            if condition.start == condition.end {
+                // Just before its event: what happens at that comes later.
+                let is_later = |other: usize| (changes[other].moment() == condition.start).then_some(false);
+                let before = worst(start, condition.is_production, &is_later);
+                let is_broken = !condition.allows(before);
+                return is_broken.then_some(Broken { condition, level: before, by: None });
+            }
+            let is_broken = |&index: &usize| {
+                let (event, moment) = (&changes[index], changes[index].moment());
+                let is_over = moment != condition.start && order.is_before(index, start);
+                let is_later = moment != condition.end && order.is_before(end, index);
+                event.is_production == condition.is_production
+                    && !is_over
+                    && !is_later
+                    && !condition.allows(after[index])
+            };
+            let by = (0..changes.len()).find(is_broken)?;
+            Some(Broken { condition, level: after[by], by: Some(changes[by]) })
+        });
+        violations.extend(broken.map(|broken| self.broken_condition(shared, &broken)));
+        self.check_range(shared, changes.into_iter().zip(after), [least, greatest, level], violations)
+    }
+
+    /// The levels after changes stay in the range. Returns the least and the greatest of them and of the level at the start.
+    fn check_range(
+        &self,
+        shared: &Shared,
+        changes: impl Iterator<Item = (Taken, i128)>,
+        [least, greatest, level]: [i128; 3],
+        violations: &mut Vec<Violation>,
+    ) -> Option<Levels> {
+        let (mut low, mut high) = (level, level);
+        for (event, reached) in changes {
             let name = shared.name(self.network);
             let user = user_name(self.network, event.used);
             if event.is_production {
@@ -132,26 +182,42 @@ impl Checker<'_> {
                 if reached > greatest {
                     let message = format!(
                         "when {user} has produced {}, {name} may reach {}, but its maximum is {}",
-                        shared.show_amount(event),
+                        shared.show_amount(&event),
                         shared.show(reached),
                         shared.show(greatest)
                     );
-                    violations.push(self.violation_of(message, &[*event]));
+                    violations.push(self.violation_of(message, &[event]));
                 }
             } else {
                 low = low.min(reached);
                 if reached < least {
                     let message = format!(
                         "when {user} consumes {}, {name} may fall to {}, but its minimum is {}",
-                        shared.show_amount(event),
+                        shared.show_amount(&event),
                         shared.show(reached),
                         shared.show(least)
                     );
-                    violations.push(self.violation_of(message, &[*event]));
+                    violations.push(self.violation_of(message, &[event]));
                 }
             }
         }
         Some(Levels::Range { low: shared.unscaled(low)?, high: shared.unscaled(high)? })
+    }
+
+    fn broken_condition(&self, shared: &Shared, broken: &Broken) -> Violation {
+        let Broken { condition, level, by } = broken;
+        let requires = self.network.uses[condition.used.index()].level_text(&self.network.resources);
+        let when = by.map_or_else(
+            || "at its start".to_owned(),
+            |by| format!("after {}", user_name(self.network, by.used)),
+        );
+        let message = format!(
+            "{} requires {}, but the level may be {} {when}",
+            user_name(self.network, condition.used),
+            requires.unwrap_or_default(),
+            shared.show(*level)
+        );
+        self.violation_of(message, &[*condition])
     }
 
     fn check_levels(&self, shared: &Shared, levels: Option<Levels>, violations: &mut Vec<Violation>) {

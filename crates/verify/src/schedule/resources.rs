@@ -87,7 +87,8 @@ impl Schedule<'_> {
     ) {
         // The amounts of drives have a minimum and a maximum: the level is between these two.
         let [mut low, mut high] = [level; 2];
-        let mut events = shared.uses.clone();
+        // What conditions on the level ask depends on the order within instants.
+        let mut events: Vec<Taken> = shared.uses.iter().filter(|it| it.level.is_none()).copied().collect();
         events.sort_by_key(|it| (self.time(it.moment()), it.used));
         for events in events.chunk_by(|one, other| self.time(one.moment()) == self.time(other.moment())) {
             for it in events {

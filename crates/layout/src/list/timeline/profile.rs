@@ -1,5 +1,6 @@
 //! The profile of a resource: what is used or left in the earliest schedule as an area under a line of steps, what is
-//! possible as lines that it must not cross, and how far it goes in any schedule as dashed lines with their numbers.
+//! possible as lines that it must not cross, how far it goes in any schedule as dashed lines with their numbers, and what
+//! activities ask of a level as bars for as long as they ask it.
 
 use display::{
     Anchor, ColorRole, Dash, Fit, Group, PathEnd, Piece, Point, Rect, Stroke, Text, Weight, text_width_at,
@@ -16,6 +17,8 @@ use crate::timeline::profile::Profile;
 const MARGINS: (f64, f64) = (9.0, 14.0);
 /// The height of a line's number.
 const NUMBER_HEIGHT: f64 = 12.0;
+/// How wide a condition is drawn that is asked at one moment.
+const MOMENT_WIDTH: f64 = 5.0;
 /// Between the numbers of lines that are close together.
 const NUMBER_GAP: f64 = 14.0;
 
@@ -112,6 +115,13 @@ impl Builder<'_> {
             let stroke = Stroke::solid(ColorRole::Accent, 1.2).dashed(Dash::Dashed);
             let words = format_smolstr!("{word} {}", level.readable());
             self.level(plot, level, stroke, words, &mut numbers);
+        }
+        for (taker, condition) in profile.conditions() {
+            let (left, right) = (self.track.x(taker.span[0]), self.track.x(taker.span[1]));
+            let y = plot.y(condition.bound);
+            let bar = Rect::new(left, y - 1.5, right.max(left + MOMENT_WIDTH), y + 1.5);
+            self.list.rectangle(bar, 0.0, Some(ColorRole::Threat.into()), None);
+            self.list.entitle(taker.words());
         }
     }
 

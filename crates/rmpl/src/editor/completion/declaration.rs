@@ -200,6 +200,11 @@ fn in_requires(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
         (Some((SyntaxKind::LeftBrace, at)), ..) => in_set(clause, at).unwrap_or(Place::Nothing),
         (Some((SyntaxKind::LeftParen, at)), ..) if is_sight(clause, at) => Place::Location,
         (_, SyntaxKind::Equals | SyntaxKind::NotEquals, _) => value_of(clause, clause.len() - 1),
+        (_, SyntaxKind::Order, _) => Place::Amount,
+        (_, SyntaxKind::Name, "at") if compares_level(clause) => Place::Words(vec!["start"]),
+        (_, SyntaxKind::Name | SyntaxKind::Number, _) if compares_level(clause) => {
+            words(&["at start", "and"])
+        }
         (_, SyntaxKind::Comma | SyntaxKind::NotKeyword | SyntaxKind::Bang | SyntaxKind::LeftParen, _) => {
             Place::Condition
         }
@@ -209,6 +214,13 @@ fn in_requires(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
         (_, SyntaxKind::Name, "and") => Place::Condition,
         _ => words(&["and", "in"]),
     }
+}
+
+/// Whether the last condition of a clause compares a level, and its bound has begun.
+fn compares_level(clause: &[SyntaxToken<'_>]) -> bool {
+    let condition =
+        clause.iter().rev().take_while(|token| token.kind != SyntaxKind::Comma && token.text != "and");
+    condition.skip(1).any(|token| token.kind == SyntaxKind::Order)
 }
 
 fn in_moves(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {

@@ -101,6 +101,7 @@ pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
     }
     match last.kind {
         Kind::Equals | Kind::NotEquals => value_of(context, context.len() - 1),
+        Kind::Order => Place::Amount,
         Kind::MaintainingKeyword
         | Kind::WatchingKeyword
         | Kind::IfKeyword

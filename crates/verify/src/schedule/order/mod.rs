@@ -91,7 +91,7 @@ impl<'search> Search<'search> {
             for it in &shared.uses {
                 let nodes = match shared.supply {
                     ScaledSupply::Reusable { .. } => [it.start, it.end],
-                    ScaledSupply::Reservoir { .. } => [it.moment(); 2],
+                    ScaledSupply::Reservoir { .. } => [it.moment(), it.last_moment()],
                 };
                 for node in nodes {
                     add(node, Subject::Resource(index));

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use tpn::{LabelId, NodeId};
 
 use super::{Instant, Placed, Search, Subject};
-use crate::amounts::{ScaledSupply, Taken, list};
+use crate::amounts::{ScaledSupply, Taken, list, user_name};
 use crate::state::{Producer, owner_name};
 use crate::{Rule, departure};
 
@@ -177,9 +177,32 @@ impl Search<'_> {
         placed: &Placed,
     ) -> Result<(), Refusal> {
         let shared = &self.shared[index];
-        let counts = |it: &&Taken| it.moment() == node || self.is_over(placed, it.moment());
-        let changes = shared.uses.iter().filter(counts).map(Taken::changes);
-        let [low, high] = changes.fold([level; 2], |[low, high], [less, more]| [low + less, high + more]);
+        let add = |[low, high]: [i128; 2], [less, more]: [i128; 2]| [low + less, high + more];
+        let happened = shared.uses.iter().filter(|it| self.is_over(placed, it.moment()));
+        let before = happened.map(Taken::changes).fold([level; 2], add);
+        let happening = shared.uses.iter().filter(|it| it.moment() == node);
+        let after = happening.map(Taken::changes).fold(before, add);
+        for condition in shared.uses.iter().filter(|it| it.level.is_some()) {
+            let has_started = condition.start == node || self.is_over(placed, condition.start);
+            let is_momentary = condition.start == condition.end;
+            let is_asked = if is_momentary {
+                condition.start == node
+            } else {
+                has_started && !self.is_over(placed, condition.end)
+            };
+            let level = (if is_momentary { before } else { after })[usize::from(condition.is_production)];
+            if is_asked && !condition.allows(level) {
+                let network = self.network();
+                let message = format!(
+                    "{} requires {}, but the level is {} then",
+                    user_name(network, condition.used),
+                    network.uses[condition.used.index()].level_text(&network.resources).unwrap_or_default(),
+                    shared.show(level)
+                );
+                return Err(self.refusal_of_uses(message, &[*condition]));
+            }
+        }
+        let [low, high] = after;
         let (level, wrong) = if low < least {
             (low, format!("below {}", shared.show(least)))
         } else if high > greatest {

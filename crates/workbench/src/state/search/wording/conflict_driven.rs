@@ -322,6 +322,11 @@ fn reason_of_order(network: &Network, Ordering { first, then }: Ordering) -> Str
 fn use_order(network: &Network, order: UseOrdering) -> String {
     let (first, then) = (&network.uses[order.first.index()], &network.uses[order.then.index()]);
     let resource = resource(network, order.first);
+    let asked = first.level_text(&network.resources).or_else(|| then.level_text(&network.resources));
+    if let Some(asked) = asked {
+        let (first, then) = (user(network, order.first), user(network, order.then));
+        return format!("Order {first} before {then}, so that {asked} holds.");
+    }
     let why = match (first.change, then.change) {
         (Change::Produces, Change::Consumes) => format!("{resource} is filled before it is drawn on"),
         (Change::Consumes, Change::Produces) => format!("{resource} is drawn on before it is filled"),
@@ -353,6 +358,19 @@ fn out_of_range(network: &Network, early: &[UseId], late: &[UseId]) -> String {
     let Some(used) = early.first().map(|first| &network.uses[first.index()]) else { return String::new() };
     let resource = &network.resources[used.resource.index()];
     let Supply::Reservoir { least, greatest, .. } = resource.supply else { return String::new() };
+    let is_condition = |id: &&UseId| network.uses[id.index()].level.is_some();
+    if let Some(&condition) = early.iter().find(is_condition) {
+        let others: Vec<UseId> = early.iter().copied().filter(|&id| id != condition).collect();
+        let by = if others.is_empty() { String::new() } else { format!(" with {}", users(network, &others)) };
+        let asked = network.uses[condition.index()].level_text(&network.resources).unwrap_or_default();
+        let first = match (late.len(), others.len()) {
+            (0, 0) => "nothing can prevent this".to_owned(),
+            (0, _) => "another order must be found".to_owned(),
+            (1, _) => format!("{} must come earlier, or another order must be found", users(network, late)),
+            _ => format!("one of {} must come earlier, or another order must be found", users(network, late)),
+        };
+        return format!("{} needs {asked}, which fails{by}: {first}.", user(network, condition));
+    }
     let place =
         if used.change == Change::Produces { format!("above {greatest}") } else { format!("below {least}") };
     let names = users(network, early);
