@@ -253,3 +253,31 @@ fn a_fleet_means_what_its_vehicles_written_out_mean() {
     }
     assert!(planned > 100 && failed > 50, "{planned} {failed}");
 }
+
+/// Twenty rovers whose batteries last for four sites each, and sixty sites.
+fn large_fleet() -> String {
+    let mut rng = Rng::new(7);
+    let mut sites = String::new();
+    for site in 1..=60 {
+        let (east, north) = (rng.between(0, 400), rng.between(0, 400));
+        sites.push_str(&format!("location L{site} ({east}, {north});\n"));
+    }
+    let names: Vec<String> = (1..=60).map(|site| format!("L{site}")).collect();
+    format!(
+        "location BASE (200, 200);\n{sites}group Sites = {};
+         model Scout extends ATRV {{ resource battery 0..100 = 90; resource arm; }}
+         vehicle S[1..20] : Scout at BASE;
+         primitive Drive(r, to)[1,120] moves r speed (0.1, 0.8) requires r.battery >= 30 at start consumes r.battery 5;
+         primitive Survey(r, site)[10,15] requires r.at=site uses r.arm consumes r.battery 15;
+         scenario Day[0,400] = {{ each site in Sites {{ any r in S {{ Drive(r, site); Survey(r, site) }} }} }}",
+        names.join(", ")
+    )
+}
+
+#[test]
+fn a_large_fleet_shares_its_sites_without_trying_each_vehicle_for_each_site() {
+    let network = network(&large_fleet());
+    let plan = first_plan(&network, Search::ConflictDirected);
+    assert_eq!(plan.plans.len(), 1);
+    assert!(plan.stats.expanded < 20_000, "{:?}", plan.stats);
+}

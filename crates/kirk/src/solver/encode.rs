@@ -150,7 +150,7 @@ impl<'m> Problem<'m> {
             problem.keep_windows(&solver);
             problem.add_links(&mut solver, part, &mut growth)?;
             problem.add_lasting(&mut solver, part, &mut growth)?;
-            problem.add_resources(&solver, part);
+            problem.add_resources(&mut solver, part);
             if problem.faces_nature {
                 // What the least times keep apart nature's times may not.
                 problem.order_all_pairs(&mut solver, &mut growth)?;

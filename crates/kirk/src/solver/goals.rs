@@ -7,7 +7,7 @@ use tpn::{Choice, DecisionId, LabelId};
 
 use super::encode::Problem;
 use super::growth::Unencoded;
-use super::linear;
+use super::linear::{self, LinearKind};
 use super::literal::{Literal, Variable};
 use super::relaxation::{self, Relaxation, Row, SCALE};
 use super::{ChoicePointKind, Solver};
@@ -47,7 +47,7 @@ impl Problem<'_> {
         for Sum { terms, constant, parts } in self.sums(solver, goal, &relaxation.rows)? {
             let most = i128::from(limit) * i128::from(parts) - i128::from(constant);
             let most = most.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64;
-            sums.0.push((solver.linears.add(terms, most), parts));
+            sums.0.push((solver.linears.add(terms, most, LinearKind::Goal), parts));
         }
         Ok(sums)
     }

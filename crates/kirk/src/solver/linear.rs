@@ -1,5 +1,5 @@
-//! Weighted sums of Booleans and times that must stay below a limit: goals while something better is looked for, and
-//! goals that have reached their optimum.
+//! Weighted sums of Booleans and times that must stay below a limit: goals while something better is looked for,
+//! goals that have reached their optimum, and what is taken of a reservoir in all.
 
 use typed_index_collections::TiVec;
 
@@ -14,6 +14,15 @@ use crate::ids::LinearId;
 struct Linear {
     terms: Vec<(i64, Variable)>,
     most: i64,
+    kind: LinearKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LinearKind {
+    /// It limits a goal.
+    Goal,
+    /// It follows from what a reservoir has.
+    Amounts,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -24,14 +33,14 @@ pub(crate) struct Linears {
 
 impl Linears {
     /// Adds a sum. Weights are not 0.
-    pub(crate) fn add(&mut self, terms: Vec<(i64, Variable)>, most: i64) -> LinearId {
+    pub(crate) fn add(&mut self, terms: Vec<(i64, Variable)>, most: i64, kind: LinearKind) -> LinearId {
         let sides = terms.iter().map(
             |&(weight, variable)| {
                 if weight > 0 { variable.lower() } else { variable.upper() }
             },
         );
         self.queue.add(sides);
-        self.all.push_and_get_key(Linear { terms, most })
+        self.all.push_and_get_key(Linear { terms, most, kind })
     }
 
     /// Lowers the limit of a sum. At the root.
@@ -41,31 +50,43 @@ impl Linears {
         self.queue.push(id);
     }
 
-    pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), Conflict> {
+    /// A conflict comes with the kind of the sum that it is one with.
+    pub(crate) fn propagate(&mut self, trail: &mut Trail) -> Result<(), (LinearKind, Conflict)> {
         while let Some(id) = self.queue.pop() {
-            let Linear { terms, most } = &self.all[id];
-            trail.premise = Premise::Unknown;
-            let least: i128 = terms.iter().map(|&term| least(trail, term)).sum();
-            let room = i128::from(*most) - least;
-            if room < 0 {
-                return Err(reason(trail, terms, None));
+            let linear = &self.all[id];
+            linear.propagate(trail).map_err(|conflict| (linear.kind, conflict))?;
+        }
+        Ok(())
+    }
+}
+
+impl Linear {
+    fn propagate(&self, trail: &mut Trail) -> Result<(), Conflict> {
+        let Self { terms, most, kind } = self;
+        trail.premise = Premise::Unknown;
+        let least: i128 = terms.iter().map(|&term| least(trail, term)).sum();
+        let room = i128::from(*most) - least;
+        if room < 0 {
+            return Err(reason(trail, terms, None));
+        }
+        for (position, &(weight, variable)) in terms.iter().enumerate() {
+            let range = trail.most(variable) - trail.least(variable);
+            let steps = room / i128::from(weight.unsigned_abs());
+            let Ok(steps) = i64::try_from(steps) else { continue };
+            if steps >= range {
+                continue;
             }
-            for (position, &(weight, variable)) in terms.iter().enumerate() {
-                let range = trail.most(variable) - trail.least(variable);
-                let steps = room / i128::from(weight.unsigned_abs());
-                let Ok(steps) = i64::try_from(steps) else { continue };
-                if steps >= range {
-                    continue;
-                }
-                let literal = if weight > 0 {
-                    Literal::new(variable.upper(), trail.least(variable) + steps)
-                } else {
-                    Literal::new(variable.lower(), steps - trail.most(variable))
-                };
-                let cause = reason(trail, terms, Some(position));
-                let cause = trail.note_of_goal(cause);
-                trail.set(literal, cause)?;
-            }
+            let literal = if weight > 0 {
+                Literal::new(variable.upper(), trail.least(variable) + steps)
+            } else {
+                Literal::new(variable.lower(), steps - trail.most(variable))
+            };
+            let cause = reason(trail, terms, Some(position));
+            let cause = match kind {
+                LinearKind::Goal => trail.note_of_goal(cause),
+                LinearKind::Amounts => trail.note(cause),
+            };
+            trail.set(literal, cause)?;
         }
         Ok(())
     }

@@ -65,7 +65,7 @@ use clauses::Clauses;
 use cumulative::Cumulatives;
 use difference::{Difference, Differences};
 use disjunctive::Disjunctives;
-use linear::Linears;
+use linear::{LinearKind, Linears};
 use lists::Lists;
 use literal::{Literal, Side, Variable};
 use neighborhood::Neighborhood;
@@ -556,8 +556,10 @@ impl Solver {
             if self.head < self.trail.events.len() {
                 continue;
             }
-            if let Err(conflict) = self.linears.propagate(&mut self.trail) {
-                self.origin = Origin::Goal;
+            if let Err((kind, conflict)) = self.linears.propagate(&mut self.trail) {
+                if kind == LinearKind::Goal {
+                    self.origin = Origin::Goal;
+                }
                 return Err(conflict);
             }
             if self.head < self.trail.events.len() {

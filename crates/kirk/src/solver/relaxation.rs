@@ -129,7 +129,7 @@ fn open_variable(trail: &Trail, literal: Literal) -> Option<Variable> {
 }
 
 /// What a reservoir can give, and take, in all.
-fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Vec<Row> {
+pub(super) fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Vec<Row> {
     let ModelSupply::Reservoir { least, greatest, level } = supply else { return Vec::new() };
     // What is not active only gives.
     let parts = |taking: Change| {

@@ -13,8 +13,10 @@ use super::dispatch::MANY_USES;
 use super::encode::{Part, Problem};
 use super::instants::Instants;
 use super::interval::Interval;
+use super::linear::LinearKind;
 use super::literal::{Literal, Variable};
 use super::premise::Premise;
+use super::relaxation;
 use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::{ModelSupply, ModelUse, level_change};
@@ -23,6 +25,8 @@ use crate::trace::{Event, TreeChoice};
 
 /// Of larger sets of uses that exclude each other, only those in each other's way are ordered.
 const MAX_PAIRS: usize = 4_000;
+/// Of a reservoir with as many uses, sums say from the start what it has in all.
+const MANY_USES: usize = 20;
 
 /// The same where uses are dispatched.
 const MAX_DISPATCHED_PAIRS: usize = 20_000;
@@ -128,7 +132,7 @@ impl Shares {
 }
 
 impl Problem<'_> {
-    pub(super) fn add_resources(&mut self, solver: &Solver, part: Part<'_>) {
+    pub(super) fn add_resources(&mut self, solver: &mut Solver, part: Part<'_>) {
         for resource in &self.model.demands.resources {
             let tasks = resource.uses.iter().filter(|used| used.amount > 0 || used.level.is_some());
             let tasks = tasks.map(|used| {
@@ -147,6 +151,9 @@ impl Problem<'_> {
                 solver.takes_nothing_for_granted() || !solver.trail.fails(task.interval.presence)
             };
             let tasks: Vec<Task> = tasks.filter(exists).collect();
+            if tasks.len() >= MANY_USES {
+                sum_up(solver, resource.supply, &tasks);
+            }
             self.shares.all.push(Shared {
                 supply: resource.supply,
                 tasks,
@@ -349,6 +356,19 @@ impl Problem<'_> {
         solver.check_differences(differences);
         self.shares.orders.insert((first.id, then.id), order);
         order
+    }
+}
+
+/// Tells the solver that in all no more is taken of a reservoir than it has and is given, and no more given than it has
+/// room for. That says for all sets of uses what one solution after the other would say for few of them; it does not say
+/// which ones, so that explanations do without it.
+fn sum_up(solver: &mut Solver, supply: ModelSupply, tasks: &[Task]) {
+    if solver.takes_nothing_for_granted() {
+        return;
+    }
+    for row in relaxation::amounts(&solver.trail, supply, tasks) {
+        let terms = row.terms.into_iter().map(|(variable, weight)| (weight, variable)).collect();
+        solver.linears.add(terms, row.most, LinearKind::Amounts);
     }
 }
 
