@@ -5,6 +5,7 @@
 mod analysis;
 pub mod call_cycles;
 pub mod control;
+mod copies;
 pub mod diagnostic;
 pub mod diagnostics;
 pub mod editor;

@@ -13,6 +13,7 @@ use smol_str::SmolStr;
 use crate::analysis::local::local_diagnostics;
 use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
 use crate::control::{ComponentModes, component_modes};
+use crate::copies;
 use crate::diagnostic::{Diagnostic, Edit, Known, Listed, Severity};
 use crate::diagnostics::{syntax, undefined};
 use crate::edits::Shift;
@@ -315,8 +316,11 @@ impl Parse {
                 all.add(found, place.start);
             }
         }
-        if !of_imports.is_empty() {
-            for found in &of_imports {
+        let is_sound =
+            all.list.iter().all(|found| found.severity != Severity::Error) && of_imports.is_empty();
+        let of_file = if is_sound { copies::check(self) } else { of_imports };
+        if !of_file.is_empty() {
+            for found in &of_file {
                 all.add(found, 0);
             }
             all.list.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity));

@@ -7,6 +7,7 @@ pub mod choice;
 pub mod constraint;
 pub mod contingent;
 pub mod controllability;
+pub mod copy;
 pub mod duplicate;
 pub mod encounter;
 pub mod exogenous;
@@ -74,6 +75,7 @@ pub const EXPLANATIONS: &[&Explanation] = &[
     &window::EXPLANATION,
     &slack::EXPLANATION,
     &unused::EXPLANATION,
+    &copy::EXPLANATION,
     &option::EXPLANATION,
     &controllability::EXPLANATION,
     &exogenous::EXPLANATION,

@@ -2,6 +2,7 @@
 
 mod conformance_programs;
 mod contingent;
+mod copies;
 mod editor_fleets;
 mod editor_help;
 mod editor_lasting;
