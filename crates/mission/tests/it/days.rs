@@ -65,7 +65,7 @@ fn a_fleet_shares_its_sites_by_the_meters_it_drives() {
     let planned = day(FLEET);
     assert_eq!(planned.tally.succeeded, planned.tally.runs, "{:?}", planned.tally.breaks);
     let scouts = |day: &Day| {
-        let drives = day.chosen.iter().filter(|name| name.starts_with("Look-at"));
+        let drives = day.chosen.iter().filter(|name| name.starts_with("Look#"));
         drives.cloned().collect::<Vec<String>>()
     };
     let other = day(&FLEET.replace("Scout1 : ATRV-Jr at NORTH", "Scout1 : ATRV-Jr at EAST"));
