@@ -15,10 +15,10 @@ use crate::output::{Format, YES, document, exit, print_error, print_json, print_
 
 /// Convert a file of another tool.
 ///
-/// A network is printed as enroute tpn prints it. Places and obstacles in GeoJSON are printed as declarations, for a file that a mission imports. A PDDL domain and a problem of it are printed as a mission.
+/// A network is printed as enroute tpn prints it. Places, obstacles, vehicles and groups in GeoJSON or CSV are printed as declarations, for a file that a mission imports. A PDDL domain and a problem of it are printed as a mission.
 #[derive(clap::Args)]
 pub struct Args {
-    /// plan-schema (JSON or EDN), enroute-tpn document, pTPN, PlanDev (Aerie) plan, GeoJSON, or PDDL domain; - reads standard input.
+    /// plan-schema (JSON or EDN), enroute-tpn document, pTPN, PlanDev (Aerie) plan, GeoJSON, CSV of places, or PDDL domain; - reads standard input.
     file: PathBuf,
     /// Problem of the PDDL domain.
     problem: Option<PathBuf>,
@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let is_pddl = pddl::is_pddl(&text);
     anyhow::ensure!(
         !has_frame || (!is_pddl && is_places(&name, &text)),
-        "{name} is not GeoJSON; remove --origin, --radius and --meters, which only GeoJSON needs"
+        "{name} is not GeoJSON or CSV; remove --origin, --radius and --meters, which only these need"
     );
     if is_pddl {
         return import_pddl(args, (&name, &text));
@@ -120,6 +120,7 @@ fn import_pddl(args: &Args, domain: (&str, &str)) -> anyhow::Result<ExitCode> {
 fn is_places(name: &str, text: &str) -> bool {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     name.to_ascii_lowercase().ends_with(".geojson")
+        || geojson::is_table(name)
         || serde_json::from_str::<Value>(text).is_ok_and(|document| geojson::is_geojson(&document))
 }
 

@@ -86,5 +86,49 @@ fn an_origin_is_asked_for_and_only_of_geojson() {
     let network = enroute(&["tpn", mission, "--format", "json"]);
     let network = written("flat.tpn.json", &text(&network));
     let wrong = enroute(&["import", network.to_str().expect("a path"), "--meters"]);
-    assert!(String::from_utf8_lossy(&wrong.stderr).contains("is not GeoJSON"), "{wrong:?}");
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("is not GeoJSON or CSV"), "{wrong:?}");
+}
+
+#[test]
+fn places_vehicles_and_groups_come_from_a_table_or_from_properties() {
+    let table = written(
+        "fleet.csv",
+        "name,east,north,model,group\nRIDGE,30,0,,Sites\nBASIN,0,40,,Sites\nR1,1,2,ATRV-Jr,Scouts\nR2,3,2,ATRV-Jr,Scouts\n",
+    );
+    let lines = text(&enroute(&["import", table.to_str().expect("a path")]));
+    let own: Vec<&str> = lines.lines().filter(|line| !line.starts_with("//")).collect();
+    assert_eq!(
+        own,
+        [
+            "location RIDGE (30, 0);",
+            "location BASIN (0, 40);",
+            "location R1_START (1, 2);",
+            "location R2_START (3, 2);",
+            "vehicle R1 : ATRV-Jr at R1_START;",
+            "vehicle R2 : ATRV-Jr at R2_START;",
+            "group Sites = RIDGE, BASIN;",
+            "group Scouts = R1, R2;",
+        ]
+    );
+    written("fleet.rmpl", &lines);
+    let mission = written(
+        "survey.rmpl",
+        "import \"fleet.rmpl\";\nprimitive Go(r, to)[1,60] moves r;\n\
+         scenario S[0,99] = { each site in Sites { any r in Scouts Go(r, site) } }\n",
+    );
+    let planned = text(&enroute(&["plan", mission.to_str().expect("a path"), "--no-paths"]));
+    assert!(planned.contains("Go(R1, RIDGE)"), "{planned}");
+    let refused = |file: &str, table: &str, problem: &str| {
+        let output = enroute(&["import", written(file, table).to_str().expect("a path")]);
+        assert!(String::from_utf8_lossy(&output.stderr).contains(problem), "{output:?}");
+    };
+    refused("one.csv", "name,east\nA,1\n", "needs the columns `east` and `north`, or `lon` and `lat`");
+    refused("two.csv", "name,east,north,color\nA,1,2,red\n", "unknown column `color`");
+    refused("three.csv", "name,east,north\nA,1,here\n", "line 2: `here` is not a number");
+    refused(
+        "four.csv",
+        "name,east,north,radius_m,group\nA,1,2,3,Sites\n",
+        "an obstacle cannot have a model or a group",
+    );
+    refused("five.csv", "name,east,north,model\nA,1,2,A B\n", "`A B` is not the name of a model");
 }

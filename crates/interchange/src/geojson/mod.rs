@@ -2,10 +2,13 @@
 //!
 //! A `Point` is a `location`, or with a `radius_m` among its properties an `obstacle … circle`; a `Polygon` is an
 //! `obstacle … polygon`, its holes cut open from the border; a `MultiPolygon` is one obstacle for each of its parts. All
-//! other geometries are counted and left out. Heights are not read: the terrain has them.
+//! other geometries are counted and left out. Heights are not read: the terrain has them. A `Point` with an
+//! `enroute_model` is a vehicle of that model and the place where it starts; places and vehicles with one `enroute_group`
+//! are a group (SPEC 17). A table in CSV says the same, one point in each line.
 
 mod keyhole;
 mod projection;
+mod table;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -16,6 +19,7 @@ use serde_json::Value;
 
 pub use keyhole::without_holes;
 pub use projection::{BODY_RADII_M, EARTH_RADIUS_M, Frame, Projection};
+pub use table::is_table;
 
 /// The member of a file, beside `type`, that says what its coordinates are: `{"units": "metres"}` for meters east and
 /// north of the mission's origin, or `{"origin": [LON, LAT], "radius_m": R}` for where the origin is and how large the
@@ -34,6 +38,9 @@ pub enum GeoJsonError {
     /// It is no JSON, or no `GeoJSON` object.
     #[error("this is not GeoJSON: {0}")]
     Shape(String),
+    /// A table that cannot be read, or lacks a column.
+    #[error("cannot read the table: {0}")]
+    Table(String),
     /// Its coordinates are in a system that is not known here.
     #[error(
         "coordinates in {0} are not supported; convert them to degrees (RFC 7946), as with `ogr2ogr -t_srs EPSG:4326 -lco \
@@ -73,7 +80,7 @@ const GEOMETRIES: [&str; 7] =
 pub fn declarations_of_file(name: &str, bytes: &[u8]) -> Option<Result<String, GeoJsonError>> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let is_object = bytes.trim_ascii_start().starts_with(b"{");
-    let is_named_so = name.to_ascii_lowercase().ends_with(".geojson");
+    let is_named_so = name.to_ascii_lowercase().ends_with(".geojson") || is_table(name);
     if !is_object && !is_named_so {
         return None;
     }
@@ -87,8 +94,14 @@ pub fn declarations_of_file(name: &str, bytes: &[u8]) -> Option<Result<String, G
 /// left out. `wanted` overrides what the file says of its frame.
 pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, GeoJsonError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let document: Value =
-        serde_json::from_str(text).map_err(|error| GeoJsonError::Shape(error.to_string()))?;
+    let (document, own_frame) = if is_table(name) {
+        let (document, frame) = table::document(text, wanted)?;
+        (document, Some(frame))
+    } else {
+        let document: Value =
+            serde_json::from_str(text).map_err(|error| GeoJsonError::Shape(error.to_string()))?;
+        (document, None)
+    };
     if !is_geojson(&document) {
         return Err(GeoJsonError::Shape("expected a feature, a collection or a geometry".to_owned()));
     }
@@ -101,7 +114,8 @@ pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, Ge
     if reader.shapes.is_empty() {
         return Err(GeoJsonError::Empty);
     }
-    let frame = Frame::of_file(&document)?.overridden(wanted);
+    let own_frame = own_frame.map_or_else(|| Frame::of_file(&document), Ok)?;
+    let frame = own_frame.overridden(wanted);
     projection::check_mercator(&document, reader.positions())?;
     let projection = frame.projection(reader.positions())?;
     let mut lines = format!("// Places and obstacles of {}: {projection}.\n", one_line(name));
@@ -115,6 +129,12 @@ pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, Ge
     for shape in &reader.shapes {
         shape.declare(&projection, &mut lines)?;
     }
+    for Vehicle { name, model, start } in &reader.vehicles {
+        let _ = writeln!(lines, "vehicle {name} : {model} at {start};");
+    }
+    for (_, name, members) in &reader.groups {
+        let _ = writeln!(lines, "group {name} = {};", members.join(", "));
+    }
     Ok(lines)
 }
 
@@ -123,6 +143,9 @@ pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, Ge
 struct Feature {
     name: String,
     radius_m: Option<f64>,
+    /// The vehicle model of what starts here.
+    model: Option<String>,
+    group: Option<String>,
 }
 
 enum Geometry {
@@ -141,9 +164,19 @@ struct Shape {
     geometry: Geometry,
 }
 
+/// A vehicle and the location where it starts.
+struct Vehicle {
+    name: String,
+    model: String,
+    start: String,
+}
+
 #[derive(Default)]
 struct Reader {
     shapes: Vec<Shape>,
+    vehicles: Vec<Vehicle>,
+    /// By the name in the file: the name in the mission, and the members.
+    groups: Vec<(String, String, Vec<String>)>,
     names: BTreeSet<String>,
     /// How many have asked for a name.
     asked: BTreeMap<String, usize>,
@@ -163,10 +196,12 @@ impl Reader {
             _ => String::new(),
         };
         let radius_m = property("radius_m").and_then(Value::as_f64);
+        let text = |key: &str| property(key).and_then(Value::as_str).map(str::to_owned);
+        let (model, group) = (text("enroute_model"), text("enroute_group"));
         match feature.get("geometry") {
             // A feature may have no place.
             None | Some(Value::Null) => Ok(()),
-            Some(geometry) => self.geometry(geometry, &Feature { name, radius_m }),
+            Some(geometry) => self.geometry(geometry, &Feature { name, radius_m, model, group }),
         }
     }
 
@@ -202,12 +237,40 @@ impl Reader {
             Some(radius_m) => (Geometry::Circle { center: position, radius_m }, "Obstacle"),
             None => (Geometry::Place(position), "Place"),
         };
-        let name = self.free_name(&feature.name, plain);
-        self.shapes.push(Shape { name, geometry });
+        if feature.radius_m.is_some() {
+            refuse_members(feature)?;
+        }
+        let name = self.free_name(&feature.name, if feature.model.is_some() { "Vehicle" } else { plain });
+        let Some(model) = &feature.model else {
+            self.join(feature, &name);
+            self.shapes.push(Shape { name, geometry });
+            return Ok(());
+        };
+        let is_part = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || letter == '-';
+        if !model.starts_with(|letter: char| letter.is_ascii_alphabetic()) || !model.chars().all(is_part) {
+            return Err(wrong(feature, format!("`{}` is not the name of a model", one_line(model))));
+        }
+        let start = self.free_name(&format!("{name}_START"), plain);
+        self.join(feature, &name);
+        self.vehicles.push(Vehicle { name, model: model.clone(), start: start.clone() });
+        self.shapes.push(Shape { name: start, geometry });
         Ok(())
     }
 
+    /// A place or vehicle becomes a member of the group that its feature says.
+    fn join(&mut self, feature: &Feature, name: &str) {
+        let Some(group) = &feature.group else { return };
+        let known = self.groups.iter().position(|(said, ..)| said == group);
+        let at = known.unwrap_or_else(|| {
+            let free = self.free_name(group, "Group");
+            self.groups.push((group.clone(), free, Vec::new()));
+            self.groups.len() - 1
+        });
+        self.groups[at].2.push(name.to_owned());
+    }
+
     fn polygon(&mut self, rings: &Value, feature: &Feature) -> Result<(), GeoJsonError> {
+        refuse_members(feature)?;
         let mut read = Vec::new();
         for ring in list(rings, feature)? {
             let positions = list(ring, feature)?.iter().map(|position| self.position(position, feature));
@@ -309,6 +372,14 @@ impl Shape {
             }
         }
         Ok(())
+    }
+}
+
+/// An obstacle is no vehicle, and no member of a group.
+fn refuse_members(feature: &Feature) -> Result<(), GeoJsonError> {
+    match (&feature.model, &feature.group) {
+        (None, None) => Ok(()),
+        _ => Err(wrong(feature, "an obstacle cannot have a model or a group".to_owned())),
     }
 }
 
