@@ -18,7 +18,7 @@ use crate::trace::TreeChoice;
 const MIN_USES: usize = 20;
 
 /// From so many uses on what starts mean is looked at after many of them.
-pub(super) const MANY_USES: usize = 1_000;
+pub(super) const CROWD: usize = 1_000;
 
 /// More uses are not dispatched: each looks at all.
 const MAX_USES: usize = 5_000;
@@ -161,7 +161,7 @@ impl Problem<'_> {
             return false;
         }
         let mut has_decided = false;
-        let burst = if self.num_uses() < MANY_USES { 1 } else { BURST };
+        let burst = if self.num_uses() < CROWD { 1 } else { BURST };
         for _ in 0..burst {
             let Some(Candidate { task, resource, start, .. }) = dispatching.next(solver) else { break };
             let is_open = solver.trail.is_open(task.interval.presence);

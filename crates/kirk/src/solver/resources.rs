@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rmpl::program::Change;
 use tpn::{NodeId, UseId, UseOrdering};
 
-use super::dispatch::MANY_USES;
+use super::dispatch::CROWD;
 use super::encode::{Part, Problem};
 use super::instants::Instants;
 use super::interval::Interval;
@@ -25,11 +25,12 @@ use crate::trace::{Event, TreeChoice};
 
 /// Of larger sets of uses that exclude each other, only those in each other's way are ordered.
 const MAX_PAIRS: usize = 4_000;
-/// Of a reservoir with as many uses, sums say from the start what it has in all.
-const MANY_USES: usize = 20;
 
 /// The same where uses are dispatched.
 const MAX_DISPATCHED_PAIRS: usize = 20_000;
+
+/// Of a reservoir with as many uses, sums say from the start what it has in all.
+const MANY_USES: usize = 20;
 
 /// A use of a resource in the solver.
 #[derive(Clone, Copy, Debug)]
@@ -202,7 +203,7 @@ impl Problem<'_> {
             && excluding.is_empty()
             && let Some(first) = found.iter().find_map(|critical| first_to_start(solver, critical))
         {
-            if self.num_uses() >= MANY_USES && self.can_dispatch() {
+            if self.num_uses() >= CROWD && self.can_dispatch() {
                 self.go_on_dispatching(solver);
             }
             self.decide_start(solver, &first);
