@@ -17,7 +17,7 @@ use workbench::state::editor::EditorCommand;
 use workbench::state::placing::{NewThing, VehicleStart};
 use workbench::state::terrain::TerrainCommand;
 
-use crate::Context;
+use crate::{Context, carry};
 
 /// At most this many activities are listed to start after.
 const MAX_LISTED: usize = 24;
@@ -205,15 +205,16 @@ impl Menu<'_> {
 
     /// A change, with what it does to the text.
     fn item(&mut self, ui: &mut Ui, label: &str, change: Change) {
-        let state = self.context.state;
-        let item = entry(ui, label).on_hover_ui(|ui| match state.drawing_preview(&change) {
-            Ok(preview) => {
-                ui.label(RichText::new(preview).monospace().small());
-            }
-            Err(reason) => {
-                ui.label(reason);
-            }
-        });
+        let context = self.context;
+        let item =
+            entry(ui, label).on_hover_ui(|ui| match carry::preview(ui.ctx(), context, &change).as_ref() {
+                Ok(preview) => {
+                    ui.label(RichText::new(preview.as_str()).monospace().small());
+                }
+                Err(reason) => {
+                    ui.label(reason.as_str());
+                }
+            });
         if item.clicked() {
             self.commands.send(Command::Draw(DrawCommand::Make(change)));
             ui.close();

@@ -230,3 +230,72 @@ fn a_mission_is_built_by_drawing_alone() {
     assert!(source.contains("Wake-Up()[2,3]"), "{source}");
     assert_eq!(app.json()["status"], "plan", "{source}");
 }
+
+/// Drags from one place to another, and says what the text is before the button is released.
+fn drag(app: &mut support::App, from: Pos2, to: Pos2) -> String {
+    press(app, from, PointerButton::Primary, true);
+    for part in [0.3, 0.6, 1.0] {
+        app.harness.event(Event::PointerMoved(from + (to - from) * part));
+        app.settle();
+    }
+    let before = app.harness.state().source();
+    press(app, to, PointerButton::Primary, false);
+    app.settle();
+    app.settle();
+    before
+}
+
+#[test]
+fn a_drag_from_the_connector_lets_another_activity_start_after_the_selected_one() {
+    const CONSTRAINT: &str = "constrain Wake1.end to Rest1.start [0,inf];";
+    let mut app = showing(MISSION);
+    let from = in_network(&app, "Wake#1");
+    click(&mut app, from, PointerButton::Primary);
+    let shown = app.harness.query_all_by_label("Connect Wake#1").map(|it| it.rect().center());
+    let connectors: Vec<Pos2> = shown.collect();
+    let rest = in_network(&app, "Rest#1");
+    let mut bars = app.harness.query_all_by_label_contains("Rest#1: starts");
+    let on_timeline = bars.next().expect("a bar").rect().center();
+    drop(bars);
+    assert_eq!(connectors.len(), 2, "one in the network, one on the timeline");
+    for target in [rest, on_timeline] {
+        let connector =
+            connectors.iter().min_by(|a, b| (a.y - target.y).abs().total_cmp(&(b.y - target.y).abs()));
+        let connector = *connector.expect("a connector");
+        let before = drag(&mut app, connector, target);
+        assert_eq!(before, MISSION, "nothing is done before the button is released");
+        let source = app.harness.state().source();
+        assert!(source.contains(CONSTRAINT), "{source}");
+        assert_eq!(app.json()["status"], "plan", "{source}");
+        dispatch(&mut app, "edit.undo", &json!(null));
+        assert_eq!(app.harness.state().source(), MISSION, "one step back");
+        app.settle();
+    }
+}
+
+#[test]
+fn what_is_pasted_is_declared_where_the_mission_lacks_it() {
+    let mut app = showing(MISSION);
+    dispatch(&mut app, "draw.paste", &json!("Look(ROCK, 2); Wake(); Look(ROCK, 3)"));
+    app.settle();
+    let source = app.harness.state().source();
+    assert!(source.contains("primitive Rest()[5,8];\nprimitive Look(p1, p2)[1,5];"), "{source}");
+    assert!(source.contains("Rest();\n  Look(ROCK, 2); Wake(); Look(ROCK, 3)"), "{source}");
+    assert_eq!(app.json()["status"], "plan", "{}", app.json()["diagnostics"]);
+    dispatch(&mut app, "edit.undo", &json!(null));
+    assert_eq!(app.harness.state().source(), MISSION);
+}
+
+#[test]
+fn a_new_scenario_and_its_declarations_go_to_the_file_that_is_shown() {
+    let places = "location BASE (0, 0);\n";
+    let whole = rmpl::files::joined([("", "import \"world.rmpl\";\n"), ("world.rmpl", places)]);
+    let mut app = showing(&whole);
+    dispatch(&mut app, "draw.paste", &json!("Wake()"));
+    app.settle();
+    let source = app.harness.state().source();
+    let files = rmpl::files::split(&source);
+    let expected = "import \"world.rmpl\";\n\nprimitive Wake()[1,5];\n\nscenario Mission = {\n  Wake()\n}";
+    assert_eq!(files[0].1.trim_end(), expected);
+    assert_eq!(files[1].1, places);
+}

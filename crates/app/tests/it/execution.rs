@@ -255,6 +255,72 @@ fn a_component_fails_while_its_activity_runs_its_program() {
 }
 
 #[test]
+fn the_end_of_a_run_says_how_it_came_about_and_nothing_ends_while_a_change_is_simulated() {
+    let says =
+        |app: &support::App, words: &str| app.harness.query_all_by_label_contains(words).next().is_some();
+    let mut app = executing("both-paths");
+    dispatch(&mut app, "play.end", &Value::Null);
+    assert!(says(&app, "as planned"));
+    dispatch(&mut app, "play.seek", &json!({ "time": 0 }));
+    // The end of the run before the withdrawal is no end of the run after it.
+    app.world.is_slow.set(true);
+    press(&mut app, "Withdraw Tell(PATH1=OK)#1");
+    dispatch(&mut app, "play.end", &Value::Null);
+    assert!(says(&app, "Simulating the change…"));
+    for words in ["Mission completed", "✓ finished", "as planned"] {
+        assert!(!says(&app, words), "{words}");
+    }
+    app.world.is_slow.set(false);
+    app.settle();
+    dispatch(&mut app, "play.end", &Value::Null);
+    assert!(says(&app, "after 1 replan"));
+    assert!(!says(&app, "as planned"));
+}
+
+/// What was planned, what happened and what was replanned are on one timeline.
+#[test]
+fn the_timeline_shows_the_original_plan_and_the_turns_of_the_run() {
+    let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size([1600.0, 2400.0]));
+    app.settle();
+    app.harness.state_mut().open("both-paths").expect("it is an example");
+    app.settle();
+    press(&mut app, "Execute");
+    let removed = |app: &support::App| !app.texts_of("Removed from the plan").is_empty();
+    let flag = |app: &support::App| app.harness.query_all_by_label_contains("Replanned at 0").count();
+    assert!(!removed(&app) && flag(&app) == 0);
+    press(&mut app, "Withdraw Tell(PATH1=OK)#1");
+    assert!(removed(&app), "the traverse of path 1 was planned");
+    // In the Execution panel, and as a flag above the timeline, which goes to its time.
+    assert_eq!(flag(&app), 2);
+    dispatch(&mut app, "play.seek", &json!({ "time": 400 }));
+    let flags = app.harness.query_all_by_role(Role::Button);
+    let label = |node: &egui_kittest::Node<'_>| node.accesskit_node().label().unwrap_or_default();
+    flags.into_iter().find(|node| label(node).starts_with("Replanned at 0")).expect("a flag").click();
+    app.settle();
+    assert_eq!(app.json()["time"], 0.0);
+    let views = json!({ "name": "structure" });
+    dispatch(&mut app, "view.grouping", &views);
+    assert!(removed(&app), "in other lanes, too");
+}
+
+#[test]
+fn what_may_go_wrong_next_is_in_sight_in_small_windows_too() {
+    for size in [[1024.0, 700.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+        let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size(size));
+        app.settle();
+        app.harness.state_mut().open("both-paths").expect("it is an example");
+        app.settle();
+        dispatch(&mut app, "view.workspace", &json!("execute"));
+        app.settle();
+        let panel = app.harness.get_by_label("Execution panel").rect();
+        for name in ["Withdraw Tell(PATH1=OK)#1", "Extend Group-Traverse-Path#1", "Stop Rover1"] {
+            let button = app.harness.get_by_role_and_label(Role::Button, name).rect();
+            assert!(panel.contains_rect(button), "{size:?}: {name} at {button} in {panel}");
+        }
+    }
+}
+
+#[test]
 fn stepping_goes_from_event_to_event_of_the_run() {
     let mut app = executing_text(BOTH_PATHS);
     dispatch(&mut app, "play.forward", &Value::Null);

@@ -1,18 +1,39 @@
-//! Another plan of the same mission, such as the one that was approved, laid over a chart: where its bars were, which are
-//! new, and which are gone.
+//! Another plan of the same mission, the one that was approved or that a run began with, laid over a chart: where its bars
+//! were, which are new, and which are gone.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use smol_str::SmolStr;
-use tpn::{Network, Plan};
+use tpn::{Network, Occurrence, OccurrenceKind, Plan};
 
 use super::chart::Chart;
-use super::row::{Row, RowKind};
+use super::row::{Bar, BarKind, Row, RowKind, times};
 
 /// When things could start and end in another plan, by the names of their occurrences.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Before {
+    origin: Origin,
     times: BTreeMap<SmolStr, [[f64; 2]; 2]>,
+}
+
+/// What another plan is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Origin {
+    /// It was approved in a review: its windows count.
+    #[default]
+    Approved,
+    /// A run began with it: what was scheduled counts, against what happened and is scheduled now.
+    Planned,
+}
+
+impl Origin {
+    /// What its times are called.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Approved => "approved",
+            Self::Planned => "planned",
+        }
+    }
 }
 
 /// What differs of a bar.
@@ -32,17 +53,46 @@ pub struct Gone {
     pub times: [[f64; 2]; 2],
 }
 
+/// What was scheduled by less than this otherwise is where it was: times of runs are rounded.
+const LEAST_MOVE: f64 = 1e-6;
+
 /// Rows of what is gone, at most.
 const MAX_GONE: usize = 100;
 
 impl Before {
-    /// The plan in which each of these could start and end so.
+    /// The approved plan, in which each of these could start and end so.
     pub fn new(times: impl IntoIterator<Item = (SmolStr, [[f64; 2]; 2])>) -> Self {
-        Self { times: times.into_iter().collect() }
+        Self { origin: Origin::Approved, times: times.into_iter().collect() }
     }
-}
 
-impl Before {
+    /// The plan that a run began with: its activities as they were scheduled.
+    pub fn planned(network: &Network, plan: &Plan) -> Self {
+        let activities = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
+        let is_selected = |it: &&Occurrence| plan.selected_nodes.get(it.start.index()) == Some(&true);
+        let scheduled = activities.filter(is_selected).filter_map(|it| {
+            let [start, end] = times(plan, [it.start, it.end])?;
+            let end = end[0].max(start[0]);
+            Some((it.name.clone(), [[start[0]; 2], [end; 2]]))
+        });
+        Self { origin: Origin::Planned, times: scheduled.collect() }
+    }
+
+    /// Whether a bar is where it was, or is of a kind that is not compared.
+    fn is_same(&self, bar: &Bar, [start, end]: [[f64; 2]; 2]) -> bool {
+        match self.origin {
+            Origin::Approved => [start, end] == [bar.start, bar.end],
+            Origin::Planned => {
+                let [from, to] = bar.scheduled();
+                (from - start[0]).abs() < LEAST_MOVE && (to - end[0]).abs() < LEAST_MOVE
+            }
+        }
+    }
+
+    fn compares(&self, bar: &Bar, network: &Network) -> bool {
+        let is_activity = bar.kind == BarKind::Activity;
+        bar.is_whole(network) && !bar.kind.is_past() && (self.origin == Origin::Approved || is_activity)
+    }
+
     /// When something could start and end, if the plan had it.
     pub fn times_of(&self, name: &str) -> Option<[[f64; 2]; 2]> {
         self.times.get(name).copied()
@@ -50,7 +100,7 @@ impl Before {
 
     /// What `plan` does not have, in order of time; delays are left out.
     pub fn gone(&self, network: &Network, plan: &Plan) -> Vec<Gone> {
-        let is_selected = |it: &&tpn::Occurrence| plan.selected_nodes.get(it.start.index()) == Some(&true);
+        let is_selected = |it: &&Occurrence| plan.selected_nodes.get(it.start.index()) == Some(&true);
         let present: BTreeSet<&str> =
             network.occurrences.iter().filter(is_selected).map(|it| it.name.as_str()).collect();
         let gone = self.times.iter().filter(|(name, _)| !present.contains(name.as_str()));
@@ -68,9 +118,8 @@ impl Chart {
         if before.times.is_empty() {
             return;
         }
-        for (at, bar) in
-            self.bars.iter().enumerate().filter(|(_, bar)| bar.is_whole(network) && !bar.kind.is_past())
-        {
+        self.origin = before.origin;
+        for (at, bar) in self.bars.iter().enumerate().filter(|(_, bar)| before.compares(bar, network)) {
             let Some(occurrence) = bar.occurrence.and_then(|id| network.occurrences.get(id.index())) else {
                 continue;
             };
@@ -78,13 +127,18 @@ impl Chart {
                 None => {
                     self.changes.insert(at, BarChange::New);
                 }
-                Some(times) if times != [bar.start, bar.end] => {
+                Some(times) if !before.is_same(bar, times) => {
                     self.changes.insert(at, BarChange::Moved(times));
                 }
                 Some(_) => {}
             }
         }
         self.gone = before.gone(network, plan);
+        // What was executed of it has a bar.
+        let of_bar = |bar: &Bar| Some(network.occurrences.get(bar.occurrence?.index())?.name.clone());
+        let past: BTreeSet<SmolStr> =
+            self.bars.iter().filter(|bar| bar.kind.is_past()).filter_map(of_bar).collect();
+        self.gone.retain(|gone| !past.contains(&gone.name));
         let end = self.bars.len();
         let lane = self.next_lane(0);
         let row = |kind, name: SmolStr, depth| Row {

@@ -7,7 +7,7 @@ use rmpl::program::Program;
 use smol_str::SmolStr;
 use tpn::{CausalLink, LabelId, Network, OccurrenceId, Ordering, Plan, UseOrdering};
 
-use super::before::{BarChange, Gone};
+use super::before::{BarChange, Gone, Origin};
 use super::category::{Category, categories};
 use super::profile::{Profile, profiles};
 use super::row::{Bar, BarKind, Item, Row};
@@ -27,7 +27,9 @@ pub struct Chart {
     pub profiles: Vec<Profile>,
     /// The flight rules, each with a row.
     pub rules: Vec<RuleTrack>,
-    /// What differs from another plan, by the number of the bar.
+    /// What another plan is that is laid over it.
+    pub origin: Origin,
+    /// What differs from that plan, by the number of the bar.
     pub changes: BTreeMap<usize, BarChange>,
     /// What only the other plan has, each with a row.
     pub gone: Vec<Gone>,

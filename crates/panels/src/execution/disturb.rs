@@ -16,18 +16,25 @@ use crate::Context;
 use crate::plan::section;
 
 /// What the buttons beside a name take, in points.
-const BUTTONS_WIDTH: f32 = 150.0;
+const BUTTONS_WIDTH: f32 = 184.0;
+/// The size of a button: large enough to be hit while the run plays.
+pub(super) const BUTTON: egui::Vec2 = egui::vec2(84.0, 28.0);
+/// So many activities and conditions are listed at first, those that come next.
+const FIRST_LISTED: usize = 4;
 
 /// How much longer or later, in mission units, and what is meant to happen to vehicles and components.
 pub(super) struct Disturb {
     amount: f64,
     vehicles: Vehicles,
     components: Components,
+    /// Whether all activities and conditions are listed.
+    lists_all: bool,
 }
 
 impl Default for Disturb {
     fn default() -> Self {
-        Self { amount: 30.0, vehicles: Vehicles::default(), components: Components::default() }
+        let (vehicles, components) = (Vehicles::default(), Components::default());
+        Self { amount: 30.0, vehicles, components, lists_all: false }
     }
 }
 
@@ -51,8 +58,16 @@ impl Disturb {
                 ui.add(field.suffix(suffix(unit))).labelled_by(name);
             });
             natures(ui, context, shown, commands);
-            for &pending in &all {
+            let listed = if self.lists_all { all.len() } else { FIRST_LISTED.min(all.len()) };
+            for &pending in &all[..listed] {
                 ui.horizontal(|ui| self.row(ui, shown, pending, commands));
+            }
+            if all.len() > FIRST_LISTED {
+                let rest = all.len() - FIRST_LISTED;
+                let more = if self.lists_all { "Show fewer".to_owned() } else { format!("Show {rest} more") };
+                if ui.link(more).clicked() {
+                    self.lists_all = !self.lists_all;
+                }
             }
             self.vehicles.show(ui, context, commands);
             self.components.show(ui, context, shown, &all, commands);
@@ -64,15 +79,14 @@ impl Disturb {
         let id = pending.occurrence;
         let name = now::name(shown, id);
         let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return };
-        let name_size =
-            egui::vec2((ui.available_width() - BUTTONS_WIDTH).max(60.0), ui.spacing().interact_size.y);
+        let name_size = egui::vec2((ui.available_width() - BUTTONS_WIDTH).max(60.0), BUTTON.y);
         ui.allocate_ui_with_layout(name_size, Layout::left_to_right(Align::Center), |ui| {
             ui.set_min_width(name_size.x);
-            ui.add(egui::Label::new(&name).truncate());
+            ui.add(egui::Label::new(now::words(shown, id)).truncate());
         });
         ui.horizontal(|ui| {
             let mut button = |ui: &mut Ui, text: &str, make: &dyn Fn() -> ExecutionCommand| {
-                let response = ui.button(text);
+                let response = ui.add(egui::Button::new(text).min_size(BUTTON));
                 response.widget_info(|| {
                     egui::WidgetInfo::labeled(egui::Role::Button, true, format!("{text} {name}"))
                 });

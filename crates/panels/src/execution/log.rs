@@ -15,7 +15,11 @@ use crate::plan::section;
 /// Shows the log up to the time shown.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
     let time = context.state.playback.time;
-    let seen: Vec<&Entry> = shown.run.log.iter().filter(|entry| has_come(entry.time, time)).collect();
+    // While a change is simulated, nobody knows how the run ends.
+    let is_open = context.state.execution.is_working();
+    let is_known = |entry: &&Entry| !(is_open && matches!(entry.happening, Happening::Finished));
+    let come = shown.run.log.iter().filter(|entry| has_come(entry.time, time));
+    let seen: Vec<&Entry> = come.filter(is_known).collect();
     let vertices = |entry: &&&Entry| match &entry.happening {
         Happening::Executed { name } => !name.contains(".vertex"),
         _ => true,

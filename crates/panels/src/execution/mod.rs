@@ -6,6 +6,7 @@ mod components;
 mod disturb;
 mod log;
 mod now;
+pub(crate) mod story;
 mod vehicles;
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
@@ -58,8 +59,8 @@ impl Panel for ExecutionPanel {
         );
         egui::CentralPanel::default().frame(frame).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                now::show(ui, context, shown, commands);
                 self.disturb.show(ui, context, shown, commands);
+                now::show(ui, context, shown, commands);
                 now::upcoming(ui, context, shown, commands);
                 ui.add_space(space::L);
             });

@@ -1,19 +1,19 @@
 //! How the run stands: a line on top, then what is under way, what holds, what comes next and what is due.
 
 use egui::{CornerRadius, Frame, Margin, RichText, Ui};
-use executive::{Ending, Happening};
+use executive::Ending;
 use theme::icon::{self, Icon};
 use theme::{space, strong};
-use tpn::OccurrenceId;
+use tpn::{OccurrenceId, OccurrenceKind};
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
 use workbench::state::execution::{Pending, has_come};
 use workbench::state::playback::number;
 use workbench::time_text;
 
-use super::Shown;
+use super::{Shown, story};
 use crate::Context;
-use crate::plan::{counted, section, selectable_row};
+use crate::plan::{section, selectable_row};
 
 /// So many of the things to come are listed.
 const MAX_LISTED: usize = 5;
@@ -22,40 +22,19 @@ const MAX_LISTED: usize = 5;
 pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     let tokens = context.tokens;
     let time = context.state.playback.time;
-    let seen = shown.run.log.iter().filter(|entry| has_come(entry.time, time));
-    let mut sign = (Icon::Play, tokens.info, tokens.soft[3], "In progress".to_owned());
-    let mut because = None;
-    let mut replans = 0;
-    for entry in seen {
-        let at = time_text::short(entry.time);
-        match &entry.happening {
-            Happening::Violation { reason, .. } => because = Some(reason.clone()),
-            Happening::Replanned { changes } => {
-                replans += 1;
-                let how = if changes.is_empty() { "same choices".to_owned() } else { changes.join(", ") };
-                sign = (Icon::Warning, tokens.warning, tokens.soft[1], format!("Replanned at {at}: {how}"));
-            }
-            Happening::Stopped { reason } => {
-                sign =
-                    (Icon::Error, tokens.error, tokens.soft[2], format!("Stopped safely at {at}: {reason}"));
-            }
-            Happening::Finished => {
-                let after = match replans {
-                    0 => "as planned".to_owned(),
-                    count => format!("after {}", counted(count, "replan")),
-                };
-                let text = format!("Mission completed at {at}, {after}");
-                sign = (Icon::Check, tokens.good, tokens.soft[0], text);
-            }
-            _ => {}
-        }
+    let last = story::turns(shown.run, time).pop();
+    let mut sign = (Icon::Play, tokens.info, tokens.soft[3]);
+    let (mut text, mut because) = ("In progress".to_owned(), None);
+    if let Some(last) = last {
+        sign = last.kind.look(tokens);
+        (text, because) = (last.text, last.because);
     }
     if context.state.execution.is_working() {
         // What is drawn does not have the last disturbance yet.
-        let text = "Simulating the change…".to_owned();
-        (sign, because) = ((Icon::Working, tokens.info, tokens.soft[3], text), None);
+        sign = (Icon::Working, tokens.info, tokens.soft[3]);
+        (text, because) = ("Simulating the change…".to_owned(), None);
     }
-    let (icon, color, fill, text) = sign;
+    let (icon, color, fill) = sign;
     let frame = Frame::new()
         .fill(fill)
         .corner_radius(CornerRadius::same(4))
@@ -139,7 +118,7 @@ fn row(
 ) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = space::S;
-        let name = name(shown, pending.occurrence);
+        let name = words(shown, pending.occurrence);
         let selection = Selection::Occurrence(pending.occurrence);
         let is_selected = context.state.selection == selection;
         let button = egui::Button::selectable(is_selected, RichText::new(&name));
@@ -151,7 +130,17 @@ fn row(
     });
 }
 
-/// The name of an occurrence on screen.
+/// What an occurrence is called where it is read: an activity with its arguments, or a condition.
+pub(super) fn words(shown: Shown<'_>, id: OccurrenceId) -> String {
+    let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return String::new() };
+    let condition = shown.network.labels.iter().find(|label| label.owner == Some(id));
+    match condition.filter(|_| occurrence.kind == OccurrenceKind::Assertion) {
+        Some(label) => label.text.to_string(),
+        None => layout::text::activity_name(occurrence).to_string(),
+    }
+}
+
+/// The name of an occurrence in programs.
 pub(super) fn name(shown: Shown<'_>, occurrence: OccurrenceId) -> String {
     shown.network.occurrences.get(occurrence.index()).map_or_else(String::new, |it| it.name.to_string())
 }

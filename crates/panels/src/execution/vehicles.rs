@@ -1,13 +1,13 @@
 //! Disturbances of what drives: a vehicle slows down or stops, and something stands in the way.
 
-use egui::{DragValue, RichText, Ui};
+use egui::{Align, DragValue, Layout, RichText, Ui};
 use exact::Rational;
 use workbench::command::{Command, CommandSender};
 use workbench::state::execution::{ExecutionCommand, exact_time};
 use workbench::state::terrain::{TerrainCommand, Tool};
 use workbench::time_text;
 
-use super::disturb::suffix;
+use super::disturb::{BUTTON, suffix};
 use crate::Context;
 use crate::plan::section;
 
@@ -44,9 +44,14 @@ impl Vehicles {
         let duration = exact_time(self.duration);
         for vehicle in declared {
             ui.horizontal(|ui| {
-                ui.label(vehicle.name.text.as_str());
+                let name_width = (ui.available_width() - 2.0 * BUTTON.x - 16.0).max(60.0);
+                let size = egui::vec2(name_width, BUTTON.y);
+                ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+                    ui.set_min_width(name_width);
+                    ui.add(egui::Label::new(vehicle.name.text.as_str()).truncate());
+                });
                 for (text, percent) in [("Stop", 0.0), ("Slow", self.percent)] {
-                    let response = ui.button(text);
+                    let response = ui.add(egui::Button::new(text).min_size(BUTTON));
                     let name = format!("{text} {}", vehicle.name.text);
                     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
                     if response.clicked() {
@@ -59,7 +64,7 @@ impl Vehicles {
             });
         }
         let is_placing = context.state.terrain.tool == Tool::Appear;
-        let button = egui::Button::new("Add obstacle…").selected(is_placing);
+        let button = egui::Button::new("Add obstacle…").selected(is_placing).min_size(BUTTON);
         let hint = "Click the map, or drag from the obstacle's center outwards";
         if ui.add(button).on_hover_text(hint).clicked() {
             commands.send(Command::Terrain(TerrainCommand::Take(Tool::Appear)));

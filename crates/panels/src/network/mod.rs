@@ -207,6 +207,7 @@ impl NetworkPanel {
         self.carry(ui, context, panel, &response, (network, plan), commands);
         self.move_view(ui, context, panel, &response, (snapshot, network));
 
+        self.show_connector(ui, context, panel, network);
         let act = landmarks::show(ui, panel, &self.view, &self.drawn, network, (context, commands));
         let overview = if options.minimap { minimap::place(panel, &self.view, &self.drawn) } else { None };
         let pointer =
@@ -464,6 +465,16 @@ impl NetworkPanel {
             let is_left = self.view.drawing_point(panel, at).x < bounds.center().x;
             carry::over_activity(ui, context, span, is_left, commands);
         }
+    }
+
+    /// The connector behind the selected activity.
+    fn show_connector(&self, ui: &Ui, context: &Context<'_>, panel: Rect, network: &Network) {
+        let selection = &*context.state.selection;
+        let selected = selection.occurrence(network).and_then(|id| network.occurrences.get(id.index()));
+        let Some((occurrence, span)) = selected.and_then(|it| Some((it, it.span?))) else { return };
+        let Some(bounds) = Highlight::of(selection, network).bounds(&self.drawn.drawing) else { return };
+        let end = self.view.screen_rect(panel, bounds).right_center();
+        carry::connector(ui, context, end, panel, (span, &occurrence.name));
     }
 
     /// What is under the pointer: a shape, or a curve over the shapes.

@@ -153,6 +153,10 @@ fn switches(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
             let help = "Show the last approved plan here and on the network";
             changed |= ui.checkbox(&mut view.approved, "Approved plan").on_hover_text(help).changed();
         }
+        if context.state.is_executing() {
+            let help = "Dashed outlines of the plan that the run started with";
+            changed |= ui.checkbox(&mut view.planned, "Original plan").on_hover_text(help).changed();
+        }
         for (value, name, help) in all(view) {
             changed |= ui.checkbox(value, name).on_hover_text(help).changed();
         }

@@ -13,15 +13,18 @@ mod paint;
 mod past;
 mod profile;
 mod rule;
+mod turn;
 mod view;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use egui::{
-    CursorIcon, PointerButton, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Color32, CursorIcon, FontId, PointerButton, Rect, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo,
+    pos2, vec2,
 };
 use layout::list::timeline::{LinkCurve, Standing, TimelineState, legend_list, timeline_list};
+use layout::timeline::before::Before;
 use layout::timeline::{Bar, Chart, RowKind, state, times};
 use review::Review;
 use smol_str::SmolStr;
@@ -91,6 +94,8 @@ const MIN_TARGET: f32 = 6.0;
 const MIN_HANDLED: f32 = 12.0;
 /// With more bars in view than this, they are not few.
 const MAX_FEW_BARS: usize = 150;
+/// The room of a name in its bar beyond the name itself, and that from the bar to a name beside it.
+const NAME_MARGIN: f32 = 8.0;
 /// A timeline with less height than this has no legend.
 const MIN_HEIGHT: f32 = 150.0;
 
@@ -171,6 +176,8 @@ impl TimelinePanel {
             chart.compare_with_free(if step.is_none() { snapshot.plan().unwrap_or(plan) } else { plan });
             let before =
                 review.as_ref().filter(|_| approved.is_some()).and_then(|_| state.review.approved_times());
+            let planned = run.filter(|_| view.planned).and_then(|run| run.plans.first());
+            let before = before.or_else(|| planned.map(|first| Before::planned(&first.network, &first.plan)));
             if let Some(before) = before {
                 chart.compare_with(&before, network, plan);
             }
@@ -247,6 +254,7 @@ impl TimelinePanel {
             let part = (scrolled.state.unclamped_offset().y / all_rows, seen);
             overview::paint(ui, context, column, silhouette, part, (&view, axis, chart.horizon));
         }
+        turn::show(ui, context, (axis, &view), below.bottom(), commands);
         self.show_divider(ui, rect, axis.left());
         if has_legend {
             let place = Rect::from_min_max(
@@ -342,6 +350,7 @@ impl TimelinePanel {
         match chosen {
             Some(chosen) => {
                 bounds::show(ui, painting, chosen, &mut self.bound_drag, &mut self.drags, commands);
+                show_connector(ui, painting, chosen);
             }
             None => self.bound_drag = None,
         }
@@ -624,6 +633,20 @@ fn show_bar(
     }
     let response = ui.interact(area, ui.scope_id().with(("bar", at)), sense(is_selected));
     respond(ui, &response, painting, plan, (row, bar), is_selected, commands)
+}
+
+/// The connector behind the selected bar.
+fn show_connector(ui: &Ui, painting: &Painting<'_>, (row, bar): (usize, &Bar)) {
+    let occurrence = bar.occurrence.and_then(|id| painting.network.occurrences.get(id.index()));
+    let Some(occurrence) = occurrence.filter(|_| bar.label.is_none()) else { return };
+    let Some(span) = occurrence.span else { return };
+    let place = painting.bar_rect(bar, row);
+    // A name that has no room in its bar is beside it.
+    let font = FontId::proportional(theme::size::SMALL);
+    let name = ui.painter().layout_no_wrap(bar.name.to_string(), font, Color32::PLACEHOLDER).size().x;
+    let beside = if name + NAME_MARGIN > place.width() { name + NAME_MARGIN } else { 0.0 };
+    let end = place.right_center() + vec2(beside, 0.0);
+    carry::connector(ui, painting.context, end, painting.visible, (span, &occurrence.name));
 }
 
 /// What is selected can be carried to another activity; a drag of anything else moves the view.

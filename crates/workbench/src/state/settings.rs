@@ -263,6 +263,8 @@ pub struct TimelineView {
     pub delays: bool,
     /// In a review, where bars were in the plan that was last approved.
     pub approved: bool,
+    /// In a run, where bars were in the plan that it began with.
+    pub planned: bool,
     /// By what the bars are grouped.
     pub grouping: Grouping,
 }
@@ -289,6 +291,7 @@ impl Default for TimelineView {
             resources: true,
             delays: false,
             approved: true,
+            planned: true,
             grouping: Grouping::default(),
         }
     }
@@ -341,6 +344,8 @@ pub struct TerrainView {
     pub grid: bool,
     /// How much room the vehicle has to the nearest obstacle.
     pub clearance: bool,
+    /// Nothing that is not data: no ground detail, shadows, tracks and sky.
+    pub data_only: bool,
     /// What the colors of the ground mean.
     pub coloring: Coloring,
     /// How much heights are exaggerated; 1 is true to scale.
@@ -368,6 +373,7 @@ impl Default for TerrainView {
             rays: true,
             sights: true,
             contours: true,
+            data_only: false,
             grid: false,
             clearance: false,
             coloring: Coloring::Natural,

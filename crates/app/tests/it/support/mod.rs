@@ -74,6 +74,18 @@ impl App {
         found
     }
 
+    /// The places where a text is drawn.
+    pub fn texts_of(&self, words: &str) -> Vec<Rect> {
+        let mut found = Vec::new();
+        self.each_text(&mut |text, clip| {
+            let rect = text.galley.rect.translate(text.pos.to_vec2());
+            if text.galley.text() == words && clip.intersects(rect) {
+                found.push(rect);
+            }
+        });
+        found
+    }
+
     /// Calls `visit` for each text that was painted, with the part of the screen outside of which it is cut.
     pub fn each_text(&self, visit: &mut dyn FnMut(&TextShape, Rect)) {
         fn each(shape: &Shape, clip: Rect, visit: &mut dyn FnMut(&TextShape, Rect)) {

@@ -11,7 +11,7 @@ impl Builder<'_> {
     pub(super) fn change(&mut self, at: usize, place: Rect, row: Rect, is_alone: bool) {
         match self.chart.changes.get(&at) {
             Some(BarChange::Moved(times)) => {
-                let words = format!("approved: {}", words(*times));
+                let words = format!("{}: {}", self.chart.origin.word(), words(*times));
                 self.former(*times, row, &words);
             }
             // In a row with others, the bar's name says that it is new.
@@ -28,7 +28,8 @@ impl Builder<'_> {
     /// The bar of something that is gone.
     pub(super) fn gone(&mut self, index: usize, row: Rect) {
         let Some(Gone { name, times }) = self.chart.gone.get(index) else { return };
-        self.former(*times, row, &format!("{name}: removed from the plan; approved: {}", words(*times)));
+        let (origin, words) = (self.chart.origin.word(), words(*times));
+        self.former(*times, row, &format!("{name}: removed from the plan; {origin}: {words}"));
         let middle = row.min.y + BAR_EDGES.iter().sum::<f64>() / 2.0;
         let [from, to] = scheduled(*times).map(|time| self.track.x(time));
         let line = Stroke::solid(ColorRole::TextMuted, 1.0);
