@@ -9,9 +9,11 @@ use theme::space;
 use workbench::Dialog;
 use workbench::command::{Command, CommandSender};
 use workbench::host::FileKind;
+use workbench::lesson::TOUR;
 use workbench::library::LibraryCommand;
 use workbench::library::{Keeping, Mission, MissionId, TEMPLATES};
 use workbench::mission_file::{self, EXAMPLES, Example};
+use workbench::state::lesson::LessonCommand;
 use workbench::state::window::WindowCommand;
 
 const WIDTH: f32 = 720.0;
@@ -20,6 +22,8 @@ const PICTURE: Vec2 = Vec2::new(72.0, 36.0);
 /// The least width of an example, and its height.
 const CARD: Vec2 = Vec2::new(210.0, 132.0);
 const CARD_PICTURE: f32 = 44.0;
+/// The greatest height of a bar in a picture.
+const MAX_BAR: f32 = 11.0;
 /// The seconds in which the time of a picture runs from start to end.
 const CARD_SECS: f64 = 4.0;
 
@@ -101,6 +105,9 @@ fn heading(ui: &mut Ui, context: &Context<'_>, query: &mut String, commands: &mu
                 }
             }
         });
+        if ui.button("Take the tour").on_hover_text("What Enroute can do, in five minutes").clicked() {
+            commands.send(Command::Lesson(LessonCommand::Open(TOUR.name.into(), 0)));
+        }
         if ui.button("Open file…").clicked() {
             commands.send(Command::Window(WindowCommand::OpenFile(FileKind::Mission)));
         }
@@ -230,10 +237,12 @@ fn picture(ui: &Ui, context: &Context<'_>, place: Rect, bars: &[[u16; 3]]) {
     ui.painter().rect_filled(place, 3.0, tokens.sunken);
     let rows = bars.iter().map(|&[_, _, row]| row).max().map_or(1.0, |last| f32::from(last) + 1.0);
     let inner = place.shrink(3.0);
-    let height = (inner.height() / rows).min(6.0);
+    let height = (inner.height() / rows).min(MAX_BAR);
+    // Few rows are in the middle.
+    let first = inner.center().y - rows * height / 2.0;
     for &[start, end, row] in bars {
         let x = |share: u16| inner.left() + inner.width() * f32::from(share.min(1000)) / 1000.0;
-        let top = inner.top() + f32::from(row) * inner.height() / rows;
+        let top = first + f32::from(row) * height;
         let bar = Rect::from_min_max(
             egui::pos2(x(start), top),
             egui::pos2(x(end).max(x(start) + 1.5), top + (height - 1.0).max(1.0)),

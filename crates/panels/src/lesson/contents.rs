@@ -5,7 +5,7 @@ use theme::icon::{self, Icon};
 use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::host::FileKind;
-use workbench::lesson::{COURSE, CourseLesson, Lesson};
+use workbench::lesson::{COURSE, CourseLesson, Lesson, TOUR};
 use workbench::state::lesson::LessonCommand;
 use workbench::state::manual::ManualCommand;
 use workbench::state::window::WindowCommand;
@@ -22,13 +22,15 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
                 RichText::new("A course from your first RMPL line to a complete mission.")
                     .color(tokens.text_muted),
             );
+            ui.add_space(space::M);
+            entry(ui, context, None, &TOUR, commands);
             let mut number = 0;
             for chapter in COURSE {
                 ui.add_space(space::L);
                 ui.label(theme::strong(chapter.title));
                 for lesson in chapter.lessons {
                     number += 1;
-                    entry(ui, context, number, lesson, commands);
+                    entry(ui, context, Some(number), lesson, commands);
                 }
             }
             if let [made @ 1..=u32::MAX, right] = context.state.settings.predictions {
@@ -59,7 +61,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
 fn entry(
     ui: &mut Ui,
     context: &Context<'_>,
-    number: usize,
+    number: Option<usize>,
     lesson: &CourseLesson,
     commands: &mut CommandSender,
 ) {
@@ -69,7 +71,8 @@ fn entry(
         let is_done = !questions.is_empty() && learned == questions.len();
         let color = if is_done { context.tokens.good } else { context.tokens.text_faint };
         icon::label(ui, if is_done { Icon::Check } else { Icon::ChevronRight }, color);
-        let button = Button::new(format!("{number}. {read}")).frame_when_inactive(false).wrap();
+        let title = number.map_or_else(|| read.clone(), |number| format!("{number}. {read}"));
+        let button = Button::new(title).frame_when_inactive(false).wrap();
         let hover = format!("{about}\n{learned} of {} questions answered", questions.len());
         if ui.add(button).on_hover_text(hover).clicked() {
             commands.send(Command::Lesson(LessonCommand::Open(lesson.name.into(), 0)));

@@ -67,7 +67,12 @@ pub const COURSE: &[Chapter] = &[
     Chapter { title: "Review", lessons: lessons!["21" "review", "22" "verified", "23" "proof"] },
 ];
 
-/// The lesson of this name.
+/// What Enroute can do, step by step, for somebody who is new: a lesson before the course.
+pub const TOUR: CourseLesson =
+    CourseLesson { name: "tour", text: include_str!("../../../../assets/lessons/tour.md") };
+
+/// The lesson of this name, or the tour.
 pub fn course_lesson(name: &str) -> Option<&'static CourseLesson> {
-    COURSE.iter().flat_map(|chapter| chapter.lessons).find(|lesson| lesson.name == name)
+    let course = COURSE.iter().flat_map(|chapter| chapter.lessons);
+    std::iter::once(&TOUR).chain(course).find(|lesson| lesson.name == name)
 }

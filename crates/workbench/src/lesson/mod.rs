@@ -20,7 +20,7 @@ use markdown::{Block, Content, Document, plain};
 use crate::mission_file;
 
 pub use ask::{Action, Answer, Ask, Choice, Forecast};
-pub use course::{COURSE, Chapter, CourseLesson, course_lesson};
+pub use course::{COURSE, Chapter, CourseLesson, TOUR, course_lesson};
 pub use expression::{Expression, Operator, Value};
 pub use glossary::{Glossary, Term};
 pub use prose::filled;

@@ -8,6 +8,7 @@ use super::spec::{PLAIN, SHIFT, called, keys, plain, when};
 use crate::command::Command;
 use crate::command::chord::Key;
 use crate::host::FileKind;
+use crate::lesson::TOUR;
 use crate::manual;
 use crate::registry::spec::{CommandSpec, Group, Scope};
 use crate::state::lesson::LessonCommand;
@@ -18,6 +19,9 @@ use crate::state::window::WindowCommand;
 pub(super) const COMMANDS: &[CommandSpec] = &[
     plain("learn.lessons", "Show lessons", Group::Help, &[keys(PLAIN, Key::L)], Scope::NotTyping, |_| {
         Command::Lesson(LessonCommand::Show)
+    }),
+    plain("learn.tour", "Take the tour", Group::Help, &[], Scope::Everywhere, |_| {
+        Command::Lesson(LessonCommand::Open(TOUR.name.into(), 0))
     }),
     plain("learn.contents", "Show course contents", Group::Help, &[], Scope::Everywhere, |_| {
         Command::Lesson(LessonCommand::Contents)

@@ -25,3 +25,4 @@ mod same;
 mod search;
 mod shared;
 mod terrain;
+mod tour;
