@@ -164,6 +164,35 @@ fn narrow_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
     split(tiles, Horizontal, &[(left, share), (right, 1.0 - share)])
 }
 
+/// Makes `tree` the layout `after` if its panels stand as they do in `before`, whichever tabs are turned to; those that the
+/// user turned to stay in front. Returns whether it is `after` now.
+pub fn refit(tree: &mut Tree<PanelKind>, before: &Tree<PanelKind>, after: Tree<PanelKind>) -> bool {
+    if unturned(tree) != unturned(before) {
+        return false;
+    }
+    let in_front = |tree: &Tree<PanelKind>| -> BTreeSet<PanelKind> {
+        let active = tree.active_tiles().into_iter();
+        active.filter_map(|id| tree.tiles.get_pane(&id).copied()).collect()
+    };
+    let turned_to: Vec<PanelKind> = in_front(tree).difference(&in_front(before)).copied().collect();
+    *tree = after;
+    for panel in turned_to {
+        tree.make_active(|_, tile| *tile == Tile::Pane(panel));
+    }
+    true
+}
+
+/// A layout with the first tabs in front.
+fn unturned(tree: &Tree<PanelKind>) -> Tree<PanelKind> {
+    let mut tree = tree.clone();
+    for tile in tree.tiles.tiles_mut() {
+        if let Tile::Container(Container::Tabs(tabs)) = tile {
+            tabs.active = tabs.children.first().copied();
+        }
+    }
+    tree
+}
+
 /// Brings a panel to the front, wherever it stands; a closed panel comes back beside the others.
 pub fn show_panel(tree: &mut Tree<PanelKind>, panel: PanelKind) {
     if tree.tiles.find_pane(&panel).is_none() {
@@ -258,6 +287,24 @@ fn split(tiles: &mut Tiles<PanelKind>, direction: LinearDir, parts: &[(TileId, f
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_window_of_another_size_has_its_own_layout_whichever_tab_is_in_front() {
+        use PanelKind::{Execution, Network};
+        let of = |size| default_layout(Arrangement::Of(Workspace::Execute), size);
+        let (wide, narrow) = (of(SizeClass::Wide), of(SizeClass::Narrow));
+        let mut tree = wide.clone();
+        show_panel(&mut tree, Execution);
+        assert!(refit(&mut tree, &wide, narrow.clone()));
+        let mut expected = narrow.clone();
+        show_panel(&mut expected, Execution);
+        assert_eq!(tree, expected, "it stays in front");
+        // What the user closed or moved stays so.
+        close_panel(&mut tree, Network);
+        let moved = tree.clone();
+        assert!(!refit(&mut tree, &narrow, wide));
+        assert_eq!(tree, moved);
+    }
 
     #[test]
     fn every_panel_has_a_place_in_a_default_layout_of_each_size() {

@@ -44,14 +44,12 @@ impl Layouts {
             return;
         }
         let of_lesson = |size| default_layout::lesson_layout(&self.lesson_rows, size);
-        if let Some(tree) = self.trees.get_mut(&Arrangement::Lesson)
-            && *tree == of_lesson(self.size)
-        {
-            *tree = of_lesson(size);
+        if let Some(tree) = self.trees.get_mut(&Arrangement::Lesson) {
+            default_layout::refit(tree, &of_lesson(self.size), of_lesson(size));
         }
         for (&arrangement, tree) in &mut self.trees {
-            if *tree == default_layout(arrangement, self.size) {
-                *tree = default_layout(arrangement, size);
+            let [before, after] = [self.size, size].map(|size| default_layout(arrangement, size));
+            if default_layout::refit(tree, &before, after) {
                 self.stored.insert(arrangement, default_layout::to_text(tree).unwrap_or_default());
             }
         }

@@ -17,6 +17,8 @@ pub struct Tab {
 }
 
 const MARGIN: f32 = 10.0;
+/// In a window narrower than this, only the active tab has room for a cross.
+const ROOM_FOR_CROSSES: f32 = 1_400.0;
 const CROSS: f32 = 16.0;
 /// The cross is pressed within a square of this size.
 const TARGET: f32 = 24.0;
@@ -28,7 +30,8 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, kind: Option<PanelKind>, id: Id,
     let font = TextStyle::Body.resolve(ui.style());
     let color = if state.active { tokens.text } else { tokens.text_muted };
     let galley = ui.painter().layout_no_wrap(title, font, color);
-    let cross_width = if kind.is_some() { CROSS + 4.0 } else { 0.0 };
+    let has_cross = state.active || ui.ctx().content_rect().width() >= ROOM_FOR_CROSSES;
+    let cross_width = if kind.is_some() && has_cross { CROSS + 4.0 } else { 0.0 };
     let size = Vec2::new(galley.size().x + 2.0 * MARGIN + cross_width, ui.available_height());
     let (_, rect) = ui.allocate_space(size);
     let response = ui.interact(rect, id, Sense::click_and_drag()).on_hover_cursor(CursorIcon::Grab);
@@ -63,7 +66,9 @@ pub fn show(ui: &mut Ui, context: &Context<'_>, kind: Option<PanelKind>, id: Id,
     }
     let at = Align2::LEFT_CENTER.anchor_size(rect.left_center() + Vec2::new(MARGIN, 0.0), galley.size()).min;
     ui.painter().galley(at, galley, color);
-    let is_closed = kind.is_some_and(|kind| cross(ui, context, kind, rect, id, &response, state.active))
+    let is_closed = kind
+        .filter(|_| has_cross)
+        .is_some_and(|kind| cross(ui, context, kind, rect, id, &response, state.active))
         || response.clicked_by(egui::PointerButton::Middle);
     Tab { response, is_closed }
 }

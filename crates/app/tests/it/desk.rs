@@ -171,3 +171,43 @@ fn a_layout_is_saved_with_the_mission_and_comes_back_by_its_name() {
     app.settle();
     assert!(!has(&app, "Terrain"));
 }
+
+#[test]
+fn menus_fit_into_a_small_window_and_their_last_entry_can_be_reached() {
+    let entry = |app: &support::App, name: &str| {
+        let mut found = app.harness.query_all_by_role_and_label(Role::MenuItem, name);
+        found.next().map(|it| it.rect())
+    };
+    let open = |app: &mut support::App, name: &str| {
+        let mut found = app.harness.query_all_by_role_and_label(Role::MenuItem, name);
+        found.next().expect("it is in the menu").click();
+        drop(found);
+        app.settle();
+        app.settle();
+    };
+    for size in [[1440.0, 420.0], [1024.0, 700.0]] {
+        let mut app = sized(size);
+        if entry(&app, "Menu").is_some() {
+            open(&mut app, "Menu");
+        }
+        open(&mut app, "View");
+        let first = entry(&app, "Panels").expect("the first entry of the menu");
+        let last = |app: &support::App| entry(app, "Maximize or restore panel").expect("its last entry");
+        let is_seen = |rect: Rect| first.top() < rect.top() && rect.bottom() < size[1] - 8.0;
+        assert!(is_seen(first.translate(egui::vec2(0.0, 1.0))), "{size:?}: {first}");
+        for _ in 0..40 {
+            if is_seen(last(&app)) {
+                break;
+            }
+            let (unit, delta) = (egui::MouseWheelUnit::Point, egui::vec2(0.0, -60.0));
+            let (modifiers, phase) = (Modifiers::NONE, egui::TouchPhase::Move);
+            let source = egui::MouseWheelSource::Wheel;
+            app.harness.event(egui::Event::PointerMoved(first.center() + egui::vec2(0.0, 90.0)));
+            app.harness.event(egui::Event::MouseWheel { unit, delta, phase, modifiers, source });
+            app.settle();
+        }
+        assert!(is_seen(last(&app)), "{size:?}: {}", last(&app));
+        open(&mut app, "Maximize or restore panel");
+        assert!(app.harness.query_by_label("Restore panels").is_some(), "{size:?}: the entry works");
+    }
+}

@@ -2,7 +2,7 @@
 
 use display::Point;
 use egui::{Align2, FontId, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
-use layout::NetworkDrawing;
+use layout::{Item, NetworkDrawing};
 use rmpl::{Severity, Span};
 use snapshot::Snapshot;
 use theme::Tokens;
@@ -15,6 +15,8 @@ use super::view::View;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mark {
     pub(super) at: Point,
+    /// How far below that the texts of its arc reach, in units of the drawing.
+    pub(super) below: f64,
     /// The arc that it is about, if it is about one.
     pub(super) arc: Option<ArcId>,
     /// How grave it is.
@@ -70,8 +72,9 @@ pub(super) fn marks(
                 Place::Arc(arc) => (place_on(drawing, network, arc), Some(arc)),
                 Place::Node(node) => (drawing.anchor(node), None),
             };
+            let below = arc.map_or(0.0, |arc| texts_below(drawing, network, arc, at));
             let (severity, message) = (problem.severity, crate::without_backticks(&problem.message));
-            Some(Mark { at, arc, severity, message, span: problem.span })
+            Some(Mark { at, below, arc, severity, message, span: problem.span })
         })
         .collect()
 }
@@ -154,13 +157,17 @@ pub(super) fn show(
 
 /// The marks in view by position, the gravest of each group first, and where each group is on the screen.
 fn grouped(panel: Rect, view: &View, marks: &[Mark]) -> Vec<(Pos2, Vec<usize>)> {
-    // Below the line: names are above it, and what is clicked is on it.
-    let below = if view.zoom() > 0.3 { OUTSIDE * view.zoom() as f32 } else { 0.0 };
+    // Below the line and its texts: names are above it, and what is clicked is on it.
+    let below = |mark: &Mark| match view.zoom() {
+        zoom if zoom > 0.3 => OUTSIDE.max(mark.below as f32) * zoom as f32,
+        _ => 0.0,
+    };
     let mut order: Vec<usize> = (0..marks.len()).collect();
     order.sort_by_key(|&number| marks[number].severity);
     let mut groups: Vec<(Pos2, Vec<usize>)> = Vec::new();
     for number in order {
-        let center = view.screen_point(panel, marks[number].at) + vec2(0.0, below + RADIUS + 3.0);
+        let mark = &marks[number];
+        let center = view.screen_point(panel, mark.at) + vec2(0.0, below(mark) + RADIUS + 3.0);
         if !panel.expand(RADIUS).contains(center) {
             continue;
         }
@@ -199,6 +206,19 @@ fn place_on(drawing: &NetworkDrawing, network: &Network, arc: ArcId) -> Point {
     most.last().map_or(shape.start, |piece| piece.end())
 }
 
+/// How far the texts of an arc reach below a place on it, where a mark there would cover them.
+fn texts_below(drawing: &NetworkDrawing, network: &Network, arc: ArcId, at: Point) -> f64 {
+    let is_own = |owner: Item| match owner {
+        Item::Arc(owner) => owner == arc,
+        Item::Label(label) => network.labels.get(label.index()).is_some_and(|label| label.arc == arc),
+        _ => false,
+    };
+    let beside = f64::from(RADIUS) + 4.0;
+    let is_there = |rect: &display::Rect| rect.min.x - beside < at.x && at.x < rect.max.x + beside;
+    let own = drawing.texts.iter().filter(|text| is_own(text.owner) && is_there(&text.rect));
+    own.map(|text| text.rect.max.y - at.y).fold(0.0, f64::max)
+}
+
 /// How much of what either covers both cover; an empty span counts as one character.
 fn share(one: Span, other: Span) -> f64 {
     let end = |span: Span| span.end.max(span.start + 1);
@@ -234,6 +254,7 @@ mod tests {
     fn marks_that_would_cover_each_other_are_one_with_the_gravest_first() {
         let mark = |x: f32, severity: Severity| Mark {
             at: Point { x: x.into(), y: 10.0 },
+            below: 0.0,
             arc: None,
             severity,
             message: String::new(),

@@ -231,6 +231,8 @@ fn show_choices(
         ui.horizontal(|ui| {
             let name = Network::decision_name(choice.decision);
             icon::label(ui, Icon::Check, context.tokens.good);
+            let text = RichText::new(&name).small().color(context.tokens.decision);
+            selectable_row(ui, context, &Selection::Decision(choice.decision), text, commands);
             let others = (0..decision.alternatives.len() as u32).filter(|&it| it != choice.alternative);
             for alternative in std::iter::once(choice.alternative).chain(others) {
                 let is_taken = alternative == choice.alternative;
@@ -243,8 +245,6 @@ fn show_choices(
                 let selection = Selection::Alternative(choice.decision, alternative);
                 selectable_row(ui, context, &selection, text, commands);
             }
-            let text = RichText::new(&name).small().color(context.tokens.decision);
-            selectable_row(ui, context, &Selection::Decision(choice.decision), text, commands);
         });
     });
 }
