@@ -7,6 +7,8 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 use crate::ground::Ground;
 
 const FIELD_OF_VIEW_RAD: f32 = 0.8;
+/// How far ahead a mounted camera looks at something.
+const MOUNTED_M: f32 = 12.0;
 const PITCH_MIN_RAD: f32 = 0.06;
 const PITCH_MAX_RAD: f32 = std::f32::consts::FRAC_PI_2 - 0.001;
 
@@ -38,6 +40,12 @@ impl Camera {
     pub fn close_up(self, target_m: Vec3, distance_m: f32) -> Self {
         let pitch_rad = self.pitch_rad.clamp(0.45, 1.1);
         Self { target_m, distance_m: distance_m.min(self.distance_m), pitch_rad, ..self }
+    }
+
+    /// A camera at a place that looks ahead, and a little down.
+    pub fn mounted(eye_m: Vec3, heading_rad: f32) -> Self {
+        let camera = Self { target_m: eye_m, yaw_rad: heading_rad, pitch_rad: 0.12, distance_m: MOUNTED_M };
+        Self { target_m: eye_m + camera.forward() * MOUNTED_M, ..camera }
     }
 
     /// The camera with its eye over the ground: raised around its target where a hill is in the way.
@@ -207,6 +215,14 @@ mod tests {
                 assert!(eye.z > ground.height_at(eye.truncate()) + 0.9, "{yaw} {distance_m} {eye}");
             }
         }
+    }
+
+    #[test]
+    fn a_mounted_camera_is_where_it_is_mounted_and_looks_ahead() {
+        let eye_m = Vec3::new(10.0, 20.0, 3.0);
+        let camera = Camera::mounted(eye_m, 0.0);
+        assert!((camera.eye_m() - eye_m).length() < 1e-4);
+        assert!(camera.forward().x > 0.9 && camera.forward().z < 0.0);
     }
 
     #[test]

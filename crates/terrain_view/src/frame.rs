@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use eframe::egui_wgpu::RenderState;
 use egui::{Color32, Painter, Rect};
-use glam::Vec3;
 use snapshot::Snapshot;
 use terrain::Terrain;
 use theme::Tokens;
@@ -63,7 +62,8 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
     let eye = camera.eye_m();
     let relief = (ground.range_m[1] - ground.range_m[0]) / view.height_scale;
     let contour = CONTOUR_STEPS_M.into_iter().find(|step| relief / step < 20.0).unwrap_or(5000.0);
-    let sun = Vec3::new(-0.55, 0.45, 0.70).normalize();
+    let sun = scene::SUN.normalize();
+    let looks_real = !view.data_only && view.coloring == Coloring::Natural;
     let horizon = rgba(tokens.sunken);
     let options = SceneOptions {
         trees: view.trees,
@@ -71,6 +71,7 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         obstacles: view.obstacles,
         rays: view.rays,
         sights: view.sights,
+        shadows: !view.data_only,
         vehicle_scale: vehicle_scale(camera.distance_m),
     };
     let appeared: Vec<_> = if state.is_executing() {
@@ -118,6 +119,8 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
                 1.0,
             ],
             horizon: [horizon[0], horizon[1], horizon[2], camera.near_m()],
+            world_from_clip: clip_from_world.inverse().to_cols_array_2d(),
+            look: [f32::from(u8::from(looks_real)), f32::from(u8::from(!view.data_only)), 0.0, 0.0],
         },
         patches: detail::patches(ground, eye, &clip_from_world, REFINEMENT),
         shapes,

@@ -32,6 +32,10 @@ pub struct ViewUniform {
     pub image: [f32; 4],
     /// The color of distance, and the distance of the near plane in meters.
     pub horizon: [f32; 4],
+    /// Column by column.
+    pub world_from_clip: [[f32; 4]; 4],
+    /// How strong the ground's detail is, and whether there is a sky (1) or not (0).
+    pub look: [f32; 4],
 }
 
 /// Everything one image depends on.
@@ -69,6 +73,7 @@ struct GroundTextures {
 }
 
 struct Pipelines {
+    sky: wgpu::RenderPipeline,
     ground: wgpu::RenderPipeline,
     shapes: wgpu::RenderPipeline,
     lines: wgpu::RenderPipeline,
@@ -228,6 +233,10 @@ impl TerrainImage {
         {
             let mut pass = targets.begin(&mut encoder, frame.background);
             pass.set_bind_group(0, &self.view_group, &[]);
+            if frame.view.look[1] > 0.0 {
+                pass.set_pipeline(&self.pipelines.sky);
+                pass.draw(0..3, 0..1);
+            }
             if let Some(ground) = self.ground_group.as_ref().filter(|_| !patches.is_empty()) {
                 pass.set_pipeline(&self.pipelines.ground);
                 pass.set_bind_group(1, ground, &[]);
@@ -435,6 +444,7 @@ impl Pipelines {
             })
         };
         Self {
+            sky: make("sky", &shape_layouts, &[], false),
             ground: make("ground", &ground_layouts, &ground_buffers, true),
             shapes: make("shape", &shape_layouts, &shape_buffers, true),
             lines: make("line", &shape_layouts, &line_buffers, false),

@@ -17,6 +17,7 @@ pub mod pick;
 mod rocks;
 pub mod scale;
 pub mod scene;
+mod shadow;
 pub mod shapes;
 mod sights;
 mod tree;

@@ -10,6 +10,7 @@ use workbench::state::growth::Growth;
 use crate::dash::{DASHES, dashed};
 use crate::driving;
 use crate::ground::Ground;
+use crate::shadow;
 use crate::shapes::{Shapes, circle_outline};
 use crate::sights;
 use crate::tree;
@@ -46,6 +47,8 @@ pub struct SceneOptions {
     pub rays: bool,
     /// What is in sight of what, as far as conditions ask.
     pub sights: bool,
+    /// Shadows of what stands on the ground and flies over it, and the tracks of wheels.
+    pub shadows: bool,
     /// How many times larger than life vehicles are drawn.
     pub vehicle_scale: f32,
 }
@@ -91,6 +94,11 @@ pub struct Sketch {
 /// The height of the posts at locations, in meters.
 pub const POST_M: f32 = 7.0;
 const FENCE_M: f32 = 2.0;
+/// Toward the sun.
+pub const SUN: Vec3 = Vec3::new(-0.55, 0.45, 0.70);
+/// Wheels leave tracks that are drawn up to this scale of vehicles: from farther away, nobody could see them.
+const MAX_TRACK_SCALE: f32 = 2.0;
+const TRACK_COLOR: [f32; 4] = [0.16, 0.10, 0.07, 0.55];
 
 /// Builds the scene.
 pub fn build(input: &SceneInput<'_>) -> Shapes {
@@ -302,12 +310,13 @@ fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
         let Some((position, heading_rad)) = vehicle_pose(snapshot, index, time) else { continue };
         let selected = *input.selection == Selection::Vehicle(vehicle.name.text.clone());
         let color = palette.vehicles[index % palette.vehicles.len()];
-        trail(shapes, input, index, color);
         let model = snapshot::vehicle::model(&snapshot.program.world, &vehicle.model.text);
         let (length_m, width_m) =
             model.map_or((1.0, 0.8), |model| (model.length_m as f32, model.width_m as f32));
         // Airships are large enough to be seen as they are.
         let height_m = flight_height_m(ground, &snapshot.program.world, vehicle, position);
+        let has_tracks = options.shadows && height_m.is_none() && options.vehicle_scale <= MAX_TRACK_SCALE;
+        trail(shapes, input, index, (color, has_tracks.then_some(width_m * options.vehicle_scale * 0.84)));
         let scale = if height_m.is_some() { options.vehicle_scale.sqrt() } else { options.vehicle_scale };
         let shape = VehicleShape {
             place_m: position,
@@ -318,18 +327,29 @@ fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
         };
         let around = if selected { palette.selected } else { color };
         ring(shapes, input, position, shape.length_m * 0.85, around, if selected { 3.0 } else { 1.6 });
+        let mut body = Shapes::default();
         match height_m {
             Some(height_m) => {
                 let foot = ground.drape(position, 0.0);
                 shapes.line(foot, foot + Vec3::Z * height_m, 1.2, faded(palette.light, 0.5));
-                airship(shapes, &shape, foot.z + height_m);
+                airship(&mut body, &shape, foot.z + height_m);
             }
-            None => rover(shapes, ground, &shape),
+            None => rover(&mut body, ground, &shape),
         }
+        if options.shadows {
+            shadow::cast(shapes, ground, &body, SUN);
+        }
+        shapes.append(body);
     }
 }
 
-fn trail(shapes: &mut Shapes, input: &SceneInput<'_>, vehicle: usize, color: [f32; 4]) {
+/// The way that a vehicle has come, with the tracks of its wheels where they are so far apart.
+fn trail(
+    shapes: &mut Shapes,
+    input: &SceneInput<'_>,
+    vehicle: usize,
+    (color, gauge_m): ([f32; 4], Option<f32>),
+) {
     let motion = input.snapshot.motions.iter().find(|motion| motion.vehicle as usize == vehicle);
     let Some((motion, (now, _))) = motion.and_then(|motion| Some((motion, motion.at(input.time)?))) else {
         return;
@@ -340,6 +360,12 @@ fn trail(shapes: &mut Shapes, input: &SceneInput<'_>, vehicle: usize, color: [f3
         let is_done = frame_time > input.time;
         let next = place(if is_done { now } else { frame.position_m });
         if let Some(before) = before.filter(|before| before.distance(next) > 0.01) {
+            if let Some(gauge_m) = gauge_m {
+                let aside = (next - before).normalize_or_zero().perp() * (gauge_m / 2.0);
+                for side in [aside, -aside] {
+                    shapes.draped_line(input.ground, [before + side, next + side], 3.0, TRACK_COLOR);
+                }
+            }
             // The leader's trail is wider, so that those that follow in its track are seen on it.
             let width = if vehicle == 0 { 6.0 } else { 3.0 };
             shapes.draped_line(input.ground, [before, next], width, color);

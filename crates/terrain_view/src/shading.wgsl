@@ -9,6 +9,8 @@ struct View {
     range: vec4<f32>,        // least and greatest height, contour interval, grid spacing
     image: vec4<f32>,        // width and height in pixels, colouring, overlay strength
     horizon: vec4<f32>,      // colour of distance, distance of the near plane
+    world_from_clip: mat4x4<f32>,
+    look: vec4<f32>,         // x strength of ground detail, y whether there is a sky
 };
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -65,15 +67,57 @@ fn line_at(value: f32, spacing: f32) -> f32 {
     return (1.0 - smoothstep(0.5, 1.5, nearest / width)) * (1.0 - smoothstep(0.15, 0.4, width));
 }
 
+fn hash(cell: vec2<f32>) -> f32 {
+    let at = vec2<i32>(cell);
+    var n = (u32(at.x) * 1597334677u) ^ (u32(at.y) * 3812015801u);
+    n = (n ^ (n >> 16u)) * 2246822519u;
+    n = (n ^ (n >> 13u)) * 3266489917u;
+    return f32((n >> 8u) & 0xffffu) / 65535.0;
+}
+
+// Smooth noise between 0 and 1, and its slope.
+fn noise(at: vec2<f32>) -> vec3<f32> {
+    let cell = floor(at);
+    let f = at - cell;
+    let u = f * f * (3.0 - 2.0 * f);
+    let du = 6.0 * f * (1.0 - f);
+    let a = hash(cell);
+    let b = hash(cell + vec2<f32>(1.0, 0.0));
+    let c = hash(cell + vec2<f32>(0.0, 1.0));
+    let d = hash(cell + vec2<f32>(1.0, 1.0));
+    let k = a - b - c + d;
+    let value = a + (b - a) * u.x + (c - a) * u.y + k * u.x * u.y;
+    return vec3<f32>(value, du * (vec2<f32>(b - a, c - a) + k * u.yx));
+}
+
+// Grains of the ground down to a few centimetres, each size as long as it is larger than a pixel: a shade, and a slope.
+fn grains(at: vec2<f32>, pixel_m: f32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    var size = 6.0;
+    for (var octave = 0; octave < 5; octave += 1) {
+        let strength = 1.0 - smoothstep(0.12, 0.45, pixel_m / size);
+        if (strength > 0.0) {
+            let own = noise(at / size + f32(octave) * 17.3);
+            sum += vec3<f32>((own.x - 0.5) * 0.16, own.yz * 0.13) * strength;
+        }
+        size *= 0.36;
+    }
+    return sum;
+}
+
 @fragment
 fn ground_fragment(in: GroundVertex) -> @location(0) vec4<f32> {
-    let normal = normalize(textureSample(normals, smooth_sampler, in.uv).xyz * 2.0 - 1.0);
+    let smooth_normal = normalize(textureSample(normals, smooth_sampler, in.uv).xyz * 2.0 - 1.0);
+    let pixel_m = length(fwidth(in.world.xy));
+    var detail = vec3<f32>(0.0);
+    if (view.look.x > 0.0) { detail = grains(in.world.xy - view.origin_cell.xy, pixel_m) * view.look.x; }
+    let normal = normalize(smooth_normal - vec3<f32>(detail.yz, 0.0));
     let span = max(view.range.y - view.range.x, 1e-3);
     let height = (in.world.z - view.range.x) / span;
-    let slope = atan(length(normal.xy) / max(normal.z, 1e-3) / view.origin_cell.w);
+    let slope = atan(length(smooth_normal.xy) / max(smooth_normal.z, 1e-3) / view.origin_cell.w);
     let light = view.sun.w + (1.0 - view.sun.w) * max(dot(normal, view.sun.xyz), 0.0);
     let mode = u32(view.image.z);
-    var color = mars(height, slope);
+    var color = mars(height, slope) * (1.0 + detail.x);
     if (mode == 1u) { color = ramp(height); }
     if (mode == 2u) { color = ramp(slope / 0.6); }
     // What lies on the ground is shaded with it, so that the relief stays visible.
@@ -90,6 +134,33 @@ fn ground_fragment(in: GroundVertex) -> @location(0) vec4<f32> {
     let away = distance(in.world, view.eye.xyz);
     let haze = smoothstep(0.35, 1.3, away / max(view.eye.w, 1.0)) * 0.35;
     return vec4<f32>(mix(color, view.horizon.rgb, haze), 1.0);
+}
+
+struct SkyVertex {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) far: vec4<f32>,
+};
+
+// One triangle over the whole image, behind everything.
+@vertex
+fn sky_vertex(@builtin(vertex_index) corner: u32) -> SkyVertex {
+    let at = vec2<f32>(f32(corner & 1u) * 4.0 - 1.0, f32(corner >> 1u) * 4.0 - 1.0);
+    var out: SkyVertex;
+    out.clip = vec4<f32>(at, 1.0, 1.0);
+    out.far = view.world_from_clip * vec4<f32>(at, 0.99, 1.0);
+    return out;
+}
+
+@fragment
+fn sky_fragment(in: SkyVertex) -> @location(0) vec4<f32> {
+    let direction = normalize(in.far.xyz / in.far.w - view.eye.xyz);
+    let low = vec3<f32>(0.78, 0.63, 0.50);
+    let high = vec3<f32>(0.38, 0.34, 0.33);
+    var color = mix(low, high, smoothstep(0.0, 0.45, direction.z));
+    let glow = pow(max(dot(direction, view.sun.xyz), 0.0), 48.0);
+    color = mix(color, vec3<f32>(0.96, 0.93, 0.90), glow * 0.7);
+    // Below the horizon is nothing: the ground ends there.
+    return vec4<f32>(mix(color, view.horizon.rgb, smoothstep(0.0, 0.12, -direction.z)), 1.0);
 }
 
 struct ShapeVertex {

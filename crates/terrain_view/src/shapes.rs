@@ -48,6 +48,12 @@ impl Shapes {
         }
     }
 
+    /// Adds others after these.
+    pub fn append(&mut self, mut others: Self) {
+        self.triangles.append(&mut others.triangles);
+        self.lines.append(&mut others.lines);
+    }
+
     /// Three corners; its normal is up for a counter-clockwise order seen from above.
     pub fn triangle(&mut self, corners: [Vec3; 3], color: [f32; 4]) {
         let normal =

@@ -55,6 +55,8 @@ pub struct TerrainPanel {
     flight: Option<Flight>,
     /// The vehicle that the camera follows, as an index into the program's world.
     follow: Option<usize>,
+    /// The vehicle that the camera is mounted on, likewise.
+    onboard: Option<usize>,
     drag: Option<Drag>,
     /// Where a tool's drag began.
     pressed_m: Option<Vec2>,
@@ -89,7 +91,8 @@ impl Panel for TerrainPanel {
         let views = &context.state.settings.views;
         let mut view = views.terrain.clone();
         let followed = self.follow;
-        toolbar::show(ui, context, snapshot, &mut view, &mut self.follow, commands);
+        let mounts = [&mut self.follow, &mut self.onboard];
+        toolbar::show(ui, context, snapshot, &mut view, mounts, commands);
         if view != views.terrain {
             commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(workbench::state::Views {
                 terrain: view.clone(),
@@ -221,7 +224,7 @@ impl TerrainPanel {
             let under = response.hover_pos().and_then(|pointer| scene.hit(pointer));
             navigate::update(response, &mut moved, scene.size(), under);
             if moved != wanted {
-                self.flight = None;
+                (self.flight, self.onboard) = (None, None);
                 if moved.target_m != wanted.target_m && !is_zoomed(&wanted, &moved) {
                     self.follow = None;
                 }
@@ -378,7 +381,7 @@ fn show_without_world(ui: &mut egui::Ui, context: &Context<'_>, commands: &mut C
     const WORLD: &str = "terrain \"tai-plain\";\nlocation BASE (40, 40);\n\n";
     ui.vertical_centered(|ui| {
         ui.add_space((ui.available_height() * 0.3).max(space::L));
-        ui.set_max_width(ui.available_width().min(380.0));
+        ui.set_max_width((ui.available_width() - 2.0 * space::L).min(380.0));
         let text = "This mission has no places. Add a terrain and a location to see its map.";
         ui.label(RichText::new(text).color(context.tokens.text_muted));
         ui.add_space(space::M);

@@ -1,10 +1,11 @@
 //! Where the camera goes by itself: view actions, flights, and vehicles that it follows.
 
 use egui::Response;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use snapshot::Snapshot;
 use terrain_view::camera::Camera;
 use terrain_view::flight::Flight;
+use terrain_view::ground::Ground;
 use terrain_view::{pick, scene};
 use workbench::PanelKind;
 use workbench::ViewAction;
@@ -15,6 +16,9 @@ use crate::Context;
 
 /// How near the camera comes to a place that it flies to, in meters.
 const NEAR_M: f32 = 45.0;
+
+/// How high over the ground a rover's camera is, in meters.
+const MAST_M: f32 = 1.3;
 
 /// From how far two places are seen that are so far apart, with some ground around them.
 const AROUND: f32 = 1.6;
@@ -28,6 +32,10 @@ impl TerrainPanel {
         let (Some(mut camera), Some(shown)) = (self.camera, &self.ground) else { return };
         let ground = &shown.ground;
         let time = context.state.playback.time;
+        if let Some(camera) = self.onboard.and_then(|index| onboard(ground, snapshot, index, time)) {
+            (self.camera, self.drawn, self.flight) = (Some(camera), Some(camera), None);
+            return;
+        }
         let followed = self.follow.and_then(|index| {
             let world = &snapshot.program.world;
             let vehicle = world.vehicles.get(index)?;
@@ -124,10 +132,23 @@ impl TerrainPanel {
     }
 
     fn fly(&mut self, from: Camera, to: Camera, context: &Context<'_>) {
+        self.onboard = None;
         if context.state.system.reduces_motion {
             (self.camera, self.flight) = (Some(to), None);
         } else {
             self.flight = Some(Flight::new(from, to, context.now_secs));
         }
     }
+}
+
+/// What a camera on the mast of a vehicle sees ahead.
+fn onboard(ground: &Ground, snapshot: &Snapshot, index: usize, time: f64) -> Option<Camera> {
+    let world = &snapshot.program.world;
+    let vehicle = world.vehicles.get(index)?;
+    let (place, heading_rad) = scene::vehicle_pose(snapshot, index, time)?;
+    let model = snapshot::vehicle::model(world, &vehicle.model.text);
+    let length_m = model.map_or(1.0, |model| model.length_m as f32);
+    let height_m = scene::flight_height_m(ground, world, vehicle, place).unwrap_or(MAST_M);
+    let nose = place + Vec2::from_angle(heading_rad) * length_m * 0.6;
+    Some(Camera::mounted(ground.drape(nose, height_m), heading_rad))
 }

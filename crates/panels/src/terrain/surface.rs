@@ -47,7 +47,8 @@ impl TerrainPanel {
                 map.map_or_else(|| Ground::flat(Vec2::ZERO, 300.0), |map| from_map(map, view.height_scale));
             let is_new_place = self.ground.as_ref().is_none_or(|before| before.key != key);
             if is_new_place {
-                (self.camera, self.flight, self.follow) = (None, None, None);
+                (self.camera, self.flight) = (None, None);
+                (self.follow, self.onboard) = (None, None);
             }
             if let (Some(state), Some(image)) = (context.render_state, &mut self.image) {
                 image.set_ground(state, &ground);

@@ -13,13 +13,13 @@ use workbench::state::window::WindowCommand;
 
 use crate::Context;
 
-/// Shows the row. `follow` is the vehicle that the camera follows.
+/// Shows the row. `mounts` are the vehicle that the camera follows, and the one that it is mounted on.
 pub fn show(
     ui: &mut Ui,
     context: &Context<'_>,
     snapshot: &Snapshot,
     view: &mut TerrainView,
-    follow: &mut Option<usize>,
+    mounts: [&mut Option<usize>; 2],
     commands: &mut CommandSender,
 ) {
     ui.add_space(space::XS);
@@ -27,7 +27,7 @@ pub fn show(
         ui.add_space(space::S);
         ui.spacing_mut().item_spacing.x = space::S;
         ui.menu_button("Show", |ui| show_menu(ui, view));
-        ui.menu_button("Camera", |ui| camera_menu(ui, context, snapshot, follow, commands));
+        ui.menu_button("Camera", |ui| camera_menu(ui, context, snapshot, mounts, commands));
         tools(ui, context, commands);
         let has_paths = !snapshot.traverses.is_empty();
         let is_growing = context.state.terrain.growth.shown().is_some();
@@ -56,6 +56,7 @@ fn show_menu(ui: &mut Ui, view: &mut TerrainView) {
         (&mut view.clearance, "Clearance map", "Distance to the nearest obstacle (C)"),
         (&mut view.contours, "Contours", "Contour lines"),
         (&mut view.grid, "Grid", "A grid in mission coordinates"),
+        (&mut view.data_only, "Data only", "No ground detail, shadows, wheel tracks and sky"),
     ] {
         ui.checkbox(value, name).on_hover_text(help);
     }
@@ -71,7 +72,7 @@ fn camera_menu(
     ui: &mut Ui,
     context: &Context<'_>,
     snapshot: &Snapshot,
-    follow: &mut Option<usize>,
+    [follow, onboard]: [&mut Option<usize>; 2],
     commands: &mut CommandSender,
 ) {
     let is_selected = !context.state.selection.is_none();
@@ -90,13 +91,16 @@ fn camera_menu(
     let vehicles = &snapshot.program.world.vehicles;
     if !vehicles.is_empty() {
         ui.separator();
-        let mut followed = *follow;
-        ui.radio_value(&mut followed, None, "Free camera");
+        let before = (*follow, *onboard);
+        let mut mounted = before;
+        ui.radio_value(&mut mounted, (None, None), "Free camera");
         for (index, vehicle) in vehicles.iter().enumerate() {
-            ui.radio_value(&mut followed, Some(index), format!("Follow {}", vehicle.name.text));
+            let name = &vehicle.name.text;
+            ui.radio_value(&mut mounted, (Some(index), None), format!("Follow {name}"));
+            ui.radio_value(&mut mounted, (None, Some(index)), format!("On board {name}"));
         }
-        if followed != *follow {
-            *follow = followed;
+        if mounted != before {
+            (*follow, *onboard) = mounted;
             ui.close();
         }
     }
