@@ -55,14 +55,16 @@ impl Departures {
         route.from.is_none() || self.asked.iter().any(is_it)
     }
 
-    /// Learns how long a route takes at least, `None` if it cannot be driven, and its meters. Of several paths of one leg
-    /// the longest counts.
+    /// Learns how long a route takes at least, `None` if it cannot be driven, and its meters. Of several paths of one leg,
+    /// the quickest one bounds the time, because no plan may be refused, and the longest one counts for meters.
     pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>, meters: Option<Rational>) {
         if let Some(from) = &route.from {
             // The exact time comes with the path; a rounder one that is a little less keeps the planner's numbers small.
             let least = least.map(|least| round_down(least.to_f64()).unwrap_or_default());
             let key = (route.occurrence, from.clone());
             let earlier = self.known.get(&key).copied();
+            let quickest = earlier.and_then(|earlier| earlier.least);
+            let least = least.map(|least| quickest.map_or(least, |quickest| quickest.min(least)));
             let longest = earlier.and_then(|earlier| earlier.meters).max(meters);
             self.known.insert(key, Known { least, meters: longest });
             self.asked.push(route.clone());

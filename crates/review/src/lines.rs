@@ -10,7 +10,7 @@ use tpn::{ArcKind, Network, NodeId};
 
 use super::demand_lines::status_by_checker;
 use super::place::find_places;
-use super::plan_lines::{PlanLines, driven_within_s};
+use super::plan_lines::{PlanLines, driven_within_s, short_of_its_goal_m};
 use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 
 /// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` returns `true`,
@@ -136,7 +136,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
         lines.extend(natures(planning, network, places));
         lines.extend(verdict(planning, places));
         lines.extend(assumptions(snapshot, places));
-        lines.extend(worth(planning, network, places));
+        lines.extend(worth(snapshot, planning, network, places));
         lines
     };
     lines.extend(undrivable(planning, network, places));
@@ -182,7 +182,7 @@ fn controllability(
         }
         all => all.join(", "),
     };
-    let (status, text) = match (network.controllability, status_by_checker(planning)) {
+    let (status, mut text) = match (network.controllability, status_by_checker(planning)) {
         (Controllability::None, _) => (
             Status::Attention,
             format!(
@@ -207,11 +207,15 @@ fn controllability(
         Controllability::None => Vec::new(),
         _ => late_drives(snapshot, network, &nodes),
     };
-    if late.is_empty() {
-        return Some(places.line(status, text, None, names, nodes));
+    if !late.is_empty() {
+        text.push_str(&format!("; unmapped obstacles may extend {} beyond that", late.join(", ")));
     }
-    let text = format!("{text}; unmapped obstacles may extend {} beyond that", late.join(", "));
-    Some(places.line(status.max(Status::Attention), text, None, names, nodes))
+    let has_meetings = !snapshot.separation_violations.is_empty();
+    if has_meetings {
+        text.push_str("; vehicles that come too close may delay each other beyond that");
+    }
+    let status = if late.is_empty() && !has_meetings { status } else { status.max(Status::Attention) };
+    Some(places.line(status, text, None, names, nodes))
 }
 
 /// The traverses that end at these nodes, and may take longer than their greatest contingent duration.
@@ -318,18 +322,34 @@ fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
 
 /// What the plan is worth, as far as its mission counts anything, and whether it is known to be the best. The checker
 /// adds up the figures; that nothing is better rests on the planner alone, and the line says that.
-fn worth(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
+fn worth(
+    snapshot: &Snapshot,
+    planning: &Planning,
+    network: &Network,
+    places: &Places<'_>,
+) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
     let mut text = tpn::worth::words(network, plan)?;
     let mut status = status_by_checker(planning);
-    if let Some(standing) = tpn::worth::standing(plan) {
+    let has_end = tpn::worth::measures(network).contains(&Measure::End);
+    // Who has the location itself depends on who comes first, and so do the paths. The search weighs each leg with one path.
+    let stops_beside = |traverse: &snapshot::Traverse| short_of_its_goal_m(&snapshot.program.world, traverse).is_some();
+    let depends_on_order =
+        (has_end || network.counts_meters()) && snapshot.traverses.iter().any(stops_beside);
+    let standing = match tpn::worth::standing(plan) {
+        Some(_) if depends_on_order && plan.quality.is_optimal == Some(true) => Some(
+            "optimal for these paths: in another order, vehicles that stop beside each other may have shorter ones",
+        ),
+        standing => standing,
+    };
+    if let Some(standing) = standing {
         text.push_str("; ");
         text.push_str(standing);
     }
-    if plan.quality.is_optimal == Some(false) {
+    if plan.quality.is_optimal == Some(false) || (standing.is_some() && depends_on_order) {
         status = status.max(Status::Attention);
     }
-    if tpn::worth::measures(network).contains(&Measure::End) {
+    if has_end {
         text.push_str("; the end is that of the earliest schedule");
     }
     Some(places.plain(status, format!("{OBJECTIVE}{text}")))
@@ -339,8 +359,10 @@ fn undrivable(planning: &Planning, network: &Network, places: &Places<'_>) -> Ve
     let line = |traverse: &snapshot::Undrivable| {
         let occurrence = network.occurrences.get(traverse.occurrence.index())?;
         let name = occurrence.name.to_string();
-        let text =
-            format!("{name} can't be driven {}, so the planner chose another alternative", traverse.reason);
+        let mut text = format!("{name} can't be driven {}", traverse.reason);
+        if !planning.outcome.plans.is_empty() {
+            text.push_str(", so the planner chose another alternative");
+        }
         let nodes = vec![occurrence.start, occurrence.end];
         Some(places.line(Status::Attention, text, occurrence.span, vec![name], nodes))
     };

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use exact::{Bound, Time};
 use motion::DriveLimits;
 use rmpl::Span;
-use rmpl::program::{Change, LabelMode, VehicleDecl};
+use rmpl::program::{Change, LabelMode, LocationDecl, VehicleDecl, World};
 use snapshot::vehicle::{flies, is_way, model_of, moving};
 use snapshot::{Planning, Snapshot, joined, standing};
 use tpn::{EventEnd, Extent, LabelId, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};
@@ -327,6 +327,23 @@ impl<'input> PlanLines<'input> {
         self.snapshot.traverses.iter().zip(&durations).filter_map(review).collect()
     }
 
+    /// The vehicles that come too close to one of a traverse in some schedule.
+    fn in_the_way(&self, traverse: &snapshot::Traverse) -> Vec<&str> {
+        let others: BTreeSet<u32> = (self.snapshot.separation_violations.iter())
+            .filter_map(|violation| {
+                let [one, other] = violation.vehicles;
+                match [one, other].map(|vehicle| traverse.vehicles.contains(&vehicle)) {
+                    [true, false] => Some(other),
+                    [false, true] => Some(one),
+                    _ => None,
+                }
+            })
+            .collect();
+        let vehicles = &self.snapshot.program.world.vehicles;
+        let name = |&vehicle: &u32| vehicles.get(vehicle as usize).map(|it| it.name.text.as_str());
+        others.iter().filter_map(name).collect()
+    }
+
     fn traverse(&self, traverse: &snapshot::Traverse, duration: TimeRange) -> TraverseReview {
         let occurrence = &self.network.occurrences[traverse.occurrence.index()];
         let name = occurrence.name.to_string();
@@ -344,10 +361,11 @@ impl<'input> PlanLines<'input> {
         let driven_s = driven_within_s(self.snapshot, self.network, traverse);
         let is_tight =
             duration.greatest.finite().is_some_and(|most| most.to_f64() * unit_s < driven_s - 1e-3);
+        let others = self.in_the_way(traverse);
         let status = match clearance_m {
             Some(clearance_m) if clearance_m < 0.0 => Status::Failed,
             _ if is_too_short => Status::Failed,
-            _ if is_tight => Status::Attention,
+            _ if is_tight || !others.is_empty() => Status::Attention,
             _ => Status::Passed,
         };
         let slope_limit_rad = self.slope_limit_rad(traverse);
@@ -370,12 +388,14 @@ impl<'input> PlanLines<'input> {
             Some(_) => ", within the vehicle limits".to_owned(),
             None => String::new(),
         };
-        let driving = if is_tight {
+        let mut driving = String::new();
+        if is_tight {
             let most = driven_s / unit_s;
-            format!("; unmapped obstacles may extend it to {most:.1} {}", unit(self.snapshot))
-        } else {
-            String::new()
-        };
+            driving = format!("; unmapped obstacles may extend it to {most:.1} {}", unit(self.snapshot));
+        }
+        if !others.is_empty() {
+            driving.push_str(&format!("; {} may be in its way", others.join(", ")));
+        }
         let text = format!(
             "{name}: {:.1} m in {}{limits}, {clearance}{slope}{driving}",
             traverse.length_m,
@@ -405,14 +425,8 @@ impl<'input> PlanLines<'input> {
 
     fn short_of_its_goal(&self, traverse: &snapshot::Traverse) -> Option<Line> {
         let world = &self.snapshot.program.world;
-        let last = traverse.legs.last()?;
-        let end_m = last.points_m.last()?;
-        let location = world.locations.iter().find(|location| location.name.text == last.to)?;
+        let (short_m, location) = short_of_its_goal_m(world, traverse)?;
         let location_m = nalgebra::Point2::from(location.position_m);
-        let short_m = nalgebra::distance(end_m, &location_m);
-        if short_m < 0.01 {
-            return None;
-        }
         let occurrence = &self.network.occurrences[traverse.occurrence.index()];
         let name = |vehicle: u32| Some(world.vehicles.get(vehicle as usize)?.name.text.as_str());
         let &leader = traverse.vehicles.first()?;
@@ -576,4 +590,15 @@ pub(super) fn driven_within_s(snapshot: &Snapshot, network: &Network, traverse: 
     let drives = traverse.vehicles.iter().any(|&vehicle| !flies(&program.world, vehicle));
     let leaves_out_rocks = drives && program.world.terrain.is_some();
     motion::driven_within_s(least * unit_s, speed_mps, followers, leaves_out_rocks)
+}
+
+/// How many meters beside its last location a traverse ends, if it does, and that location.
+pub(super) fn short_of_its_goal_m<'program>(
+    world: &'program World,
+    traverse: &snapshot::Traverse,
+) -> Option<(f64, &'program LocationDecl)> {
+    let last = traverse.legs.last()?;
+    let location = world.locations.iter().find(|location| location.name.text == last.to)?;
+    let short_m = nalgebra::distance(last.points_m.last()?, &nalgebra::Point2::from(location.position_m));
+    (short_m >= 0.01).then_some((short_m, location))
 }

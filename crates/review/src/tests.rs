@@ -338,6 +338,47 @@ fn a_contingent_drive_that_rocks_may_hold_up_beyond_its_range_needs_attention() 
     }
 }
 
+/// Paths to a place where others stand depend on who is there first, so that the best plan is the best for its paths alone.
+#[test]
+fn a_plan_whose_vehicles_stop_beside_each_other_is_optimal_for_its_paths() {
+    let objective = |goal: &str| {
+        let source = format!(
+            "location A (0, 0); location B (40, 0); location C (40, 30); location D (0, 30);
+             vehicle R1 : ATRV at A; vehicle R2 : ATRV at C; primitive Drive(r, to)[1,60] moves r;
+             objective minimize length; scenario S[0,200] = {{ unordered {{ Drive(R1, B); Drive(R2, {goal}) }} }}"
+        );
+        line(&source, "objective: ").expect("a plan")
+    };
+    let (status, text) = objective("B");
+    assert_eq!(status, Status::Attention, "{text}");
+    assert!(text.contains("optimal for these paths: in another order"), "{text}");
+    let (status, text) = objective("D");
+    assert_eq!(status, Status::Passed, "{text}");
+    assert!(text.ends_with("optimal: no better plan exists"), "{text}");
+}
+
+/// What may hold up a drive is said of it, and of the line on controllability.
+#[test]
+fn drives_that_others_may_hold_up_need_attention() {
+    let source = "location A (0, 20); location B (40, 20); location C (20, 0); location D (20, 40);
+         vehicle R1 : ATRV at A; vehicle R2 : ATRV at C; primitive Drive(r, to) contingent [3,30] moves r;
+         scenario S[0,100] = { Drive(R1, B), Drive(R2, D) }";
+    let review = reviewed(source);
+    let drives: Vec<(Status, &str)> =
+        review.traverses.iter().map(|it| (it.line.status, it.line.text.as_str())).collect();
+    let plan = line(source, "dynamically controllable").expect("nature chooses");
+    let lines = drives.into_iter().chain([(plan.0, plan.1.as_str())]);
+    let ends = [
+        "; R2 may be in its way",
+        "; R1 may be in its way",
+        "; vehicles that come too close may delay each other beyond that",
+    ];
+    for ((status, text), end) in lines.zip(ends) {
+        assert_eq!(status, Status::Attention, "{text}");
+        assert!(text.ends_with(end), "{text}");
+    }
+}
+
 #[test]
 fn a_formation_sets_out_from_one_location() {
     let mission = |first: &str| {

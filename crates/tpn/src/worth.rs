@@ -74,7 +74,7 @@ pub fn compare(network: &Network, one: &Plan, other: &Plan) -> Ordering {
 pub const fn standing(plan: &Plan) -> Option<&'static str> {
     match plan.quality.is_optimal {
         Some(true) => Some("optimal: no better plan exists"),
-        Some(false) => Some("not proven optimal: planning ended before the search was complete"),
+        Some(false) => Some("not proven optimal: a better plan may exist"),
         None => None,
     }
 }
