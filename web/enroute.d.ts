@@ -194,7 +194,7 @@ export type Timings = {
   /** The app's own code in the last frame. */
   frame: number;
   /** All that the frame before took on the page's thread. */
-  wholeFrame: number | null;
+  frameWithShell: number | null;
   /** The app's code in the frame that first shows the answer to the present text; `null` until then. */
   answerFrame: number | null;
   /** When that frame was ready, on the clock of `performance.now()`; `null` until then. */

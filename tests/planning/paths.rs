@@ -38,7 +38,7 @@ fn spec_path(network: &Network, lengths: &[&[f64]], may_stop: bool) -> TraverseP
 
 fn nearest_thousandth(time: Time) -> i64 {
     let half = Time::new(1, 2000).and_then(|half| time.checked_add(half));
-    half.and_then(|time| time.whole_parts(1000)).expect("a small time")
+    half.and_then(|time| time.integer_parts(1000)).expect("a small time")
 }
 
 /// A time of a window, rounded to thousandths of a minute for comparison with the printed table.

@@ -296,17 +296,17 @@ fn keeps(stn: &mut Stn, earlier: NodeId, later: NodeId, all: bool) -> bool {
     stn.insert(PointId(later.0), PointId(earlier.0), 0, 0).is_ok()
 }
 
-fn whole(time: Time) -> i64 {
+fn integer(time: Time) -> i64 {
     time.to_string().parse().expect("the missions have whole times")
 }
 
 fn insert(stn: &mut Stn, from: NodeId, to: NodeId, most: Bound) -> Option<()> {
     let Bound::Finite(most) = most else { return Some(()) };
-    stn.insert(PointId(from.0), PointId(to.0), whole(most), 0).ok()
+    stn.insert(PointId(from.0), PointId(to.0), integer(most), 0).ok()
 }
 
 fn insert_least(stn: &mut Stn, from: NodeId, to: NodeId, least: Time) -> Option<()> {
-    stn.insert(PointId(to.0), PointId(from.0), -whole(least), 0).ok()
+    stn.insert(PointId(to.0), PointId(from.0), -integer(least), 0).ok()
 }
 
 /// The network of a step, if all that is in force fits together.

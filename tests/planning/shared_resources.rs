@@ -83,13 +83,13 @@ impl Project {
 
     fn extend(&self, starts: &mut Vec<Option<i64>>) -> i64 {
         let mut shortest = i64::MAX;
-        let mut is_whole = true;
+        let mut is_complete = true;
         for index in 0..self.blocks.len() {
             let before = self.blocks[index].after.map(|before| (before, starts[before]));
             if starts[index].is_some() {
                 continue;
             }
-            is_whole = false;
+            is_complete = false;
             let from = match before {
                 Some((_, None)) => continue,
                 Some((before, Some(start))) => start + self.blocks[before].duration(),
@@ -101,7 +101,7 @@ impl Project {
             shortest = shortest.min(self.extend(starts));
             starts[index] = None;
         }
-        if is_whole {
+        if is_complete {
             let ends = self
                 .blocks
                 .iter()

@@ -179,7 +179,7 @@ impl Exhaustive<'_> {
             let (start, end) = match label.extent {
                 Extent::Initial => (self.network.start, self.network.start),
                 Extent::Start => (arc.from, arc.from),
-                Extent::Whole | Extent::Effect => (arc.from, arc.to),
+                Extent::Arc | Extent::Effect => (arc.from, arc.to),
             };
             let (start, end) = (leaf.event(start), leaf.event(end));
             let event = Event {

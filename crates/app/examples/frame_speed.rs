@@ -11,7 +11,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
 use tpn::generate::{Recipe, Tightness, mission};
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::PinCommand;
 
 const STEPS: usize = 80;

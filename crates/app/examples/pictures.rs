@@ -21,7 +21,7 @@ fn main() {
             for step in &script {
                 let (name, arguments) = step.split_once(' ').unwrap_or((step, "null"));
                 let arguments = serde_json::from_str(arguments).expect("arguments are JSON");
-                workbench::outside::Remote::dispatch(app.harness.state_mut(), name, &arguments)
+                workbench::host_io::Remote::dispatch(app.harness.state_mut(), name, &arguments)
                     .expect("a command");
                 app.settle();
             }

@@ -1,7 +1,7 @@
 //! The app around the panels: their layout, bars, dialogs and keys, and a native window.
 //!
 //! [`Enroute`] is the whole app. It runs on a [`Host`](workbench::host::Host), which brings the planning core, storage
-//! and files, and is driven from outside through [`Remote`](workbench::outside::Remote). Its state is the
+//! and files, and is driven from outside through [`Remote`](workbench::host_io::Remote). Its state is the
 //! [`workbench`]'s and changes only by commands; panels ([`panels::Panel`]) read it and send them.
 
 pub mod accessibility;

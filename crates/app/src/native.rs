@@ -263,7 +263,7 @@ impl Host for NativeHost {
 /// Asks where to save a file and saves it; blocks meanwhile. Answers what went wrong, if anything did.
 fn save_asking(suggested_name: String, bytes: &[u8]) -> Option<HostEvent> {
     let path = rfd::FileDialog::new().set_file_name(suggested_name).save_file()?;
-    let reason = write_whole(&path, bytes).err()?.to_string();
+    let reason = write_atomically(&path, bytes).err()?.to_string();
     Some(HostEvent::FileFailed { name: name_of(&path), reason })
 }
 
@@ -370,7 +370,7 @@ fn no_folder() -> StorageError {
 }
 
 fn keep(file: &Path, bytes: &[u8]) -> Result<(), StorageError> {
-    write_whole(file, bytes).map_err(|reason| match reason.kind() {
+    write_atomically(file, bytes).map_err(|reason| match reason.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             StorageError::Full { bytes: bytes.len() }
         }
@@ -379,7 +379,7 @@ fn keep(file: &Path, bytes: &[u8]) -> Result<(), StorageError> {
 }
 
 /// Writes a file so that it is never seen half written.
-fn write_whole(file: &Path, bytes: &[u8]) -> io::Result<()> {
+fn write_atomically(file: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;
     }

@@ -13,7 +13,7 @@ use theme::structure;
 use workbench::command::{Command, CommandSender};
 use workbench::description::State;
 use workbench::host::{Host, RemoteError};
-use workbench::outside::Remote;
+use workbench::host_io::Remote;
 use workbench::state::manual::ManualCommand;
 use workbench::state::window::WindowCommand;
 use workbench::state::{AppState, System};
@@ -122,7 +122,7 @@ impl Enroute {
         let next_secs = self.session.end_frame(layout_millis);
         self.wake_after(next_secs);
         if let Some(mirror) = self.egui.plugin_opt::<AccessibilityMirror>() {
-            mirror.lock().announce(&workbench::outside::announcement(self.app_state()));
+            mirror.lock().announce(&workbench::host_io::announcement(self.app_state()));
         }
         // What is kept is kept when nobody is dragging.
         if !self.egui.input(|input| input.pointer.any_down()) {
@@ -240,7 +240,7 @@ impl Enroute {
 impl eframe::App for Enroute {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let render_state = frame.wgpu_render_state().cloned();
-        self.session.state_mut().frame.whole_millis =
+        self.session.state_mut().frame.total_millis =
             frame.info().cpu_usage.map(|seconds| f64::from(seconds) * 1000.0);
         self.show(ui, render_state.as_ref());
     }

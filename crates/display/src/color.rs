@@ -25,11 +25,11 @@ pub enum ColorRole {
     TextFaint,
     /// What is selected, taken or active; time windows of events.
     Accent,
-    /// A quiet fill in the accent's hue.
+    /// A muted fill in the accent's hue.
     AccentSoft,
     /// Behind what is selected.
     Selection,
-    /// A quiet fill for what holds.
+    /// A muted fill for what holds.
     GoodSoft,
     Warning,
     Error,

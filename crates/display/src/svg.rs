@@ -210,7 +210,7 @@ impl Writer {
         let width_of = |words: &str| text_width_at(words, text.size, &approximate_text_width);
         let words = match text.fit {
             Fit::Cut => cut_to_width(&text.text, rect.width(), width_of),
-            Fit::Shrink | Fit::Whole | Fit::Overflow => text.text.clone(),
+            Fit::Shrink | Fit::Unabridged | Fit::Overflow => text.text.clone(),
         };
         if let Some(plate) = text.plate {
             let width = if text.fit.fills_its_place() { rect.width() } else { width_of(&words) };
@@ -225,7 +225,7 @@ impl Writer {
         // The middle of lower-case letters and digits lies about a third of the size above the baseline.
         let baseline = number(rect.center().y + text.size * 0.35);
         let (x, anchor) = match (text.fit, text.anchor) {
-            (Fit::Shrink | Fit::Whole, _) => (rect.min.x + 0.5, ""),
+            (Fit::Shrink | Fit::Unabridged, _) => (rect.min.x + 0.5, ""),
             (_, Anchor::Start) => (rect.min.x, ""),
             (_, Anchor::Middle) => (rect.center().x, " text-anchor=\"middle\""),
             (_, Anchor::End) => (rect.max.x, " text-anchor=\"end\""),

@@ -58,7 +58,7 @@ pub enum Fit {
     /// It is made narrower. A layout that measured it fills the place with it, whatever the reader's fonts are.
     Shrink,
     /// It is made narrower, and left out where it would have to be cut to be read: half of a number is another number.
-    Whole,
+    Unabridged,
     /// It is cut, with an ellipsis.
     Cut,
     /// It stays as it is.
@@ -68,7 +68,7 @@ pub enum Fit {
 impl Fit {
     /// Whether a text fills the place that was measured for it.
     pub const fn fills_its_place(self) -> bool {
-        matches!(self, Self::Shrink | Self::Whole)
+        matches!(self, Self::Shrink | Self::Unabridged)
     }
 }
 

@@ -88,7 +88,7 @@ impl Rational {
     }
 
     /// How many `1 / parts` it has, rounded down; `None` if that many do not fit.
-    pub fn whole_parts(self, parts: u32) -> Option<i64> {
+    pub fn integer_parts(self, parts: u32) -> Option<i64> {
         let (numerator, denominator) = self.wide();
         i64::try_from((numerator * i128::from(parts)).div_euclid(denominator)).ok()
     }

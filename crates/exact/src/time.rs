@@ -99,8 +99,8 @@ impl Time {
     }
 
     /// How many `1 / parts` of a unit it has, rounded down; `None` if that many do not fit.
-    pub fn whole_parts(self, parts: u32) -> Option<i64> {
-        self.0.whole_parts(parts)
+    pub fn integer_parts(self, parts: u32) -> Option<i64> {
+        self.0.integer_parts(parts)
     }
 
     /// The greatest time of which both are multiples; `None` if it does not fit.

@@ -363,7 +363,7 @@ impl World {
         };
         let exact = least_drive(network, occurrence)?.checked_div(*factor).ok_or(Overflow)?;
         // Shares of any kind would make the ticks of a run finer without end.
-        let whole = exact.whole_parts(SLOW_PARTS).and_then(|parts| Time::new(parts, i64::from(SLOW_PARTS)));
+        let whole = exact.integer_parts(SLOW_PARTS).and_then(|parts| Time::new(parts, i64::from(SLOW_PARTS)));
         let up = |whole: Time| {
             if whole < exact { whole.checked_add(Time::new(1, i64::from(SLOW_PARTS))?) } else { Some(whole) }
         };

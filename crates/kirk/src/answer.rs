@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::nature_run::nature_run;
 use crate::options::{Options, Outcome, Status, Termination};
 use crate::unplannable::Unplannable;
-use crate::{chronological, demanding, explain, relax};
+use crate::{chronological, explain, relax, solver_search};
 
 /// Plans, or explains why there is no plan.
 pub(crate) fn answer(
@@ -18,7 +18,7 @@ pub(crate) fn answer(
     termination: &mut dyn Termination,
 ) -> Result<Outcome, Unplannable> {
     let traced = options.traced.unwrap_or(options.search);
-    if options.trace_events.is_some() && traced != options.search && !demanding::has_demands(model) {
+    if options.trace_events.is_some() && traced != options.search && !solver_search::has_demands(model) {
         let unrecorded = Options { trace_events: None, ..*options };
         let outcome = answer(network, model, &unrecorded, excluded, termination)?;
         let recorded = Options { search: traced, ..*options };
@@ -56,14 +56,14 @@ fn search(
     termination: &mut dyn Termination,
 ) -> Result<Outcome, Unplannable> {
     if is_by_solver(model, options, excluded) {
-        demanding::search(network, model, options, excluded, termination)
+        solver_search::search(network, model, options, excluded, termination)
     } else {
         chronological::search(model, options, excluded, termination)
     }
 }
 
 fn is_by_solver(model: &Model, options: &Options, excluded: &[Vec<Choice>]) -> bool {
-    demanding::has_demands(model)
+    solver_search::has_demands(model)
         || model.has_contexts && (options.search.learns() || options.best > 1 || !excluded.is_empty())
 }
 

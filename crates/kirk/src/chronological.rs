@@ -12,9 +12,9 @@ use stn::{Checkpoint, Inconsistency, PointId, Stn, Tag};
 use tpn::{ArcId, CausalLink, Choice, DecisionId, DistinctPlans, LabelId, NodeId, Ordering, Plan, Window};
 use typed_index_collections::TiVec;
 
-use crate::demanding;
 use crate::model::{INFINITE, Model, ModelArc, UNBOUNDED_BELOW, node, point};
 use crate::options::{Options, Outcome, Stats, Status, Termination};
+use crate::solver_search;
 use crate::trace::{Constraint, CycleMember, Event, Recorder, TreeChoice, TreeNodeId, TreeStatus};
 use crate::unplannable::Unplannable;
 
@@ -605,7 +605,7 @@ impl<'m> ChronologicalSearch<'m> {
             causal_links,
             conflict_order,
             conflict_order_omitted: 0,
-            state_order: demanding::nested_changes(model, self.is_selected_arc.as_ref()),
+            state_order: solver_search::nested_changes(model, self.is_selected_arc.as_ref()),
             orderings_added,
             uses_ordered: Vec::new(),
             levels: Vec::new(),

@@ -120,7 +120,7 @@ pub(crate) struct ModelGoal {
     is_maximized: bool,
     /// Whether the sum is all that the goal measures, so that no plan is better where none has a smaller one: meters are
     /// bounded from below, where they are known at all, and the end is the earliest one.
-    pub(crate) is_whole: bool,
+    pub(crate) is_exact: bool,
 }
 
 impl ModelGoal {
@@ -340,7 +340,7 @@ fn goals(network: &Network, ticks: i64) -> Option<Vec<ModelGoal>> {
             let is_driven = !factor(Measure::Length)?.is_zero()
                 || (!cost.is_zero() && network.worths.iter().any(|worth| !worth.cost_per_meter.is_zero()));
             Some(ModelGoal {
-                is_whole: (!is_driven || is_bounded) && !per_tick.is_negative(),
+                is_exact: (!is_driven || is_bounded) && !per_tick.is_negative(),
                 by_departure: (by_departure.into_iter())
                     .map(|(departure, weight)| Some((departure, units(weight, unit)?)))
                     .collect::<Option<_>>()?,

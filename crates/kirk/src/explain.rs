@@ -16,7 +16,7 @@ use crate::model::{INFINITE, Model, UNBOUNDED_BELOW};
 use crate::options::{Stats, Termination, Unlimited};
 use crate::solver::{self, Answer, Problem, Touching};
 use crate::trace::{Constraint, CycleMember};
-use crate::{demanding, rotation, whole, wording};
+use crate::{rotation, single_reason, solver_search, wording};
 
 /// Explaining stops adding reasons after this many.
 const MAX_REASONS: usize = 64;
@@ -115,7 +115,7 @@ pub(crate) fn explain(
     let mut effort = Effort::for_size(model.num_nodes, termination);
     let mut reasons: Vec<Reason> = Vec::new();
     let mut is_complete = false;
-    let is_by_choices = !demanding::has_demands(model) && model.has_contexts;
+    let is_by_choices = !solver_search::has_demands(model) && model.has_contexts;
     while is_by_choices && reasons.len() < MAX_REASONS && !effort.is_exhausted() {
         let excluded = reasons.iter().map(|reason| reason.choices.as_slice()).collect::<Vec<_>>();
         let choices = match first_completion(model, given, &excluded) {
@@ -126,11 +126,11 @@ pub(crate) fn explain(
             }
             Completion::Unknown => break,
         };
-        let Some(mut reason) = whole::reason(network, model, &choices, &mut effort) else { break };
+        let Some(mut reason) = single_reason::reason(network, model, &choices, &mut effort) else { break };
         add_outer_choices(model, &mut reason.choices);
         reasons.push(reason);
     }
-    if !is_complete && let Some(reason) = whole::reason(network, model, given, &mut effort) {
+    if !is_complete && let Some(reason) = single_reason::reason(network, model, given, &mut effort) {
         reasons.insert(0, reason);
         is_complete = true;
     }

@@ -9,7 +9,6 @@ mod antichain;
 mod choices;
 mod chronological;
 mod conditions;
-mod demanding;
 mod demands;
 mod explain;
 mod failure;
@@ -25,23 +24,24 @@ mod precedence;
 mod relax;
 mod replay;
 mod rotation;
+mod single_reason;
 mod solver;
+mod solver_search;
 mod state_order;
 mod structure;
 mod trace;
 mod trace_lines;
 mod unplannable;
-mod whole;
 mod wording;
 
 use tpn::{Choice, Network};
 
-pub use demanding::has_open_order;
 pub use explain::{explain_choices, is_conflict};
 pub use failure::{Failure, FailureKind, GAP_LABEL, Member, NATURE_ENDS, Reason, Relaxation};
 pub use options::{ExpansionLimit, Options, Outcome, Search, Stats, Status, Termination, Unlimited};
 pub use planner::Planner;
 pub use replay::{Replay, ReplayStep};
+pub use solver_search::has_open_order;
 pub use trace::{
     Constraint, CycleMember, Departing, Entry, Event, SearchRound, Trace, TreeChoice, TreeNode, TreeNodeId,
     TreeStatus,

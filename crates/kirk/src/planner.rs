@@ -7,7 +7,7 @@ use crate::choices::Choices;
 use crate::model::Model;
 use crate::options::{Options, Outcome, Termination};
 use crate::unplannable::Unplannable;
-use crate::{answer, demanding};
+use crate::{answer, solver_search};
 
 /// Plans one network repeatedly.
 ///
@@ -56,10 +56,10 @@ impl Planner {
             Err(overflow) => return Outcome::of_size(*overflow),
         };
         let is_repeatable = !options.all && options.best <= 1 && options.trace_events.is_none();
-        let is_kept = is_repeatable && options.search.learns() && !demanding::has_demands(model);
+        let is_kept = is_repeatable && options.search.learns() && !solver_search::has_demands(model);
         if is_kept
             && let Some(last) = &self.last
-            && let Ok(Some(outcome)) = demanding::keep(&self.network, model, last, termination)
+            && let Ok(Some(outcome)) = solver_search::keep(&self.network, model, last, termination)
         {
             return outcome;
         }

@@ -557,10 +557,10 @@ pub(crate) fn arc_name(network: &Network, arc: &Arc) -> String {
     if arc.kind == ArcKind::Constraint {
         let [from, to] = [arc.from, arc.to].map(|node| {
             let events = &network.nodes[node.index()].events;
-            let is_quiet = |event: &&EventRef| {
+            let is_minor = |event: &&EventRef| {
                 network.occurrences[event.occurrence.index()].kind == OccurrenceKind::Delay
             };
-            let told = events.iter().rfind(|event| !is_quiet(event)).or(events.first());
+            let told = events.iter().rfind(|event| !is_minor(event)).or(events.first());
             told.map_or_else(|| "an event".to_owned(), |&event| network.event_name(event))
         });
         return format!("the bound from {from} to {to}");

@@ -7,7 +7,7 @@ use display::{Piece, Point, Rect, SpatialIndex};
 use tpn::{ArcId, Network, NodeId};
 
 use crate::drawing::{ArcShape, NO_SLOT, NetworkDrawing, Route, Shape, TextShape};
-use crate::metrics::{TEXT_LIFT, WORD_GAP, whole};
+use crate::metrics::{TEXT_LIFT, WORD_GAP, rounded_up};
 use crate::overlay::free_curve;
 use crate::text::{ArcTexts, one_row_size};
 use crate::tree::Tree;
@@ -121,9 +121,9 @@ fn write_texts(
     let size = one_row_size(runs);
     let row = TRIES.into_iter().flat_map(|fraction| {
         let at = piece.at(start, fraction);
-        let left = whole(at.x - size.width / 2.0);
-        let above = whole(at.y) - TEXT_LIFT - size.height;
-        let below = whole(at.y) + TEXT_LIFT;
+        let left = rounded_up(at.x - size.width / 2.0);
+        let above = rounded_up(at.y) - TEXT_LIFT - size.height;
+        let below = rounded_up(at.y) + TEXT_LIFT;
         [above, below].map(|top| Rect::new(left, top, left + size.width, top + size.height))
     });
     let Some(row) = row.into_iter().find(|row| taken.is_free(row.expanded(1.0))) else { return };

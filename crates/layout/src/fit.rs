@@ -241,8 +241,8 @@ impl<'a> Fitter<'a> {
     fn are_too_many(&self) -> bool {
         let root = self.network.root.filter(|root| root.index() < self.network.blocks.len());
         let steps = root.map_or(0, |root| self.contents.steps(root));
-        let is_whole = self.options.collapsed.is_empty();
-        is_whole && f64::from(steps) * MIN_AREA > self.room.width * self.room.height
+        let is_complete = self.options.collapsed.is_empty();
+        is_complete && f64::from(steps) * MIN_AREA > self.room.width * self.room.height
     }
 
     /// The structure of a drawing in this detail.

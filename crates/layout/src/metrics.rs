@@ -118,6 +118,6 @@ pub fn node_radius(network: &Network, node: &Node) -> f64 {
 }
 
 /// `length` rounded up to a whole unit.
-pub(crate) fn whole(length: f64) -> f64 {
+pub(crate) fn rounded_up(length: f64) -> f64 {
     length.ceil()
 }

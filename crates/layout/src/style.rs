@@ -93,16 +93,16 @@ fn standing(is_selected: Option<bool>) -> Standing {
 
 /// The line of an arc.
 pub(crate) fn arc_stroke(kind: ArcKind, route: Route, is_natures: bool, standing: Standing) -> Stroke {
-    let is_quiet = route != Route::Along || kind == ArcKind::Path;
+    let is_thin = route != Route::Along || kind == ArcKind::Path;
     let dash = match route {
         Route::Across => Dash::Dotted,
         _ if is_natures => Dash::Dashed,
         Route::Along | Route::Arch => Dash::Solid,
     };
     let (color, width) = match standing {
-        Standing::Plain => (ColorRole::Path, if is_quiet { 1.1 } else { 1.5 }),
-        Standing::Selected => (ColorRole::Path, if is_quiet { 1.4 } else { 2.6 }),
-        Standing::Unselected => (ColorRole::PathUnselected, if is_quiet { 1.0 } else { 1.2 }),
+        Standing::Plain => (ColorRole::Path, if is_thin { 1.1 } else { 1.5 }),
+        Standing::Selected => (ColorRole::Path, if is_thin { 1.4 } else { 2.6 }),
+        Standing::Unselected => (ColorRole::PathUnselected, if is_thin { 1.0 } else { 1.2 }),
     };
     let color = if is_natures && standing != Standing::Unselected { ColorRole::Nature } else { color };
     Stroke { color: color.into(), width, dash }

@@ -9,7 +9,7 @@ use smol_str::{SmolStr, format_smolstr};
 use tpn::{Arc, ArcId, ArcKind, BlockKind, Extent, Label, LabelId, Network, Occurrence, OccurrenceKind};
 
 use crate::drawing::Item;
-use crate::metrics::{TextRole, WORD_GAP, whole};
+use crate::metrics::{TextRole, WORD_GAP, rounded_up};
 use crate::options::Options;
 
 /// The least height of a line of text, as a part of the text's size.
@@ -126,7 +126,7 @@ fn is_written(network: &Network, options: &Options, label: LabelId) -> bool {
 
 /// The width of `text` at `size`.
 pub(crate) fn width_at(text: &str, size: f64, measure: &dyn Measure) -> f64 {
-    whole(text_width_at(text, size, measure)) + 1.0
+    rounded_up(text_width_at(text, size, measure)) + 1.0
 }
 
 /// The width of `text` in its role.

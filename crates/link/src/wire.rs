@@ -27,7 +27,7 @@ pub type Error = postcard::Error;
 pub fn write_request(request: &Request) -> Result<Vec<u8>, Error> {
     let text = request.source().map(|source| match &source.since {
         Some(Since { revision, edits }) => SentText::Edited(*revision, Cow::Borrowed(edits)),
-        None => SentText::Whole(source),
+        None => SentText::Full(source),
     });
     postcard::to_stdvec(&(text, request))
 }
@@ -42,7 +42,7 @@ pub(crate) fn bytes_of_request(request: &Request) -> Vec<u8> {
 #[derive(Debug, Serialize, Deserialize)]
 enum SentText<'bytes> {
     #[serde(borrow)]
-    Whole(&'bytes str),
+    Full(&'bytes str),
     /// The revision of a text that was told before, and its edits in order.
     Edited(u64, Cow<'bytes, [Edit]>),
 }
@@ -179,7 +179,7 @@ impl CoreEnd {
                 self.shift = self.shift.map(|shift| edits.iter().fold(shift, Shift::then));
                 source.hold(text, Some(Since { revision: since, edits: edits.into_owned() }));
             }
-            SentText::Whole(text) => {
+            SentText::Full(text) => {
                 source.hold(text.into(), None);
                 self.shift = self.shift.filter(|_| revision.is_none());
             }

@@ -10,7 +10,7 @@ use crate::host::CoreHost;
 /// and get less in proportion.
 const MAX_WORK: u64 = 20_000_000;
 /// Every network gets as many alternatives.
-const LEAST_ALTERNATIVES: u64 = 2_000;
+const MIN_ALTERNATIVES: u64 = 2_000;
 /// None gets more.
 const MAX_ALTERNATIVES: u64 = 200_000;
 
@@ -40,7 +40,7 @@ fn searched(
         ..Options::default()
     };
     let nodes = network.nodes.len().max(1) as u64;
-    let most = (MAX_WORK / nodes).clamp(LEAST_ALTERNATIVES, MAX_ALTERNATIVES);
+    let most = (MAX_WORK / nodes).clamp(MIN_ALTERNATIVES, MAX_ALTERNATIVES);
     let begun = host.now_millis();
     let mut is_superseded = false;
     let outcome = kirk::plan(network, &options, &mut |stats: &Stats| {

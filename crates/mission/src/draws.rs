@@ -16,7 +16,7 @@ pub fn draw(distribution: Distribution, random: &mut Random) -> Result<Time, Ove
     let offset = match distribution {
         Distribution::Fixed(_) => Some(Time::ZERO),
         Distribution::Uniform(_, most) => {
-            let steps = after(most)?.whole_parts(PER_UNIT).ok_or(Overflow)?.max(0) as u64;
+            let steps = after(most)?.integer_parts(PER_UNIT).ok_or(Overflow)?.max(0) as u64;
             Time::new(random.below(steps.saturating_add(1)) as i64, i64::from(PER_UNIT))
         }
         Distribution::Triangular(_, likely, most) => {

@@ -53,13 +53,13 @@ impl CoreHost for Unhurried<'_> {
 }
 
 /// Keeps the last snapshot instead of answering with it.
-pub(crate) struct Quiet<'a> {
+pub(crate) struct LastSnapshot<'a> {
     pub(crate) host: &'a mut dyn CoreHost,
     pub(crate) passes_maps: bool,
     pub(crate) last: Option<Arc<Snapshot>>,
 }
 
-impl CoreHost for Quiet<'_> {
+impl CoreHost for LastSnapshot<'_> {
     fn now_millis(&self) -> f64 {
         self.host.now_millis()
     }

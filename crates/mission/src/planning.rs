@@ -100,15 +100,15 @@ impl<'input> Problem<'input> {
         // Without an objective there is nothing better to look for, and no plan before the last.
         let is_over = self.network.objective.is_empty();
         let has_tried = move |stats: &Stats| {
-            is_over || stats.conflicts >= LEAST_CONFLICTS || stats.expanded >= LEAST_DECISIONS
+            is_over || stats.conflicts >= MIN_CONFLICTS || stats.expanded >= MIN_DECISIONS
         };
         move |stats| stop() || self.has_enough() && has_tried(stats)
     }
 }
 
 /// What a search may still do once there is enough.
-const LEAST_CONFLICTS: u64 = 500;
-const LEAST_DECISIONS: u64 = 50_000;
+const MIN_CONFLICTS: u64 = 500;
+const MIN_DECISIONS: u64 = 50_000;
 
 /// A mission, planned.
 #[derive(Clone, Debug)]

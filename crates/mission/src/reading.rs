@@ -262,7 +262,7 @@ pub(crate) fn compile_scenarios(
     keep: bool,
 ) -> Option<Vec<Network>> {
     let mut networks = Vec::new();
-    let mut is_whole = true;
+    let mut is_complete = true;
     let (_, mut of_programs) = Programs::compile(program, None);
     let depend_on_calls = Programs::depend_on_calls(program);
     let ground = sight::ground(program, grounds);
@@ -277,13 +277,13 @@ pub(crate) fn compile_scenarios(
                 }
             }
         }
-        is_whole &= network.is_some();
+        is_complete &= network.is_some();
         networks.extend(network.filter(|_| keep));
     });
     tpn::merge_diagnostics(diagnostics, found);
     diagnostics.extend(of_programs);
     let is_sound = diagnostics.iter().all(|found| found.severity != Severity::Error);
-    (is_whole && is_sound).then_some(networks)
+    (is_complete && is_sound).then_some(networks)
 }
 
 /// The network of what is to be planned without heights, if no error prevents it; adds what compiling finds to

@@ -191,7 +191,7 @@ impl Sampler {
         if outcome.ending == Ending::Finished {
             tally.succeeded += 1;
             tally.succeeded_by_replanning += u64::from(outcome.plans.len() > 1);
-            let end = outcome.log.last().map_or(Some(0), |entry| entry.time.whole_parts(PER_UNIT));
+            let end = outcome.log.last().map_or(Some(0), |entry| entry.time.integer_parts(PER_UNIT));
             let end = end.ok_or(PlanError::Overflow)?;
             tally.end_sum = tally.end_sum.checked_add(end).ok_or(PlanError::Overflow)?;
             tally.end_least = tally.end_least.into_iter().chain([end]).min();

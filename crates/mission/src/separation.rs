@@ -68,7 +68,7 @@ impl Part {
         Stretch { from, after, until, share: (share(end) + pace).min(1.0) }
     }
 
-    fn whole(&self) -> Stretch {
+    fn full(&self) -> Stretch {
         Stretch { from: self.from, after: 0.0, until: self.until, share: 1.0 }
     }
 }
@@ -104,10 +104,8 @@ pub(crate) fn meetings(
             for (index, part) in own.iter().enumerate() {
                 for (other_index, other_part) in others.iter().enumerate() {
                     let is_together = part.movement.is_some() && part.movement == other_part.movement;
-                    let (whole, other_whole) = (part.whole(), other_part.whole());
-                    if is_together
-                        || gaps.is_before(&whole, &other_whole)
-                        || gaps.is_before(&other_whole, &whole)
+                    let (full, other_full) = (part.full(), other_part.full());
+                    if is_together || gaps.is_before(&full, &other_full) || gaps.is_before(&other_full, &full)
                     {
                         continue;
                     }

@@ -12,7 +12,7 @@ use egui::{Key, Modifiers};
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 use workbench::host::RefusalCode;
-use workbench::outside::Remote;
+use workbench::host_io::Remote;
 
 use crate::{
     core_link::CoreLink,

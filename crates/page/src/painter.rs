@@ -76,7 +76,7 @@ fn device(adapter: &Adapter) -> DeviceDescriptor<'static> {
     }
 }
 
-/// What draws, for [`State`](workbench::outside::Remote::state).
+/// What draws, for [`State`](workbench::host_io::Remote::state).
 pub(crate) fn name(render_state: Option<&RenderState>) -> &'static str {
     match render_state.map(|state| state.adapter.get_info().backend) {
         Some(Backend::BrowserWebGpu) => "webgpu",

@@ -12,7 +12,7 @@ use workbench::state::drawing::{self, DrawCommand};
 
 use crate::Context;
 
-/// A quiet sentence in the middle of a panel.
+/// A muted sentence in the middle of a panel.
 pub fn show_empty(ui: &mut Ui, context: &Context<'_>, text: &str) {
     ui.centered_and_justified(|ui| {
         // A label of its own accord would stretch its lines from edge to edge.

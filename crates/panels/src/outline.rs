@@ -20,7 +20,7 @@ struct Item<'a> {
     name: &'a str,
     detail: String,
     span: Span,
-    whole: Span,
+    full: Span,
     color: egui::Color32,
 }
 
@@ -28,14 +28,14 @@ impl Panel for OutlinePanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let Some(latest) = context.state.snapshots.latest() else { return };
         let mut items = items(&latest.program, context.tokens);
-        items.sort_by_key(|item| item.whole);
+        items.sort_by_key(|item| item.full);
         if items.is_empty() {
             show_empty(ui, context, "No declarations.");
             return;
         }
         let caret = context.state.document.caret().head as u32;
         if let Some(steps) = keyboard_navigation::arrows(ui, context, PanelKind::Outline) {
-            let here = items.iter().position(|item| item.whole.touches(caret));
+            let here = items.iter().position(|item| item.full.touches(caret));
             let next = here.map_or(0, |here| here.saturating_add_signed(steps).min(items.len() - 1));
             let span = items[next].span;
             let (anchor, head) = (span.start as usize, span.end as usize);
@@ -47,7 +47,7 @@ impl Panel for OutlinePanel {
             items.len(),
             |ui, rows| {
                 for item in items.get(rows).unwrap_or_default() {
-                    let response = show_item(ui, context, item, item.whole.touches(caret));
+                    let response = show_item(ui, context, item, item.full.touches(caret));
                     if response.clicked() {
                         commands.send(Command::Reveal(item.span));
                         commands.send(Command::Editor(EditorCommand::Focus));
@@ -62,7 +62,7 @@ fn items<'a>(program: &'a Program, tokens: &Tokens) -> Vec<Item<'a>> {
     let syntax = &tokens.syntax;
     let mut items = Vec::new();
     let mut add = |kind, name: &'a rmpl::program::Name, detail: String, whole, color| {
-        items.push(Item { kind, name: &name.text, detail, span: name.span, whole, color });
+        items.push(Item { kind, name: &name.text, detail, span: name.span, full, color });
     };
     let formals = |names: &[rmpl::program::Name]| {
         let names: Vec<&str> = names.iter().map(|name| name.text.as_str()).collect();

@@ -29,7 +29,8 @@ const COARSE: f64 = 1e-3;
 /// Thresholds that follow while ε is too large.
 const FINER: [f64; 10] = [1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-12, 0.0];
 /// What an update does that is to keep as much as the limits allow.
-const MOST: [(f64, u64); 4] = [(0.0, 500_000), (1e-9, 1_000_000), (1e-7, MAX_SETS), (1e-5, u64::MAX)];
+const MAX_SETS_BY_CUT: [(f64, u64); 4] =
+    [(0.0, 500_000), (1e-9, 1_000_000), (1e-7, MAX_SETS), (1e-5, u64::MAX)];
 /// Thresholds with which equal successors are joined as they are found, if enumeration leaves too much out.
 const MERGED: [f64; 3] = [0.0, 1e-8, 1e-6];
 /// How many sets an update may take at most while ε is too large.
@@ -72,7 +73,7 @@ pub fn update_bounded(
     let mut step = Step::new(model, belief, commands, &choices, likelihoods, most);
     let tried = match effort {
         Effort::AsNeeded => &FIRST,
-        Effort::Most => &MOST,
+        Effort::Most => &MAX_SETS_BY_CUT,
     };
     let found = tried.iter().find_map(|&(threshold, sets)| Some((threshold, step.expand(threshold, sets)?)));
     let (threshold, mut best) =

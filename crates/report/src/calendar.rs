@@ -45,7 +45,7 @@ impl Calendar {
 
     /// When a mission time is, to the millisecond before; `None` beyond the calendar.
     pub fn at(&self, time: Time) -> Option<Timestamp> {
-        let millis = time.whole_parts(u32::try_from(self.unit.seconds()).ok()?.checked_mul(1000)?)?;
+        let millis = time.integer_parts(u32::try_from(self.unit.seconds()).ok()?.checked_mul(1000)?)?;
         self.epoch.checked_add(SignedDuration::from_millis(millis)).ok()
     }
 

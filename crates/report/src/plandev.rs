@@ -90,7 +90,7 @@ fn arguments(occurrence: &Occurrence, program: &Program) -> Map<String, Value> {
 
 /// As `PostgreSQL` writes intervals, to the microsecond before.
 fn interval(time: Time, unit: TimeUnit) -> Option<String> {
-    let micros = time.checked_mul(exact::Rational::from(unit.seconds()))?.whole_parts(1_000_000)?;
+    let micros = time.checked_mul(exact::Rational::from(unit.seconds()))?.integer_parts(1_000_000)?;
     let (seconds, fraction) = (micros.div_euclid(1_000_000), micros.rem_euclid(1_000_000));
     let [hours, minutes, seconds] = [seconds / 3_600, seconds / 60 % 60, seconds % 60];
     let fraction = if fraction == 0 { String::new() } else { format!(".{fraction:06}") };

@@ -322,18 +322,14 @@ fn verdict(planning: &Planning, places: &Places<'_>) -> Vec<Line> {
 
 /// What the plan is worth, as far as its mission counts anything, and whether it is known to be the best. The checker
 /// adds up the figures; that nothing is better rests on the planner alone, and the line says that.
-fn worth(
-    snapshot: &Snapshot,
-    planning: &Planning,
-    network: &Network,
-    places: &Places<'_>,
-) -> Option<Line> {
+fn worth(snapshot: &Snapshot, planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
     let mut text = tpn::worth::words(network, plan)?;
     let mut status = status_by_checker(planning);
     let has_end = tpn::worth::measures(network).contains(&Measure::End);
     // Who has the location itself depends on who comes first, and so do the paths. The search weighs each leg with one path.
-    let stops_beside = |traverse: &snapshot::Traverse| short_of_its_goal_m(&snapshot.program.world, traverse).is_some();
+    let stops_beside =
+        |traverse: &snapshot::Traverse| short_of_its_goal_m(&snapshot.program.world, traverse).is_some();
     let depends_on_order =
         (has_end || network.counts_meters()) && snapshot.traverses.iter().any(stops_beside);
     let standing = match tpn::worth::standing(plan) {

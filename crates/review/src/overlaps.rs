@@ -114,8 +114,8 @@ pub(super) fn occupied(network: &Network) -> BTreeSet<OccurrenceId> {
     let whole = network.uses.iter().filter(|used| {
         let resource = &network.resources[used.resource.index()];
         // Orders, such as that of the parts of `unordered`, are no resources of the mission.
-        let is_whole = matches!(resource.supply, Supply::Reusable { capacity } if used.amount == capacity);
-        used.change == Change::Uses && is_whole && !resource.name.contains('#')
+        let takes_all = matches!(resource.supply, Supply::Reusable { capacity } if used.amount == capacity);
+        used.change == Change::Uses && takes_all && !resource.name.contains('#')
     });
     whole.filter_map(|used| used.owner).collect()
 }

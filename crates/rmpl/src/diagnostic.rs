@@ -106,7 +106,7 @@ impl Diagnostic {
     }
 
     /// The message, with how many more there are.
-    pub fn whole_message(&self) -> String {
+    pub fn full_message(&self) -> String {
         let what = match self.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
@@ -216,7 +216,7 @@ mod tests {
         let first = listed(told(700, Severity::Warning).chain(told(3, Severity::Error)));
         assert_eq!(first.len(), MAX_LISTED + 3);
         assert_eq!(first[MAX_LISTED - 1].more, 200);
-        assert_eq!(first[MAX_LISTED - 1].whole_message(), "number 499; and 200 more warnings");
+        assert_eq!(first[MAX_LISTED - 1].full_message(), "number 499; and 200 more warnings");
         let joined = listed(first.into_iter().chain(listed(told(700, Severity::Warning))));
         let sum: usize = joined.iter().map(|found| 1 + found.more as usize).sum();
         assert_eq!((joined.len(), sum), (MAX_LISTED + 3, 1403));

@@ -55,7 +55,7 @@ impl Problem {
         Self {
             code: SmolStr::new(diagnostic.code.0),
             severity: diagnostic.severity,
-            message: diagnostic.whole_message(),
+            message: diagnostic.full_message(),
             span: diagnostic.span,
             file: (file.start > 0).then(|| SmolStr::new(&file.name)),
             file_start: file.start,

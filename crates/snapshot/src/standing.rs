@@ -22,8 +22,7 @@ const ROOM_M: f64 = 0.1;
 /// whether it is selected or not, share one.
 pub fn start_slots(program: &Program, occurrences: &[Occurrence]) -> Vec<usize> {
     let vehicles = &program.world.vehicles;
-    let moves_several =
-        |it: &&PrimitiveDecl| it.moves.as_ref().is_some_and(|moves| moves.vehicles.len() > 1);
+    let moves_several = |it: &&PrimitiveDecl| it.moves.as_ref().is_some_and(|moves| moves.vehicles.len() > 1);
     let primitives: Vec<&PrimitiveDecl> = program.primitives.iter().filter(moves_several).collect();
     let convoys: BTreeSet<Vec<&SmolStr>> = (occurrences.iter())
         .filter_map(|occurrence| {

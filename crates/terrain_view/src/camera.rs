@@ -98,7 +98,7 @@ impl Camera {
     }
 
     /// The whole of `ground` from the south, as large as an image of this width over height allows.
-    pub fn whole(ground: &Ground, aspect: f32) -> Self {
+    pub fn fitting(ground: &Ground, aspect: f32) -> Self {
         let size = ground.size_m();
         let mut camera = Self::overview(ground.center_m(), size.max_element());
         let low = ground.origin_m;
@@ -231,7 +231,7 @@ mod tests {
         let low = ground.origin_m;
         for aspect in [0.5, 1.0, 1.7, 3.0] {
             let size = Vec2::new(600.0 * aspect, 600.0);
-            let projector = Camera::whole(&ground, aspect).projector(size);
+            let projector = Camera::fitting(&ground, aspect).projector(size);
             let mut extent = (size, Vec2::ZERO);
             for corner in
                 [low, low + ground.size_m(), low + Vec2::new(297.0, 0.0), low + Vec2::new(0.0, 297.0)]

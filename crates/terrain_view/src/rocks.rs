@@ -13,8 +13,8 @@ use crate::shapes::Shapes;
 const SHOWN_WITHIN_M: f32 = 160.0;
 /// Rocks farther from the camera's target are left out, in meters; and so are smaller ones, and all beyond this many.
 const AROUND_M: f32 = 70.0;
-const LEAST_M: f64 = 0.35;
-const MOST: usize = 300;
+const MIN_M: f64 = 0.35;
+const MAX_ROCKS: usize = 300;
 const SIDES: u16 = 7;
 const STONE: [f32; 4] = [0.53, 0.38, 0.29, 1.0];
 
@@ -26,12 +26,12 @@ pub(crate) fn draw(shapes: &mut Shapes, ground: &Ground, map: &Terrain, camera: 
     }
     let target = camera.target_m.truncate();
     let is_near = |rock: &&Rock| {
-        rock.diameter_m >= LEAST_M && place(rock.center_m).distance_squared(target) < around_m * around_m
+        rock.diameter_m >= MIN_M && place(rock.center_m).distance_squared(target) < around_m * around_m
     };
     let mut near: Vec<&Rock> = map.rocks().iter().filter(is_near).collect();
-    if near.len() > MOST {
+    if near.len() > MAX_ROCKS {
         near.sort_by(|left, right| right.diameter_m.total_cmp(&left.diameter_m));
-        near.truncate(MOST);
+        near.truncate(MAX_ROCKS);
     }
     for rock in near {
         stone(shapes, ground, rock);

@@ -42,7 +42,7 @@ pub struct Tokens {
 
     /// What can be pressed, is active or has the focus.
     pub accent: Color32,
-    /// A quiet fill in the accent's hue.
+    /// A muted fill in the accent's hue.
     pub accent_soft: Color32,
     /// Behind selected text and selected rows.
     pub selection: Color32,

@@ -246,7 +246,7 @@ pub struct Label {
 pub enum Extent {
     /// From the arc's start to its end.
     #[default]
-    Whole,
+    Arc,
     /// The instant of the arc's start.
     Start,
     /// Of an assertion: the variable is changing along the arc, and has the value from its end on.
@@ -617,7 +617,7 @@ impl Label {
             (LabelMode::Ask, _) => "Ask",
             (LabelMode::Tell, Extent::Effect) => "Set",
             (LabelMode::Tell, Extent::Initial) => "Init",
-            (LabelMode::Tell, Extent::Whole | Extent::Start) => "Tell",
+            (LabelMode::Tell, Extent::Arc | Extent::Start) => "Tell",
         }
     }
 
@@ -650,7 +650,7 @@ impl Network {
         let label = &self.labels[label.index()];
         let arc = &self.arcs[label.arc.index()];
         match label.extent {
-            Extent::Whole | Extent::Effect => (arc.from, arc.to),
+            Extent::Arc | Extent::Effect => (arc.from, arc.to),
             Extent::Start | Extent::Initial => (arc.from, arc.from),
         }
     }

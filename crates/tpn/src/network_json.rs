@@ -110,7 +110,7 @@ fn arc_to_json(network: &Network, id: usize, arc: &Arc) -> Value {
             if network.sight(label).is_some() {
                 members.insert("values".into(), network.value_names(&label.literal).into());
             }
-            if label.extent != Extent::Whole {
+            if label.extent != Extent::Arc {
                 members.insert("extent".into(), json!(label.extent));
             }
             if let Some(owner) = label.owner {
@@ -433,7 +433,7 @@ impl Reader {
             None => arc_owner,
         };
         let extent = match value.get("extent") {
-            None => Extent::Whole,
+            None => Extent::Arc,
             Some(extent) => serde_json::from_value(extent.clone())
                 .map_err(|problem| error(place, &format!("a label's `extent`: {problem}")))?,
         };

@@ -1,7 +1,7 @@
 //! The line between the front end and where it runs: a page, a native window, or a test.
 //!
 //! [`Host`] is what the app needs from outside: the planning core, storage, files, the address line and a clock. The
-//! app never touches a thread, a file or a clock itself. The other direction is [`Remote`](crate::outside::Remote).
+//! app never touches a thread, a file or a clock itself. The other direction is [`Remote`](crate::host_io::Remote).
 
 use link::{Request, Response};
 #[cfg(test)]
@@ -254,8 +254,8 @@ impl FileKind {
 
     /// The most bytes of such a file that are read.
     pub fn max_bytes(self, name: &str) -> usize {
-        let is_whole = name.to_ascii_lowercase().ends_with(".enroute");
-        if self == Self::Map || is_whole { MAX_FILE_BYTES } else { MAX_TEXT_BYTES }
+        let is_mission_file = name.to_ascii_lowercase().ends_with(".enroute");
+        if self == Self::Map || is_mission_file { MAX_FILE_BYTES } else { MAX_TEXT_BYTES }
     }
 
     /// What the file dialog calls it.

@@ -10,10 +10,10 @@ use crate::command::Command;
 use crate::description::State;
 use crate::effect::Effect;
 use crate::host::{Host, HostEvent, RemoteError};
+use crate::host_io::Remote;
+use crate::host_io::{self, Autosave};
 use crate::library::LibraryCommand;
 use crate::mission_file::{self, EXAMPLES};
-use crate::outside::Remote;
-use crate::outside::{self, Keeper};
 use crate::registry;
 use crate::state::settings::{PlanSettings, Settings};
 use crate::state::snapshots::Status;
@@ -25,7 +25,7 @@ pub struct Session {
     host: Box<dyn Host>,
     posted: Option<Posted>,
     stored: Settings,
-    keeper: Keeper,
+    autosave: Autosave,
     window_effects: Vec<WindowEffect>,
     last_secs: f64,
     version: u64,
@@ -57,17 +57,17 @@ impl Session {
     /// draft that the host keeps, and with what its address names.
     pub fn new(mut host: Box<dyn Host>, renderer: &str) -> Self {
         let mut state = AppState::new();
-        if let Some(settings) = outside::remembered_settings(host.as_ref()) {
+        if let Some(settings) = host_io::remembered_settings(host.as_ref()) {
             *state.settings = settings;
         }
         renderer.clone_into(&mut state.frame.renderer);
         state.frame.unix_millis = host.unix_millis();
-        let mut keeper = Keeper::start(&mut state, host.as_mut());
-        let is_named = outside::open_fragment(&mut state, &host.fragment());
+        let mut autosave = Autosave::start(&mut state, host.as_mut());
+        let is_named = host_io::open_fragment(&mut state, &host.fragment());
         if is_named {
-            keeper.mention_last(&mut state, host.as_ref());
+            autosave.mention_last(&mut state, host.as_ref());
         } else {
-            keeper.reopen(&mut state, host.as_ref());
+            autosave.reopen(&mut state, host.as_ref());
         }
         let stored = state.settings.clone();
         Self {
@@ -76,7 +76,7 @@ impl Session {
             host,
             posted: None,
             stored,
-            keeper,
+            autosave,
             window_effects: Vec::new(),
             version: 1,
         }
@@ -113,11 +113,11 @@ impl Session {
         while let Some(event) = self.host.poll() {
             match event {
                 HostEvent::FragmentChanged(fragment) => {
-                    outside::open_fragment(&mut self.state, &fragment);
+                    host_io::open_fragment(&mut self.state, &fragment);
                 }
-                HostEvent::Shelf(news) => self.keeper.hear(&mut self.state, self.host.as_mut(), news),
-                HostEvent::PrivateWindow => self.keeper.note_private(&mut self.state),
-                HostEvent::TabSaid(message) => self.keeper.hear_tab(&mut self.state, &message),
+                HostEvent::Shelf(news) => self.autosave.hear(&mut self.state, self.host.as_mut(), news),
+                HostEvent::PrivateWindow => self.autosave.note_private(&mut self.state),
+                HostEvent::TabSaid(message) => self.autosave.hear_tab(&mut self.state, &message),
                 event => self.state.receive(event),
             }
             self.version += 1;
@@ -168,7 +168,7 @@ impl Session {
             self.version += 1;
         }
         let begun_secs = self.state.frame.now_secs;
-        let next_secs = self.keeper.follow(&mut self.state, self.host.as_mut(), begun_secs);
+        let next_secs = self.autosave.follow(&mut self.state, self.host.as_mut(), begun_secs);
         self.do_effects();
         let done_secs = self.host.monotonic_secs();
         self.state.frame.cpu_millis = (done_secs - begun_secs) * 1000.0;
@@ -178,7 +178,7 @@ impl Session {
 
     /// Writes down whatever is not written yet: the page is about to close.
     pub fn keep_now(&mut self) {
-        self.keeper.keep_now(&mut self.state, self.host.as_mut());
+        self.autosave.keep_now(&mut self.state, self.host.as_mut());
         self.do_effects();
     }
 
@@ -187,7 +187,7 @@ impl Session {
         let settings = self.state.settings_to_keep();
         if self.stored != settings {
             self.stored = settings;
-            outside::remember_settings(self.host.as_mut(), &self.stored);
+            host_io::remember_settings(self.host.as_mut(), &self.stored);
         }
     }
 
@@ -231,22 +231,22 @@ impl Session {
                 Effect::Post(request) => self.host.post(request),
                 Effect::Stop => self.host.stop(),
                 Effect::KeepReview { joins } => {
-                    outside::keep_review(self.host.as_mut(), &mut self.state, joins);
+                    host_io::keep_review(self.host.as_mut(), &mut self.state, joins);
                 }
                 Effect::JoinReview(record) => {
                     self.state.reviewing().join(*record);
                 }
                 Effect::SetReviewAside(aside) => {
-                    outside::set_review_aside(self.host.as_mut(), &mut self.state, aside);
+                    host_io::set_review_aside(self.host.as_mut(), &mut self.state, aside);
                 }
-                Effect::ReadMap(id, name) => Keeper::read_map(self.host.as_mut(), &id, &name),
-                Effect::ShowAddress => outside::show_address(&self.state, self.host.as_mut()),
-                Effect::HearReview => outside::hear_review(self.host.as_ref(), &mut self.state),
+                Effect::ReadMap(id, name) => Autosave::read_map(self.host.as_mut(), &id, &name),
+                Effect::ShowAddress => host_io::show_address(&self.state, self.host.as_mut()),
+                Effect::HearReview => host_io::hear_review(self.host.as_ref(), &mut self.state),
                 Effect::ChangeKeys(change) => {
-                    outside::change_keys(self.host.as_mut(), &mut self.state, change);
+                    host_io::change_keys(self.host.as_mut(), &mut self.state, change);
                 }
-                Effect::RecallKeys => outside::recall_keys(self.host.as_ref(), &mut self.state),
-                Effect::RecallReview => outside::recall_review(self.host.as_ref(), &mut self.state),
+                Effect::RecallKeys => host_io::recall_keys(self.host.as_ref(), &mut self.state),
+                Effect::RecallReview => host_io::recall_review(self.host.as_ref(), &mut self.state),
                 Effect::Restyle => self.window_effects.push(WindowEffect::Restyle),
             }
         }
@@ -284,12 +284,12 @@ impl Session {
     }
 
     fn copy_link(&mut self) {
-        let fragment = outside::fragment(&self.state);
+        let fragment = host_io::fragment(&self.state);
         match self.host.link(&fragment) {
-            Some(link) if !outside::is_link_short(&link) => {
+            Some(link) if !host_io::is_link_short(&link) => {
                 let words = "This mission is too long for a link. Saving it to a file instead.";
                 self.state.window.info(words);
-                self.state.apply(Command::Library(LibraryCommand::SaveWhole));
+                self.state.apply(Command::Library(LibraryCommand::SaveMissionFile));
                 self.do_effects();
             }
             Some(link) => {

@@ -5,7 +5,7 @@
 //! `cargo xtask bench page` prints the tables; `--development` takes the page built for development, `--no-build` the
 //! page as it was last built, and `cargo bench --package xtask --bench page -- network` or `terrain` one table alone. The window is small and shows one drawing, since this browser draws on the
 //! processor, which is not what is measured: times of frames are `enroute.state().timings.frame`, the app's own code,
-//! and `wholeFrame`, with all that egui and eframe add on the page's thread. The time of a keystroke runs on the page's
+//! and `frameWithShell`, with all that egui and eframe add on the page's thread. The time of a keystroke runs on the page's
 //! clock from the key to `shownAt`, when the frame with its answer is handed over to be drawn.
 
 use std::time::Instant;
@@ -339,7 +339,7 @@ struct Frames {
 impl Frames {
     fn read(&mut self, tab: &Tab) -> Result<()> {
         let answer =
-            tab.evaluate("((timings) => [timings.frame, timings.wholeFrame])(enroute.state().timings)")?;
+            tab.evaluate("((timings) => [timings.frame, timings.frameWithShell])(enroute.state().timings)")?;
         self.own.push(number(&answer[0])?);
         self.whole.push(number(&answer[1])?);
         Ok(())

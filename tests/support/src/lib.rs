@@ -7,7 +7,7 @@ use std::rc::Rc;
 use serde_json::Value;
 use workbench::Session;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::chance::ChanceCommand;
 use workbench::state::review::ReviewCommand;
 
@@ -96,6 +96,6 @@ impl App {
 
     /// The state as a host page sees it.
     pub fn json(&self) -> Value {
-        serde_json::to_value(workbench::outside::Remote::state(&self.session)).expect("plain data")
+        serde_json::to_value(workbench::host_io::Remote::state(&self.session)).expect("plain data")
     }
 }

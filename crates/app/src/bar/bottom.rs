@@ -78,7 +78,7 @@ fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     };
     let button = Button::new(RichText::new(text).color(color));
     if ui.add(button).on_hover_text(format!("{reason}. Click to save the mission to a file.")).clicked() {
-        commands.send(Command::Library(LibraryCommand::SaveWhole));
+        commands.send(Command::Library(LibraryCommand::SaveMissionFile));
     }
 }
 

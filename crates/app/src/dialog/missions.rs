@@ -135,7 +135,7 @@ fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(text).color(color));
         if context.state.library.keeping != Keeping::Opening && ui.button("Save mission to file").clicked() {
-            commands.send(Command::Library(LibraryCommand::SaveWhole));
+            commands.send(Command::Library(LibraryCommand::SaveMissionFile));
         }
     });
 }

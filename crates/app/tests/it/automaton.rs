@@ -4,7 +4,7 @@ use crate::support;
 use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 fn opened(source: &str) -> support::App {
     let mut app = support::start();

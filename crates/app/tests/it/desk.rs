@@ -5,7 +5,7 @@ use egui::{Key, Modifiers, Rect, Role};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 fn sized(size: [f32; 2]) -> support::App {
     let mut app = support::start_in(std::rc::Rc::default(), |builder| builder.with_size(size));

@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 const MISSION: &str = "\
 primitive Wake()[1,2];

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
 use text_editing::TextCommand;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 use crate::support::App;
 

@@ -5,7 +5,7 @@ use egui::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 use workbench::host::{FileKind, HostEvent};
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 fn executing(mission: &str) -> support::App {
     let mut app = support::start();

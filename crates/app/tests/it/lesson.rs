@@ -6,8 +6,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::{Value, json};
 use workbench::command::Command;
 use workbench::host::FileKind;
+use workbench::host_io::Remote as _;
 use workbench::lesson::COURSE;
-use workbench::outside::Remote as _;
 use workbench::state::lesson::LessonCommand;
 
 use crate::support::App;
@@ -279,9 +279,9 @@ fn cut_off(app: &App) -> Vec<(String, egui::Rect)> {
     app.each_text(&mut |text, clip| {
         let (area, clip) = (text.visual_bounding_rect(), clip.intersect(screen));
         // A point more or less of what is around letters is no loss.
-        let is_whole = clip.x_range().expand(1.5).contains(area.left())
+        let is_complete = clip.x_range().expand(1.5).contains(area.left())
             && clip.x_range().expand(1.5).contains(area.right());
-        if clip.shrink(1.0).intersects(area) && !is_whole {
+        if clip.shrink(1.0).intersects(area) && !is_complete {
             found.push((text.galley.text().to_owned(), clip));
         }
     });

@@ -76,7 +76,7 @@ fn question(app: &App) -> Value {
 
 /// What the live region says.
 fn announced(app: &App) -> String {
-    workbench::outside::announcement(app.harness.state().app_state())
+    workbench::host_io::announcement(app.harness.state().app_state())
 }
 
 /// Answers the question of the step rightly, with keys alone.

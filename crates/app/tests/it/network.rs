@@ -5,7 +5,7 @@ use egui::Key;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::Selection;
 use workbench::state::settings::SettingsCommand;
 

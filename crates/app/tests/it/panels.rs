@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
 use workbench::PanelKind;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::window::WindowCommand;
 
 /// Shows the plan's tables where there is room for all of them.

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use workbench::PanelKind;
 use workbench::command::Command;
 use workbench::host::FileKind;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::compare::CompareCommand;
 use workbench::state::search::SearchCommand;
 use workbench::state::settings::SettingsCommand;

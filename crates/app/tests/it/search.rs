@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use serde_json::json;
 use workbench::PanelKind;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::window::WindowCommand;
 
 use crate::support::App;
@@ -105,10 +105,10 @@ fn a_link_leads_to_its_step_and_a_step_into_the_link() {
     app.harness.state_mut().run(Command::Window(WindowCommand::CopyLink));
     app.settle();
     press(&mut app, Key::Period);
-    let fragment = workbench::outside::fragment(app.harness.state().app_state());
+    let fragment = workbench::host_io::fragment(app.harness.state().app_state());
     assert!(fragment.contains("&step=61"), "{fragment}");
     press(&mut app, Key::Escape);
-    let fragment = workbench::outside::fragment(app.harness.state().app_state());
+    let fragment = workbench::host_io::fragment(app.harness.state().app_state());
     assert!(!fragment.contains("step="), "{fragment}");
 }
 

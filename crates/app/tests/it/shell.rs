@@ -6,7 +6,7 @@ use std::rc::Rc;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 #[test]
 fn the_app_opens_with_the_enroute_mission_and_its_plan() {

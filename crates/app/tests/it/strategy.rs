@@ -5,7 +5,7 @@ use crate::support;
 use egui::Role;
 use egui_kittest::kittest::Queryable as _;
 use serde_json::{Value, json};
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 use crate::support::App;
 

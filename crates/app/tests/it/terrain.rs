@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable as _;
 use serde_json::json;
 use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent};
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 /// Two places 80 m apart on level ground, and a rover that drives to one and from there to the other.
 const MISSION: &str = "\

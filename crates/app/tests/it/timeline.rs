@@ -6,7 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use layout::timeline::Grouping;
 use serde_json::{Value, json};
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 
 fn reviewing() -> support::App {
     // High enough for all rows, whatever else the workspace shows.

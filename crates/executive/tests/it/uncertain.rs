@@ -78,7 +78,7 @@ fn half() -> Time {
 fn choose(network: &Network, rng: &mut Rng, only_ends: bool) -> BTreeMap<SmolStr, Time> {
     let mut chosen = BTreeMap::new();
     for (occurrence, [lower, upper]) in natures_ranges(network) {
-        let steps = upper.checked_sub(lower).and_then(|width| width.whole_parts(2)).expect("a small range");
+        let steps = upper.checked_sub(lower).and_then(|width| width.integer_parts(2)).expect("a small range");
         let step = match only_ends {
             true if rng.chance(50) => 0,
             true => steps,

@@ -56,12 +56,12 @@ pub(super) fn ranges(ground: &mut Ground, times: u32) -> Result<BTreeMap<Fluent,
             vacant.insert(range(ground, need.fluent, times)?);
         }
     }
-    let is_whole = |ground: &Ground, fluent: Fluent| {
+    let is_complete = |ground: &Ground, fluent: Fluent| {
         let changes = ground.actions.iter().flat_map(Action::snaps).filter_map(|it| it.changes.get(&fluent));
         changes.chain(ground.values.get(&fluent)).all(|number| number.is_integer())
     };
     let whole: BTreeMap<Fluent, bool> =
-        ranges.keys().map(|fluent| (*fluent, is_whole(ground, *fluent))).collect();
+        ranges.keys().map(|fluent| (*fluent, is_complete(ground, *fluent))).collect();
     let names = &ground.fluents.all;
     let plain = |need: &Need| {
         if !need.is_strict {

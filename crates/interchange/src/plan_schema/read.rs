@@ -486,7 +486,7 @@ impl<'file> Reader<'file> {
             let owner = self.arcs[arc.index()].occurrence;
             self.arcs[arc.index()].labels.push(LabelId::from_index(self.labels.len()));
             let extent = match label.get("extent") {
-                None => Extent::Whole,
+                None => Extent::Arc,
                 Some(extent) => serde_json::from_value(extent.clone()).map_err(|_| wrong())?,
             };
             self.labels.push(Label { arc, mode, extent, literal, text: text.into(), owner, span: None });

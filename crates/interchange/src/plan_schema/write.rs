@@ -147,7 +147,7 @@ impl Writer<'_> {
                     None => label.text.to_string(),
                 };
                 let mut condition = json!({"type": mode, "literal": literal});
-                if label.extent != Extent::Whole {
+                if label.extent != Extent::Arc {
                     condition["extent"] = json!(label.extent);
                 }
                 condition

@@ -29,7 +29,7 @@ impl Obstacle {
         Self { problem: problem.to_owned(), nodes: Vec::new(), arcs: vec![arc] }
     }
 
-    fn whole(problem: String) -> Self {
+    fn of_network(problem: String) -> Self {
         Self { problem, nodes: Vec::new(), arcs: Vec::new() }
     }
 
@@ -81,13 +81,16 @@ pub fn write(network: &Network, remarks: &[String]) -> Result<String, Obstacle> 
 /// States, resources, worth and paths: a network has them from a mission's text, and that text is what to go on with.
 fn refuse_what_has_no_words(network: &Network) -> Result<(), Obstacle> {
     if let Some(state) = network.variables.iter().find(|variable| variable.is_lasting) {
-        return Err(Obstacle::whole(format!("`{}` is a state variable, which keeps its value", state.name)));
+        return Err(Obstacle::of_network(format!(
+            "`{}` is a state variable, which keeps its value",
+            state.name
+        )));
     }
     if let Some(resource) = network.resources.first() {
-        return Err(Obstacle::whole(format!("the network uses the resource `{}`", resource.name)));
+        return Err(Obstacle::of_network(format!("the network uses the resource `{}`", resource.name)));
     }
     if !network.worths.is_empty() || !network.objective.is_empty() {
-        return Err(Obstacle::whole("the network has costs, rewards or an objective".to_owned()));
+        return Err(Obstacle::of_network("the network has costs, rewards or an objective".to_owned()));
     }
     for (index, arc) in network.arcs.iter().enumerate() {
         let id = ArcId::from_index(index);
@@ -100,7 +103,7 @@ fn refuse_what_has_no_words(network: &Network) -> Result<(), Obstacle> {
         };
         return Err(Obstacle::at_arc(id, problem));
     }
-    let partial = network.labels.iter().find(|label| label.extent != Extent::Whole);
+    let partial = network.labels.iter().find(|label| label.extent != Extent::Arc);
     if let Some(label) = partial {
         return Err(Obstacle::at_arc(
             label.arc,

@@ -132,8 +132,8 @@ impl<'network> Reduction<'network> {
     fn join_parallel(&mut self, from: NodeId, to: NodeId) {
         let beside = self.between.get(&(from, to)).map_or(0, Vec::len);
         let is_choice = self.open[from.index()];
-        let is_whole = beside == self.outs[from.index()].len();
-        if beside == 0 || (is_choice && !is_whole) || (!is_choice && beside < 2) {
+        let is_complete = beside == self.outs[from.index()].len();
+        if beside == 0 || (is_choice && !is_complete) || (!is_choice && beside < 2) {
             return;
         }
         let mut parts = self.between.remove(&(from, to)).unwrap_or_default();

@@ -176,7 +176,10 @@ impl Writer<'_> {
         self.depth += 1;
         // A choice with a block in it nests twice.
         if self.depth * 2 > DEEPEST {
-            return Err(Obstacle::whole(format!("the network nests deeper than {} levels", DEEPEST / 2)));
+            return Err(Obstacle::of_network(format!(
+                "the network nests deeper than {} levels",
+                DEEPEST / 2
+            )));
         }
         Ok(())
     }
@@ -291,7 +294,7 @@ impl Writer<'_> {
         if self.network.threat_gap != Time::ONE {
             let gap = time(self.network.threat_gap)?;
             if gap.contains('/') {
-                return Err(Obstacle::whole(format!("the threat gap {gap} is not a decimal number")));
+                return Err(Obstacle::of_network(format!("the threat gap {gap} is not a decimal number")));
             }
             let _ = writeln!(text, "option threat_gap = {gap};");
         }
@@ -362,7 +365,7 @@ fn time(time: Time) -> Result<String, Obstacle> {
     if text.split('/').all(is_short) {
         Ok(text)
     } else {
-        Err(Obstacle::whole(format!("the time {text} has more than {MAX_DIGITS} digits")))
+        Err(Obstacle::of_network(format!("the time {text} has more than {MAX_DIGITS} digits")))
     }
 }
 

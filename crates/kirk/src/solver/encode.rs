@@ -179,7 +179,7 @@ impl<'m> Problem<'m> {
     }
 
     /// All that the solver's solution says.
-    pub(crate) fn whole_solution(&self, solver: &Solver) -> Solution {
+    pub(crate) fn complete_solution(&self, solver: &Solver) -> Solution {
         let Choices { alternatives, carriers, times } = self.solution(solver);
         let orders = self.orders.iter().flat_map(|((left, right), [left_first, right_first])| {
             [((*left, *right), *left_first), ((*right, *left), *right_first)]

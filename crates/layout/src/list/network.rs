@@ -424,7 +424,7 @@ impl Builder<'_> {
             text.role,
             TextRole::Node | TextRole::Bounds | TextRole::Nature | TextRole::ZeroBounds | TextRole::Window
         );
-        let fit = if is_number { Fit::Whole } else { Fit::Shrink };
+        let fit = if is_number { Fit::Unabridged } else { Fit::Shrink };
         Text {
             fit,
             legible: (text.role == TextRole::Name).then(|| room().unwrap_or_else(|| text.rect.width())),

@@ -146,7 +146,7 @@ fn words(
             Rect::new(middle - half, top, middle + half, top + height)
         };
         // Texts and circles are lower than the steps that are tried together.
-        let (from, to) = (line - 2.0 * MOST_OFF, line + 2.0 * MOST_OFF);
+        let (from, to) = (line - 2.0 * MAX_OFF, line + 2.0 * MAX_OFF);
         let near = taken.partition_point(|it| it.min.y < from)..taken.partition_point(|it| it.min.y < to);
         let near_lines =
             lines.partition_point(|(_, it)| it.min.y < from)..lines.partition_point(|(_, it)| it.min.y < to);
@@ -160,7 +160,7 @@ fn words(
             is_free(place)
                 && !lines[near_lines.clone()].iter().any(|(id, it)| id != arc && it.overlaps(*place))
         };
-        let steps = (1..).map(|step| f64::from(step) * STEP_OFF).take_while(|off| *off <= MOST_OFF);
+        let steps = (1..).map(|step| f64::from(step) * STEP_OFF).take_while(|off| *off <= MAX_OFF);
         let offs = std::iter::once(0.0).chain(steps.flat_map(|off| [off, -off]));
         let places: Vec<Rect> = offs.map(at).collect();
         let place = places.iter().copied().find(is_apart);
@@ -187,7 +187,7 @@ fn level_parts(drawing: &NetworkDrawing) -> Vec<(ArcId, Rect)> {
 }
 
 /// How far from its arc a word is written at most, and in which steps a free place is looked for.
-const MOST_OFF: f64 = 72.0;
+const MAX_OFF: f64 = 72.0;
 const STEP_OFF: f64 = 2.0;
 
 /// When what an arc stands for can start in the plan.
@@ -214,8 +214,8 @@ fn arcs_of(network: &Network, changes: &[(OccurrenceId, BarChange)]) -> Vec<(Arc
     let arcs = network.arcs.iter().enumerate().filter_map(|(index, arc)| {
         let occurrence = network.occurrences.get(arc.occurrence?.index())?;
         // The arc that is the whole of it, and not a part of its path.
-        let is_whole = (arc.from, arc.to) == (occurrence.start, occurrence.end);
-        Some((ArcId::from_index(index), change_of(arc.occurrence?).filter(|_| is_whole)?))
+        let is_complete = (arc.from, arc.to) == (occurrence.start, occurrence.end);
+        Some((ArcId::from_index(index), change_of(arc.occurrence?).filter(|_| is_complete)?))
     });
     arcs.collect()
 }

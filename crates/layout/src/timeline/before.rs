@@ -54,7 +54,7 @@ pub struct Gone {
 }
 
 /// What was scheduled by less than this otherwise is where it was: times of runs are rounded.
-const LEAST_MOVE: f64 = 1e-6;
+const MIN_MOVE: f64 = 1e-6;
 
 /// Rows of what is gone, at most.
 const MAX_GONE: usize = 100;
@@ -83,14 +83,14 @@ impl Before {
             Origin::Approved => [start, end] == [bar.start, bar.end],
             Origin::Planned => {
                 let [from, to] = bar.scheduled();
-                (from - start[0]).abs() < LEAST_MOVE && (to - end[0]).abs() < LEAST_MOVE
+                (from - start[0]).abs() < MIN_MOVE && (to - end[0]).abs() < MIN_MOVE
             }
         }
     }
 
     fn compares(&self, bar: &Bar, network: &Network) -> bool {
         let is_activity = bar.kind == BarKind::Activity;
-        bar.is_whole(network) && !bar.kind.is_past() && (self.origin == Origin::Approved || is_activity)
+        bar.is_complete(network) && !bar.kind.is_past() && (self.origin == Origin::Approved || is_activity)
     }
 
     /// When something could start and end, if the plan had it.

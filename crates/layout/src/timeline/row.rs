@@ -147,7 +147,7 @@ impl Bar {
     }
 
     /// Whether it stands for all of its occurrence, and not for a condition of an activity that has its own bar.
-    pub fn is_whole(&self, network: &Network) -> bool {
+    pub fn is_complete(&self, network: &Network) -> bool {
         let occurrence = self.occurrence.and_then(|id| network.occurrences.get(id.index()));
         self.label.is_none() || occurrence.is_some_and(|it| it.kind == OccurrenceKind::Assertion)
     }

@@ -26,7 +26,7 @@ use crate::contradicting::Trying;
 use crate::control::ControlTexts;
 use crate::evaluated::{Manner, TRACE_EVENTS};
 use crate::ground::Grounds;
-use crate::host::{CoreHost, Quiet, Unhurried};
+use crate::host::{CoreHost, LastSnapshot, Unhurried};
 use crate::program_proof::ProofUnderWay;
 use crate::reading::{Followed, Reading};
 use crate::sampling::Sampled;
@@ -104,9 +104,9 @@ impl Core {
     /// The plan is kept from the update before, so this takes only the time of the review itself.
     fn review(&mut self, update: &Update, rules: &[MissionRule], host: &mut dyn CoreHost) {
         let told = self.last.as_ref().and_then(planned::Last::final_plan);
-        let mut quiet = Quiet { host, passes_maps: true, last: None };
-        self.update(update, &mut quiet);
-        let Some(snapshot) = quiet.last else { return };
+        let mut silent = LastSnapshot { host, passes_maps: true, last: None };
+        self.update(update, &mut silent);
+        let Some(snapshot) = silent.last else { return };
         // Where planning had been stopped, the plan that is reviewed is another one than was told.
         if self.last.as_ref().and_then(planned::Last::final_plan) != told {
             host.answer(Response::Snapshot(Arc::clone(&snapshot)));
@@ -123,9 +123,9 @@ impl Core {
     /// The open text's own plan is kept.
     fn evaluate_beside(&mut self, token: u64, update: &Update, host: &mut dyn CoreHost) {
         let (last, sent, reading) = (self.last.take(), self.sent.take(), std::mem::take(&mut self.reading));
-        let mut quiet = Quiet { host, passes_maps: false, last: None };
-        self.update(update, &mut quiet);
-        let found = quiet.last;
+        let mut silent = LastSnapshot { host, passes_maps: false, last: None };
+        self.update(update, &mut silent);
+        let found = silent.last;
         (self.last, self.sent, self.reading) = (last, sent, reading);
         if let Some(snapshot) = found.filter(|snapshot| snapshot.stage == Stage::Complete) {
             host.answer(Response::Evaluated { token, snapshot });

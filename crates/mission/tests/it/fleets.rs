@@ -4,7 +4,7 @@
 use link::Update;
 use mission::{Core, Evaluated, Manner};
 
-use crate::ridge::{Quiet, ridge};
+use crate::ridge::{SilentHost, ridge};
 
 /// A mission on the ridge, planned.
 #[track_caller]
@@ -16,10 +16,10 @@ fn planned(world: &str, scenario: &str) -> Evaluated {
          primitive Drive(r, to)[0,60] moves r; primitive Relay(r, to)[1,2] requires r.at in visible(to);\n\
          scenario Day[0,300] = {{ {scenario} }}"
     );
-    let compiled = core.compile(&Update::new(1, text), &Quiet);
+    let compiled = core.compile(&Update::new(1, text), &SilentHost);
     assert!(compiled.network().is_some(), "{:?}", compiled.diagnostics);
     let ground = core.ground(&compiled.program.world).expect("known ground");
-    core.plan(compiled, ground, Manner::default(), &mut Quiet).expect("a network")
+    core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network")
 }
 
 /// Whether a vehicle of `model`, which `declared` declares, can do what the scenario says.

@@ -3,9 +3,9 @@
 use link::Response;
 use mission::CoreHost;
 
-pub struct Quiet;
+pub struct SilentHost;
 
-impl CoreHost for Quiet {
+impl CoreHost for SilentHost {
     fn now_millis(&self) -> f64 {
         0.0
     }

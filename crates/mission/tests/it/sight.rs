@@ -5,7 +5,7 @@ use link::Update;
 use mission::{Core, Evaluated, Manner};
 use snapshot::Goal;
 
-use crate::ridge::{Quiet, ridge};
+use crate::ridge::{SilentHost, ridge};
 
 const WORLD: &str = "terrain \"ridge.asc\";
 location BASE (10, 14); location CRATER (50, 14); location OPEN (50, 3);
@@ -23,10 +23,10 @@ fn planned(scenario: &str) -> Evaluated {
     let mut core = Core::default();
     core.import("ridge.asc", &ridge()).expect("a map");
     let update = update(scenario);
-    let compiled = core.compile(&update, &Quiet);
+    let compiled = core.compile(&update, &SilentHost);
     assert!(compiled.network().is_some(), "{:?}", compiled.diagnostics);
     let ground = core.ground(&compiled.program.world).expect("known ground");
-    core.plan(compiled, ground, Manner::default(), &mut Quiet).expect("a network")
+    core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network")
 }
 
 /// The places that a condition of the mission comes to, and its text.
@@ -113,7 +113,7 @@ fn another_map_gives_other_places() {
     let mut core = Core::default();
     let update = update("Drive(R1, OPEN); Relay(R1, BASE)");
     let hidden = |core: &mut Core| {
-        let compiled = core.compile(&update, &Quiet);
+        let compiled = core.compile(&update, &SilentHost);
         compiled.network().expect("a network").sights[0].hidden.len()
     };
     core.import("ridge.asc", &ridge()).expect("a map");
@@ -127,12 +127,12 @@ fn another_map_gives_other_places() {
 fn the_example_reports_from_where_it_sees_its_base() {
     let mut core = Core::default();
     let update = Update::new(1, include_str!("../../../../assets/missions/relay.rmpl"));
-    let compiled = core.compile(&update, &Quiet);
+    let compiled = core.compile(&update, &SilentHost);
     let network = compiled.network().expect("a network");
     let hidden: Vec<&str> = network.sights[0].hidden.iter().map(|hidden| hidden.place.as_str()).collect();
     assert_eq!(hidden, ["HOLLOW", "SLACK"]);
     let ground = core.ground(&compiled.program.world).expect("known ground");
-    let evaluated = core.plan(compiled, ground, Manner::default(), &mut Quiet).expect("a network");
+    let evaluated = core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network");
     let planning = &evaluated.planned.planning;
     assert!(planning.verdict.as_ref().is_some_and(|verdict| verdict.valid));
     let chosen: Vec<u32> =

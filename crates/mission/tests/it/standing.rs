@@ -128,7 +128,8 @@ fn a_drive_to_another_name_of_the_same_place_leads_there() {
 /// A leg has another path where its vehicle stands beside the location: no bound on the way there is longer than the path.
 #[test]
 fn the_quickest_path_of_a_leg_bounds_its_time() {
-    let source = "location P0 (25, 83); location P4 (37, 32); location P5 (17, 76); model Scout { speed (0.01, 0.4); }
+    let source =
+        "location P0 (25, 83); location P4 (37, 32); location P5 (17, 76); model Scout { speed (0.01, 0.4); }
          vehicle S[1..2] : Scout at P0; primitive Drive(r : vehicle, to : location)[0,200] moves r;
          objective minimize end;
          scenario M[0,372] = { any v in S { Drive(v, P5) }, each v in S { optional { Drive(v, P4) } } }";

@@ -28,7 +28,7 @@ type Press = (AutomatonItem, bool);
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
 /// At less than this, guards and names of locations are smaller than 11 points: the part that matters is shown then.
-const LEAST_ZOOM: f64 = 11.0 / 11.5;
+const MIN_ZOOM: f64 = 11.0 / 11.5;
 /// A small automaton is not blown up further than this where all of it is asked for.
 const LARGEST_WHOLE: f64 = 1.3;
 /// How far from the pointer something may be to be pointed at, in points.
@@ -104,7 +104,7 @@ impl Canvas {
         }
         if self.view.is_fitted() {
             let part = part_that_matters(shown, drawing, panel.size());
-            self.view.fit_legibly(panel, with_legend(drawing.bounds), part, LEAST_ZOOM);
+            self.view.fit_legibly(panel, with_legend(drawing.bounds), part, MIN_ZOOM);
         }
     }
 
@@ -180,7 +180,7 @@ fn part_that_matters(
     };
     let marks = around(&is_marked)?;
     let fits =
-        marks.width() * LEAST_ZOOM <= f64::from(room.x) && marks.height() * LEAST_ZOOM <= f64::from(room.y);
+        marks.width() * MIN_ZOOM <= f64::from(room.x) && marks.height() * MIN_ZOOM <= f64::from(room.y);
     if fits { Some(marks) } else { around(&|id| is_marked(id) && asserts(id)).or(Some(marks)) }
 }
 

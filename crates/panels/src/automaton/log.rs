@@ -16,7 +16,7 @@ const COLUMNS: [(&str, bool); 5] =
 
 /// Widths in points: of the column of step numbers, and the least that any other has.
 const STEP_WIDTH: f32 = 48.0;
-const LEAST_CELL: f32 = 84.0;
+const MIN_CELL: f32 = 84.0;
 
 /// Shows the table; `in_view` is the step that was scrolled to last.
 pub(super) fn show(
@@ -34,7 +34,7 @@ pub(super) fn show(
         // Cells break their lines rather than leave the panel, while there is room for a few words in each.
         let columns = if has_plant { COLUMNS.len() } else { COLUMNS.len() - 2 };
         let room = (ui.available_width() - STEP_WIDTH) / columns as f32 - ui.spacing().item_spacing.x;
-        Grid::new("automaton-steps").striped(true).max_col_width(room.max(LEAST_CELL)).show(ui, |ui| {
+        Grid::new("automaton-steps").striped(true).max_col_width(room.max(MIN_CELL)).show(ui, |ui| {
             theme::structure::part(ui, egui::accesskit::Role::Table, "Steps");
             let headings = COLUMNS.into_iter().filter(|column| is_told(*column)).map(|(heading, _)| heading);
             for heading in std::iter::once("Step").chain(headings) {

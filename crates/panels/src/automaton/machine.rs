@@ -36,7 +36,7 @@ pub(super) struct Standing {
 }
 
 /// A mode is at least so wide: it has to hold a percentage.
-const LEAST_WIDTH: f32 = 46.0;
+const MIN_WIDTH: f32 = 46.0;
 const MODE_PADDING: f32 = 9.0;
 /// How far from the pointer an arc may be to be pointed at, in points.
 const REACH: f64 = 5.0;
@@ -200,7 +200,7 @@ fn placement(rect: Rect, drawing: &MachineDrawing, scale: f32) -> Placement {
 fn width(ui: &Ui, name: &str) -> f64 {
     let font = FontId::new(NAME_SIZE as f32, strong_family());
     let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().text_color());
-    f64::from((text.size().x + 2.0 * MODE_PADDING).max(LEAST_WIDTH).ceil())
+    f64::from((text.size().x + 2.0 * MODE_PADDING).max(MIN_WIDTH).ceil())
 }
 
 /// Lets a mode be pointed at, pressed, and heard.

@@ -43,7 +43,7 @@ pub struct AutomatonPanel {
 }
 
 /// With less room than this, one part is shown at a time.
-const LEAST_ROOM: Vec2 = vec2(760.0, 320.0);
+const MIN_ROOM: Vec2 = vec2(760.0, 320.0);
 const REVEALING_FRAMES: u8 = 3;
 
 /// The drawing of the automaton that was laid out last.
@@ -123,7 +123,7 @@ impl Panel for AutomatonPanel {
         controls::show(ui, context, commands);
         self.layout(automaton);
         let room = ui.available_size();
-        if room.x < LEAST_ROOM.x || room.y < LEAST_ROOM.y {
+        if room.x < MIN_ROOM.x || room.y < MIN_ROOM.y {
             self.one_part(ui, context, shown, commands);
             return;
         }

@@ -10,7 +10,7 @@ use super::{change_look, select};
 use crate::Context;
 
 /// Differences that are listed at most.
-const MOST: usize = 400;
+const MAX_DIFFERENCES: usize = 400;
 /// How wide the column of words is.
 const WORD_WIDTH: f32 = 92.0;
 
@@ -22,10 +22,10 @@ pub(super) fn show(
     commands: &mut CommandSender,
 ) {
     ui.add_space(space::S);
-    for difference in comparison.differences.iter().take(MOST) {
+    for difference in comparison.differences.iter().take(MAX_DIFFERENCES) {
         row(ui, context, difference, commands);
     }
-    let left_out = comparison.differences.len().saturating_sub(MOST);
+    let left_out = comparison.differences.len().saturating_sub(MAX_DIFFERENCES);
     if left_out > 0 {
         ui.label(format!("and {left_out} more (run enroute compare for the full list)"));
     }

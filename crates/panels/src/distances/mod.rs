@@ -47,7 +47,7 @@ struct Drawn {
 }
 
 /// Smaller than this no name could be read.
-const LEAST_ZOOM: f64 = 0.78;
+const MIN_ZOOM: f64 = 0.78;
 /// A few vertices are not drawn larger than this.
 const LARGEST_WHOLE: f64 = 1.5;
 const WHEEL_ZOOM: f64 = 0.0022;
@@ -250,7 +250,7 @@ fn move_view(
         Some(ViewAction::FitSelection) => view.keep_fitted(),
     }
     if view.is_fitted() {
-        view.fit_legibly(panel, bounds, part_that_matters(drawn), LEAST_ZOOM);
+        view.fit_legibly(panel, bounds, part_that_matters(drawn), MIN_ZOOM);
     }
 }
 
@@ -269,13 +269,13 @@ fn part_that_matters(drawn: &Drawn) -> Option<display::Rect> {
 }
 
 /// A contradiction of more bounds is told by its two sides: all that has to pass, and all that may.
-const MOST_WEIGHTS: usize = 12;
+const MAX_WEIGHTS: usize = 12;
 
 /// The weights of a contradiction, and what they come to.
 fn sum_of(cycle: &[CycleMember]) -> String {
     let words = |sum: Option<exact::Time>| sum.map_or_else(|| "…".to_owned(), workbench::time_text::time);
     let total = words(exact::Time::checked_sum(cycle.iter().map(|member| member.weight)));
-    if cycle.len() <= MOST_WEIGHTS {
+    if cycle.len() <= MAX_WEIGHTS {
         let weights: Vec<String> =
             cycle.iter().map(|member| workbench::time_text::time(member.weight)).collect();
         return format!("Negative cycle: {} = {total}", weights.join(" + ").replace("+ -", "− "));

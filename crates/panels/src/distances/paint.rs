@@ -47,7 +47,7 @@ const CROWD: usize = 3;
 /// The radius of a vertex without a name.
 const DOT: f64 = 6.0;
 /// Texts that would be smaller than this in points are left out; others keep a size that can be read.
-const LEAST_TEXT: f32 = 7.5;
+const MIN_TEXT: f32 = 7.5;
 
 /// A size of letters that can be read, in half points so that zooming does not fill the font atlas.
 fn legible(font_size: f32) -> f32 {
@@ -247,7 +247,7 @@ impl Scene<'_> {
         let round = if it.names.is_empty() { frame.height() / 2.0 } else { 6.0 };
         self.painter.rect(frame, round, fill, Stroke::new(width, line), StrokeKind::Middle);
         let font_size = size::BODY * self.view.zoom() as f32;
-        if font_size < LEAST_TEXT {
+        if font_size < MIN_TEXT {
             return;
         }
         let lines = it.names.len() as f32;
@@ -266,7 +266,7 @@ impl Scene<'_> {
     /// end.
     fn weight(&self, edge: usize, has_cycle: bool, degrees: &[usize], taken: &mut Vec<Rect>) {
         let font_size = ((size::SMALL + 1.0) * self.view.zoom() as f32).min(14.0);
-        if font_size < LEAST_TEXT {
+        if font_size < MIN_TEXT {
             return;
         }
         let points = self.curve(edge);

@@ -19,7 +19,7 @@ pub(super) struct Detail {
     /// The first and the last of the neighbors that are drawn in more detail than the rest.
     focus: Option<(String, String)>,
     /// Whether everything is drawn, however small.
-    pub(super) is_whole: bool,
+    pub(super) is_expanded: bool,
     /// The room that the drawing is made for; none before the panel has been seen.
     room: Option<(u32, u32)>,
     /// Whether there is room for the windows of events.
@@ -43,7 +43,7 @@ impl Detail {
 
     /// Whether something is open or collapsed that was not by itself.
     pub(super) fn is_changed(&self) -> bool {
-        self.is_whole || self.focus.is_some() || !self.collapsed.is_empty()
+        self.is_expanded || self.focus.is_some() || !self.collapsed.is_empty()
     }
 
     /// Whether some part is drawn in more detail than the rest.
@@ -55,12 +55,12 @@ impl Detail {
     pub(super) fn reset(&mut self) {
         self.collapsed.clear();
         self.focus = None;
-        self.is_whole = false;
+        self.is_expanded = false;
     }
 
     /// The same with everything drawn but what the user collapsed.
-    pub(super) fn whole(&self) -> Self {
-        Self { is_whole: true, ..self.clone() }
+    pub(super) fn expanded(&self) -> Self {
+        Self { is_expanded: true, ..self.clone() }
     }
 
     /// Opens the box that stands for blocks from `first` to `last`.
@@ -100,7 +100,7 @@ impl Detail {
         let collapsed = collapsed_blocks(network, &self.collapsed);
         let options = Options { collapsed, window_width, ..Options::default() };
         let length = |steps: u32| f64::from(steps) * f64::from(ROOM_STEP);
-        let room = self.room.filter(|_| !self.is_whole);
+        let room = self.room.filter(|_| !self.is_expanded);
         let room = room.map(|(width, height)| Room { width: length(width), height: length(height) });
         let block = |key: &String| {
             let mut blocks = (0..network.blocks.len()).map(BlockId::from_index);

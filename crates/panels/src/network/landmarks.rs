@@ -13,9 +13,9 @@ use super::view::View;
 use crate::{Context, draw_menu};
 
 /// With more in view, a list helps nobody.
-const MOST: usize = 150;
+const MAX_LANDMARKS: usize = 150;
 /// Smaller than this, they cannot be told apart.
-const LEAST_HEIGHT: f32 = 5.0;
+const MIN_HEIGHT: f32 = 5.0;
 
 /// What was done with a landmark.
 pub(super) struct Act {
@@ -38,7 +38,7 @@ pub(super) fn show(
 ) -> Option<Act> {
     let chosen = &*context.state.selection;
     let mut found = in_view(panel, view, drawn, network);
-    if found.len() > MOST {
+    if found.len() > MAX_LANDMARKS {
         return None;
     }
     found.sort_by(|left, right| {
@@ -89,11 +89,11 @@ fn in_view(panel: Rect, view: &View, drawn: &Drawn, network: &Network) -> Vec<La
     let mut add = |rect: display::Rect, selection: Selection| {
         let rect = view.screen_rect(panel, rect).intersect(panel);
         let is_new = found.last().is_none_or(|last| last.selection != selection);
-        if rect.height() >= LEAST_HEIGHT && rect.width() > 0.0 && is_new {
+        if rect.height() >= MIN_HEIGHT && rect.width() > 0.0 && is_new {
             found.push(Landmark { rect, selection, opens: None });
         }
     };
-    let least = f64::from(LEAST_HEIGHT) / view.zoom();
+    let least = f64::from(MIN_HEIGHT) / view.zoom();
     let mut arches = Vec::new();
     let mut boxes = Vec::new();
     drawing.visit(area, least, &mut |shape| match shape {

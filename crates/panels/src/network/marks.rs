@@ -37,9 +37,9 @@ impl Mark {
 }
 
 /// With more problems than this, the list of problems serves better.
-const MOST: usize = 40;
+const MAX_MARKS: usize = 40;
 /// What shares less than this part of its text with a problem is not what the problem is about.
-const LEAST_SHARE: f64 = 0.02;
+const MIN_SHARE: f64 = 0.02;
 /// From the line of an arc to where a mark hangs, in units of the drawing.
 const OUTSIDE: f32 = 14.0;
 /// The size of a mark, in points of the screen.
@@ -59,14 +59,14 @@ pub(super) fn marks(
     latest: &Snapshot,
 ) -> Vec<Mark> {
     let places = places(network);
-    let worth = latest.problems.iter().filter(|it| it.severity != Severity::Note).take(MOST);
+    let worth = latest.problems.iter().filter(|it| it.severity != Severity::Note).take(MAX_MARKS);
     worth
         .filter_map(|problem| {
             let span = carried(problem.span, &latest.source, source);
             let (_, place) = places
                 .iter()
                 .map(|&(own, place)| (share(own, span), place))
-                .filter(|(share, _)| *share >= LEAST_SHARE)
+                .filter(|(share, _)| *share >= MIN_SHARE)
                 .max_by(|left, right| left.0.total_cmp(&right.0))?;
             let (at, arc) = match place {
                 Place::Arc(arc) => (place_on(drawing, network, arc), Some(arc)),

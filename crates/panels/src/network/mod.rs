@@ -71,7 +71,7 @@ const BADGE_HEIGHTS: [f32; 2] = [30.0, 44.0];
 const WHEEL_ZOOM: f64 = 0.0022;
 const KEY_ZOOM: f64 = 1.3;
 /// Where something was opened, the whole is shown with it down to this zoom.
-const LEAST_OPENED: f64 = 0.62;
+const MIN_OPENED: f64 = 0.62;
 /// A selection elsewhere is shown no larger than this.
 const SELECTION_ZOOM: f64 = 1.4;
 
@@ -161,7 +161,7 @@ impl NetworkPanel {
             Asked::Nothing => return,
             Asked::OpenAll => {
                 self.detail.reset();
-                self.detail.is_whole = true;
+                self.detail.is_expanded = true;
                 return;
             }
             Asked::FitAll => {
@@ -283,7 +283,7 @@ impl NetworkPanel {
         if formats.is_empty() {
             return;
         }
-        let detail = self.detail.whole();
+        let detail = self.detail.expanded();
         let windows_of = options.windows.then(|| {
             let pins = &context.state.pins;
             (pins.version(), pins.plan(snapshot))
@@ -364,7 +364,7 @@ impl NetworkPanel {
             let of_step = context.focus().map(|focus| Highlight::of_focus(&focus, network));
             let shapes = of_step.unwrap_or_else(|| Highlight::of(&context.state.selection, network));
             let part = shapes.bounds(&self.drawn.drawing);
-            self.view.fit_legibly(area, self.drawn.frame(), part, LEAST_OPENED);
+            self.view.fit_legibly(area, self.drawn.frame(), part, MIN_OPENED);
         } else {
             self.view.fit(area, self.drawn.frame());
         }

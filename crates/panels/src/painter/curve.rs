@@ -8,7 +8,7 @@ use super::level::LevelLines;
 use super::{DisplayPainter, Lines, SMALL_ZOOM, polygon};
 
 /// Arrow heads shorter than this are left out, in points.
-const LEAST_HEAD: f64 = 2.5;
+const MIN_HEAD: f64 = 2.5;
 /// A curve has a point for so many points of its length on the screen, at least and at most so many.
 const CURVE_STEPS: (f64, u32, u32) = (6.0, 3, 24);
 /// Dashes are smaller and larger with the drawing, between these.
@@ -44,7 +44,7 @@ impl DisplayPainter<'_> {
         }
         let has_head = end == PathEnd::Head && !lines.is_crowded;
         if has_head
-            && ARROW_LENGTH * self.placement.zoom >= LEAST_HEAD
+            && ARROW_LENGTH * self.placement.zoom >= MIN_HEAD
             && let Some((tip, before)) = tip(start, pieces)
         {
             let corners = arrow_head(tip, before).map(|corner| self.placement.screen_point(corner));

@@ -38,7 +38,7 @@ pub struct DisplayPainter<'a> {
 }
 
 /// Shapes smaller than this on the screen are left out, in points.
-const LEAST_SHAPE: f64 = 1.5;
+const MIN_SHAPE: f64 = 1.5;
 /// Below this zoom, lines along the axes have no soft edges: there are too many.
 const SMALL_ZOOM: f64 = 0.42;
 /// Below this zoom, single lines of a crowd are left out, and outlines have no soft edges.
@@ -50,7 +50,7 @@ const CROWD: (f32, f32) = (0.22, 1.0);
 /// Outlines less high than this on the screen fade, in points.
 const FADING_HEIGHT: f32 = 8.0;
 /// Outlines fainter than this are left out.
-const LEAST_STRENGTH: f32 = 0.04;
+const MIN_STRENGTH: f32 = 0.04;
 /// Circles smaller than this on the screen are dots.
 const DOT_RADIUS: f32 = 2.0;
 
@@ -135,7 +135,7 @@ impl<'a> DisplayPainter<'a> {
 
     /// What is too small to be drawn, in drawing units.
     pub fn min_size(&self) -> f64 {
-        LEAST_SHAPE / self.placement.zoom
+        MIN_SHAPE / self.placement.zoom
     }
 
     /// Draws lists over each other, by their layers. Names that look for room of their own leave `taken` free.
@@ -255,7 +255,7 @@ impl<'a> DisplayPainter<'a> {
             let strength = (rect.height() / FADING_HEIGHT).clamp(0.0, 1.0);
             line = egui::Stroke::new(line.width.min(1.0), line.color.gamma_multiply(strength));
             if zoom < OVERVIEW_ZOOM && fill.is_none() {
-                if strength > LEAST_STRENGTH {
+                if strength > MIN_STRENGTH {
                     level.outline(rect, line);
                 }
                 return;

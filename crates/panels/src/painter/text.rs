@@ -16,13 +16,13 @@ const WHOLE_SPARE: f32 = 5.0;
 /// so much more around them.
 const RAISED_FROM: f64 = 7.9;
 /// A name with less room than this on the screen is left out.
-const LEAST_NAME: f32 = 30.0;
+const MIN_NAME: f32 = 30.0;
 /// From the ends of a line to the name over it, together, in points.
 const NAME_INSET: f32 = 6.0;
 /// How far from the corner of its area a heading may begin that finds others there, in points.
 const FARTHEST_HEADING: f32 = 70.0;
 /// An area smaller than this on the screen has no heading.
-const LEAST_AREA: [f32; 2] = [40.0, 16.0];
+const MIN_AREA: [f32; 2] = [40.0, 16.0];
 /// From the edge of the panel to a text that was moved into view.
 const SLIDE_INSET: f64 = 16.0;
 
@@ -87,7 +87,7 @@ impl DisplayPainter<'_> {
         // No smaller than it can be read: the rest is cut.
         let smaller = font((size * f64::from(place.width() / galley.size().x)).max(LEGIBLE.min(size)));
         let mut job = LayoutJob::simple_singleline(text.text.to_string(), smaller.clone(), color);
-        if text.fit == Fit::Whole {
+        if text.fit == Fit::Unabridged {
             let galley = self.painter.layout_job(job);
             return (galley.size().x <= place.width() + WHOLE_SPARE).then_some((galley, smaller));
         }
@@ -98,7 +98,7 @@ impl DisplayPainter<'_> {
     /// A name at the least legible size over the middle of its place, cut to its room, if there is any between what is
     /// `taken`.
     fn legible(&self, text: &Text, place: Rect, room: f32, taken: &mut Vec<Rect>) {
-        if room < LEAST_NAME {
+        if room < MIN_NAME {
             return;
         }
         let color = self.color(text.color);
@@ -119,7 +119,7 @@ impl DisplayPainter<'_> {
     /// The heading of an area at its own size, where it has room; those before it come first.
     fn heading(&self, text: &Text, area: display::Rect, taken: &mut Vec<Rect>) {
         let rect = self.placement.screen_rect(area).intersect(self.area);
-        if rect.width() < LEAST_AREA[0] || rect.height() < LEAST_AREA[1] {
+        if rect.width() < MIN_AREA[0] || rect.height() < MIN_AREA[1] {
             return;
         }
         let color = self.color(text.color);

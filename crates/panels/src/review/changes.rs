@@ -33,7 +33,7 @@ struct Key {
 }
 
 /// Entries of each kind that are listed; the report has all.
-const MOST: usize = 30;
+const MAX_LINES: usize = 30;
 
 impl Changes {
     /// Shows what differs; nothing before an approval, and while the present content is not reviewed.
@@ -68,9 +68,9 @@ impl Changes {
             return;
         }
         let by = format!("Approved by {}, {}.", who(entry), moment(&entry.time));
-        row::quiet(ui, context, &by);
+        row::muted(ui, context, &by);
         if since.is_nothing() {
-            row::quiet(ui, context, "No changes to text, plan, checklist, flight rules or Monte Carlo runs.");
+            row::muted(ui, context, "No changes to text, plan, checklist, flight rules or Monte Carlo runs.");
             return;
         }
         indented(ui, |ui| {
@@ -116,7 +116,7 @@ pub(crate) fn text(ui: &mut Ui, context: &Context<'_>, changes: &[TextChange], m
     }
     let tokens = context.tokens;
     ui.label(strong("Text").color(tokens.text));
-    let mut left = MOST;
+    let mut left = MAX_LINES;
     for change in changes {
         let place = format!("line {}", change.after_line);
         if left > 0 {
@@ -132,7 +132,7 @@ pub(crate) fn text(ui: &mut Ui, context: &Context<'_>, changes: &[TextChange], m
         }
     }
     if left == 0 {
-        row::quiet_word(ui, more);
+        row::muted_word(ui, more);
     }
 }
 
@@ -156,11 +156,11 @@ fn list(ui: &mut Ui, context: &Context<'_>, title: &str, lines: &[String]) {
         return;
     }
     ui.label(strong(title).color(context.tokens.text));
-    for line in lines.iter().take(MOST) {
+    for line in lines.iter().take(MAX_LINES) {
         ui.label(RichText::new(super::capital::sentence(line)).color(context.tokens.text));
     }
-    if lines.len() > MOST {
-        row::quiet_word(ui, &format!("and {} more (see the report)", lines.len() - MOST));
+    if lines.len() > MAX_LINES {
+        row::muted_word(ui, &format!("and {} more (see the report)", lines.len() - MAX_LINES));
     }
 }
 

@@ -50,7 +50,7 @@ pub(super) fn show(
     let doubtful = record.checked().filter(|(_, check)| !check.counts()).count();
     if doubtful > 0 {
         let one = if doubtful == 1 { "entry does" } else { "entries do" };
-        row::quiet(ui, context, &format!("{doubtful} {one} not count. See the reason next to each."));
+        row::muted(ui, context, &format!("{doubtful} {one} not count. See the reason next to each."));
     }
     let checked: Vec<(&Entry, &Check)> = record.checked().collect();
     for (index, &(entry, check)) in checked.iter().enumerate().rev().take(MAX_ENTRIES) {
@@ -59,7 +59,7 @@ pub(super) fn show(
         show_entry(ui, context, (entry, check), &format!("{}  ", index + 1), &of, taken_back);
     }
     if entries.len() > MAX_ENTRIES {
-        row::quiet(ui, context, "See the file or the report for earlier entries.");
+        row::muted(ui, context, "See the file or the report for earlier entries.");
     }
     indented(ui, |ui| {
         ui.horizontal_wrapped(|ui| {

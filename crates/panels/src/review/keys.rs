@@ -40,7 +40,7 @@ impl Keys {
             return;
         }
         indented(ui, |ui| {
-            row::quiet_word(
+            row::muted_word(
                 ui,
                 "Signatures of these people count. Compare fingerprints before you trust a key.",
             );
@@ -94,7 +94,7 @@ impl Keys {
                 } else {
                     "Signatures of this key no longer count."
                 };
-                row::quiet_word(ui, warning);
+                row::muted_word(ui, warning);
                 if ui.button("Remove key").accessible_name(named("Remove key")).clicked() {
                     let change = KeyChange::Remove(person.key.clone());
                     commands.send(Command::Review(ReviewCommand::ChangeKeys(change)));
@@ -129,7 +129,7 @@ fn stranger(ui: &mut Ui, context: &Context<'_>, key: &PublicKey, name: &str, com
             }
         });
         if let Some(reason) = refused {
-            row::quiet(ui, context, &super::capital::sentence(&format!("{reason}.")));
+            row::muted(ui, context, &super::capital::sentence(&format!("{reason}.")));
         }
     });
 }

@@ -31,7 +31,7 @@ pub(super) fn line(
         place: &place,
         is_selected,
         indent: 0.0,
-        is_quiet: false,
+        is_muted: false,
     };
     if row::show(ui, list.context, &shown).clicked() {
         go_to(list, section, line, commands);
@@ -82,7 +82,7 @@ pub(super) fn choices(
                 place: "",
                 is_selected: list.selected.contains(&name),
                 indent: 20.0,
-                is_quiet: !is_taken,
+                is_muted: !is_taken,
             };
             if row::show(ui, list.context, &shown).clicked()
                 && let Some(id) = decision(&choice.name)

@@ -33,7 +33,7 @@ pub struct ReviewPanel {
     /// The sections that are folded.
     closed: BTreeSet<&'static str>,
     /// The sections of which everything is listed.
-    whole: BTreeSet<&'static str>,
+    expanded: BTreeSet<&'static str>,
     people: people::People,
     rules: rules::Rules,
     keys: keys::Keys,
@@ -46,12 +46,12 @@ const FIRST_LINES: usize = 40;
 impl Panel for ReviewPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         let state = context.state;
-        let is_worked_out = state.status() != state::Status::Working;
+        let is_evaluated = state.status() != state::Status::Working;
         if state.status() == state::Status::Program {
             show_empty(ui, context, "Control programs can't be reviewed. Open a mission to review its plan.");
             return;
         }
-        if state.review.is_unasked() && !state.review.is_running() && is_worked_out {
+        if state.review.is_unasked() && !state.review.is_running() && is_evaluated {
             commands.send(Command::Review(ReviewCommand::Run));
         }
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -128,15 +128,15 @@ impl ReviewPanel {
     fn section(&mut self, ui: &mut Ui, list: &List<'_>, section: Section, commands: &mut CommandSender) {
         let lines = list.review.lines(section);
         if lines.is_empty() {
-            row::quiet(ui, list.context, list.review.nothing(section));
+            row::muted(ui, list.context, list.review.nothing(section));
             if let Some(settled) = list.review.settled(section) {
                 contradict::of_line(ui, list.context, list.review, (section, &settled), commands);
             }
             return;
         }
-        let is_whole = self.whole.contains(section.title());
+        let is_expanded = self.expanded.contains(section.title());
         let most = if section == Section::Events { events::FIRST_EVENTS } else { FIRST_LINES };
-        let count = if is_whole { lines.len() } else { lines.len().min(most) };
+        let count = if is_expanded { lines.len() } else { lines.len().min(most) };
         match section {
             Section::Choices => lines::choices(ui, list, count, &mut self.people, commands),
             Section::Events => events::show(ui, list, count, commands),
@@ -147,15 +147,16 @@ impl ReviewPanel {
             }
         }
         if lines.len() > most {
-            let text = if is_whole { "Show fewer".to_owned() } else { format!("Show all {}", lines.len()) };
+            let text =
+                if is_expanded { "Show fewer".to_owned() } else { format!("Show all {}", lines.len()) };
             ui.horizontal(|ui| {
                 ui.add_space(row::INDENT);
                 let name = format!("{text}: {}", section.title());
                 if ui.button(&text).accessible_name(name).clicked() {
-                    if is_whole {
-                        self.whole.remove(section.title());
+                    if is_expanded {
+                        self.expanded.remove(section.title());
                     } else {
-                        self.whole.insert(section.title());
+                        self.expanded.insert(section.title());
                     }
                 }
             });

@@ -102,7 +102,7 @@ impl People {
             return;
         };
         ui.horizontal_wrapped(|ui| {
-            row::quiet_word(ui, "Sign as");
+            row::muted_word(ui, "Sign as");
             let combo = ComboBox::from_id_salt("signer").selected_text(name.clone()).show_ui(ui, |ui| {
                 for person in ring.own() {
                     ui.selectable_value(&mut name, person.name.clone(), &person.name);
@@ -113,7 +113,7 @@ impl People {
                 commands.send(Command::Review(ReviewCommand::SignAs(name)));
             }
             if board.len() > 1 {
-                row::quiet_word(ui, "as");
+                row::muted_word(ui, "as");
                 let combo =
                     ComboBox::from_id_salt("role").selected_text(self.role.as_str()).show_ui(ui, |ui| {
                         for seat in board {
@@ -128,7 +128,7 @@ impl People {
     /// A field for a name, and the button that creates a key under it.
     pub(super) fn new_key(&mut self, ui: &mut Ui, label: &str, commands: &mut CommandSender) {
         ui.horizontal_wrapped(|ui| {
-            row::quiet_word(ui, label);
+            row::muted_word(ui, label);
             let width = 180.0_f32.min(ui.available_width());
             let field = TextEdit::singleline(&mut self.new_name).hint_text("Your name").desired_width(width);
             ui.add(field).accessible_name("Your name");
@@ -262,7 +262,7 @@ impl People {
         if is_waiver {
             let day = TextEdit::singleline(&mut answer.until).hint_text("2026-01-31").desired_width(120.0);
             ui.horizontal_wrapped(|ui| {
-                row::quiet_word(ui, "Lapses on");
+                row::muted_word(ui, "Lapses on");
                 ui.add(day).accessible_name("Lapses on");
             });
         }
@@ -281,7 +281,7 @@ impl People {
             is_sent |= button.on_disabled_hover_text(why).clicked();
             is_left = ui.button("Cancel").clicked();
             if !has_key {
-                row::quiet_word(ui, "Create a key at the top first.");
+                row::muted_word(ui, "Create a key at the top first.");
             }
         });
         if is_sent && let Some(Answer { about, text, until }) = self.answer.take() {
@@ -357,7 +357,7 @@ impl People {
                 let mut people = context.state.keys.ring().people().iter();
                 let name = people.find(|person| person.key == *to);
                 let name = name.map_or_else(|| to.fingerprint(), |person| person.name.clone());
-                row::quiet_word(ui, &format!("To {name}"));
+                row::muted_word(ui, &format!("To {name}"));
             }
             if let Some(about) = about {
                 let found = context.snapshot.and_then(|snapshot| Selection::by_name(snapshot, about));
@@ -417,7 +417,7 @@ impl People {
                 commands.send(Command::Review(ReviewCommand::Say { by: self.person(), act }));
             }
             if has_words && !self.has_key() {
-                row::quiet_word(ui, "Create a key at the top to comment.");
+                row::muted_word(ui, "Create a key at the top to comment.");
             }
         });
     }
@@ -431,7 +431,7 @@ impl People {
             return;
         }
         ui.horizontal_wrapped(|ui| {
-            row::quiet_word(ui, "To");
+            row::muted_word(ui, "To");
             let shown = self.addressee.as_ref().map_or("everyone", |(name, _)| name.as_str());
             let combo = ComboBox::from_id_salt("addressee").selected_text(shown.to_owned());
             let combo = combo.show_ui(ui, |ui| {
@@ -509,7 +509,7 @@ impl People {
                 }
                 match &refused {
                     Err(_) if !standing.blockers().is_empty() => {}
-                    Err(reason) => row::quiet_word(ui, &super::capital::sentence(&format!("{reason}."))),
+                    Err(reason) => row::muted_word(ui, &super::capital::sentence(&format!("{reason}."))),
                     Ok(()) => {}
                 }
             });

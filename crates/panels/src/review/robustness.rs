@@ -30,7 +30,7 @@ pub(super) fn show(
     commands: &mut CommandSender,
 ) {
     let Some(figures) = figures else {
-        row::quiet(ui, context, "No Monte Carlo runs yet. Run them to estimate how often the plan succeeds.");
+        row::muted(ui, context, "No Monte Carlo runs yet. Run them to estimate how often the plan succeeds.");
         ui.horizontal(|ui| {
             ui.add_space(row::INDENT);
             let spec = registry::by_id(COMMAND);
@@ -52,7 +52,7 @@ pub(super) fn show(
     let tally = &figures.tally;
     let (low, high) = tally.interval();
     let percent = |part: f64| format!("{:.1}%", part * 100.0);
-    row::quiet(
+    row::muted(
         ui,
         context,
         &format!(
@@ -70,11 +70,11 @@ pub(super) fn show(
             "{event} missed its window {} times; {} of these ended the mission. {}",
             breaks.violations, breaks.stops, breaks.example
         );
-        row::quiet(ui, context, &text);
+        row::muted(ui, context, &text);
     }
     for (event, mean, most) in tally.tightest_events().into_iter().take(MAX_EVENTS) {
         let text =
             format!("{event} used {} of its slack on average, at most {}", percent(mean), percent(most));
-        row::quiet(ui, context, &text);
+        row::muted(ui, context, &text);
     }
 }

@@ -31,7 +31,7 @@ pub(super) struct Row<'a> {
     /// Further to the right than other rows.
     pub(super) indent: f32,
     /// Whether the text matters less.
-    pub(super) is_quiet: bool,
+    pub(super) is_muted: bool,
 }
 
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Response {
@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let word = look.map_or("", |(_, word, _)| word);
     let is_narrow = width < NARROW;
     let meta_width = if is_narrow { 0.0 } else { 118.0 };
-    let color = if row.is_quiet { tokens.text_muted } else { tokens.text };
+    let color = if row.is_muted { tokens.text_muted } else { tokens.text };
     let wrap = (width - left - space::M - meta_width).max(60.0);
     let mut job = inline_code::job(row.text, &body, color, wrap);
     if !row.criterion.is_empty() {
@@ -139,12 +139,12 @@ pub(super) fn heading(
 }
 
 /// A word beside a field.
-pub(super) fn quiet_word(ui: &mut Ui, text: &str) {
+pub(super) fn muted_word(ui: &mut Ui, text: &str) {
     ui.label(egui::RichText::new(text).weak());
 }
 
 /// A sentence that is no line of the checklist.
-pub(super) fn quiet(ui: &mut Ui, context: &Context<'_>, text: &str) {
+pub(super) fn muted(ui: &mut Ui, context: &Context<'_>, text: &str) {
     ui.horizontal(|ui| {
         ui.add_space(INDENT);
         // All of its lines begin at the indentation.

@@ -117,7 +117,7 @@ fn fields(ui: &mut Ui, context: &Context<'_>, rules: &mut FlightRules) {
 /// What the mission has to keep to in its own language.
 fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule>) {
     ui.add_space(space::S);
-    row::quiet_word(ui, "Mission rules, such as Battery >= 20 or never Drive while Mast=UP");
+    row::muted_word(ui, "Mission rules, such as Battery >= 20 or never Drive while Mast=UP");
     let mut gone = None;
     for (index, rule) in rules.iter_mut().enumerate() {
         let number = index + 1;
@@ -148,12 +148,12 @@ fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule
                     ui.label(RichText::new(problem).color(context.tokens.error));
                 }
                 None if rule.rule.trim().is_empty() => {
-                    row::quiet_word(ui, "Enter a condition and when it must hold");
+                    row::muted_word(ui, "Enter a condition and when it must hold");
                 }
                 None if context.snapshot.is_some_and(|snapshot| snapshot.network.is_some()) => {
-                    row::quiet_word(ui, "All names in this rule are declared");
+                    row::muted_word(ui, "All names in this rule are declared");
                 }
-                None => row::quiet_word(ui, "Not checked: the mission has no network"),
+                None => row::muted_word(ui, "Not checked: the mission has no network"),
             }
         });
     }
@@ -181,7 +181,7 @@ fn problem_of(context: &Context<'_>, rule: &str) -> Option<String> {
 /// Who has to approve, and how many of them.
 fn board(ui: &mut Ui, context: &Context<'_>, board: &mut Vec<Seat>) {
     ui.add_space(space::S);
-    row::quiet_word(ui, "Required approvals");
+    row::muted_word(ui, "Required approvals");
     let mut gone = None;
     let is_only = board.len() == 1;
     for (index, seat) in board.iter_mut().enumerate() {
@@ -243,7 +243,7 @@ fn optional(ui: &mut Ui, label: &str, value: &mut Option<f64>, usual: f64, most:
             let field = DragValue::new(value).range(0.0..=most).speed(0.1).max_decimals(3);
             ui.add(field).accessible_name(label);
         } else {
-            row::quiet_word(ui, "not checked");
+            row::muted_word(ui, "not checked");
         }
     });
     before != *value

@@ -20,7 +20,7 @@ const MAX_LISTED: usize = 8;
 /// The room for the two figures beside a name, and the least for a name, in points.
 const FIGURES_WIDTH: f32 = 190.0;
 /// See [`FIGURES_WIDTH`].
-const LEAST_NAME: f32 = 60.0;
+const MIN_NAME: f32 = 60.0;
 
 impl Panel for RobustnessPanel {
     fn show(&mut self, ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
@@ -172,7 +172,7 @@ fn show_result(ui: &mut Ui, context: &Context<'_>, robustness: &Robustness) {
         let share = tally.succeeded_by_replanning as f64 / tally.runs.max(1) as f64 * 100.0;
         ui.label(RichText::new(format!("{share:.1}% only by replanning")).color(tokens.text_muted));
     }
-    let names_width = (ui.available_width() - FIGURES_WIDTH).max(LEAST_NAME);
+    let names_width = (ui.available_width() - FIGURES_WIDTH).max(MIN_NAME);
     if !tally.breaks.is_empty() {
         section(ui, context, "Causes of failure", "");
         Grid::new("breaks").num_columns(3).striped(true).show(ui, |ui| {

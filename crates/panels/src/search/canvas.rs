@@ -36,7 +36,7 @@ impl Default for View {
             cell: vec2(34.0, 46.0),
             scroll: egui::Vec2::ZERO,
             fits: true,
-            least_down: LEAST_DOWN,
+            least_down: MIN_DOWN,
             followed: None,
         }
     }
@@ -121,20 +121,20 @@ pub struct Pointed {
 const CELL: egui::Vec2 = vec2(34.0, 46.0);
 const MAX_CELL: egui::Vec2 = vec2(110.0, 58.0);
 /// A tree in which states would be nearer to each other downwards is not shown as a whole unless that is asked for.
-const LEAST_DOWN: f32 = 5.0;
-const LEAST_CELL: egui::Vec2 = vec2(0.002, 0.002);
+const MIN_DOWN: f32 = 5.0;
+const MIN_CELL: egui::Vec2 = vec2(0.002, 0.002);
 const LARGEST_CELL: egui::Vec2 = vec2(260.0, 180.0);
 const RADIUS: f32 = 8.0;
 /// From the edges of the panel to the tree when all of it is in view.
 const MARGIN: egui::Vec2 = vec2(22.0, 18.0);
 /// States nearer to each other than this, in points, are drawn as one.
-const LEAST_GAP: f32 = 2.0;
+const MIN_GAP: f32 = 2.0;
 /// Below this distance states are bars without signs and labels.
-const LEAST_SIGN: f32 = 7.0;
+const MIN_SIGN: f32 = 7.0;
 /// A label with less room than this is left out.
-const LEAST_LABEL: f32 = 16.0;
+const MIN_LABEL: f32 = 16.0;
 /// With less room than this, a label is left out instead of cut.
-const LEAST_CUT: f32 = 56.0;
+const MIN_CUT: f32 = 56.0;
 /// Between a label and what comes before it.
 const LABEL_GAP: f32 = 6.0;
 
@@ -174,7 +174,7 @@ impl View {
     /// Zooms; what is at `anchor` stays there.
     fn zoom_at(&mut self, anchor: Pos2, rect: Rect, factor: f32) {
         let before = self.cell;
-        self.cell = (self.cell * factor).max(LEAST_CELL).min(LARGEST_CELL);
+        self.cell = (self.cell * factor).max(MIN_CELL).min(LARGEST_CELL);
         let from_corner = anchor - rect.center_top() - self.scroll;
         self.scroll += from_corner - from_corner * self.cell / before;
         self.fits = false;
@@ -234,7 +234,7 @@ impl View {
                 self.look_at_goal(rect, tree);
                 return;
             }
-            self.cell = vec2(across, down).min(MAX_CELL).max(LEAST_CELL);
+            self.cell = vec2(across, down).min(MAX_CELL).max(MIN_CELL);
             // A tree of one row stands near the top.
             self.scroll = vec2(-(tree.drawing.width + 0.4) * self.cell.x / 2.0, MARGIN.y);
         }
@@ -314,7 +314,7 @@ impl Scene<'_> {
         let last = self.tree.drawing.rows.len().saturating_sub(1);
         let first_row = (top.floor() - 1.0).max(0.0) as usize;
         let last_row = ((bottom.ceil() + 1.0).max(0.0) as usize).min(last);
-        let stride = (LEAST_GAP / self.view.cell.y).ceil().max(1.0) as usize;
+        let stride = (MIN_GAP / self.view.cell.y).ceil().max(1.0) as usize;
         let rows: Vec<(usize, Vec<TreeNodeId>)> = (first_row..=last_row)
             .step_by(stride)
             .map(|row| (row, self.seen(row, left - 1.0, right + 1.0)))
@@ -339,7 +339,7 @@ impl Scene<'_> {
     /// The states of a row that are drawn: those in view, and of those that would share a place one.
     fn seen(&self, row: usize, left: f32, right: f32) -> Vec<TreeNodeId> {
         let states = self.tree.drawing.between(row, left, right);
-        let least = LEAST_GAP / self.view.cell.x;
+        let least = MIN_GAP / self.view.cell.x;
         let across = |id: TreeNodeId| self.tree.drawing.places[id as usize].map_or(0.0, |place| place[0]);
         let mut seen = Vec::new();
         let mut at = 0;
@@ -371,7 +371,7 @@ impl Scene<'_> {
         let strength = (self.view.cell.x / 6.0).clamp(0.35, 1.0);
         let stroke =
             Stroke::new(if self.view.cell.x < 4.0 { 0.6 } else { 1.0 }, color.gamma_multiply(strength));
-        if self.view.cell.y < LEAST_GAP && row > 1 {
+        if self.view.cell.y < MIN_GAP && row > 1 {
             return;
         }
         for &id in states {
@@ -466,7 +466,7 @@ impl Scene<'_> {
             }
             self.sign(id, center, radius);
             let mut end = center.x + radius;
-            if self.view.cell.x >= LEAST_SIGN && self.view.cell.y >= 16.0 {
+            if self.view.cell.x >= MIN_SIGN && self.view.cell.y >= 16.0 {
                 let next = states.get(place + 1).and_then(|&next| self.at(next));
                 let right = next.map_or(self.rect.right() - 4.0, |next| next.x - radius - 3.0);
                 end = self.label(id, center, radius, [free, right]).unwrap_or(end).max(end);
@@ -562,7 +562,7 @@ impl Scene<'_> {
         // The arrow of a jump leaves at the left.
         let jumps = self.tree.jump.is_some() && is_ringed;
         let side_of = |width: f32| if jumps { Side::Right } else { Side::of(width, rooms) };
-        if rooms[side_of(f32::INFINITY) as usize] < LEAST_LABEL {
+        if rooms[side_of(f32::INFINITY) as usize] < MIN_LABEL {
             return None;
         }
         // What says less in whole words comes before what is cut; where the step is or leads from, even that.
@@ -575,7 +575,7 @@ impl Scene<'_> {
         let (galley, side) = whole.or_else(|| {
             let side = side_of(f32::INFINITY);
             let room = rooms[side as usize];
-            ((is_ringed || is_on_path) && room >= LEAST_CUT)
+            ((is_ringed || is_on_path) && room >= MIN_CUT)
                 .then(|| (self.one_line(&forms[0], color, room), side))
         })?;
         let (align, x) = match side {

@@ -78,7 +78,7 @@ struct Drawn {
 /// A search with more states than this begins with its failed subtrees folded.
 const MANY_STATES: usize = 300;
 /// The least height of the tree, and that of what is said about the step where there is room for both.
-const LEAST_TREE: f32 = 120.0;
+const MIN_TREE: f32 = 120.0;
 const DETAILS: f32 = 132.0;
 /// Narrower panels show two trees one above the other.
 const SIDE_BY_SIDE: f32 = 420.0;
@@ -109,7 +109,7 @@ impl Panel for SearchPanel {
         // What a low tree leaves free is for the words below it.
         let drawn = self.sides[side].drawn.as_ref().filter(|_| recordings.len() == 1);
         let free = drawn.map_or(0.0, |drawn| room.height() - canvas::height_of(&drawn.drawing));
-        let details = free.max(DETAILS).min((room.height() - LEAST_TREE).max(room.height() * 0.3));
+        let details = free.max(DETAILS).min((room.height() - MIN_TREE).max(room.height() * 0.3));
         let (upper, lower) = room.split_top_bottom_at_y(room.bottom() - details);
         if let Some(action) = action {
             for (number, tree) in self.sides.iter_mut().enumerate() {

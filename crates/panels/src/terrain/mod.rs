@@ -130,7 +130,7 @@ impl TerrainPanel {
             return;
         }
         if let (None, Some(shown)) = (self.camera, &self.ground) {
-            self.camera = Some(Camera::whole(&shown.ground, rect.aspect_ratio()));
+            self.camera = Some(Camera::fitting(&shown.ground, rect.aspect_ratio()));
         }
         self.handle_input(&response, rect, context, snapshot, commands);
         self.move_camera(&response, context, snapshot);

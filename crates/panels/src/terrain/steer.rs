@@ -61,7 +61,7 @@ impl TerrainPanel {
 
     fn follow_action(&mut self, action: ViewAction, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
         let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let whole = Camera::whole(&shown.ground, aspect);
+        let whole = Camera::fitting(&shown.ground, aspect);
         match action {
             ViewAction::ZoomIn | ViewAction::ZoomOut => {
                 let mut nearer = camera;

@@ -145,7 +145,7 @@ fn race(ui: &mut Ui, context: &Context<'_>, shown: &Shown, commands: &mut Comman
                         None if is_over => "not found".to_owned(),
                         None => "not yet".to_owned(),
                     });
-                    ui.label(match search.whole_millis() {
+                    ui.label(match search.total_millis() {
                         Some(millis) if millis < 10.0 => format!("{millis:.1} ms"),
                         Some(millis) => format!("{millis:.0} ms"),
                         None => "searching".to_owned(),

@@ -8,7 +8,7 @@ use workbench::time_text;
 /// What a click on a bar selects.
 pub(super) fn selection(bar: &Bar, network: &Network) -> Selection {
     match (bar.occurrence, bar.label) {
-        (Some(occurrence), _) if bar.is_whole(network) => Selection::Occurrence(occurrence),
+        (Some(occurrence), _) if bar.is_complete(network) => Selection::Occurrence(occurrence),
         (_, Some(label)) => Selection::Label(label),
         (_, None) => Selection::None,
     }

@@ -36,7 +36,7 @@ pub(super) fn show(
     is_prominent: bool,
     commands: &mut CommandSender,
 ) {
-    if !bar.is_whole(painting.network) {
+    if !bar.is_complete(painting.network) {
         return;
     }
     let row = painting.row(row_index);

@@ -10,9 +10,9 @@ use crate::Context;
 /// The width of the column, in points.
 const WIDTH: f32 = 84.0;
 /// A chart that is this many times as high as the room for it has the column beside it.
-const LEAST_PAGES: f32 = 4.0;
+const MIN_PAGES: f32 = 4.0;
 /// Narrower timelines need all their width for themselves.
-const LEAST_ROOM: f32 = 420.0;
+const MIN_ROOM: f32 = 420.0;
 /// Pieces into which the rows are put together, from top to bottom.
 const PIECES: usize = 240;
 /// Parts of time that are told apart: the bits of a number.
@@ -55,8 +55,8 @@ fn parts(from: f64, to: f64) -> u64 {
 
 /// Where the column is in a timeline with rows of this height in all, if it has one.
 pub(super) fn place(timeline: Rect, top: f32, height: f32) -> Option<Rect> {
-    let is_long = height > LEAST_PAGES * (timeline.bottom() - top);
-    (is_long && timeline.width() >= LEAST_ROOM).then(|| {
+    let is_long = height > MIN_PAGES * (timeline.bottom() - top);
+    (is_long && timeline.width() >= MIN_ROOM).then(|| {
         Rect::from_min_max(pos2(timeline.right() - WIDTH, top), timeline.max).shrink2(vec2(4.0, 2.0))
     })
 }

@@ -17,7 +17,7 @@ use super::windows_before;
 const MAX_SHEETS: usize = 5;
 
 /// A box has a sheet of its own if that shows events that no other does: one among so many at least.
-const LEAST_NEWS: usize = 5;
+const MIN_NEWS: usize = 5;
 
 const ROOM: Room = Room { width: WIDTH, height: HEIGHT };
 
@@ -120,7 +120,7 @@ fn sheets(network: &Network, details: impl Iterator<Item = Detail>) -> Vec<(Opti
         let drawing = fitted(focus);
         let is_new = |node: NodeId| sheets.iter().all(|(_, other)| other.node(node).is_none());
         let news = drawing.nodes.iter().filter(|node| is_new(node.id)).count();
-        if news * LEAST_NEWS >= network.nodes.len().min(drawing.nodes.len()) {
+        if news * MIN_NEWS >= network.nodes.len().min(drawing.nodes.len()) {
             sheets.push((Some(title), drawing));
         }
     }

@@ -65,7 +65,7 @@ fn open_bracket(parse: &Parse, offset: u32) -> Option<(String, String, String, u
 /// What a declaration, or bounds, want in a bracket behind the word `owner`, where the declaration begins with `first`.
 fn of_declaration(bracket: &str, owner: &str, first: &str) -> Option<(&'static str, &'static str)> {
     Some(match (bracket, owner, first) {
-        ("[", ..) => ("[LEAST, MOST]", "Minimum and maximum duration; `inf` for no maximum."),
+        ("[", ..) => ("[MIN, MAX]", "Minimum and maximum duration; `inf` for no maximum."),
         ("(", "speed", _) => ("speed (MINIMUM, MAXIMUM)", "Minimum and maximum speed, in meters per second."),
         ("(", "origin", _) => ("origin (EAST, NORTH)", "Position of the map's south-west corner, in meters."),
         ("(", "circle", _) => ("circle (EAST, NORTH, RADIUS)", "Center and radius, in meters."),

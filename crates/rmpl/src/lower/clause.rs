@@ -70,8 +70,8 @@ impl Lowering<'_> {
             let Some(resource) = variable_in(node) else { continue };
             let amount = node.child(SyntaxKind::Amount).map(|amount| self.amount(amount, change.word()));
             // A broken amount is not one that is left out.
-            let is_whole = amount.as_ref().map_or(change == Change::Uses, Option::is_some);
-            if is_whole {
+            let is_complete = amount.as_ref().map_or(change == Change::Uses, Option::is_some);
+            if is_complete {
                 out.push(ResourceUse { resource, change, amount: amount.flatten(), span: node.span() });
             }
         }

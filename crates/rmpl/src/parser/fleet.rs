@@ -217,9 +217,9 @@ impl Parser<'_> {
         }
         let node = self.open();
         self.bump();
-        self.whole_number("the number of the first vehicle");
+        self.integer("the number of the first vehicle");
         if self.eat(SyntaxKind::DotDot) {
-            self.whole_number("the number of the last vehicle");
+            self.integer("the number of the last vehicle");
         } else {
             self.report_expected("`..` and the number of the last vehicle");
         }
@@ -230,9 +230,9 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::FleetRange);
     }
 
-    fn whole_number(&mut self, wanted: &str) {
-        let is_whole = self.at(SyntaxKind::Number) && is_index(self.current_text());
-        if is_whole {
+    fn integer(&mut self, wanted: &str) {
+        let is_integer = self.at(SyntaxKind::Number) && is_index(self.current_text());
+        if is_integer {
             self.bump();
         } else {
             self.report_expected(wanted);

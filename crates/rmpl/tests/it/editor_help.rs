@@ -246,8 +246,8 @@ fn brackets_of_declarations_say_what_they_want() {
         ("location A (1, $0", "location NAME (EAST, NORTH)", "NORTH"),
         ("obstacle O circle (1, 2, $0);", "circle (EAST, NORTH, RADIUS)", "RADIUS"),
         ("keepout O circle (1, 2, $0) for R;", "circle (EAST, NORTH, RADIUS)", "RADIUS"),
-        ("primitive Drive(a)[$0", "[LEAST, MOST]", "LEAST"),
-        ("scenario S = { delay[3,$0] }", "[LEAST, MOST]", "MOST"),
+        ("primitive Drive(a)[$0", "[MIN, MAX]", "MIN"),
+        ("scenario S = { delay[3,$0] }", "[MIN, MAX]", "MAX"),
         ("state X : {$0", "{VALUE, …}", "VALUE"),
     ] {
         let fixture = fixture(written);

@@ -50,7 +50,7 @@ fn of_many_mistakes_the_first_are_listed_and_the_others_counted() {
     let found = parse(&text).diagnostics();
     assert_eq!((found.len(), told(&found, Severity::Warning)), (MAX_LISTED, 3_000));
     let last = found.last().expect("some");
-    assert!(last.whole_message().ends_with("; and 2500 more warnings"), "{}", last.whole_message());
+    assert!(last.full_message().ends_with("; and 2500 more warnings"), "{}", last.full_message());
     // Errors are listed beside warnings, however many of those come first.
     let found = parse(&format!("{text}primitive P()[5,4];")).diagnostics();
     assert_eq!(told(&found, Severity::Error), 1);

@@ -8,7 +8,7 @@ use super::{Prose, TEXT};
 use crate::space;
 
 /// A column that wants no more than this gets it.
-const LEAST: f32 = 72.0;
+const MIN_WIDTH: f32 = 72.0;
 
 /// Shows a table over the width there is. Returns the link that was clicked.
 pub(super) fn show(
@@ -55,7 +55,7 @@ fn shared(wanted: &[f32], room: f32) -> Vec<f32> {
         return wanted.to_vec();
     }
     let fair = room / wanted.len() as f32;
-    let is_kept = |width: f32| width <= fair.min(LEAST);
+    let is_kept = |width: f32| width <= fair.min(MIN_WIDTH);
     let kept: f32 = wanted.iter().copied().filter(|&width| is_kept(width)).sum();
     // Roots: wide columns differ less than what stands in them.
     let others: f32 = wanted.iter().copied().filter(|&width| !is_kept(width)).map(f32::sqrt).sum();

@@ -47,7 +47,7 @@ impl Expander<'_> {
             }
             let Some(fact) = self.fact(&required.condition, activity.scope) else { continue };
             let is_set = effects.iter().any(|(effect, _)| effect.variable == fact.variable);
-            let extent = if required.is_at_start || is_set { Extent::Start } else { Extent::Whole };
+            let extent = if required.is_at_start || is_set { Extent::Start } else { Extent::Arc };
             let owner = Some(activity.occurrence);
             self.builder.label(activity.arc, (LabelMode::Ask, extent), fact, owner, required.condition.span);
         }

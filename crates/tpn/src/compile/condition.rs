@@ -67,7 +67,7 @@ impl<'program> Expander<'program> {
     ) -> Piece {
         let (piece, arc, owner) = self.with_arc(body, span, entry, scope);
         if let (Some(arc), Some(fact)) = (arc, fact) {
-            self.builder.label(arc, (mode, Extent::Whole), fact, owner, condition.span);
+            self.builder.label(arc, (mode, Extent::Arc), fact, owner, condition.span);
         }
         piece
     }
@@ -116,7 +116,7 @@ impl<'program> Expander<'program> {
             let asked = Asked { arc, start, end: start, owner: Some(owner), is_at_start: true };
             self.level(condition, &asked, scope, condition.variable.span);
         } else if let Some(fact) = self.fact(condition, scope) {
-            self.builder.label(arc, (LabelMode::Ask, Extent::Whole), fact, Some(owner), condition.span);
+            self.builder.label(arc, (LabelMode::Ask, Extent::Arc), fact, Some(owner), condition.span);
         }
         let piece = self.statement(body, Entry::Free, scope);
         self.builder.connect(arc, start, piece.start);
@@ -163,7 +163,7 @@ impl<'program> Expander<'program> {
             self.builder.leave_to_nature(arc);
         }
         if let (Some(arc), Some(fact)) = (piece.arc, fact) {
-            self.builder.label(arc, (mode, Extent::Whole), fact, Some(occurrence), condition.span);
+            self.builder.label(arc, (mode, Extent::Arc), fact, Some(occurrence), condition.span);
         }
         if let (Some(arc), Some(level), LabelMode::Ask) = (piece.arc, &condition.level, mode) {
             let (start, end) = (piece.start, piece.end);

@@ -242,7 +242,7 @@ fn tiny(rng: &mut Rng, events: usize, horizon: i64) -> Network {
 }
 
 /// Everything is selected; windows are left out, since these events have no names.
-fn whole(network: &Network) -> Plan {
+fn plan_of_everything(network: &Network) -> Plan {
     Plan {
         choices: Vec::new(),
         selected_nodes: vec![true; network.nodes.len()],
@@ -273,7 +273,7 @@ fn verdicts_on_tiny_networks_are_those_of_the_game() {
         let mut rng = Rng::new(seed);
         let events = rng.between(3, 5) as usize;
         let network = tiny(&mut rng, events, HORIZON);
-        let verdict = check_plan(&network, &whole(&network));
+        let verdict = check_plan(&network, &plan_of_everything(&network));
         let ticks = if seed % 10 == 0 { 2 } else { 1 };
         let has_strategy = Game::has_strategy(&network, HORIZON as i32, ticks);
         assert_eq!(
@@ -307,7 +307,7 @@ fn one_schedule_suits_all_durations_exactly_where_the_check_says_so() {
         network.arcs.retain(|arc| !(arc.lower.is_zero() && arc.upper == Bound::ZERO));
         join(&mut network);
         network.controllability = Controllability::Strong;
-        let is_found = is_kept(&check_plan(&network, &whole(&network)));
+        let is_found = is_kept(&check_plan(&network, &plan_of_everything(&network)));
         let has_schedule = has_schedule_for_all(&network, HORIZON);
         assert_eq!(is_found, has_schedule, "seed {seed}: {:?}", network.arcs);
         *(if is_found { &mut suited } else { &mut not_suited }) += 1;

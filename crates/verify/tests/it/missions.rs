@@ -228,7 +228,7 @@ pub fn is_lasting(network: &Network, label: LabelId) -> bool {
 pub fn occupied(network: &Network, label: LabelId) -> (NodeId, NodeId) {
     let arc = &network.arcs[network.labels[label.index()].arc.index()];
     match network.labels[label.index()].extent {
-        Extent::Whole | Extent::Effect => (arc.from, arc.to),
+        Extent::Arc | Extent::Effect => (arc.from, arc.to),
         Extent::Start => (arc.from, arc.from),
         Extent::Initial => (network.start, network.start),
     }

@@ -74,7 +74,7 @@ impl AppState {
             }
             LibraryCommand::DeleteLayout(number) => self.library.remove_layout(number, now_millis),
             LibraryCommand::TurnIntoRmpl => self.turn_into_rmpl(),
-            LibraryCommand::SaveWhole => self.save(true),
+            LibraryCommand::SaveMissionFile => self.save(true),
             LibraryCommand::SaveUnreadable(index) => {
                 if let Some(unreadable) = self.library.unreadable.get(index) {
                     let name = unreadable.key.replace('/', "-");
@@ -275,7 +275,7 @@ impl AppState {
             state.window.failed(text);
         };
         match Mission::from_json(&text) {
-            Ok(mission) => self.open_whole(mission),
+            Ok(mission) => self.open_mission_file(mission),
             Err(MissionError::NoMission) if let Some(reason) = too_large(text.len(), MAX_TEXT_BYTES) => {
                 refuse(self, &reason);
             }
@@ -310,13 +310,13 @@ impl AppState {
     }
 
     /// Opens what one file held as a mission of its own.
-    pub(super) fn open_whole(&mut self, mission: Mission) {
+    pub(super) fn open_mission_file(&mut self, mission: Mission) {
         if self.refuses_text(mission.texts.iter().map(|file| file.text.len()).sum()) {
             return;
         }
         let record = mission.review_record();
         let text = mission.review.as_ref().map(ToString::to_string);
-        let id = self.library.add_whole(mission, self.frame.unix_millis);
+        let id = self.library.add_from_file(mission, self.frame.unix_millis);
         self.open_mission(&id);
         match record {
             Some(Ok(record)) => self.window.ask(Effect::JoinReview(Box::new(record))),

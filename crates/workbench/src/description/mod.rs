@@ -218,7 +218,7 @@ pub struct Timings {
     /// The app's own code in the last frame.
     pub frame: f64,
     /// All that the frame before took on the page's thread.
-    pub whole_frame: Option<f64>,
+    pub frame_with_shell: Option<f64>,
     /// The app's code in the frame that first shows the answer to the present text; `null` until then.
     pub answer_frame: Option<f64>,
     /// When that frame was ready, on the clock of `performance.now()`; `null` until then.
@@ -401,7 +401,7 @@ fn timings(state: &AppState, shown: Option<&std::sync::Arc<Snapshot>>) -> Timing
         layout,
         total: timings.parse_millis + timings.compile_millis + timings.plan_millis + layout,
         frame: state.frame.cpu_millis,
-        whole_frame: state.frame.whole_millis,
+        frame_with_shell: state.frame.total_millis,
         answer_frame: answer.map(|answer| answer.cpu_millis),
         shown_at: answer.map(|answer| answer.done_secs * 1000.0),
     }

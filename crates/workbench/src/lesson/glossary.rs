@@ -131,8 +131,8 @@ fn find_word(text: &str, word: &str) -> Option<(usize, usize)> {
     text.char_indices().find_map(|(from, _)| {
         let to = from + word.len();
         let here = text.get(from..to).filter(|here| here.eq_ignore_ascii_case(word))?;
-        let is_whole = !text[..from].ends_with(is_letter) && !text[to..].starts_with(is_letter);
-        (is_whole && !here.is_empty()).then_some((from, to))
+        let is_word = !text[..from].ends_with(is_letter) && !text[to..].starts_with(is_letter);
+        (is_word && !here.is_empty()).then_some((from, to))
     })
 }
 

@@ -36,7 +36,7 @@ pub enum LibraryCommand {
     /// Writes the open network of another tool in RMPL.
     TurnIntoRmpl,
     /// Lets the user save the whole open mission as one file.
-    SaveWhole,
+    SaveMissionFile,
     /// Lets the user save what is kept and cannot be read.
     SaveUnreadable(usize),
 }

@@ -203,7 +203,7 @@ impl Library {
     }
 
     /// Adds a mission that came as a file, as one of its own even if the library has one with its id.
-    pub fn add_whole(&mut self, mission: Mission, now_millis: i64) -> MissionId {
+    pub fn add_from_file(&mut self, mission: Mission, now_millis: i64) -> MissionId {
         let id = self.fresh_id();
         let name = self.free_name(&mission.name);
         for map in &mission.maps {

@@ -66,7 +66,7 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
         Command::SaveMission
     }),
     plain("file.saveAs", "Save as…", Group::File, &[keys(CTRL_SHIFT, Key::S)], Scope::Everywhere, |_| {
-        Command::Library(LibraryCommand::SaveWhole)
+        Command::Library(LibraryCommand::SaveMissionFile)
     }),
     plain("file.addFile", "Add file to mission…", Group::File, &[], Scope::Everywhere, |_| {
         Command::Window(WindowCommand::ShowDialog(Dialog::FileName { name: String::new(), renames: false }))

@@ -89,12 +89,12 @@ const SYNONYMS: &[(&str, &[&str])] = &[
 ];
 
 /// Queries with fewer letters find names only.
-const LEAST_LETTERS: usize = 3;
+const MIN_LETTERS: usize = 3;
 
 /// How well another word for a command or a panel begins with `query`; `None` if none does.
 pub(super) fn score_of_synonyms(named: &str, query: &str) -> Option<i32> {
     let wanted = query.trim().to_lowercase();
-    if wanted.chars().count() < LEAST_LETTERS {
+    if wanted.chars().count() < MIN_LETTERS {
         return None;
     }
     let meant = SYNONYMS.iter().filter(|(word, means)| word.starts_with(&wanted) && means.contains(&named));

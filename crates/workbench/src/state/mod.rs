@@ -148,7 +148,7 @@ pub struct FrameInfo {
     pub cpu_millis: f64,
     /// Milliseconds of the processor that the frame before took in all: the app, egui's shapes and triangles, and
     /// handing them to the graphics; `None` if unknown.
-    pub whole_millis: Option<f64>,
+    pub total_millis: Option<f64>,
     /// The first frame with the last answer.
     pub answer: Option<AnswerFrame>,
     /// Milliseconds that laying out the drawings took, when it last had to be done.

@@ -20,7 +20,7 @@ pub(super) fn problems(snapshot: &Snapshot) -> Vec<Problem> {
     let source = &*snapshot.source;
     let (lines, files) = (LineIndex::new(source), Files::of(source));
     let problem = |message: String, spans: &[Span], fixes: &[TextFix]| {
-        let span = telling(spans, source).unwrap_or_else(|| whole(snapshot));
+        let span = telling(spans, source).unwrap_or_else(|| scenario_span(snapshot));
         let place = files.line_column(source, &lines, span.start);
         let file = files.at(span.start);
         Problem {
@@ -62,7 +62,7 @@ fn telling(spans: &[Span], source: &str) -> Option<Span> {
 }
 
 /// The first line of what was planned, where a reason names nothing.
-fn whole(snapshot: &Snapshot) -> Span {
+fn scenario_span(snapshot: &Snapshot) -> Span {
     let occurrences = snapshot.network.iter().flat_map(|network| &network.occurrences);
     let start = occurrences.filter_map(|it| it.span).map(|span| span.start).min().unwrap_or(0) as usize;
     let rest = snapshot.source.get(start..).unwrap_or_default();

@@ -28,7 +28,7 @@ pub struct Toasts {
 }
 
 const SHOWN_SECS: f64 = 5.0;
-const MOST: usize = 4;
+const MAX_SHOWN: usize = 4;
 
 impl Toasts {
     /// Shows a message; the same message again only stays longer.
@@ -36,7 +36,7 @@ impl Toasts {
         let text = text.into();
         self.shown.retain(|toast| toast.text != text);
         self.shown.push(Toast { kind, text, until_secs: None });
-        if self.shown.len() > MOST {
+        if self.shown.len() > MAX_SHOWN {
             self.shown.remove(0);
         }
     }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use test_support::App;
 use workbench::command::Command;
 use workbench::host::FileKind;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::review::ReviewCommand;
 
 /// The open mission, reviewed, before a board of two roles.

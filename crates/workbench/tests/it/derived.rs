@@ -4,7 +4,7 @@ use serde_json::json;
 use test_support::start;
 use text_editing::TextCommand;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::Selection;
 use workbench::state::derived::Derivation::{
     self, Conflicts, Extent, Folding, Language, Lesson, Moment, Program, Questions, Review,

@@ -4,7 +4,7 @@ use test_support::App;
 use text_editing::{Motion, TextCommand};
 use workbench::PanelKind;
 use workbench::command::Command;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::editor::EditorCommand;
 use workbench::state::manual::ManualCommand;
 

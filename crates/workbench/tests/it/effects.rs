@@ -5,7 +5,7 @@ use test_support::App;
 use text_editing::{Find, TextCommand};
 use workbench::command::Command;
 use workbench::host::FileKind;
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::editor::EditorCommand;
 use workbench::state::editor::Reveal;
 use workbench::state::settings::SettingsCommand;

@@ -6,8 +6,8 @@
 use serde_json::{Value, json};
 use test_support::{App, start};
 use workbench::command::Command;
+use workbench::host_io::Remote as _;
 use workbench::lesson::{COURSE, Lesson};
-use workbench::outside::Remote as _;
 use workbench::state::lesson::LessonCommand;
 
 const MANUAL: &str = include_str!("../../../../docs/esterel.md");

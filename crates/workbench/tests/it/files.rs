@@ -190,7 +190,7 @@ fn a_mission_goes_to_its_file_as_text_or_as_a_whole_where_the_host_can_write_fil
     app.world.saves_in_place.set(true);
     let source = "// A day.\nscenario Day = { delay[1,2] }\n";
     apply(&mut app, vec![Command::SetSource(source.to_owned())]);
-    apply(&mut app, vec![Command::SaveMission, Command::Library(LibraryCommand::SaveWhole)]);
+    apply(&mut app, vec![Command::SaveMission, Command::Library(LibraryCommand::SaveMissionFile)]);
     assert!(app.world.saved.borrow().is_empty(), "nothing is downloaded");
     let [save, save_as] = <[Save; 2]>::try_from(app.world.saved_in_place.take()).expect("two were asked for");
     let id = app.session.state().library.open_id().expect("it is a mission of its own").0.to_string();
@@ -262,13 +262,13 @@ fn an_error_in_another_file_is_announced_with_the_name_and_the_line_of_that_file
         &mut app,
         vec![Command::SetSource(rmpl::files::joined([("", MAIN), ("world/places.rmpl", &*broken)]))],
     );
-    let announced = workbench::outside::announcement(app.session.state());
+    let announced = workbench::host_io::announcement(app.session.state());
     assert!(announced.contains("world/places.rmpl, line 2: "), "{announced}");
     let broken = MAIN.replace("primitive", "primitiv");
     apply(
         &mut app,
         vec![Command::SetSource(rmpl::files::joined([("", &*broken), ("world/places.rmpl", PLACES)]))],
     );
-    let announced = workbench::outside::announcement(app.session.state());
+    let announced = workbench::host_io::announcement(app.session.state());
     assert!(announced.contains("Line 4: "), "{announced}");
 }

@@ -5,9 +5,9 @@ use std::rc::Rc;
 use serde_json::{Value, json};
 use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent, ShelfRequest};
+use workbench::host_io::Remote as _;
 use workbench::library::LibraryCommand;
 use workbench::library::{Keeping, Mission};
-use workbench::outside::Remote as _;
 
 use test_support::host::Shelf;
 use test_support::{App, World, start_in};
@@ -302,7 +302,7 @@ fn a_second_link_leaves_what_was_made_of_the_first() {
     let link = |text: &str| {
         let mut app = start_in(Rc::default());
         app.run(Command::OpenSource { name: "any".into(), source: text.to_owned() });
-        workbench::outside::fragment(app.session.state())
+        workbench::host_io::fragment(app.session.state())
     };
     for (number, text) in ["A()[l,u] = { Scan()[1,2] }\n", "B()[l,u] = { Scan()[1,2] }\n"].iter().enumerate()
     {

@@ -5,8 +5,8 @@ use std::rc::Rc;
 use serde_json::json;
 use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent};
+use workbench::host_io::Remote as _;
 use workbench::limits::MAX_TEXT_BYTES;
-use workbench::outside::Remote as _;
 
 use test_support::{App, World, start_in};
 

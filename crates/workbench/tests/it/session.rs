@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 use workbench::host::{HostEvent, RemoteError};
+use workbench::host_io::Remote as _;
 use workbench::mission_file::EXAMPLES;
-use workbench::outside::Remote as _;
 use workbench::registry::all_commands;
 
 #[test]

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use test_support::App;
 use workbench::command::Command;
 use workbench::host::{FileKind, HostEvent};
-use workbench::outside::Remote as _;
+use workbench::host_io::Remote as _;
 use workbench::state::editor::EditorCommand;
 use workbench::state::execution::ExecutionCommand;
 use workbench::state::no_plan::NO_PLAN;

@@ -1,6 +1,6 @@
 //! Links: what stands after `#` in an address.
 
-use workbench::outside::open_fragment;
+use workbench::host_io::open_fragment;
 use workbench::state::AppState;
 
 use super::{NOTHING, Outcome, Reader, nothing, read, refused, text_of};

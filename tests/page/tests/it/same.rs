@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use serde_json::{Value, json};
-use workbench::{mission_file::EXAMPLES, outside::Remote as _};
+use workbench::{host_io::Remote as _, mission_file::EXAMPLES};
 
 use crate::opened::Opened;
 

@@ -59,7 +59,7 @@ impl App {
 
     /// The app's state as a host page sees it.
     pub fn json(&self) -> serde_json::Value {
-        serde_json::to_value(workbench::outside::Remote::state(self.harness.state())).expect("plain data")
+        serde_json::to_value(workbench::host_io::Remote::state(self.harness.state())).expect("plain data")
     }
 
     /// The texts that are drawn in a place, and where.

@@ -123,7 +123,7 @@ pub(super) fn delete(parse: &Parse, site: &Site<'_>) -> Vec<Edit> {
     let after = separator_behind(holder, site.node, separator);
     let before = separator_before(holder, site.node, separator);
     let own = Span::new(site.span().start, after.map_or(site.span().end, |token| token.span.end));
-    let mut edits = vec![removal(whole_lines(source, own))];
+    let mut edits = vec![removal(full_lines(source, own))];
     if let (None, Some(before)) = (after, before) {
         edits.push(removal(before.span));
     }
@@ -282,7 +282,7 @@ fn line_start(source: &str, at: usize) -> usize {
 }
 
 /// A span with the rest of its lines, if nothing else is in them; otherwise with the blanks after it.
-fn whole_lines(source: &str, span: Span) -> Span {
+fn full_lines(source: &str, span: Span) -> Span {
     let rest = source.get(span.end as usize..).unwrap_or_default();
     let line = rest.split('\n').next().unwrap_or_default();
     let is_alone = line.trim().is_empty() || line.trim_start().starts_with("//");

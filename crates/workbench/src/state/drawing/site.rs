@@ -35,9 +35,9 @@ impl<'a> Site<'a> {
     fn at(path: &[SyntaxNode<'a>], at: usize) -> Option<Self> {
         // An alternative of one statement is that alternative.
         let above = at.checked_sub(1).and_then(|above| path.get(above));
-        let is_whole =
+        let is_complete =
             |it: &&SyntaxNode<'a>| it.kind() == SyntaxKind::Alternative && it.children().count() == 1;
-        let at = if above.as_ref().is_some_and(is_whole) { at - 1 } else { at };
+        let at = if above.as_ref().is_some_and(is_complete) { at - 1 } else { at };
         let node = *path.get(at)?;
         let parent = *path.get(at.checked_sub(1)?)?;
         let holder = match parent.kind() {

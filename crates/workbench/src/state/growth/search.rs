@@ -147,7 +147,7 @@ impl Search {
     }
 
     /// Milliseconds that the whole search took in the core, once it is over.
-    pub fn whole_millis(&self) -> Option<f64> {
+    pub fn total_millis(&self) -> Option<f64> {
         match &self.source {
             Source::Running(running) if running.is_complete => Some(running.elapsed_millis),
             _ => None,

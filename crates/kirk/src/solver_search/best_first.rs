@@ -22,7 +22,7 @@ impl Searching<'_> {
         let visit = self.visit_best(&mut problem, &mut solver, &mut frontier);
         let mut found = None;
         if visit == Visit::Solution {
-            let solution = problem.whole_solution(&solver);
+            let solution = problem.complete_solution(&solver);
             found = partial_order::plan(self.network, model, &solution)?;
             debug_assert!(found.is_some(), "every solution is a plan");
         }
@@ -49,8 +49,8 @@ impl Searching<'_> {
         }
         let Some(mut plan) = found else { return Ok(Some(None)) };
         self.tell_values(&plan)?;
-        let is_whole = goals.iter().all(|goal| goal.is_whole);
-        plan.quality.is_optimal = Some(!self.is_stopped && is_whole);
+        let is_exact = goals.iter().all(|goal| goal.is_exact);
+        plan.quality.is_optimal = Some(!self.is_stopped && is_exact);
         Ok(Some(Some(plan)))
     }
 

@@ -51,7 +51,7 @@ const MILLIS_UNTIL_OLD: i64 = 10 * 60 * 1000;
 
 /// Keeps the missions while they are edited.
 #[derive(Debug)]
-pub struct Keeper {
+pub struct Autosave {
     /// This tab, among those that show the page.
     tab: String,
     /// The revision of the open text that was noted last.
@@ -122,12 +122,12 @@ enum Shelf {
     Failing(StorageError),
 }
 
-impl Keeper {
+impl Autosave {
     /// Takes in what is kept.
     pub fn start(state: &mut AppState, host: &mut dyn Host) -> Self {
         let seed = host.random();
         state.library.seed_ids(seed);
-        let mut keeper = Self {
+        let mut autosave = Self {
             tab: format!("{seed:x}"),
             noted_revision: state.document.revision(),
             agreed: None,
@@ -152,12 +152,12 @@ impl Keeper {
             found_last: None,
             wants_last: false,
         };
-        keeper.read_small_copies(state, host);
-        keeper.take_drafts(state, host);
+        autosave.read_small_copies(state, host);
+        autosave.take_drafts(state, host);
         if let Some(outcome) = host.open_shelf() {
-            keeper.opened(state, host, outcome);
+            autosave.opened(state, host, outcome);
         }
-        keeper
+        autosave
     }
 
     /// Opens what was open last in earlier runs, since nothing else was asked for: a mission, or an example.

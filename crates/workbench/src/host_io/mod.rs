@@ -2,7 +2,7 @@
 
 mod address;
 mod announcement;
-mod keeper;
+mod autosave;
 mod remote;
 
 use review::Record;
@@ -18,7 +18,7 @@ use crate::state::settings::Settings;
 
 pub use address::{fragment, is_link_short, open_fragment, show_address};
 pub use announcement::announcement;
-pub use keeper::Keeper;
+pub use autosave::Autosave;
 pub use remote::Remote;
 
 /// What the board said of the open mission when that was last kept.
@@ -44,7 +44,7 @@ pub fn keep_review(host: &mut dyn Host, state: &mut AppState, joins: bool) {
         }
     });
     if outcome.is_ok() {
-        keeper::tell_review(host, &state.mission_key());
+        autosave::tell_review(host, &state.mission_key());
     }
     state.review.kept(outcome);
 }
@@ -97,7 +97,7 @@ pub fn change_keys(host: &mut dyn Host, state: &mut AppState, change: KeyChange)
         }
     };
     let unkept = host.store(KEYS_KEY, &ring.to_json(true)).err().map(|reason| reason.to_string());
-    keeper::tell_keys(host);
+    autosave::tell_keys(host);
     match &unkept {
         None => state.window.done(words),
         Some(reason) => {

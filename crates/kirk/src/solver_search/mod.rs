@@ -109,7 +109,7 @@ pub(crate) fn keep(
     if solver.solve(&mut problem, &mut enough) != Answer::Solved {
         return Ok(None);
     }
-    let plan = partial_order::plan(network, model, &problem.whole_solution(&solver))?;
+    let plan = partial_order::plan(network, model, &problem.complete_solution(&solver))?;
     Ok(plan.map(|plan| Outcome {
         status: Status::Plan,
         plans: vec![plan],
@@ -309,7 +309,7 @@ impl<'a> Searching<'a> {
                 Some(false) => return Ok(Next::Nothing),
                 Some(true) => {}
             }
-            let solution = problem.whole_solution(solver);
+            let solution = problem.complete_solution(solver);
             if let Some(plan) = partial_order::plan(self.network, model, &solution)? {
                 debug_assert!(self.is_within(&plan, limits)?, "a plan is as good as its solution");
                 solver.record_solution(|| Event::Keep {
@@ -461,8 +461,8 @@ impl<'a> Searching<'a> {
                 break;
             }
         }
-        let is_whole = model.demands.goals.iter().all(|goal| goal.is_whole);
-        plan.quality.is_optimal = Some(!self.is_stopped && is_whole);
+        let is_exact = model.demands.goals.iter().all(|goal| goal.is_exact);
+        plan.quality.is_optimal = Some(!self.is_stopped && is_exact);
         Ok(Some(plan))
     }
 

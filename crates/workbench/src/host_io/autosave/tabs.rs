@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::effect::Effect;
 use crate::host::Host;
+use crate::host_io::autosave::Autosave;
 use crate::library::{Mission, MissionId, Version, print};
-use crate::outside::keeper::Keeper;
 use crate::state::AppState;
 
 /// What a tab says.
@@ -31,7 +31,7 @@ enum Message {
 /// What a tab calls the version of another one that it could not agree with.
 const OTHER_TAB: &str = "From another tab";
 
-impl Keeper {
+impl Autosave {
     /// Tells the text of the open mission, if it is not what the tabs agree on.
     pub(super) fn tell_text(&mut self, state: &AppState, host: &mut dyn Host) {
         let Some(mission) = state.library.open_mission() else { return };
