@@ -2,7 +2,7 @@
 //! and so are the plans. The generator writes both texts from one mission and expands nothing with the program's own code.
 
 use acceptance::mission::{first_plan, network};
-use kirk::Search;
+use kirk::{Options, Search, Status, Unlimited};
 use tpn::Network;
 use tpn::generate::Rng;
 
@@ -280,4 +280,12 @@ fn a_large_fleet_shares_its_sites_without_trying_each_vehicle_for_each_site() {
     let plan = first_plan(&network, Search::ConflictDirected);
     assert_eq!(plan.plans.len(), 1);
     assert!(plan.stats.expanded < 20_000, "{:?}", plan.stats);
+}
+
+#[test]
+fn that_a_large_fleet_has_too_little_is_proven() {
+    // Each vehicle has enough for one site, and there are three for each.
+    let network = network(&large_fleet().replace("consumes r.battery 15", "consumes r.battery 50"));
+    let options = Options { explain: false, relax: false, ..Options::default() };
+    assert_eq!(kirk::plan(&network, &options, &mut Unlimited).status, Status::NoPlan);
 }

@@ -20,14 +20,14 @@ use crate::ids::LinearId;
 pub(crate) struct GoalSums(Vec<(LinearId, i64)>);
 
 /// A goal's sum is at least `Σ weight · value + constant`, in parts of the goal's unit.
-struct Sum {
-    terms: Vec<(i64, Variable)>,
-    constant: i64,
+pub(super) struct Sum {
+    pub(super) terms: Vec<(i64, Variable)>,
+    pub(super) constant: i64,
     parts: i64,
 }
 
 /// Weights while they are added up.
-type Weights = BTreeMap<Variable, i128>;
+pub(super) type Weights = BTreeMap<Variable, i128>;
 
 impl Problem<'_> {
     /// Adds that a goal's sum is at most a limit. What would reach it best if everything could be taken in parts is tried
@@ -172,7 +172,13 @@ impl Problem<'_> {
 
     /// A sum in which the cheapest alternative of each decision costs nothing: what it costs is charged to what the
     /// decision is part of. `None` if it is too large.
-    fn charged(&self, solver: &Solver, mut weights: Weights, mut constant: i128, parts: i64) -> Option<Sum> {
+    pub(super) fn charged(
+        &self,
+        solver: &Solver,
+        mut weights: Weights,
+        mut constant: i128,
+        parts: i64,
+    ) -> Option<Sum> {
         // Decisions come after those that they are part of.
         for (decision, options) in self.alternatives.iter_enumerated().rev() {
             let open = || {

@@ -50,8 +50,10 @@ pub(super) fn relax(
 ) -> Relaxation {
     let shares: Vec<Share> =
         supplies.iter().filter_map(|(supply, tasks)| Share::new(trail, *supply, tasks)).collect();
-    let mut rows: Vec<Row> =
-        supplies.iter().flat_map(|(supply, tasks)| amounts(trail, *supply, tasks)).collect();
+    let mut rows: Vec<Row> = supplies
+        .iter()
+        .flat_map(|(supply, tasks)| amounts(trail, *supply, tasks).into_iter().flatten())
+        .collect();
     let gains: BTreeMap<Variable, i64> = terms
         .iter()
         .filter(|&&(weight, variable)| weight != 0 && is_open(trail, variable))
@@ -129,8 +131,8 @@ fn open_variable(trail: &Trail, literal: Literal) -> Option<Variable> {
 }
 
 /// What a reservoir can give, and take, in all.
-pub(super) fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Vec<Row> {
-    let ModelSupply::Reservoir { least, greatest, level } = supply else { return Vec::new() };
+pub(super) fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> [Option<Row>; 2] {
+    let ModelSupply::Reservoir { least, greatest, level } = supply else { return [None, None] };
     // What is not active only gives.
     let parts = |taking: Change| {
         tasks.iter().filter_map(move |task| {
@@ -141,7 +143,7 @@ pub(super) fn amounts(trail: &Trail, supply: ModelSupply, tasks: &[Task]) -> Vec
     };
     let used = level.checked_sub(least).and_then(|most| Row::new(trail, parts(Change::Consumes), most));
     let filled = greatest.checked_sub(level).and_then(|most| Row::new(trail, parts(Change::Produces), most));
-    used.into_iter().chain(filled).collect()
+    [used, filled]
 }
 
 /// A capacity, and the work that it is taken for.

@@ -11,12 +11,13 @@ use tpn::{NodeId, UseId, UseOrdering};
 
 use super::dispatch::CROWD;
 use super::encode::{Part, Problem};
+use super::goals::{Sum, Weights};
 use super::instants::Instants;
 use super::interval::Interval;
 use super::linear::LinearKind;
 use super::literal::{Literal, Variable};
 use super::premise::Premise;
-use super::relaxation;
+use super::relaxation::{self, Row};
 use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
 use crate::demands::{ModelSupply, ModelUse, level_change};
@@ -134,6 +135,7 @@ impl Shares {
 
 impl Problem<'_> {
     pub(super) fn add_resources(&mut self, solver: &mut Solver, part: Part<'_>) {
+        let mut taken = Taken::default();
         for resource in &self.model.demands.resources {
             let tasks = resource.uses.iter().filter(|used| used.amount > 0 || used.level.is_some());
             let tasks = tasks.map(|used| {
@@ -152,8 +154,8 @@ impl Problem<'_> {
                 solver.takes_nothing_for_granted() || !solver.trail.fails(task.interval.presence)
             };
             let tasks: Vec<Task> = tasks.filter(exists).collect();
-            if tasks.len() >= MANY_USES {
-                sum_up(solver, resource.supply, &tasks);
+            if tasks.len() >= MANY_USES && !solver.takes_nothing_for_granted() {
+                taken.add(sum_up(solver, resource.supply, &tasks));
             }
             self.shares.all.push(Shared {
                 supply: resource.supply,
@@ -161,6 +163,16 @@ impl Problem<'_> {
                 has_exclusion: false,
                 is_crowded: false,
             });
+        }
+        if taken.num_reservoirs > 1
+            && let Some(Sum { terms, constant, .. }) = self.charged(solver, taken.weights, 0, 1)
+            && let Ok(most) = i64::try_from(taken.most - i128::from(constant))
+        {
+            if !terms.is_empty() {
+                solver.linears.add(terms, most, LinearKind::Amounts);
+            } else if most < 0 {
+                solver.at_least_one([]);
+            }
         }
     }
 
@@ -362,14 +374,34 @@ impl Problem<'_> {
 
 /// Tells the solver that in all no more is taken of a reservoir than it has and is given, and no more given than it has
 /// room for. That says for all sets of uses what one solution after the other would say for few of them; it does not say
-/// which ones, so that explanations do without it.
-fn sum_up(solver: &mut Solver, supply: ModelSupply, tasks: &[Task]) {
-    if solver.takes_nothing_for_granted() {
-        return;
-    }
-    for row in relaxation::amounts(&solver.trail, supply, tasks) {
-        let terms = row.terms.into_iter().map(|(variable, weight)| (weight, variable)).collect();
+/// which ones, so that explanations do without it. Returns the sum of what is taken.
+fn sum_up(solver: &mut Solver, supply: ModelSupply, tasks: &[Task]) -> Option<Row> {
+    let rows = relaxation::amounts(&solver.trail, supply, tasks);
+    for row in rows.iter().flatten() {
+        let terms = row.terms.iter().map(|(&variable, &weight)| (weight, variable)).collect();
         solver.linears.add(terms, row.most, LinearKind::Amounts);
+    }
+    let [taken, _] = rows;
+    taken
+}
+
+/// What is taken of all reservoirs together: where each alternative of a choice takes something of one of them, all of them
+/// may be too little although none of them is (the pigeonhole principle).
+#[derive(Default)]
+struct Taken {
+    weights: Weights,
+    most: i128,
+    num_reservoirs: usize,
+}
+
+impl Taken {
+    fn add(&mut self, row: Option<Row>) {
+        let Some(row) = row else { return };
+        self.num_reservoirs += 1;
+        self.most += i128::from(row.most);
+        for (variable, weight) in row.terms {
+            *self.weights.entry(variable).or_default() += i128::from(weight);
+        }
     }
 }
 
