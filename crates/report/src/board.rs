@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use markup::escaped;
 use review::record::{Act, Entry, LineKey, Rate, short};
 use review::since::{LineChange, TextChange};
 use review::{
@@ -13,6 +12,7 @@ use review::{
 use crate::Document;
 use crate::figure;
 use crate::html::readable_time;
+use crate::shown::shown;
 use crate::tables::{status, table, word};
 
 /// The word for how a plan stands, with its sign and in its color.
@@ -30,11 +30,11 @@ pub(crate) fn fact(record: &Record, review: &Review) -> String {
     let standing = standing(record, &Present::of_review(review));
     let lapsed = match (standing.status, standing.lapsed) {
         (PlanStatus::Lapsed, Some((last, why))) => {
-            format!("; {} approved {}: {why}", escaped(&last.by), escaped(&readable_time(&last.time)))
+            format!("; {} approved {}: {why}", shown(&last.by), shown(&readable_time(&last.time)))
         }
         _ => String::new(),
     };
-    format!("{}: {}{lapsed}", status_word(standing.status), escaped(&standing.seats_in_words()))
+    format!("{}: {}{lapsed}", status_word(standing.status), shown(&standing.seats_in_words()))
 }
 
 /// Where the board signs on paper, with those who have approved this very plan.
@@ -44,17 +44,17 @@ pub(crate) fn signatures(record: &Record, review: &Review) -> String {
     for seat in &standing.seats {
         for entry in &seat.given {
             rows.push(vec![
-                escaped(seat.role),
-                escaped(&entry.by),
-                escaped(&readable_time(&entry.time)),
-                escaped(entry.act.text()),
-                format!("<code>{}</code>", escaped(short(entry.digest()))),
+                shown(seat.role),
+                shown(&entry.by),
+                shown(&readable_time(&entry.time)),
+                shown(entry.act.text()),
+                format!("<code>{}</code>", shown(short(entry.digest()))),
                 String::new(),
             ]);
         }
         for _ in seat.given.len()..seat.wanted {
             let mut row = vec!["&nbsp;".to_owned(); 6];
-            row[0] = escaped(seat.role);
+            row[0] = shown(seat.role);
             rows.push(row);
         }
     }
@@ -63,7 +63,7 @@ pub(crate) fn signatures(record: &Record, review: &Review) -> String {
     let open = if blockers.is_empty() {
         String::new()
     } else {
-        format!("<p>Blocked by: {}.</p>\n", escaped(&blockers.join(", ")))
+        format!("<p>Blocked by: {}.</p>\n", shown(&blockers.join(", ")))
     };
     format!(
         "<div class=\"signatures\">\n<h2>Signatures</h2>\n{open}{rows}</div>\n{}",
@@ -76,7 +76,7 @@ fn open_comments(standing: &Standing<'_>) -> String {
         return String::new();
     }
     let rows = standing.open_comments.iter().map(|entry| {
-        vec![status(Status::Attention), who(entry), escaped(&readable_time(&entry.time)), words(entry)]
+        vec![status(Status::Attention), who(entry), shown(&readable_time(&entry.time)), words(entry)]
     });
     format!("<h3>Open comments</h3>\n{}", table(&["", "Who", "When", "Words"], rows))
 }
@@ -85,7 +85,7 @@ fn open_comments(standing: &Standing<'_>) -> String {
 pub(crate) fn acknowledgment(acknowledged: &BTreeMap<&LineKey, &Entry>, key: &LineKey) -> String {
     let Some(entry) = acknowledged.get(key) else { return String::new() };
     let until = match &entry.act {
-        Act::Waive { until, .. } => format!(" (waived until {})", escaped(until)),
+        Act::Waive { until, .. } => format!(" (waived until {})", shown(until)),
         _ => String::new(),
     };
     format!("{}: {}{until}", who(entry), lines_of(entry.act.text()))
@@ -105,10 +105,10 @@ pub(crate) fn waivers(record: &Record) -> String {
         };
         vec![
             word(look, waiver.state.name()),
-            escaped(&waiver.line.text),
+            shown(&waiver.line.text),
             lines_of(waiver.entry.act.text()),
             who(waiver.entry),
-            escaped(waiver.until),
+            shown(waiver.until),
         ]
     });
     format!("<h2>Waivers</h2>\n{}", table(&["", "Item", "Reason", "Who", "Lapses on"], rows))
@@ -121,8 +121,8 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
     let mut out = format!(
         "<h2>Since the last approval</h2>\n<p class=\"muted\">By {}, {}, of content <code>{}</code>.</p>\n",
         who(entry),
-        escaped(&readable_time(&entry.time)),
-        escaped(short(&entry.content_hash))
+        shown(&readable_time(&entry.time)),
+        shown(short(&entry.content_hash))
     );
     if since.is_nothing() {
         out.push_str("<p>Text, plan, checklist, flight rules and Monte Carlo results are unchanged.</p>\n");
@@ -141,7 +141,7 @@ pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
         out.push_str(&format!("<h3>Checklist</h3>\n{}", table(&["Section", "What"], rows)));
     }
     if !since.rules.is_empty() {
-        let rows = since.rules.iter().map(|pair| pair.iter().map(|rule| escaped(rule)).collect());
+        let rows = since.rules.iter().map(|pair| pair.iter().map(|rule| shown(rule)).collect());
         out.push_str(&format!("<h3>Flight rules</h3>\n{}", table(&["Were", "Are"], rows)));
     }
     if let Some(rates) = since.robustness {
@@ -158,8 +158,8 @@ fn plan(since: &Since) -> String {
         Some(plan) if plan.is_same() => String::new(),
         Some(plan) => {
             let rows =
-                plan.differences.iter().map(|it| vec![escaped(it.subject.name()), escaped(&it.sentence())]);
-            format!("{heading}<p>{}</p>\n{}", escaped(&plan.summary()), table(&["", "What"], rows))
+                plan.differences.iter().map(|it| vec![shown(it.subject.name()), shown(&it.sentence())]);
+            format!("{heading}<p>{}</p>\n{}", shown(&plan.summary()), table(&["", "What"], rows))
         }
     }
 }
@@ -171,8 +171,8 @@ fn text(changes: &[TextChange]) -> String {
     let mut lines = Vec::new();
     for change in changes {
         lines.push(format!("<i class=\"comment\">@ line {}</i>", change.after_line));
-        lines.extend(change.removed.iter().map(|line| format!("<del>− {}</del>", escaped(line))));
-        lines.extend(change.added.iter().map(|line| format!("<ins>+ {}</ins>", escaped(line))));
+        lines.extend(change.removed.iter().map(|line| format!("<del>− {}</del>", shown(line))));
+        lines.extend(change.added.iter().map(|line| format!("<ins>+ {}</ins>", shown(line))));
     }
     let more = lines.len().saturating_sub(MAX_TEXT_LINES);
     lines.truncate(MAX_TEXT_LINES);
@@ -184,7 +184,7 @@ fn text(changes: &[TextChange]) -> String {
 
 fn line(change: &LineChange) -> Vec<String> {
     let section = change.section().map(review::Section::title).unwrap_or_default();
-    vec![section.to_owned(), escaped(&change.sentence())]
+    vec![section.to_owned(), shown(&change.sentence())]
 }
 
 fn rate(rate: Option<Rate>) -> String {
@@ -209,26 +209,26 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
         };
         let taken_back = withdrawn.get(entry.digest());
         let state = match taken_back {
-            Some(by) => word("attention", &format!("withdrawn by {}", escaped(&by.by))),
+            Some(by) => word("attention", &format!("withdrawn by {}", shown(&by.by))),
             None if entry.content_hash == review.content_hash => word("passed", "current"),
             None if matches!(entry.act, Act::Rules { .. }) => String::new(),
             None => word("information", "different content"),
         };
         vec![
             (index + 1).to_string(),
-            escaped(&readable_time(&entry.time)),
+            shown(&readable_time(&entry.time)),
             who(entry),
             format!("{}{of}", entry.act.name()),
             words(entry),
             state,
-            word(look, &escaped(&check.words())),
-            format!("<code>{}</code>", escaped(short(&entry.content_hash))),
-            format!("<code>{}</code>", escaped(short(entry.digest()))),
+            word(look, &shown(&check.words())),
+            format!("<code>{}</code>", shown(short(&entry.content_hash))),
+            format!("<code>{}</code>", shown(short(entry.digest()))),
         ]
     });
     let headings = ["#", "When", "Who", "What", "Words", "", "Signature", "Content", "Entry"];
     let rows = table(&headings, rows);
-    let heads: Vec<String> = record.heads().map(|head| format!("<code>{}</code>", escaped(head))).collect();
+    let heads: Vec<String> = record.heads().map(|head| format!("<code>{}</code>", shown(head))).collect();
     format!(
         "<h2>History of the review</h2>\n{rows}<p class=\"muted\">Each entry is signed, with the entries before it. Only entries with valid signatures of trusted keys count. Last entry: {}</p>\n",
         heads.join(", ")
@@ -237,25 +237,21 @@ pub(crate) fn history(record: &Record, review: &Review) -> String {
 
 fn who(entry: &Entry) -> String {
     let name = if entry.by.is_empty() { "someone" } else { entry.by.as_str() };
-    if entry.role.is_empty() {
-        escaped(name)
-    } else {
-        format!("{} ({})", escaped(name), escaped(&entry.role))
-    }
+    if entry.role.is_empty() { shown(name) } else { format!("{} ({})", shown(name), shown(&entry.role)) }
 }
 
 /// What was said, and what it is about.
 fn words(entry: &Entry) -> String {
     let text = lines_of(entry.act.text());
     match &entry.act {
-        Act::Comment { about: Some(about), .. } => format!("<i>{}</i><br>{text}", escaped(about)),
+        Act::Comment { about: Some(about), .. } => format!("<i>{}</i><br>{text}", shown(about)),
         Act::Acknowledge { line, .. } | Act::Waive { line, .. } => {
-            format!("<i>{}</i><br>{text}", escaped(&line.text))
+            format!("<i>{}</i><br>{text}", shown(&line.text))
         }
         _ => text,
     }
 }
 
 fn lines_of(text: &str) -> String {
-    escaped(text).replace('\n', "<br>")
+    shown(text).replace('\n', "<br>")
 }

@@ -1,12 +1,12 @@
 //! The review report: one HTML file that needs nothing else, prints well and reads without scripts.
 
 use data_encoding::BASE64;
-use markup::escaped;
 use review::{Record, Review, Status};
 use sha2::{Digest as _, Sha256};
 use snapshot::{Robustness, Snapshot};
 use terrain::Terrain;
 
+use crate::shown::shown;
 use crate::style::STYLE;
 use crate::{board, export, figure, listing, tables};
 
@@ -51,7 +51,7 @@ pub fn html(document: &Document<'_>) -> String {
          <meta name=\"generator\" content=\"{2}\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{0}</title>\n<style>{style}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-        escaped(&title),
+        shown(&title),
         policy(&style),
         review::PROGRAM
     );
@@ -104,7 +104,7 @@ fn in_content(hash: &str, sheets: usize) -> String {
     let numbers: String = (1..=sheets).map(|sheet| format!("<i>Page {sheet}</i>")).collect();
     format!(
         "<p class=\"foot\" aria-hidden=\"true\">Content {}</p>\n<div class=\"sheets\" aria-hidden=\"true\">{numbers}</div>\n",
-        escaped(hash)
+        shown(hash)
     )
 }
 
@@ -132,10 +132,10 @@ fn facts(document: &Document<'_>, record: &Record) -> String {
          <dt>Content hash</dt><dd class=\"hash\">{}</dd>\n\
          <dt>Program</dt><dd>{}</dd>\n</dl>\n",
         tables::status(review.status),
-        escaped(&map),
+        shown(&map),
         document.seed,
         board::fact(record, review),
-        escaped(&review.content_hash),
+        shown(&review.content_hash),
         review::PROGRAM
     )
 }

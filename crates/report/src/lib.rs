@@ -12,6 +12,7 @@ mod html;
 mod listing;
 pub mod pddl;
 pub mod plandev;
+mod shown;
 mod style;
 mod tables;
 

@@ -1,6 +1,6 @@
 //! The program text, line by line and highlighted; every line can be led to.
 
-use markup::escaped;
+use crate::shown::shown;
 use rmpl::Span;
 use rmpl::editor::{Highlight, HighlightKind, highlight};
 
@@ -34,14 +34,14 @@ fn write_line(source: &str, start: usize, end: usize, highlights: &[Highlight], 
             break;
         }
         let (Some(between), Some(text)) = (source.get(at..from), source.get(from..until)) else { continue };
-        out.push_str(&escaped(between));
+        out.push_str(&shown(between));
         match class(piece.kind) {
-            Some(class) => out.push_str(&format!("<i class=\"{class}\">{}</i>", escaped(text))),
-            None => out.push_str(&escaped(text)),
+            Some(class) => out.push_str(&format!("<i class=\"{class}\">{}</i>", shown(text))),
+            None => out.push_str(&shown(text)),
         }
         at = until;
     }
-    out.push_str(&escaped(source.get(at..end).unwrap_or("")));
+    out.push_str(&shown(source.get(at..end).unwrap_or("")));
 }
 
 const fn class(kind: HighlightKind) -> Option<&'static str> {

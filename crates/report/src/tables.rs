@@ -1,13 +1,13 @@
 //! The tables of a report: one for each section of the review.
 
 use exact::Bound;
-use markup::escaped;
 use review::record::LineKey;
 use review::{Alternative, EventReview, Line, Record, Review, Section, Status};
 use snapshot::Robustness;
 use tpn::{Levels, Supply};
 
 use crate::board;
+use crate::shown::shown;
 
 /// All sections, each with its heading; one without lines says so.
 pub(crate) fn sections(review: &Review) -> String {
@@ -19,7 +19,7 @@ pub(crate) fn sections(review: &Review) -> String {
         }
         out.push_str(&format!("<h2>{}</h2>\n", section.title()));
         if review.lines(section).is_empty() {
-            out.push_str(&format!("<p class=\"muted\">{}</p>\n", escaped(review.nothing(section))));
+            out.push_str(&format!("<p class=\"muted\">{}</p>\n", shown(review.nothing(section))));
             continue;
         }
         out.push_str(&match section {
@@ -58,7 +58,7 @@ pub(crate) fn summary(review: &Review, record: Option<&Record>) -> String {
             vec![
                 status(line.status),
                 section.title().to_owned(),
-                escaped(&line.text),
+                shown(&line.text),
                 criterion(line),
                 board::acknowledgment(acknowledged, &LineKey::new(section, line)),
                 place(line),
@@ -173,7 +173,7 @@ pub(crate) fn table(headings: &[&str], rows: impl IntoIterator<Item = Vec<String
     };
     let mut out = String::from("<table><thead><tr>");
     for (column, heading) in headings.iter().enumerate() {
-        let text = escaped(heading.trim_start_matches('#'));
+        let text = shown(heading.trim_start_matches('#'));
         out.push_str(&format!("<th{}>{text}</th>", class(column)));
     }
     out.push_str("</tr></thead><tbody>\n");
@@ -210,26 +210,26 @@ fn place(line: &Line) -> String {
 }
 
 fn time(time: Bound) -> String {
-    escaped(&time.readable().replace("inf", "∞"))
+    shown(&time.readable().replace("inf", "∞"))
 }
 
 fn lines(lines: &[&Line]) -> String {
     table(
         &["", "What", "Criterion", "Where"],
-        lines.iter().map(|line| vec![status(line.status), escaped(&line.text), criterion(line), place(line)]),
+        lines.iter().map(|line| vec![status(line.status), shown(&line.text), criterion(line), place(line)]),
     )
 }
 
 /// What a line is held against.
 fn criterion(line: &Line) -> String {
-    let criterion = line.criterion.as_deref().map(escaped);
+    let criterion = line.criterion.as_deref().map(shown);
     criterion.map(|it| format!("<div class=\"criterion\">{it}</div>")).unwrap_or_default()
 }
 
 /// The flight rules, each in a line.
 pub(crate) fn rules(review: &Review) -> String {
     let rules = review.rules.in_words(&review.unit);
-    let rules: String = rules.iter().map(|rule| format!("<li>{}</li>", escaped(rule))).collect();
+    let rules: String = rules.iter().map(|rule| format!("<li>{}</li>", shown(rule))).collect();
     format!("<h2>Flight rules</h2>\n<ul>{rules}</ul>\n")
 }
 
@@ -239,9 +239,9 @@ fn choices(review: &Review) -> String {
             let is_first = alternative.number == 0;
             vec![
                 if is_first { status(choice.line.status) } else { String::new() },
-                if is_first { escaped(&choice.name) } else { String::new() },
+                if is_first { shown(&choice.name) } else { String::new() },
                 alternative_cell(alternative),
-                escaped(&alternative.fate.sentence()),
+                shown(&alternative.fate.sentence()),
                 if is_first { place(&choice.line) } else { String::new() },
             ]
         })
@@ -251,7 +251,7 @@ fn choices(review: &Review) -> String {
 
 /// Its name, and its text where that says more.
 fn alternative_cell(alternative: &Alternative) -> String {
-    let (name, text) = (escaped(&alternative.name), escaped(&alternative.text));
+    let (name, text) = (shown(&alternative.name), shown(&alternative.text));
     if text.starts_with(name.trim_end_matches(')')) {
         format!("<code>{text}</code>")
     } else {
@@ -263,10 +263,10 @@ fn links(review: &Review) -> String {
     let rows = review.causal_links.iter().map(|link| {
         vec![
             status(link.line.status),
-            escaped(&link.ask),
-            escaped(&link.tell),
-            escaped(&link.lead.to_string()),
-            escaped(&link.margin.to_string()),
+            shown(&link.ask),
+            shown(&link.tell),
+            shown(&link.lead.to_string()),
+            shown(&link.margin.to_string()),
             criterion(&link.line),
             place(&link.line),
         ]
@@ -292,10 +292,10 @@ fn resources(review: &Review) -> String {
         };
         vec![
             status(resource.line.status),
-            escaped(&resource.name),
-            escaped(&supply),
-            escaped(&used),
-            escaped(&margin),
+            shown(&resource.name),
+            shown(&supply),
+            shown(&used),
+            shown(&margin),
             criterion(&resource.line),
             place(&resource.line),
         ]
@@ -308,9 +308,9 @@ fn conflicts(review: &Review) -> String {
         let by = if conflict.is_added { "planning" } else { "the program" };
         vec![
             status(conflict.line.status),
-            escaped(&conflict.first),
-            escaped(&conflict.then),
-            escaped(&conflict.gap.to_string()),
+            shown(&conflict.first),
+            shown(&conflict.then),
+            shown(&conflict.gap.to_string()),
             by.to_owned(),
             criterion(&conflict.line),
             place(&conflict.line),
@@ -323,7 +323,7 @@ fn conflicts(review: &Review) -> String {
 fn events(review: &Review) -> String {
     let row = |event: &EventReview| {
         vec![
-            escaped(&event.name),
+            shown(&event.name),
             time(Bound::Finite(event.window.earliest)),
             time(event.window.latest),
             time(event.slack),
@@ -368,10 +368,10 @@ pub(crate) fn robustness(review: &Review, found: Option<&Robustness>) -> String 
         .into_iter()
         .map(|(event, breaks)| {
             vec![
-                escaped(event),
+                shown(event),
                 breaks.violations.to_string(),
                 breaks.stops.to_string(),
-                escaped(&breaks.example),
+                shown(&breaks.example),
             ]
         })
         .collect();
@@ -387,11 +387,11 @@ fn traverses(review: &Review) -> String {
             traverse.clearance_m.map_or_else(|| "–".to_owned(), |clearance_m| format!("{clearance_m:.2}"));
         vec![
             status(traverse.line.status),
-            escaped(&traverse.name),
-            escaped(&traverse.vehicles.join(", ")),
-            escaped(&traverse.places.join(", ")),
+            shown(&traverse.name),
+            shown(&traverse.vehicles.join(", ")),
+            shown(&traverse.places.join(", ")),
             format!("{:.1}", traverse.length_m),
-            escaped(&traverse.duration.to_string()),
+            shown(&traverse.duration.to_string()),
             clearance,
             format!("{:.1}", traverse.slope_max_rad.to_degrees()),
             criterion(&traverse.line),

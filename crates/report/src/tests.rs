@@ -152,6 +152,12 @@ fn every_element_of_the_report_is_closed() {
 }
 
 #[test]
+fn no_comment_of_the_program_changes_the_direction_of_what_is_signed() {
+    let page = report(&format!("// \u{202e}[0,60]\n{SCENARIO}"), "t01.rmpl");
+    assert!(page.contains("\u{fffd}[0,60]") && !page.contains('\u{202e}'));
+}
+
+#[test]
 fn the_listing_is_the_program_and_links_lead_into_it() {
     let page = report(SCENARIO, "t01.rmpl");
     let listing = page.split("<pre").nth(1).and_then(|rest| rest.split("</pre>").next()).expect("a listing");

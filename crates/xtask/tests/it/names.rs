@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use regex::Regex;
 use xtask::process::root;
 
 use crate::citations::texts;
@@ -112,6 +113,35 @@ fn every_item_that_a_document_names_is_in_its_crate() {
     }
     assert!(count > 10, "only {count} items were found");
     assert!(wrong.is_empty(), "there are no such items:\n{}", wrong.join("\n"));
+}
+
+/// What items and files are not called, and what to write instead.
+const BANNED_NAMES: [(&str, &str); 6] = [
+    (r"^(LEAST|MOST)_", "MIN_, MAX_"),
+    (r"^([a-z]+_)?whole(_[a-z]+)?$|^Whole", "complete, full, or what it covers"),
+    (r"demanding", "what is searched for"),
+    (r"^(quiet|Quiet)", "muted, silent"),
+    (r"^(autosave|Autosave|Outside)$", "what it exchanges with the host"),
+    (r"^(is_)?worked_out$", "evaluated, or calculated"),
+];
+
+#[test]
+fn items_and_modules_have_the_field_s_names() {
+    let item = r"\b(?:fn|mod|struct|enum|trait|type|const|static)\s+([A-Za-z_][A-Za-z0-9_]*)";
+    let item = Regex::new(item).expect("a pattern");
+    let banned = BANNED_NAMES.map(|(name, instead)| (Regex::new(name).expect("a pattern"), instead));
+    let (mut wrong, mut count) = (Vec::new(), 0);
+    for source in ["crates", "tests"].into_iter().flat_map(|folder| sources(&root().join(folder))) {
+        let text = fs::read_to_string(&source).expect("sources are UTF-8");
+        for found in item.captures_iter(&text) {
+            count += 1;
+            let name = &found[1];
+            let bad = banned.iter().filter(|(pattern, _)| pattern.is_match(name));
+            wrong.extend(bad.map(|(_, instead)| format!("{}: {name} (say {instead})", source.display())));
+        }
+    }
+    assert!(count > 10_000, "only {count} items");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 fn manifest() -> toml::Table {

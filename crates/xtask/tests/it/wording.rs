@@ -407,7 +407,8 @@ fn documents() -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (path, text) in crate::citations::texts() {
         let name = path.to_string_lossy().replace('\\', "/");
-        let is_for_users = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].contains(&name.as_str())
+        let is_for_users = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md"]
+            .contains(&name.as_str())
             || name.starts_with("docs/panels/")
             || name.starts_with("docs/evidence/")
             || name.strip_prefix("docs/").is_some_and(|name| !name.contains('/'))

@@ -1,0 +1,35 @@
+//! Text as a report shows it: what people read there is what the mission says.
+
+use markup::escaped;
+
+/// Text for HTML, with a sign for each mark that changes the direction of what follows. With such marks a comment could show
+/// other numbers than the planner reads.
+pub(crate) fn shown(text: &str) -> String {
+    if text.is_ascii() {
+        return escaped(text);
+    }
+    let seen: String = text.chars().map(|letter| if turns(letter) { '\u{fffd}' } else { letter }).collect();
+    escaped(&seen)
+}
+
+/// Whether a character only sets the direction of others.
+const fn turns(letter: char) -> bool {
+    matches!(letter,
+        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_of_direction_are_shown_and_letters_of_any_script_are_as_they_are() {
+        for mark in ["\u{202e}", "\u{2067}", "\u{200f}"] {
+            assert_eq!(shown(&format!("[0,{mark}02]<")), "[0,\u{fffd}02]&lt;");
+        }
+        for plain in ["Ада", "עברית", "👨\u{200d}👩", "ä"] {
+            assert_eq!(shown(plain), plain);
+        }
+    }
+}
