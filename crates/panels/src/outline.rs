@@ -61,7 +61,7 @@ impl Panel for OutlinePanel {
 fn items<'a>(program: &'a Program, tokens: &Tokens) -> Vec<Item<'a>> {
     let syntax = &tokens.syntax;
     let mut items = Vec::new();
-    let mut add = |kind, name: &'a rmpl::program::Name, detail: String, whole, color| {
+    let mut add = |kind, name: &'a rmpl::program::Name, detail: String, full, color| {
         items.push(Item { kind, name: &name.text, detail, span: name.span, full, color });
     };
     let formals = |names: &[rmpl::program::Name]| {

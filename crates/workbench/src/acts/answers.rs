@@ -154,7 +154,7 @@ impl AppState {
     fn open_json(&mut self, name: &str, text: String) {
         let document: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
         if let Ok(mission) = Mission::from_json(&text) {
-            self.open_mission_file(mission);
+            self.open_imported(mission);
         } else if is_network_file(&text) {
             self.open_mission_file(name, text.into_bytes());
         } else if document["format"].as_str().is_some_and(|format| format.starts_with("enroute-keys/")) {

@@ -275,7 +275,7 @@ impl AppState {
             state.window.failed(text);
         };
         match Mission::from_json(&text) {
-            Ok(mission) => self.open_mission_file(mission),
+            Ok(mission) => self.open_imported(mission),
             Err(MissionError::NoMission) if let Some(reason) = too_large(text.len(), MAX_TEXT_BYTES) => {
                 refuse(self, &reason);
             }
@@ -310,7 +310,7 @@ impl AppState {
     }
 
     /// Opens what one file held as a mission of its own.
-    pub(super) fn open_mission_file(&mut self, mission: Mission) {
+    pub(super) fn open_imported(&mut self, mission: Mission) {
         if self.refuses_text(mission.texts.iter().map(|file| file.text.len()).sum()) {
             return;
         }
