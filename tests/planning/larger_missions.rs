@@ -93,7 +93,9 @@ fn repeat_is_so_many_copies() {
     // What has nothing in it takes room all the same.
     assert_eq!(codes("scenario S = { repeat 400000 { repeat 400000 { {} } } }"), ["E-LIMIT"]);
     let twice = "A() = { repeat 1000 { B() } } B() = { repeat 1000 { delay } } scenario S = { A() }";
-    let message = &compile(twice, &Top::Scenario(None)).1[0].message;
+    let (_, diagnostics) = compile(twice, &Top::Scenario(None));
+    let error = diagnostics.iter().find(|it| it.severity == rmpl::Severity::Error);
+    let message = &error.expect("too many copies").message;
     assert!(message.contains("`repeat`") && message.contains("more than 500000 events"), "{message}");
 }
 

@@ -105,7 +105,11 @@ fn heading(ui: &mut Ui, context: &Context<'_>, query: &mut String, commands: &mu
                 }
             }
         });
-        if ui.button("Take the tour").on_hover_text("What Enroute can do, in five minutes").clicked() {
+        if ui
+            .button("Take the tour")
+            .on_hover_text("Plan, break, fix and drive a mission in five minutes")
+            .clicked()
+        {
             commands.send(Command::Lesson(LessonCommand::Open(TOUR.name.into(), 0)));
         }
         if ui.button("Open file…").clicked() {

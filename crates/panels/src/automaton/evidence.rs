@@ -10,7 +10,7 @@ use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
 use super::components::{percent, percent_between};
 use super::{hitting_sets, title};
-use crate::Context;
+use crate::{Context, counted};
 
 /// How wide the number of a step is at most, in points.
 const NUMBER_WIDTH: f32 = 20.0;
@@ -121,7 +121,7 @@ fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let state = &context.state.automaton;
     let moments = state.moments();
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::click());
-    let name = format!("Belief over {} steps", moments.len());
+    let name = format!("Belief over {}", counted(moments.len() as u64, "step"));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &name));
     let painter = ui.painter_at(rect);
     let width = (rect.width() / moments.len().max(1) as f32).min(26.0);

@@ -11,7 +11,7 @@ use workbench::time_text;
 
 use crate::plan::counted;
 
-/// One of them.
+/// An event of the story that the timeline marks.
 pub(crate) struct Turn {
     pub(crate) time: Time,
     pub(crate) kind: TurnKind,

@@ -11,13 +11,13 @@ fn at(text: &str, piece: &str) -> Span {
 }
 
 /// The only file.
-fn whole(parse: &rmpl::Parse) -> Span {
+fn scenario_span(parse: &rmpl::Parse) -> Span {
     Span::new(0, parse.text().len() as u32)
 }
 
 fn changed(text: &str, change: &Change) -> String {
     let parse = rmpl::parse(text);
-    draw(&parse, whole(&parse), change)
+    draw(&parse, scenario_span(&parse), change)
         .unwrap_or_else(|reason| panic!("{change:?}: {reason}\n{text}"))
         .apply(text)
 }
@@ -107,9 +107,9 @@ fn what_is_moved_takes_its_bounds_and_its_name_along() {
     assert_eq!(to(" A(), B() ", Place::After, "B()"), " { B(); A() } ");
     let parse = rmpl::parse("scenario S = { A(); B() }");
     let same = Change::Move { what: at(parse.text(), "B()"), at: Place::After(at(parse.text(), "A()")) };
-    assert_eq!(draw(&parse, whole(&parse), &same), Err("It is there already".to_owned()));
+    assert_eq!(draw(&parse, scenario_span(&parse), &same), Err("It is there already".to_owned()));
     let inside = Change::Move { what: at(parse.text(), "A()"), at: Place::After(at(parse.text(), "A()")) };
-    assert!(draw(&parse, whole(&parse), &inside).is_err());
+    assert!(draw(&parse, scenario_span(&parse), &inside).is_err());
     assert_eq!(neighbor(&parse, at(parse.text(), "A()"), true), Some(at(parse.text(), "B()")));
     assert_eq!(neighbor(&parse, at(parse.text(), "A()"), false), None);
 }
@@ -137,8 +137,9 @@ fn bounds_are_written_or_replaced_and_typed_over() {
     assert_eq!(bound(" A(); B() "), " A()[3,4]; B() ");
     assert_eq!(bound(" A()[1,2] as X; B() "), " A()[3,4] as X; B() ");
     let parse = rmpl::parse("scenario S = { A() }");
-    let drawn = draw(&parse, whole(&parse), &Change::Bound(at(parse.text(), "A()"), "[3,4]".to_owned()))
-        .expect("bounds");
+    let drawn =
+        draw(&parse, scenario_span(&parse), &Change::Bound(at(parse.text(), "A()"), "[3,4]".to_owned()))
+            .expect("bounds");
     assert_eq!(&drawn.apply(parse.text())[drawn.typed_over[0].range()], "3,4");
 }
 
