@@ -494,10 +494,11 @@ impl<'a> Searching<'a> {
         };
         let mut least = attempt.problem.goal_bound(&attempt.solver, goal);
         let mut most = limit + 1;
-        while least < most && !self.is_stopped {
-            let middle = least.midpoint(most);
+        while i64::MIN < least && least < most && !self.is_stopped {
+            let middle = (i128::from(least) + i128::from(most)).div_euclid(2);
+            let middle = i64::try_from(middle).unwrap_or(least);
             let mut solver = attempt.solver.clone();
-            Problem::lower_goal(&mut solver, &attempt.sums, limit - middle);
+            Problem::lower_goal(&mut solver, &attempt.sums, limit.saturating_sub(middle));
             let (termination, stats, is_stopped) = (&mut self.termination, &self.stats, &mut self.is_stopped);
             match solver.is_refuted_at_root(&mut || {
                 *is_stopped |= termination.should_stop(stats);

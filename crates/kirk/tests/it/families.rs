@@ -112,3 +112,24 @@ fn the_bound_of_a_job_shop_is_near_its_optimum() {
         assert!(bound > 0.85 * optimum && end < 1.2 * optimum, "{}: {end} {bound}", shop.name);
     }
 }
+
+#[test]
+fn the_bound_of_a_sum_that_is_maximized_is_found() {
+    let lasts: Vec<u32> = (0..26).map(|at| 20 + (at * at * 37 + at * 11) % 81).collect();
+    let mut text = "resource Body; objective maximize reward;\n".to_owned();
+    for (at, lasts) in lasts.iter().enumerate() {
+        text += &format!("primitive W{at}()[{lasts},{lasts}] uses Body rewards {};\n", lasts + 10);
+    }
+    let wishes: Vec<String> = (0..26).map(|at| format!("{{ delay; optional W{at}() }}")).collect();
+    let room = lasts.iter().sum::<u32>() * 2 / 5;
+    text += &format!("scenario S[0,{room}] = {{ {} }}", wishes.join(", "));
+    let network = network(&text);
+    let reward = |conflicts: u64| {
+        let mut enough = |stats: &kirk::Stats| stats.conflicts > conflicts;
+        let outcome = kirk::plan(&network, &options(Search::ConflictDirected, false), &mut enough);
+        (outcome.plans[0].quality.reward, outcome.bound)
+    };
+    let (best, open) = reward(u64::MAX);
+    let (soon, bound) = reward(200);
+    assert!(open.is_none() && soon <= best && bound.is_none_or(|bound| best <= bound));
+}
