@@ -121,7 +121,7 @@ const BANNED_NAMES: [(&str, &str); 6] = [
     (r"^([a-z]+_)?whole(_[a-z]+)?$|^Whole", "complete, full, or what it covers"),
     (r"demanding", "what is searched for"),
     (r"^(quiet|Quiet)", "muted, silent"),
-    (r"^([Kk]eeper|[Oo]utside)$", "what it exchanges with the host"),
+    (r"^([Kk]eeper|Outside)$", "what it exchanges with the host"),
     (r"^(is_)?worked_out$", "evaluated, or calculated"),
 ];
 
