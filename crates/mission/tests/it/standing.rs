@@ -124,28 +124,3 @@ fn a_drive_to_another_name_of_the_same_place_leads_there() {
     let execution = Mission::read(source).executed(0, &[]);
     assert_eq!(execution.ending, executive::Ending::Finished, "{:?}", execution.log);
 }
-
-/// A leg has another path where its vehicle stands beside the location: no bound on the way there is longer than the path.
-#[test]
-fn the_quickest_path_of_a_leg_bounds_its_time() {
-    let source =
-        "location P0 (25, 83); location P4 (37, 32); location P5 (17, 76); model Scout { speed (0.01, 0.4); }
-         vehicle S[1..2] : Scout at P0; primitive Drive(r : vehicle, to : location)[0,200] moves r;
-         objective minimize end;
-         scenario M[0,372] = { any v in S { Drive(v, P5) }, each v in S { optional { Drive(v, P4) } } }";
-    let planned = Mission::read(source).with_plan((kirk::Options::default(), 0), |_, planned, _, _| planned);
-    let network = &planned.network;
-    let mut compared = 0;
-    for traverse in &planned.traverses {
-        let least = exact::Time::checked_sum(traverse.leg_figures.iter().map(|leg| leg.least_duration));
-        for departure in &network.departures {
-            let arrival = &network.labels[departure.arrival.index()];
-            let from = &network.variables[arrival.literal.variable.index()].values[departure.from.index()];
-            if arrival.owner == Some(traverse.occurrence) && from == "P0" {
-                assert!(departure.least <= least, "{:?} of {least:?}", departure.least);
-                compared += 1;
-            }
-        }
-    }
-    assert!(compared > 0, "no departure is known");
-}
