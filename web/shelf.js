@@ -4,6 +4,10 @@
 const NAME = "enroute";
 const STORE = "shelf";
 
+/** A request to open the database that has no answer after this long is made again, so many times in all. */
+const AGAIN_MILLIS = 2000;
+const TRIES = 5;
+
 /** Keys that begin so are read one by one, since maps are large. */
 const MAPS = ["map/", "map0"];
 
@@ -69,16 +73,27 @@ export function joinTabs() {
   };
 }
 
+/** Opens the database. A browser may leave a request without an answer, and answer the next one. */
 function open() {
   return new Promise((resolve, reject) => {
-    const request = indexedDB.open(NAME, 1);
-    request.onupgradeneeded = () => request.result.createObjectStore(STORE);
-    request.onerror = () => reject(request.error);
-    request.onsuccess = () => {
-      // A later version of this page may want to change the database.
-      request.result.onversionchange = () => request.result.close();
-      resolve(request.result);
+    let isSettled = false;
+    const ask = (triesLeft) => {
+      const request = indexedDB.open(NAME, 1);
+      request.onupgradeneeded = () => request.result.createObjectStore(STORE);
+      request.onerror = () => {
+        isSettled = true;
+        reject(request.error);
+      };
+      request.onsuccess = () => {
+        if (isSettled) return request.result.close();
+        isSettled = true;
+        // A later version of this page may want to change the database.
+        request.result.onversionchange = () => request.result.close();
+        resolve(request.result);
+      };
+      if (triesLeft > 0) setTimeout(() => isSettled || ask(triesLeft - 1), AGAIN_MILLIS);
     };
+    ask(TRIES - 1);
   });
 }
 

@@ -63,12 +63,7 @@ impl Session {
         renderer.clone_into(&mut state.frame.renderer);
         state.frame.unix_millis = host.unix_millis();
         let mut autosave = Autosave::start(&mut state, host.as_mut());
-        let is_named = host_io::open_fragment(&mut state, &host.fragment());
-        if is_named {
-            autosave.mention_last(&mut state, host.as_ref());
-        } else {
-            autosave.reopen(&mut state, host.as_ref());
-        }
+        autosave.open_first(&mut state, host.as_ref());
         let stored = state.settings.clone();
         Self {
             last_secs: host.monotonic_secs(),
@@ -240,6 +235,8 @@ impl Session {
                     host_io::set_review_aside(self.host.as_mut(), &mut self.state, aside);
                 }
                 Effect::ReadMap(id, name) => Autosave::read_map(self.host.as_mut(), &id, &name),
+                // An address that is still to be opened stays.
+                Effect::ShowAddress if self.autosave.wants_another() => {}
                 Effect::ShowAddress => host_io::show_address(&self.state, self.host.as_mut()),
                 Effect::HearReview => host_io::hear_review(self.host.as_ref(), &mut self.state),
                 Effect::ChangeKeys(change) => {

@@ -70,8 +70,15 @@ fn lesson(state: &AppState) -> Option<String> {
     Some(format!("lesson={}&stop={}", lesson.name, state.lesson.at() + 1))
 }
 
-fn is_first_example(state: &AppState) -> bool {
+/// Whether nothing was opened yet.
+pub(super) fn is_first_example(state: &AppState) -> bool {
     state.library.open_id().is_none() && state.mission == mission_file::EXAMPLES[0].name
+}
+
+/// The mission of the library that a fragment names, if it does.
+pub(super) fn named_mission(fragment: &str) -> Option<MissionId> {
+    let mut parts = fragment.trim_start_matches('#').split('&');
+    parts.find_map(|part| part.strip_prefix("open=")).map(|id| MissionId(id.into()))
 }
 
 /// Opens what a fragment names; parts that it does not name stay as they are. Returns whether it names a mission.

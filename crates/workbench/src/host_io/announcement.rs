@@ -1,5 +1,4 @@
-//! What somebody who does not see the window is told as it happens: the status of the plan, errors, steps, how answers were
-//! judged, messages.
+//! What a screen reader announces: the status of the plan, errors, steps, how answers were judged, messages.
 
 use rmpl::Severity;
 

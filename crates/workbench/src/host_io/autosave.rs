@@ -15,7 +15,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use smol_str::SmolStr;
 
+use super::address::{is_first_example, named_mission, open_fragment};
 use crate::command::Command;
+use crate::effect::Effect;
 use crate::host::{Host, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 use crate::library::{Change, Keeping, Mission, MissionError, MissionId, MissionKind, Open, Unreadable};
 use crate::mission_file;
@@ -44,6 +46,8 @@ const SECONDS_BETWEEN: f64 = 0.4;
 const SECONDS_UNTIL_TYPED: f64 = 0.1;
 /// What could not be written is tried again after this.
 const SECONDS_UNTIL_AGAIN: f64 = 5.0;
+/// A shelf that has not opened after this long is said to fail. It is still taken in when it opens later.
+const SECONDS_UNTIL_SILENT: f64 = 15.0;
 /// Longer texts are written at most ten times a second: the small place is slow with them, and not much larger than they are.
 const LONG_TEXT_BYTES: usize = 400_000;
 /// A mission that was changed longer ago than this is not mentioned.
@@ -77,6 +81,8 @@ pub struct Autosave {
     found: BTreeMap<MissionId, Vec<(String, String)>>,
     /// Why the small place takes nothing, if so.
     small_refusal: Option<StorageError>,
+    /// When the shelf was asked to open.
+    asked_secs: f64,
     last_write_secs: f64,
     last_long_secs: f64,
     has_complained: bool,
@@ -91,8 +97,7 @@ pub struct Autosave {
     last_on_shelf: Option<MissionId>,
     /// The one that was open last in earlier runs, as the shelf has it.
     found_last: Option<Last>,
-    /// Whether the open mission is to be the one of the last run as soon as it is known.
-    wants_last: bool,
+    wanted: Wanted,
 }
 
 /// A mission or an example that was open, and since when, in milliseconds since 1970.
@@ -112,6 +117,16 @@ impl Last {
     fn write(&self) -> String {
         format!("{} {}", self.id.0, self.since_millis)
     }
+}
+
+/// What is to be opened as soon as the shelf is known, unless something is edited before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wanted {
+    Nothing,
+    /// The mission of the last run.
+    Last,
+    /// The mission that the address names.
+    Named,
 }
 
 /// How the shelf does.
@@ -141,6 +156,7 @@ impl Autosave {
             written: BTreeMap::new(),
             found: BTreeMap::new(),
             small_refusal: None,
+            asked_secs: host.monotonic_secs(),
             last_write_secs: f64::NEG_INFINITY,
             last_long_secs: f64::NEG_INFINITY,
             has_complained: false,
@@ -150,7 +166,7 @@ impl Autosave {
             example: None,
             last_on_shelf: None,
             found_last: None,
-            wants_last: false,
+            wanted: Wanted::Nothing,
         };
         autosave.read_small_copies(state, host);
         autosave.take_drafts(state, host);
@@ -160,32 +176,51 @@ impl Autosave {
         autosave
     }
 
+    /// Opens what the address names, or else what was open last in earlier runs.
+    pub fn open_first(&mut self, state: &mut AppState, host: &dyn Host) {
+        let fragment = host.fragment();
+        let named = named_mission(&fragment);
+        if self.shelf == Shelf::Opening && named.is_some_and(|id| state.library.mission(&id).is_none()) {
+            self.wanted = Wanted::Named;
+        } else if open_fragment(state, &fragment) {
+            self.mention_last(state, host);
+        } else {
+            self.reopen(state, host);
+        }
+    }
+
+    /// Whether something else is to be opened as soon as the shelf is known.
+    pub fn wants_another(&self) -> bool {
+        self.wanted != Wanted::Nothing
+    }
+
     /// Opens what was open last in earlier runs, since nothing else was asked for: a mission, or an example.
-    pub fn reopen(&mut self, state: &mut AppState, host: &dyn Host) {
+    fn reopen(&mut self, state: &mut AppState, host: &dyn Host) {
         let mission = self.last_mission(state, host);
         // A mission that was open later may still be on its way from the shelf.
         let small = host.stored(LAST_KEY).map_or(0, |text| Last::read(&text).since_millis);
         let since = mission.as_ref().map_or(small, |last| last.since_millis);
         let example = host.stored(EXAMPLE_KEY).map(|text| Last::read(&text));
         if let Some(example) = example.filter(|example| example.since_millis > since) {
-            self.wants_last = false;
+            self.wanted = Wanted::Nothing;
             state.apply(Command::OpenExample(example.id.0));
             return;
         }
         match mission {
             Some(last) => {
-                self.wants_last = false;
+                self.wanted = Wanted::Nothing;
                 state.open_mission(&last.id);
                 let name = state.mission.clone();
                 state.window.done(format!("Restored “{name}” from your last session"));
             }
-            None => self.wants_last = self.shelf == Shelf::Opening,
+            None if self.shelf == Shelf::Opening => self.wanted = Wanted::Last,
+            None => self.wanted = Wanted::Nothing,
         }
     }
 
     /// Tells of the mission of the last run where the address names another one: a browser that was killed may open an
     /// address of before the edit that made the mission.
-    pub fn mention_last(&self, state: &mut AppState, host: &dyn Host) {
+    fn mention_last(&self, state: &mut AppState, host: &dyn Host) {
         let last = self.last_mission(state, host).filter(|it| state.library.open_id() != Some(&it.id));
         let Some(mission) = last.and_then(|it| state.library.mission(&it.id)) else { return };
         if state.frame.unix_millis - mission.changed_millis < MILLIS_UNTIL_OLD {
@@ -205,6 +240,12 @@ impl Autosave {
 
     /// Writes down what has changed. Returns after how many seconds it wants to be asked again, if it does.
     pub fn follow(&mut self, state: &mut AppState, host: &mut dyn Host, now_secs: f64) -> Option<f64> {
+        let opening_wait = self.wait_for_shelf(now_secs);
+        if self.wants_another() && (state.document.is_modified() || !is_first_example(state)) {
+            // The user went on with something else meanwhile.
+            self.wanted = Wanted::Nothing;
+            state.window.ask(Effect::ShowAddress);
+        }
         let mut wait = None;
         let is_long = state.document.text().len() > LONG_TEXT_BYTES;
         let long_wait = self.last_long_secs + SECONDS_UNTIL_TYPED - now_secs;
@@ -220,7 +261,21 @@ impl Autosave {
         let typed_wait = self.write_typed(state, host, now_secs);
         let shelf_wait = self.write_to_shelf(state, host, now_secs);
         self.judge(state);
-        [wait, typed_wait, shelf_wait].into_iter().flatten().reduce(f64::min)
+        [opening_wait, wait, typed_wait, shelf_wait].into_iter().flatten().reduce(f64::min)
+    }
+
+    /// Gives up waiting for a shelf that does not open. Returns how many seconds it still waits, if it does.
+    fn wait_for_shelf(&mut self, now_secs: f64) -> Option<f64> {
+        if self.shelf != Shelf::Opening {
+            return None;
+        }
+        let wait = self.asked_secs + SECONDS_UNTIL_SILENT - now_secs;
+        if wait > 0.0 {
+            return Some(wait);
+        }
+        let reason = "the browser's database doesn't respond".to_owned();
+        self.shelf = Shelf::Failing(StorageError::Unavailable { reason });
+        None
     }
 
     /// Writes everything down now: the page is about to close.
@@ -241,8 +296,12 @@ impl Autosave {
                 if let Some(kept) = kept.filter(|kept| kept != state.document.text()) {
                     state.adopt_text(&kept);
                 }
-                if std::mem::take(&mut self.wants_last) && !state.document.is_modified() {
-                    self.reopen(state, host);
+                let wanted = std::mem::replace(&mut self.wanted, Wanted::Nothing);
+                match wanted {
+                    _ if state.document.is_modified() => {}
+                    Wanted::Nothing => {}
+                    Wanted::Last => self.reopen(state, host),
+                    Wanted::Named => self.open_first(state, host),
                 }
             }
             ShelfNews::Written { key, token, outcome } => self.written(state, host, &key, token, outcome),
@@ -337,7 +396,7 @@ impl Autosave {
     /// Notes which example is open, unless what was open last is still to be opened.
     fn note_example(&mut self, state: &AppState, host: &mut dyn Host) {
         let is_example = matches!(state.library.open(), Open::Original { kind: MissionKind::Example, .. });
-        if !is_example || self.wants_last || self.example.as_ref() == Some(&state.mission) {
+        if !is_example || self.wants_another() || self.example.as_ref() == Some(&state.mission) {
             return;
         }
         let last = Last { id: MissionId(state.mission.clone()), since_millis: state.frame.unix_millis };

@@ -128,6 +128,55 @@ fn random_disturbances_lose_no_key() {
 }
 
 #[test]
+fn a_shelf_that_does_not_open_is_said_to_fail_and_taken_in_when_it_opens_after_all() {
+    for is_named_by_address in [true, false] {
+        let world = Rc::new(World::default());
+        let mut app = start_in(Rc::clone(&world));
+        edit(&mut app, EDITED);
+        wait(&mut app);
+        drop(app);
+        world.storage.borrow_mut().clear();
+        if !is_named_by_address {
+            world.fragment.borrow_mut().clear();
+        }
+        let address = world.fragment.borrow().clone();
+        world.shelf_does.set(Shelf::Slow);
+        let mut app = start_in(Rc::clone(&world));
+        wait(&mut app);
+        assert_eq!(app.session.state().library.keeping, Keeping::Opening);
+        wait(&mut app);
+        let reason = "storage is not available: the browser's database doesn't respond";
+        assert_eq!(app.session.state().library.keeping, Keeping::LatestOnly(reason.to_owned()));
+        assert!(toasts(&app).contains(reason), "{}", toasts(&app));
+        assert_eq!(*world.fragment.borrow(), address);
+        world.let_shelf_answer();
+        wait(&mut app);
+        assert_eq!(app.session.state().library.keeping, Keeping::Kept);
+        assert_eq!(text_of(&app), EDITED);
+    }
+}
+
+#[test]
+fn what_is_opened_while_the_shelf_opens_stays_open() {
+    let world = Rc::new(World::default());
+    let mut app = start_in(Rc::clone(&world));
+    edit(&mut app, EDITED);
+    wait(&mut app);
+    drop(app);
+    world.storage.borrow_mut().clear();
+    world.shelf_does.set(Shelf::Slow);
+    let mut app = start_in(Rc::clone(&world));
+    wait(&mut app);
+    app.session.apply(vec![Command::OpenExample("backjump".into())]);
+    app.step();
+    assert_eq!(*world.fragment.borrow(), "mission=backjump");
+    world.let_shelf_answer();
+    wait(&mut app);
+    assert_eq!(app.session.state().mission, "backjump");
+    assert_eq!(names(&app), ["Enroute (copy)"]);
+}
+
+#[test]
 fn without_the_small_place_the_shelf_keeps_what_is_typed() {
     let world = Rc::new(World::default());
     let mut app = start_in(Rc::clone(&world));
@@ -694,5 +743,5 @@ fn a_layout_has_a_name_and_is_of_no_lesson() {
     app.dispatch("learn.open", &json!("first-line"));
     app.dispatch("view.saveLayout", &json!("Mine"));
     assert!(toasts(&app).contains("Close the lesson to save a layout"), "{}", toasts(&app));
-    assert!(app.session.state().library.missions().is_empty(), "the lesson's text is no mission");
+    assert!(app.session.state().library.missions().is_empty(), "the lesson's text is not in the library");
 }
