@@ -94,10 +94,8 @@ pub fn escaped(json: &str) -> String {
 }
 
 /// Whether a terminal takes a character for a command or for a change of direction.
-pub const fn commands_terminal(letter: char) -> bool {
-    matches!(letter,
-        '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
-    )
+pub fn commands_terminal(letter: char) -> bool {
+    letter.is_control() || markup::sets_direction(letter)
 }
 
 /// Prints text for people on standard output. What comes from files may hold anything: what would command a terminal is

@@ -8,15 +8,9 @@ pub(crate) fn shown(text: &str) -> String {
     if text.is_ascii() {
         return escaped(text);
     }
-    let seen: String = text.chars().map(|letter| if turns(letter) { '\u{fffd}' } else { letter }).collect();
+    let seen: String =
+        text.chars().map(|letter| if markup::sets_direction(letter) { '\u{fffd}' } else { letter }).collect();
     escaped(&seen)
-}
-
-/// Whether a character only sets the direction of others.
-const fn turns(letter: char) -> bool {
-    matches!(letter,
-        '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
-    )
 }
 
 #[cfg(test)]

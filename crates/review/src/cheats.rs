@@ -663,7 +663,7 @@ fn a_waiver_lapses_on_its_date() {
     };
     assert_eq!(unseen("2026-02-04T23:59:59Z"), PlanStatus::Approved);
     assert!(!unseen("2026-02-05T00:00:00Z").is_approved());
-    // Without a reason or a day there is no waiver: not with a day that does not exist, or that depends on where one is.
+    // A waiver needs a reason and a day. The day must exist, and be the same everywhere.
     let line = board.record.waivers()[0].line.clone();
     for (text, until) in [
         (" ", "2026-02-05"),
@@ -793,7 +793,7 @@ fn names_and_roles_with_characters_that_cannot_be_seen_are_refused() {
         &key("Ada"),
     );
     assert_eq!(last_check(&spaced), (Signature::Valid, String::new()));
-    // Two roles are not told apart by what only looks like a difference.
+    // The names of two roles must not look alike.
     for role in ["Reviewer ", "reviewer", "R\u{435}viewer", "Re\u{200b}viewer", "Réviewer", "\u{3000}"] {
         let rules = FlightRules {
             board: vec![Seat::new("Reviewer", 1), Seat::new(role, 1)],

@@ -164,6 +164,11 @@ impl Objection {
     }
 }
 
+/// Whether a waiver that is signed on one day lapses on a later one.
+pub(super) fn can_lapse(signed: Option<civil::Date>, until: civil::Date) -> bool {
+    signed.is_some_and(|signed| signed < until)
+}
+
 /// What there is to say against `act` of the owner of a key, after what `record` has, on the day `signed`.
 pub fn objection(
     record: &Record,
@@ -181,7 +186,7 @@ pub fn objection(
         }
         Act::Waive { until, .. } => match day(until) {
             None => Some(Objection::NoDate),
-            Some(until) if signed.is_none_or(|signed| until <= signed) => Some(Objection::PastDate),
+            Some(until) if !can_lapse(signed, until) => Some(Objection::PastDate),
             Some(_) => None,
         },
         Act::Withdraw { .. } if !is_signer() => Some(Objection::NotSigner),

@@ -6,9 +6,7 @@ use exact::Rational;
 use rmpl::program::LabelMode;
 use smol_str::SmolStr;
 use snapshot::Planning;
-use tpn::{
-    CausalLink, Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, Use, UseId, Variable,
-};
+use tpn::{CausalLink, Extent, LabelId, Levels, Network, NodeId, Plan, Resource, Supply, UseId, Variable};
 
 use super::lines::Places;
 use super::{Line, ResourceReview, Status};
@@ -139,11 +137,12 @@ impl DemandLines<'_> {
         let uses = &self.network.uses;
         for (index, used) in uses.iter().enumerate() {
             let Some(level) = used.level_text(&self.network.resources) else { continue };
-            // A condition that lasts is written as one before the start, too, which is part of it.
-            let lasts =
-                |other: &Use| (other.owner, other.start) == (used.owner, used.start) && other.is_lasting();
+            // A condition that lasts is two uses: at the start, and from the start to the end. One line is about both.
             let is_part = !used.is_lasting()
-                && uses[index + 1..].first().is_some_and(|other| lasts(other) && other.span == used.span);
+                && uses.get(index + 1).is_some_and(|next| {
+                    next.is_lasting()
+                        && (next.owner, next.start, next.span) == (used.owner, used.start, used.span)
+                });
             if is_part || self.plan.selected_arcs.get(used.arc.index()) != Some(&true) {
                 continue;
             }

@@ -203,14 +203,12 @@ fn controllability(
             ),
         ),
     };
-    let late = match network.controllability {
-        Controllability::None => Vec::new(),
-        _ => late_drives(snapshot, network, &nodes),
-    };
+    let is_checked = network.controllability != Controllability::None;
+    let late = if is_checked { late_drives(snapshot, network, &nodes) } else { Vec::new() };
     if !late.is_empty() {
         text.push_str(&format!("; unmapped obstacles may extend {} beyond that", late.join(", ")));
     }
-    let has_meetings = !snapshot.separation_violations.is_empty();
+    let has_meetings = is_checked && !snapshot.separation_violations.is_empty();
     if has_meetings {
         text.push_str("; vehicles that come too close may delay each other beyond that");
     }

@@ -423,3 +423,22 @@ fn a_sol_keeps_what_its_rover_does_apart() {
     let review = reviewed(include_str!("../../../assets/missions/sol.rmpl"));
     assert_eq!(worst(&review, Section::Overlaps), Status::Passed, "{:?}", review.overlaps);
 }
+
+#[test]
+fn levels_that_are_required() {
+    let source = "resource Battery 0..100 = 50; primitive Dig()[1,2] requires Battery >= 30 at start consumes Battery 10;
+                  scenario S[0,9] = { Dig() }";
+    let part = "Dig#1 requires Battery >= 30 at its start";
+    assert_eq!(line(&reviewed(source), Section::States, part).status, Status::Passed);
+    let higher = changed(source, |snapshot| {
+        let network = Arc::make_mut(snapshot.network.as_mut().expect("it compiles"));
+        let mut asked = network.uses.iter_mut().filter_map(|used| used.level.as_mut());
+        asked.next().expect("a level is required").bound = Rational::from_integer(60);
+        let network = network.clone();
+        change_planning(snapshot, |planning| {
+            planning.verdict = Some(verify::check_plan(&network, &planning.outcome.plans[0]));
+        });
+    });
+    let part = "Dig#1 requires Battery >= 60 at its start";
+    assert_eq!(line(&higher, Section::States, part).status, Status::Failed);
+}

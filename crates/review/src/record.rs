@@ -219,7 +219,7 @@ impl Record {
 
     fn insert(&mut self, entry: Entry) -> String {
         let digest = entry.digest().to_owned();
-        self.push(entry);
+        self.entries.push(entry);
         self.put_in_order();
         digest
     }
@@ -328,7 +328,11 @@ impl Record {
         let mut value: Value = serde_json::from_str(text).map_err(damaged)?;
         match value["format"].as_str() {
             Some(FORMAT | UNSIGNED_FORMAT) => {}
-            Some(former_record::FORMAT) => return former_record::read(value).map_err(damaged),
+            Some(former_record::FORMAT) => {
+                let record = former_record::read(value).map_err(damaged)?;
+                let hidden = record.entries.iter().position(|entry| !entry.is_visible());
+                return hidden.map_or(Ok(record), |index| Err(has_hidden(index)));
+            }
             Some(newer) if newer.starts_with(FORMATS) => {
                 return Err(RecordError::Newer { found: newer.to_owned() });
             }
@@ -369,19 +373,20 @@ impl Record {
             let said = entry.get_mut("said").map(Value::take).unwrap_or_default();
             let said = Sealed::<Said>::read(said).map_err(damaged)?;
             if !said.is_visible() {
-                return Err(RecordError::Damaged(format!("of entry {}, {HIDDEN}", index + 1)));
+                return Err(has_hidden(index));
             }
             record.is_next(&said, entry["digest"].as_str().unwrap_or_default(), &known).map_err(|why| {
                 RecordError::Broken(format!("entry {} ({}, {}) {why}", index + 1, said.by, said.time))
             })?;
             known.insert(said.digest().to_owned());
-            record.push(Entry::new(said, entry["signature"].as_str().unwrap_or_default().to_owned()));
+            let signature = entry["signature"].as_str().unwrap_or_default().to_owned();
+            record.entries.push(Entry::new(said, signature));
         }
+        record.put_in_order();
         let heads: BTreeSet<String> = serde_json::from_value(value["heads"].take()).map_err(damaged)?;
         if heads != record.heads {
             return Err(RecordError::Broken("its last entry is not the one that was last".to_owned()));
         }
-        record.put_in_order();
         Ok(record)
     }
 
@@ -483,6 +488,10 @@ fn sealed_runs(runs: &Runs) -> Value {
     let mut raw = sealed.raw().clone();
     raw["digest"] = sealed.digest().into();
     raw
+}
+
+fn has_hidden(index: usize) -> RecordError {
+    RecordError::Damaged(format!("of entry {}, {HIDDEN}", index + 1))
 }
 
 fn lacks(member: &str) -> RecordError {

@@ -203,6 +203,9 @@ fn what_the_version_before_kept_becomes_a_history_the_same_everywhere() {
     let mut twice = record.clone();
     assert_eq!(twice.merge(Record::from_json(&document).expect("the same")), 0);
     assert_eq!(Record::from_json(&record.to_json()), Ok(record));
+    // A name can't add lines to what is printed of it.
+    let hidden = document.replace("\"Ada\"", "\"Ada\\n9 Grace approved [valid]\"");
+    assert!(matches!(Record::from_json(&hidden), Err(RecordError::Damaged(_))), "{hidden}");
 }
 
 #[test]

@@ -338,7 +338,7 @@ fn a_contingent_drive_that_rocks_may_hold_up_beyond_its_range_needs_attention() 
     }
 }
 
-/// Paths to a place where others stand depend on who is there first, so that the best plan is the best for its paths alone.
+/// A path to an occupied place depends on the order of arrival, so a plan is optimal only for its paths.
 #[test]
 fn a_plan_whose_vehicles_stop_beside_each_other_is_optimal_for_its_paths() {
     let objective = |goal: &str| {

@@ -3,7 +3,7 @@
 use jiff::civil::Date;
 use serde::Serialize;
 
-use super::check::{day, day_of};
+use super::check::{can_lapse, day, day_of};
 use super::record::{Act, Entry, LineKey, Record};
 
 /// How a waiver stands.
@@ -55,7 +55,7 @@ impl Record {
 
     /// Whether a waiver that is signed now can lapse on this day, such as `2026-01-31`.
     pub fn may_lapse_on(&self, text: &str) -> bool {
-        self.today().zip(day(text)).is_some_and(|(today, until)| today < until)
+        day(text).is_some_and(|until| can_lapse(self.today(), until))
     }
 
     /// The waivers that count, oldest first.

@@ -285,7 +285,7 @@ fn forged_signatures_and_entries_that_are_left_out_are_no_approval() {
     assert_eq!((status, &answer["entries"][0]["signature"]), (Some(1), &json!("unsigned")));
 }
 
-/// Whoever writes a comment or chooses a name does not write lines of the answer.
+/// Comments and names cannot add lines to the answer.
 #[test]
 fn words_of_a_history_are_one_line_each_and_names_that_hide_are_refused() {
     use review::record::{Act, Record, Who};

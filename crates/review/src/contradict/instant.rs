@@ -3,7 +3,7 @@
 
 use exact::{Rational, Time};
 use rmpl::program::{Change, LabelMode, Program};
-use rmpl::rule::{Activity, Formula, Moment, Order, Rule};
+use rmpl::rule::{Activity, Formula, Moment, Rule};
 use tpn::{Extent, LabelId, Network, NodeId, Occurrence, OccurrenceKind, Plan, Supply, ValueId, ValueSet};
 
 /// One schedule of a plan.
@@ -142,12 +142,7 @@ impl Instant<'_> {
             Formula::Underway(activity) => strictly(is_strict, self.is_under_way(activity)),
             Formula::Amount { resource, order, amount } => {
                 let Some(level) = self.level(resource) else { return (false, false) };
-                let is_so = match order {
-                    Order::Below => level < *amount,
-                    Order::AtMost => level <= *amount,
-                    Order::Above => level > *amount,
-                    Order::AtLeast => level >= *amount,
-                };
+                let is_so = order.holds(level, *amount);
                 (is_so, !is_so)
             }
         }

@@ -153,6 +153,14 @@ impl Promise {
         if let Some(sight) = Self::of_sight(network, plan, line) {
             return Some(sight);
         }
+        // A required level is part of what each schedule is checked for.
+        let is_level = |used: &tpn::Use| {
+            let level = used.level_text(&network.resources);
+            line.nodes == [used.start, used.end] && level.is_some_and(|level| line.text.contains(&level))
+        };
+        if network.uses.iter().any(is_level) {
+            return Some(Self::Valid);
+        }
         if let [name] = line.names.as_slice() {
             let stays = network.variables.iter().find(|it| it.name == *name && it.is_lasting);
             if let Some(variable) = stays {

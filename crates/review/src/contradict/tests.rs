@@ -421,3 +421,12 @@ fn a_contact_in_a_run_contradicts_that_vehicles_keep_apart() {
     assert_eq!(of(true), Verdict::Contradicted);
     assert_eq!(of(false), Verdict::Survived);
 }
+
+#[test]
+fn a_level_that_is_required_is_tried_in_schedules() {
+    let source = "resource Battery 0..100 = 50; primitive Dig()[1,2] requires Battery >= 30 at start consumes Battery 10;
+                  scenario S[0,9] = { Dig() }";
+    let tried = tried(source, &[], |_| ());
+    let level = tried.iter().find(|it| it.line.text.contains("requires Battery >= 30")).expect("a line");
+    assert!(level.schedules > 0 && level.counterexample.is_none(), "{level:?}");
+}
