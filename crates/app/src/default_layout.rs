@@ -164,8 +164,8 @@ fn narrow_layout(workspace: Workspace, tiles: &mut Tiles<PanelKind>) -> TileId {
     split(tiles, Horizontal, &[(left, share), (right, 1.0 - share)])
 }
 
-/// Makes `tree` the layout `after` if its panels stand as they do in `before`, whichever tabs are turned to; those that the
-/// user turned to stay in front. Returns whether it is `after` now.
+/// Makes `tree` the layout `after` if it differs from `before` only in its active tabs. Tabs that the user turned to stay
+/// active. Returns whether it did.
 pub fn refit(tree: &mut Tree<PanelKind>, before: &Tree<PanelKind>, after: Tree<PanelKind>) -> bool {
     if unturned(tree) != unturned(before) {
         return false;

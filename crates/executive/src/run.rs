@@ -244,8 +244,8 @@ impl Run<'_> {
             let num_plans = self.plans.len();
             let Some(no_plan) = self.replan(replanner)? else { continue };
             // A plan that does not keep the past is not mended by giving up more.
-            let is_complete = self.plans.len() == num_plans;
-            let retreat = if is_complete { self.take_back(replanner)? } else { Retreat::Impossible(None) };
+            let has_new_plan = self.plans.len() > num_plans;
+            let retreat = if has_new_plan { Retreat::Impossible(None) } else { self.take_back(replanner)? };
             let Retreat::Impossible(hindrance) = retreat else { continue };
             let reason = stopped_for(need.as_deref(), &no_plan, hindrance.as_deref());
             self.write(Happening::Stopped { reason });

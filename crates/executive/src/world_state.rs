@@ -273,8 +273,10 @@ impl WorldState {
     pub(crate) fn happen(&mut self, network: &Network, effects: &Effects, node: NodeId) -> Vec<Happening> {
         let mut happenings = Vec::new();
         let starting = || effects.conditions.iter().filter(move |id| network.uses[id.index()].start == node);
-        for &id in starting().filter(|id| network.uses[id.index()].end == node) {
-            self.ask(network, id);
+        for &id in starting().filter(|id| !network.uses[id.index()].is_lasting()) {
+            if self.is_unmet(network, id) {
+                self.unmet.push(id);
+            }
         }
         for &effect in effects.by_node.get(&node).into_iter().flatten() {
             match effect {
@@ -306,7 +308,7 @@ impl WorldState {
                 }
             }
         }
-        self.kept.extend(starting().filter(|id| network.uses[id.index()].end != node));
+        self.kept.extend(starting().filter(|id| network.uses[id.index()].is_lasting()));
         self.ask_kept(network);
         self.kept.retain(|id| network.uses[id.index()].end != node);
         happenings
@@ -314,17 +316,15 @@ impl WorldState {
 
     /// Takes note of conditions on levels that go on and do not hold now: what changes at one event is one change.
     pub(crate) fn ask_kept(&mut self, network: &Network) {
-        for condition in self.kept.clone() {
-            self.ask(network, condition);
-        }
+        let unmet: Vec<UseId> =
+            self.kept.iter().copied().filter(|&condition| self.is_unmet(network, condition)).collect();
+        self.unmet.extend(unmet);
     }
 
-    /// Takes note of a condition on a level if it does not hold now.
-    fn ask(&mut self, network: &Network, condition: UseId) {
+    /// Whether a condition on a level does not hold now.
+    fn is_unmet(&self, network: &Network, condition: UseId) -> bool {
         let of = &network.uses[condition.index()];
-        if of.level.is_some_and(|level| !level.order.holds(self.level(of.resource), level.bound)) {
-            self.unmet.push(condition);
-        }
+        of.level.is_some_and(|level| !level.order.holds(self.level(of.resource), level.bound))
     }
 
     /// A label gives its value. Of two without length at one instant the plan says which is the later one.

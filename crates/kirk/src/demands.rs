@@ -64,20 +64,25 @@ impl ModelUse {
         if self.change == Change::Produces && self.level.is_none() { self.end } else { self.start }
     }
 
-    /// When it is over with a reservoir.
+    /// The last event at which it concerns a reservoir's level.
     pub(crate) fn last_moment(&self) -> NodeId {
         if self.level.is_some() { self.end } else { self.moment() }
     }
 
-    /// Whether a level is fine with the bound of what `self` does to it.
-    pub(crate) fn allows(&self, level: i64, bound: i64) -> bool {
-        if self.change == Change::Produces { level <= bound } else { level >= bound }
+    /// Whether a level keeps a bound that this use can break.
+    pub(crate) const fn allows(&self, level: i64, bound: i64) -> bool {
+        excess(self.change, level, bound) <= 0
     }
 
     /// The change of a reservoir's level, in units: the greatest possible one if `is_most`, otherwise the least.
     pub(crate) const fn level_change(&self, is_most: bool) -> i64 {
         level_change(self.change, [self.at_least, self.amount], is_most)
     }
+}
+
+/// How far a level is beyond a bound that this kind of change can break; not positive if it keeps the bound.
+pub(crate) const fn excess(change: Change, level: i64, bound: i64) -> i64 {
+    if matches!(change, Change::Produces) { level - bound } else { bound - level }
 }
 
 /// The change of a level by a use with a minimum and a maximum amount: the greatest possible one if `is_most`, otherwise the

@@ -51,7 +51,7 @@ pub(crate) fn other_plans(
         found.extend(planning.outcome.plans.iter().map(|plan| (Arc::clone(&network), plan.clone())));
         found.extend(others.into_iter().map(|listed| (listed.network, listed.plan)));
     }
-    // A plan that the checker rejects is no counterexample.
+    // Only plans that the checker accepts are counterexamples.
     found.retain(|(network, plan)| verify::check_plan(network, plan).valid);
     found
 }

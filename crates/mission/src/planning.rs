@@ -271,15 +271,13 @@ pub(crate) fn without_upper_limits(
         }
         let gains = own().filter(|used| used.change == Change::Produces).map(|used| used.amount);
         let highest = gains.into_iter().try_fold(level, Rational::checked_add);
-        let is_limit = |used: &&tpn::Use| used.level.is_some() && used.change == Change::Produces;
-        let has_limits = own().any(|used| is_limit(&used));
+        let is_limit = |used: &tpn::Use| used.level.is_some() && used.change == Change::Produces;
+        let has_limits = own().any(is_limit);
         if let Some(greatest) = highest.filter(|&highest| highest > level || has_limits) {
             let relaxed = relaxed.get_or_insert_with(|| network.as_ref().clone());
             relaxed.resources[index].supply = Supply::Reservoir { least, greatest, level };
-            for used in relaxed.uses.iter_mut().filter(|used| used.resource.index() == index) {
-                if used.change == Change::Produces && used.level.is_some() {
-                    used.level = Some(LevelCondition { order: program::Order::AtMost, bound: greatest });
-                }
+            for used in relaxed.uses.iter_mut().filter(|it| it.resource.index() == index && is_limit(it)) {
+                used.level = Some(LevelCondition { order: program::Order::AtMost, bound: greatest });
             }
         }
     }

@@ -180,7 +180,7 @@ fn parts(
             let Some(first) = track.first().map(|place| place.position_m) else { continue };
             let (since, stands_m) = stands.get(&vehicle).copied().unwrap_or_else(|| {
                 let own = starts.get(vehicle as usize).copied().flatten();
-                // Who follows from the beginning stands in the formation already.
+                // A follower is at its place in the formation before it first drives.
                 let own = own.filter(|start| index == 0 || !start.is_shared);
                 (network.start, own.map_or(first, |start| start.place_m))
             });

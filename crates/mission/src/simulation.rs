@@ -166,7 +166,7 @@ impl<'run> Driving<'run> {
         self.stand.iter().map(|(&vehicle, &(place, _))| (vehicle, place)).chain(parked)
     }
 
-    /// Where a vehicle stands that has not driven yet: who first drives as a follower stands in the formation already.
+    /// Where a vehicle is that has not driven yet: a follower is at its place in the formation.
     fn start_m(&self, vehicle: u32, start: Start) -> Point2<f64> {
         if !start.is_shared {
             return start.place_m;

@@ -14,7 +14,7 @@ use rmpl::program::{ObstacleShape, Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
 use snapshot::ground::closed_to;
-use snapshot::standing;
+use snapshot::standing::{self, Start};
 use snapshot::vehicle::{Moving, moving};
 use terrain::ConfigurationSpace;
 use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
@@ -62,12 +62,11 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
     let spacings_m = [false, true].map(|fly| standing::spacing_m(program, fly));
     let flies = |vehicle: usize| vehicle::flies(world, vehicle as u32);
     let spacing_m = |vehicle: usize| spacings_m[usize::from(flies(vehicle))];
-    let starts = standing::starts(program, &network.occurrences).into_iter();
-    let starts = starts.zip(standing::start_slots(program, &network.occurrences));
+    let starts = standing::starts(program, &network.occurrences);
     let mut positions: Vec<Option<Waypoint>> = (world.vehicles.iter().zip(starts))
-        .map(|(vehicle, (start, slot))| {
-            let (name, position_m) = (vehicle.start.text.clone(), start?.place_m);
-            Some(Waypoint { name, position_m, slot })
+        .map(|(vehicle, start)| {
+            let Start { place_m, slot, .. } = start?;
+            Some(Waypoint { name: vehicle.start.text.clone(), position_m: place_m, slot })
         })
         .collect();
     let mut moving: Vec<(OccurrenceId, Moving<'_>)> = network

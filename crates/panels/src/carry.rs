@@ -30,7 +30,7 @@ pub(crate) enum Carried {
 
 /// The height of the box of a vehicle without a lane.
 const BOX_HEIGHT: f32 = 26.0;
-/// How far behind an activity its connector is, and how large it is.
+/// The distance from an activity to its connector, and the connector's radius.
 const CONNECTOR: (f32, f32) = (12.0, 5.0);
 
 /// Carries something with the pointer until its button is released.

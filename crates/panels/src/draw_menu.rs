@@ -194,7 +194,7 @@ impl Menu<'_> {
             let Some(span) = occurrence.span.filter(|_| is_call && found.len() < MAX_LISTED) else {
                 continue;
             };
-            let is_own = what.start <= span.start && span.end <= what.end;
+            let is_own = what.contains(span);
             if !is_own && !found.iter().any(|(_, known)| *known == span) {
                 let text = self.snapshot.source.get(span.range()).unwrap_or_default();
                 found.push((text.split_whitespace().collect::<Vec<_>>().join(" "), span));
@@ -235,9 +235,9 @@ impl Menu<'_> {
 
     /// A new vehicle of each model.
     fn vehicles(&mut self, ui: &mut Ui, start: &VehicleStart) {
-        for model in ["ATRV", "ATRV-Jr", "Blimp"] {
-            let thing = NewThing::Vehicle { model: model.into(), start: start.clone() };
-            self.place(ui, &format!("Add {model} here"), thing);
+        for model in &motion::VEHICLE_MODELS {
+            let thing = NewThing::Vehicle { model: model.name.into(), start: start.clone() };
+            self.place(ui, &format!("Add {} here", model.name), thing);
         }
     }
 

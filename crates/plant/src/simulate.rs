@@ -191,7 +191,7 @@ impl SimulatedPlant {
         observation_of(&self.model, &self.state)
     }
 
-    /// What the plant shows with chance: values that its modes and `SHOWS` leave open are drawn, and then errors.
+    /// Draws what the plant shows: the values that its modes and `SHOWS` leave open, and then errors.
     pub fn observation_with_chance(&self, random: &mut Random) -> Observation {
         let mut observation = Observation::default();
         for island in &self.model.islands {

@@ -34,16 +34,17 @@ pub(crate) fn check(parse: &Parse) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let mut by_shape: BTreeMap<Vec<u8>, Vec<Activity<'_>>> = BTreeMap::new();
-    let mut count = 0;
     for activity in declarations(parse).filter_map(Activity::new) {
-        count += 1;
         let shape = activity.tokens.iter().map(|token| token.kind as u8).collect();
         by_shape.entry(shape).or_default().push(activity);
     }
+    let count: usize = by_shape.values().map(Vec::len).sum();
     if count > MAX_ACTIVITIES || by_shape.values().all(|alike| alike.len() < 2) {
         return Vec::new();
     }
     let subjects = Subjects::new(parse);
+    let lists: Vec<Vec<SyntaxToken<'_>>> = declarations(parse).map(tokens).collect();
+    let taken: BTreeSet<&str> = lists.iter().flatten().filter(|it| is_name(it)).map(|it| it.text).collect();
     let mut found = Vec::new();
     for mut alike in by_shape.into_values() {
         while alike.len() > 1 {
@@ -60,7 +61,16 @@ pub(crate) fn check(parse: &Parse) -> Vec<Diagnostic> {
             let Some(own) = own else { continue };
             let others: Vec<(&Activity<'_>, &str)> =
                 copies.iter().map(|&(at, it)| (&alike[at], it)).collect();
-            found.extend(Merger { parse, first: &first, own, others: &others, subjects: &subjects }.note());
+            let merger = Merger {
+                parse,
+                first: &first,
+                own,
+                others: &others,
+                subjects: &subjects,
+                lists: &lists,
+                taken: &taken,
+            };
+            found.extend(merger.note());
             for (at, _) in copies.into_iter().rev() {
                 alike.remove(at);
             }
@@ -161,6 +171,10 @@ struct Merger<'m, 'a> {
     /// The others, each with what it has instead.
     others: &'m [(&'m Activity<'a>, &'a str)],
     subjects: &'m Subjects<'a>,
+    /// The tokens of each declaration.
+    lists: &'m [Vec<SyntaxToken<'a>>],
+    /// All names in the text.
+    taken: &'m BTreeSet<&'a str>,
 }
 
 impl Merger<'_, '_> {
@@ -169,14 +183,11 @@ impl Merger<'_, '_> {
         if self.first.header().iter().any(|token| token.text == self.own) {
             return None;
         }
-        let lists: Vec<Vec<SyntaxToken<'_>>> = declarations(self.parse).map(tokens).collect();
-        let taken: BTreeSet<&str> =
-            lists.iter().flatten().filter(|it| is_name(it)).map(|it| it.text).collect();
         let is_vehicle = self.subjects.vehicles.contains(self.own);
         let names = if is_vehicle { VEHICLE_NAMES } else { LOCATION_NAMES };
-        let parameter = names.into_iter().find(|name| !taken.contains(name))?;
-        let name = self.name(&taken);
-        let mut edits = self.calls(&lists, name)?;
+        let parameter = names.into_iter().find(|name| !self.taken.contains(name))?;
+        let name = self.name();
+        let mut edits = self.calls(name)?;
         edits.extend(self.declaration(name, parameter));
         edits.extend(self.others.iter().map(|(other, _)| self.removal(other)));
         edits.sort_by_key(|edit| edit.span);
@@ -192,7 +203,7 @@ impl Merger<'_, '_> {
     }
 
     /// What all names begin with, if that is free; otherwise the name of the first.
-    fn name(&self, taken: &BTreeSet<&str>) -> &str {
+    fn name(&self) -> &str {
         let first = self.first.text();
         let common = self.others.iter().fold(first.len(), |length, (other, _)| {
             let alike = first.bytes().zip(other.text().bytes()).take_while(|(one, another)| one == another);
@@ -205,15 +216,15 @@ impl Merger<'_, '_> {
             is_letter_next(first) || self.others.iter().any(|(other, _)| is_letter_next(other.text()));
         let stem = if is_inside_word { stem.rfind(['-', '_']).map_or("", |at| &stem[..at]) } else { stem };
         let name = stem.trim_end_matches(is_end);
-        let is_free = !name.is_empty() && !taken.contains(name) && SyntaxKind::keyword(name).is_none();
+        let is_free = !name.is_empty() && !self.taken.contains(name) && SyntaxKind::keyword(name).is_none();
         if is_free { name } else { first }
     }
 
     /// The edits of all calls outside the copies. `None` where a name stands for anything but a call.
-    fn calls(&self, lists: &[Vec<SyntaxToken<'_>>], name: &str) -> Option<Vec<Edit>> {
+    fn calls(&self, name: &str) -> Option<Vec<Edit>> {
         let mut edits = Vec::new();
         let removed: Vec<Span> = self.others.iter().map(|(other, _)| other.span()).collect();
-        for list in lists {
+        for list in self.lists {
             for (at, token) in list.iter().enumerate().filter(|(_, token)| is_name(token)) {
                 let is_first = token.text == self.first.text();
                 let other = self.others.iter().find(|(other, _)| other.text() == token.text);
@@ -223,9 +234,7 @@ impl Merger<'_, '_> {
                     None => continue,
                 };
                 let is_own = token.span == self.first.tokens[self.first.name].span;
-                if is_own
-                    || removed.iter().any(|span| span.start <= token.span.start && token.span.end <= span.end)
-                {
+                if is_own || removed.iter().any(|span| span.contains(token.span)) {
                     continue;
                 }
                 let opening = list.get(at + 1).filter(|next| next.kind == SyntaxKind::LeftParen)?;

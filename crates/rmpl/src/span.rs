@@ -27,6 +27,11 @@ impl Span {
         self.start <= offset && offset <= self.end
     }
 
+    /// Whether all of `other` lies in the span.
+    pub const fn contains(self, other: Self) -> bool {
+        self.start <= other.start && other.end <= self.end
+    }
+
     /// The span as a range for slicing a text.
     pub const fn range(self) -> std::ops::Range<usize> {
         self.start as usize..self.end as usize

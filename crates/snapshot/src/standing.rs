@@ -89,6 +89,8 @@ pub fn place_m(location_m: Point2<f64>, slot: usize, spacing_m: f64) -> Point2<f
 pub struct Start {
     /// In meters. Of those that share a place for their formation, the first is there, and the others stand around it.
     pub place_m: Point2<f64>,
+    /// The number of its place at the location: see [`start_slots`].
+    pub slot: usize,
     /// Whether others share its place, so that its formation says where it stands if it moves in it.
     pub is_shared: bool,
 }
@@ -117,7 +119,7 @@ pub fn starts(program: &Program, occurrences: &[Occurrence]) -> Vec<Option<Start
         let (spacing_m, room_m) = (spacings_m[usize::from(flies)], rooms_m[usize::from(flies)]);
         let before = before.entry(key).or_default();
         let middle_m = place_m(*locations.get(location)?, slot, spacing_m);
-        let start = Start { place_m: place_m(middle_m, *before, room_m), is_shared: counts[&key] > 1 };
+        let start = Start { place_m: place_m(middle_m, *before, room_m), slot, is_shared: counts[&key] > 1 };
         *before += 1;
         Some(start)
     });

@@ -47,7 +47,7 @@ pub struct SceneOptions {
     pub rays: bool,
     /// What is in sight of what, as far as conditions ask.
     pub sights: bool,
-    /// Shadows of what stands on the ground and flies over it, and the tracks of wheels.
+    /// Shadows of vehicles, and the tracks of their wheels.
     pub shadows: bool,
     /// How many times larger than life vehicles are drawn.
     pub vehicle_scale: f32,
@@ -96,7 +96,7 @@ pub const POST_M: f32 = 7.0;
 const FENCE_M: f32 = 2.0;
 /// Toward the sun.
 pub const SUN: Vec3 = Vec3::new(-0.55, 0.45, 0.70);
-/// Wheels leave tracks that are drawn up to this scale of vehicles: from farther away, nobody could see them.
+/// Wheel tracks are drawn up to this scale of vehicles. From farther away, they are too thin to see.
 const MAX_TRACK_SCALE: f32 = 2.0;
 const TRACK_COLOR: [f32; 4] = [0.16, 0.10, 0.07, 0.55];
 
@@ -343,7 +343,7 @@ fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
     }
 }
 
-/// The way that a vehicle has come, with the tracks of its wheels where they are so far apart.
+/// The path of a vehicle so far, and its wheel tracks if a gauge is given.
 fn trail(
     shapes: &mut Shapes,
     input: &SceneInput<'_>,

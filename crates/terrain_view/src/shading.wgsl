@@ -90,7 +90,7 @@ fn noise(at: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(value, du * (vec2<f32>(b - a, c - a) + k * u.yx));
 }
 
-// Grains of the ground down to a few centimetres, each size as long as it is larger than a pixel: a shade, and a slope.
+// Grain of the ground down to a few centimeters: a shade, and a slope. Sizes below a pixel fade out.
 fn grains(at: vec2<f32>, pixel_m: f32) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
     var size = 6.0;

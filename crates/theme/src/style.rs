@@ -136,7 +136,7 @@ fn set_visuals(visuals: &mut Visuals, tokens: &Tokens) {
         widget.corner_radius = radius;
         widget.expansion = 0.0;
     }
-    // Boxes to check and rails are on raised ground, too: in menus and dialogs.
+    // Checkboxes and slider rails need contrast in menus and dialogs, too.
     widgets.inactive.bg_fill = tokens.sunken;
     visuals.slider_trailing_fill = true;
 }

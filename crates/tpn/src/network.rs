@@ -339,6 +339,13 @@ pub struct LevelCondition {
     pub bound: Rational,
 }
 
+impl LevelCondition {
+    /// The kind of change that can break it.
+    pub const fn change(self) -> Change {
+        if self.order.is_minimum() { Change::Consumes } else { Change::Produces }
+    }
+}
+
 /// What an activity costs and is rewarded with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worth {

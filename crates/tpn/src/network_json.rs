@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
-use rmpl::program::{Change, Controllability, LabelMode};
+use rmpl::program::{Controllability, LabelMode};
 use serde::Deserialize as _;
 use serde_json::{Map, Value, json};
 use smol_str::SmolStr;
@@ -191,9 +191,8 @@ pub fn network_from_json(document: &Value) -> Result<Network, NetworkError> {
     }
     let is_condition = |used: &Use| {
         used.level.is_none_or(|level| {
-            let change = if level.order.is_minimum() { Change::Consumes } else { Change::Produces };
             matches!(resources[used.resource.index()].supply, Supply::Reservoir { .. })
-                && used.change == change
+                && used.change == level.change()
                 && used.amount.is_zero()
         })
     };

@@ -59,11 +59,17 @@ impl Taken {
     }
 }
 
-/// A selected use with its least and greatest amount: what takes of a reusable resource takes from start to end.
-pub(crate) fn taken(network: &Network, used: UseId, [at_least, amount]: [i128; 2]) -> Taken {
+/// A selected use with its least and greatest amount, or the last level that it allows: what takes of a reusable resource takes
+/// from start to end.
+pub(crate) fn taken(
+    network: &Network,
+    used: UseId,
+    [at_least, amount]: [i128; 2],
+    level: Option<i128>,
+) -> Taken {
     let of = &network.uses[used.index()];
     let is_production = of.change == rmpl::program::Change::Produces;
-    Taken { used, start: of.start, end: of.end, amount, at_least, is_production, level: None }
+    Taken { used, start: of.start, end: of.end, amount, at_least, is_production, level }
 }
 
 /// Whether the plan selects a use.
@@ -114,7 +120,7 @@ impl Shared {
                     let inside = if order.is_minimum() { 1 } else { -1 };
                     scaled(bound, shared.scale) + if order.is_strict() { inside } else { 0 }
                 });
-                shared.uses.push(Taken { level, ..taken(network, used, amounts) });
+                shared.uses.push(taken(network, used, amounts, level));
             }
         }
         Some(all)

@@ -262,7 +262,7 @@ fn the_end_of_a_run_says_how_it_came_about_and_nothing_ends_while_a_change_is_si
     dispatch(&mut app, "play.end", &Value::Null);
     assert!(says(&app, "as planned"));
     dispatch(&mut app, "play.seek", &json!({ "time": 0 }));
-    // The end of the run before the withdrawal is no end of the run after it.
+    // The run before the withdrawal has ended, but the run after it has not.
     app.world.is_slow.set(true);
     press(&mut app, "Withdraw Tell(PATH1=OK)#1");
     dispatch(&mut app, "play.end", &Value::Null);

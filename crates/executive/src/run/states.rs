@@ -417,7 +417,7 @@ impl Run<'_> {
             let breaks = |reached: Option<Rational>| {
                 reached.is_some_and(|reached| !level.order.holds(reached, level.bound))
             };
-            if of.start == of.end {
+            if !of.is_lasting() {
                 let counts = |&&(_, used): &&(Time, UseId)| {
                     let event = moment(used);
                     if network.uses[used.index()].change == of.change {

@@ -94,13 +94,10 @@ pub fn declarations_of_file(name: &str, bytes: &[u8]) -> Option<Result<String, G
 /// left out. `wanted` overrides what the file says of its frame.
 pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, GeoJsonError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let (document, own_frame) = if is_table(name) {
-        let (document, frame) = table::document(text, wanted)?;
-        (document, Some(frame))
+    let document: Value = if is_table(name) {
+        table::document(text, wanted)?
     } else {
-        let document: Value =
-            serde_json::from_str(text).map_err(|error| GeoJsonError::Shape(error.to_string()))?;
-        (document, None)
+        serde_json::from_str(text).map_err(|error| GeoJsonError::Shape(error.to_string()))?
     };
     if !is_geojson(&document) {
         return Err(GeoJsonError::Shape("expected a feature, a collection or a geometry".to_owned()));
@@ -114,8 +111,7 @@ pub fn declarations(name: &str, text: &str, wanted: &Frame) -> Result<String, Ge
     if reader.shapes.is_empty() {
         return Err(GeoJsonError::Empty);
     }
-    let own_frame = own_frame.map_or_else(|| Frame::of_file(&document), Ok)?;
-    let frame = own_frame.overridden(wanted);
+    let frame = Frame::of_file(&document)?.overridden(wanted);
     projection::check_mercator(&document, reader.positions())?;
     let projection = frame.projection(reader.positions())?;
     let mut lines = format!("// Places and obstacles of {}: {projection}.\n", one_line(name));
@@ -375,7 +371,7 @@ impl Shape {
     }
 }
 
-/// An obstacle is no vehicle, and no member of a group.
+/// Refuses an obstacle with a vehicle model or a group.
 fn refuse_members(feature: &Feature) -> Result<(), GeoJsonError> {
     match (&feature.model, &feature.group) {
         (None, None) => Ok(()),

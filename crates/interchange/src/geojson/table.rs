@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Frame, GeoJsonError};
+use super::{FRAME, Frame, GeoJsonError, Projection};
 
 /// Columns of numbers, and what they are in degrees or meters.
 const METERS: [&str; 2] = ["east", "north"];
@@ -15,9 +15,9 @@ pub fn is_table(name: &str) -> bool {
     name.to_ascii_lowercase().ends_with(".csv")
 }
 
-/// The points of a table, and what its columns say of their frame, which must agree with what is `wanted`.
-pub(super) fn document(text: &str, wanted: &Frame) -> Result<(Value, Frame), GeoJsonError> {
-    let wrong = |problem: String| GeoJsonError::Table(problem);
+/// The points of a table with the frame that its columns have, which must agree with what is `wanted`.
+pub(super) fn document(text: &str, wanted: &Frame) -> Result<Value, GeoJsonError> {
+    let wrong = GeoJsonError::Table;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let heading = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
     let column = |name: &str| heading.iter().position(|it| it.eq_ignore_ascii_case(name));
@@ -67,10 +67,8 @@ pub(super) fn document(text: &str, wanted: &Frame) -> Result<(Value, Frame), Geo
             "geometry": { "type": "Point", "coordinates": coordinates },
         }));
     }
-    Ok((
-        json!({ "type": "FeatureCollection", "features": features }),
-        Frame { is_meters, ..Frame::default() },
-    ))
+    let frame = if is_meters { Projection::Meters.to_json() } else { json!({ "units": "degrees" }) };
+    Ok(json!({ "type": "FeatureCollection", FRAME: frame, "features": features }))
 }
 
 #[cfg(test)]

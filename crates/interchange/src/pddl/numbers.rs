@@ -56,18 +56,18 @@ pub(super) fn ranges(ground: &mut Ground, times: u32) -> Result<BTreeMap<Fluent,
             vacant.insert(range(ground, need.fluent, times)?);
         }
     }
-    let is_complete = |ground: &Ground, fluent: Fluent| {
+    let is_integer = |ground: &Ground, fluent: Fluent| {
         let changes = ground.actions.iter().flat_map(Action::snaps).filter_map(|it| it.changes.get(&fluent));
         changes.chain(ground.values.get(&fluent)).all(|number| number.is_integer())
     };
-    let whole: BTreeMap<Fluent, bool> =
-        ranges.keys().map(|fluent| (*fluent, is_complete(ground, *fluent))).collect();
+    let integers: BTreeMap<Fluent, bool> =
+        ranges.keys().map(|fluent| (*fluent, is_integer(ground, *fluent))).collect();
     let names = &ground.fluents.all;
     let plain = |need: &Need| {
         if !need.is_strict {
             return Ok(*need);
         }
-        if !whole[&need.fluent] || !need.limit.is_integer() {
+        if !integers[&need.fluent] || !need.limit.is_integer() {
             return Err(PddlError::Said {
                 place: format!("({})", names[need.fluent].join(" ")),
                 what: "a strict comparison of a number that is not whole",

@@ -83,7 +83,7 @@ struct Candidate {
 impl Problem<'_> {
     /// Begins to dispatch from the start, where there are enough uses for it to matter.
     pub(crate) fn begin_dispatch(&mut self, solver: &mut Solver) {
-        if self.num_uses() >= MIN_USES && self.can_dispatch() {
+        if self.shares.num_uses() >= MIN_USES && self.can_dispatch() {
             self.exclude_all(solver);
             self.go_on_dispatching(solver);
         }
@@ -92,12 +92,7 @@ impl Problem<'_> {
     /// Whether uses can be dispatched: not too many, and not where nature chooses durations, because times that fit say nothing
     /// then.
     pub(super) fn can_dispatch(&self) -> bool {
-        !self.faces_nature && self.num_uses() <= MAX_USES
-    }
-
-    /// How many uses all resources have.
-    pub(super) fn num_uses(&self) -> usize {
-        self.shares.tasks().iter().map(|(_, tasks)| tasks.len()).sum()
+        !self.faces_nature && self.shares.num_uses() <= MAX_USES
     }
 
     /// Dispatches what has not started.
@@ -161,7 +156,7 @@ impl Problem<'_> {
             return false;
         }
         let mut has_decided = false;
-        let burst = if self.num_uses() < CROWD { 1 } else { BURST };
+        let burst = if self.shares.num_uses() < CROWD { 1 } else { BURST };
         for _ in 0..burst {
             let Some(Candidate { task, resource, start, .. }) = dispatching.next(solver) else { break };
             let is_open = solver.trail.is_open(task.interval.presence);
@@ -191,11 +186,9 @@ impl Problem<'_> {
         self.dispatching = has_decided.then_some(dispatching);
         has_decided
     }
-}
 
-impl Problem<'_> {
     /// Decides that a use starts at a time: not before, where that is possible, and not after.
-    fn start_at(&self, solver: &mut Solver, task: &Task, start: i64) {
+    pub(super) fn start_at(&self, solver: &mut Solver, task: &Task, start: i64) {
         let (used, begins) = (task.id, task.interval.start);
         let later = TreeChoice::Later { used, than: self.model.time(start - 1) };
         let by = TreeChoice::Start { used, by: self.model.time(start) };
@@ -204,6 +197,7 @@ impl Problem<'_> {
         {
             if solver.trail.is_open(option) {
                 solver.open_level_for(option);
+                solver.num_left = 0;
                 solver.stats.expanded += 1;
                 solver.record_start(option, choice);
             }

@@ -1,4 +1,4 @@
-//! Weighted sums of Booleans and times that must stay below a limit: goals while something better is looked for,
+//! Weighted sums of Booleans and times that must stay below a limit: goals during the search for a better plan,
 //! goals that have reached their optimum, and what is taken of a reservoir in all.
 
 use typed_index_collections::TiVec;

@@ -456,10 +456,7 @@ impl Solver {
                     if sharing == Sharing::Restarted {
                         self.leave(left);
                         self.record_return(problem);
-                    } else if sharing == Sharing::Decided {
-                        self.num_left = 0;
-                        self.stats.expanded += 1;
-                    } else {
+                    } else if sharing == Sharing::Fits {
                         debug_assert!(self.is_solution(problem), "the least times fit");
                         let stats = self.stats;
                         match problem.withstand(self, &mut || stop(&stats)) {
@@ -499,7 +496,6 @@ impl Solver {
 
     /// Whether propagation alone shows that there is no solution; `None` if it was stopped before. What it finds stays.
     pub(crate) fn is_refuted_at_root(&mut self, stop: &mut dyn FnMut() -> bool) -> Option<bool> {
-        self.record = None;
         self.propagate_at_root(stop).ok()?;
         Some(self.is_contradictory)
     }

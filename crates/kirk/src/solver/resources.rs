@@ -18,9 +18,8 @@ use super::linear::LinearKind;
 use super::literal::{Literal, Variable};
 use super::premise::Premise;
 use super::relaxation::{self, Row};
-use super::trail::Cause;
 use super::{ChoicePoint, ChoicePointKind, Solver};
-use crate::demands::{ModelSupply, ModelUse, level_change};
+use crate::demands::{ModelSupply, ModelUse, excess, level_change};
 use crate::failure::Member;
 use crate::trace::{Event, TreeChoice};
 
@@ -66,7 +65,7 @@ impl Task {
         if self.is_at_end() { self.interval.end } else { self.interval.start }
     }
 
-    /// When it is over with a reservoir.
+    /// The last event at which it concerns a reservoir's level.
     pub(super) fn last_moment(&self) -> Variable {
         if self.level.is_some() { self.interval.end } else { self.moment() }
     }
@@ -76,9 +75,9 @@ impl Task {
         self.level.is_some() && self.start != self.end
     }
 
-    /// By how much a level is on the wrong side of the bound of what it does.
-    pub(super) fn excess(&self, level: i64, bound: i64) -> i64 {
-        if self.change == Change::Produces { level - bound } else { bound - level }
+    /// How far a level is beyond a bound that this use can break.
+    pub(super) const fn excess(&self, level: i64, bound: i64) -> i64 {
+        excess(self.change, level, bound)
     }
 
     /// The change of a reservoir's level: the greatest possible one if `is_most`, otherwise the least.
@@ -109,6 +108,11 @@ pub(crate) struct Shares {
 impl Shares {
     pub(super) const fn is_empty(&self) -> bool {
         self.all.is_empty()
+    }
+
+    /// How many uses all resources have.
+    pub(super) fn num_uses(&self) -> usize {
+        self.all.iter().map(|shared| shared.tasks.len()).sum()
     }
 
     /// Each resource with its uses.
@@ -215,10 +219,11 @@ impl Problem<'_> {
             && excluding.is_empty()
             && let Some(first) = found.iter().find_map(|critical| first_to_start(solver, critical))
         {
-            if self.num_uses() >= CROWD && self.can_dispatch() {
+            if self.shares.num_uses() >= CROWD && self.can_dispatch() {
                 self.go_on_dispatching(solver);
             }
-            self.decide_start(solver, &first);
+            // It starts as early as it can, which makes others wait.
+            self.start_at(solver, &first, solver.trail.least(first.interval.start));
             return Sharing::Decided;
         }
         for critical in &found {
@@ -238,25 +243,13 @@ impl Problem<'_> {
         Sharing::Restarted
     }
 
-    /// A task starts as early as it can, which makes others wait.
-    fn decide_start(&self, solver: &mut Solver, task: &Task) {
-        let start = task.interval.start;
-        let least = solver.trail.least(start);
-        let option = Literal::new(start.upper(), least);
-        solver.trail.open_level();
-        // An open bound can be decided.
-        let _ = solver.trail.set(option, Cause::Decision);
-        let by = self.model.time(least);
-        solver.record_start(option, TreeChoice::Start { used: task.id, by });
-    }
-
     /// Which uses the solution orders.
     pub(super) fn uses_ordered(&self, solver: &Solver) -> Vec<(UseId, UseId)> {
         let held = self.shares.orders.iter().filter(|(_, order)| solver.trail.holds(**order));
         held.map(|(&pair, _)| pair).collect()
     }
 
-    /// The same of all resources that are shared.
+    /// Tells the solver of the uses that exclude each other two by two, for all shared resources.
     pub(super) fn exclude_all(&mut self, solver: &mut Solver) {
         for index in 0..self.shares.all.len() {
             if !self.shares.all[index].has_exclusion {
@@ -359,7 +352,7 @@ impl Problem<'_> {
         solver.resize();
         // What the literal means; that it must hold is said elsewhere.
         solver.tell_structure();
-        // Where uses overlap all of them are there anyway; what mends a level has to be there for it.
+        // Uses that overlap are all in the plan; a production or consumption that mends a level has to be added with its order.
         if first.change != Change::Uses {
             solver.imply(order, first.interval.presence);
             solver.imply(order, then.interval.presence);
@@ -577,8 +570,8 @@ fn out_of_range(
     None
 }
 
-/// What may mend a condition on a level that does not hold after the changes of `happened`, which its own kind of change
-/// has taken too far by `excess`: enough of these come later, or something of the other kind comes earlier.
+/// The repairs of a condition on a level that fails after the changes of `happened`, which went too far by `excess`: enough
+/// changes of its own kind come later, or one of the other kind comes earlier.
 fn broken_level(tasks: &[Task], happened: &[&Task], condition: &Task, excess: i64) -> Critical {
     let counted = |task: &&&Task| task.change == condition.change && task.is_active && task.level.is_none();
     let early = minimal(happened.iter().filter(counted).copied().collect(), excess);

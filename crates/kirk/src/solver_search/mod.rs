@@ -487,11 +487,13 @@ impl<'a> Searching<'a> {
 
     /// The least value of the last goal with a limit that propagation alone does not refute, by halves (destructive bounds: Klein
     /// and Scholl 1999).
-    fn refuted_limit(&mut self, attempt: &Attempt<'_>, limits: &Limits) -> i64 {
+    fn refuted_limit(&mut self, attempt: &mut Attempt<'_>, limits: &Limits) -> i64 {
         let mut goals = self.model.demands.goals.iter().zip(limits).rev();
         let Some((goal, limit)) = goals.find_map(|(goal, limit)| Some((goal, (*limit)?))) else {
             return i64::MIN;
         };
+        // None of this is recorded.
+        let record = attempt.solver.record.take();
         let mut least = attempt.problem.goal_bound(&attempt.solver, goal);
         let mut most = limit + 1;
         while i64::MIN < least && least < most && !self.is_stopped {
@@ -509,6 +511,7 @@ impl<'a> Searching<'a> {
                 None => {}
             }
         }
+        attempt.solver.record = record;
         least
     }
 
@@ -545,15 +548,14 @@ impl<'a> Searching<'a> {
         let mut everywhere = CONFLICTS_EVERYWHERE;
         let mut is_near = false;
         let next = loop {
-            let most = if is_near { CONFLICTS_NEAR } else { everywhere };
-            let most = Some(most).filter(|_| !is_first);
+            let most = (!is_first).then_some(if is_near { CONFLICTS_NEAR } else { everywhere });
             let next = self.next_plan((&mut attempt.problem, &mut attempt.solver), limits, most)?;
             if !matches!(next, Next::Stopped) || self.is_stopped {
                 break next;
             }
             is_near = !is_near;
             if self.floor.is_none() {
-                self.floor = Some(self.refuted_limit(&attempt, limits));
+                self.floor = Some(self.refuted_limit(&mut attempt, limits));
             }
             if is_near {
                 attempt.solver.search_near();

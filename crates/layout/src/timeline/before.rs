@@ -7,7 +7,7 @@ use smol_str::SmolStr;
 use tpn::{Network, Occurrence, OccurrenceKind, Plan};
 
 use super::chart::Chart;
-use super::row::{Bar, BarKind, Row, RowKind, times};
+use super::row::{Bar, BarKind, Row, RowKind, scheduled, times};
 
 /// When things could start and end in another plan, by the names of their occurrences.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,7 +53,7 @@ pub struct Gone {
     pub times: [[f64; 2]; 2],
 }
 
-/// What was scheduled by less than this otherwise is where it was: times of runs are rounded.
+/// Scheduled times that differ by less than this are equal: times of runs are rounded.
 const MIN_MOVE: f64 = 1e-6;
 
 /// Rows of what is gone, at most.
@@ -69,12 +69,11 @@ impl Before {
     pub fn planned(network: &Network, plan: &Plan) -> Self {
         let activities = network.occurrences.iter().filter(|it| it.kind == OccurrenceKind::Primitive);
         let is_selected = |it: &&Occurrence| plan.selected_nodes.get(it.start.index()) == Some(&true);
-        let scheduled = activities.filter(is_selected).filter_map(|it| {
-            let [start, end] = times(plan, [it.start, it.end])?;
-            let end = end[0].max(start[0]);
-            Some((it.name.clone(), [[start[0]; 2], [end; 2]]))
+        let planned = activities.filter(is_selected).filter_map(|it| {
+            let [start, end] = scheduled(times(plan, [it.start, it.end])?);
+            Some((it.name.clone(), [[start; 2], [end; 2]]))
         });
-        Self { origin: Origin::Planned, times: scheduled.collect() }
+        Self { origin: Origin::Planned, times: planned.collect() }
     }
 
     /// Whether a bar is where it was, or is of a kind that is not compared.

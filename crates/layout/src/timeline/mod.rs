@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 pub use category::Category;
 pub use chart::{Chart, Link, LinkKind, Past};
+pub(crate) use row::scheduled;
 pub use row::{Bar, BarKind, ProfilePart, Row, RowKind, times};
 pub use ticks::Ticks;
 

@@ -127,10 +127,15 @@ pub(super) struct Item {
     pub(super) bars: Vec<Bar>,
 }
 
+/// When something with these windows is scheduled: as early as it can be.
+pub(crate) fn scheduled([start, end]: [[f64; 2]; 2]) -> [f64; 2] {
+    [start[0], end[0].max(start[0])]
+}
+
 impl Bar {
     /// When it starts and ends as it is scheduled now: as early as it can, or as it is pinned or was executed.
     pub fn scheduled(&self) -> [f64; 2] {
-        [self.start[0], self.end[0].max(self.start[0])]
+        scheduled([self.start, self.end])
     }
 
     /// From when to when it can end by an uncontrolled duration, once it has started as scheduled; `None` if it is known

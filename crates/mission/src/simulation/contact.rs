@@ -105,7 +105,7 @@ fn tracks(program: &Program, network: &Network, drives: &[SimulatedDrive]) -> Ve
     let starts =
         standing::starts(program, &network.occurrences).into_iter().zip(0..).map(|(start, vehicle)| {
             let start = start?;
-            // Who first drives as a follower stands in the formation already.
+            // A follower is at its place in the formation before it first drives.
             let first = drives.iter().flat_map(|drive| drive.vehicles.iter().enumerate());
             let mut first = first.filter(|(_, it)| start.is_shared && it.vehicle == vehicle);
             let frame = first.next().filter(|(index, _)| *index > 0).and_then(|(_, it)| it.frames.first());

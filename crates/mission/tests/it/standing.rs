@@ -89,7 +89,7 @@ fn vehicles_that_parameters_name_set_out_in_formation() {
     assert_eq!(execution.ending, executive::Ending::Finished, "{:?}", execution.log);
 }
 
-/// Vehicles that a formation shares a place with stand there when no plan moves them: others keep apart from them.
+/// Vehicles of a formation that the plan does not move are obstacles for others.
 #[test]
 fn a_formation_that_does_not_set_out_is_in_the_way() {
     let source = "location A (20, 0); location B (40, 0); location C (0, 0); location D (40, 30);

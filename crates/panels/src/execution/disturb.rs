@@ -15,12 +15,19 @@ use super::{Shown, now};
 use crate::Context;
 use crate::plan::section;
 
-/// What the buttons beside a name take, in points.
-const BUTTONS_WIDTH: f32 = 184.0;
 /// The size of a button: large enough to be hit while the run plays.
 pub(super) const BUTTON: egui::Vec2 = egui::vec2(84.0, 28.0);
-/// So many activities and conditions are listed at first, those that come next.
+/// At first, the list has at most this many activities and conditions: the next ones.
 const FIRST_LISTED: usize = 4;
+
+/// A name that leaves room for two buttons after it, cut if it is too long.
+pub(super) fn name_cell(ui: &mut Ui, name: &str) {
+    let width = (ui.available_width() - 2.0 * BUTTON.x - 16.0).max(60.0);
+    ui.allocate_ui_with_layout(egui::vec2(width, BUTTON.y), Layout::left_to_right(Align::Center), |ui| {
+        ui.set_min_width(width);
+        ui.add(egui::Label::new(name).truncate());
+    });
+}
 
 /// How much longer or later, in mission units, and what is meant to happen to vehicles and components.
 pub(super) struct Disturb {
@@ -79,11 +86,7 @@ impl Disturb {
         let id = pending.occurrence;
         let name = now::name(shown, id);
         let Some(occurrence) = shown.network.occurrences.get(id.index()) else { return };
-        let name_size = egui::vec2((ui.available_width() - BUTTONS_WIDTH).max(60.0), BUTTON.y);
-        ui.allocate_ui_with_layout(name_size, Layout::left_to_right(Align::Center), |ui| {
-            ui.set_min_width(name_size.x);
-            ui.add(egui::Label::new(now::words(shown, id)).truncate());
-        });
+        name_cell(ui, &now::words(shown, id));
         ui.horizontal(|ui| {
             let mut button = |ui: &mut Ui, text: &str, make: &dyn Fn() -> ExecutionCommand| {
                 let response = ui.add(egui::Button::new(text).min_size(BUTTON));

@@ -15,7 +15,7 @@ use crate::plan::section;
 /// Shows the log up to the time shown.
 pub(super) fn show(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
     let time = context.state.playback.time;
-    // While a change is simulated, nobody knows how the run ends.
+    // While a change is simulated, the end of the run is unknown.
     let is_open = context.state.execution.is_working();
     let is_known = |entry: &&Entry| !(is_open && matches!(entry.happening, Happening::Finished));
     let come = shown.run.log.iter().filter(|entry| has_come(entry.time, time));

@@ -22,19 +22,15 @@ const MAX_LISTED: usize = 5;
 pub(super) fn banner(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>) {
     let tokens = context.tokens;
     let time = context.state.playback.time;
-    let last = story::turns(shown.run, time).pop();
-    let mut sign = (Icon::Play, tokens.info, tokens.soft[3]);
-    let (mut text, mut because) = ("In progress".to_owned(), None);
-    if let Some(last) = last {
-        sign = last.kind.look(tokens);
-        (text, because) = (last.text, last.because);
-    }
-    if context.state.execution.is_working() {
-        // What is drawn does not have the last disturbance yet.
-        sign = (Icon::Working, tokens.info, tokens.soft[3]);
-        (text, because) = ("Simulating the change…".to_owned(), None);
-    }
-    let (icon, color, fill) = sign;
+    let last = || story::turns(shown.run, time).pop();
+    let ((icon, color, fill), text, because) = if context.state.execution.is_working() {
+        // The run that is drawn lacks the last disturbance.
+        ((Icon::Working, tokens.info, tokens.soft[3]), "Simulating the change…".to_owned(), None)
+    } else if let Some(last) = last() {
+        (last.kind.look(tokens), last.text, last.because)
+    } else {
+        ((Icon::Play, tokens.info, tokens.soft[3]), "In progress".to_owned(), None)
+    };
     let frame = Frame::new()
         .fill(fill)
         .corner_radius(CornerRadius::same(4))

@@ -58,8 +58,9 @@ pub(crate) fn turns(run: &Execution, until: f64) -> Vec<Turn> {
                 (TurnKind::Replanned, format!("Replanned at {at}: {how}"))
             }
             Happening::Stopped { reason } => {
-                let told = because.iter().chain([reason]).cloned().collect::<Vec<_>>();
-                because = Some(told.join(". "));
+                // A violation that ends the run stops it with its own reason.
+                let broke = because.take().filter(|broke| broke != reason);
+                because = Some(broke.map_or_else(|| reason.clone(), |broke| format!("{broke}. {reason}")));
                 (TurnKind::Stopped, format!("Stopped safely at {at}"))
             }
             Happening::Finished => {

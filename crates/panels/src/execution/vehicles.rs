@@ -1,13 +1,13 @@
 //! Disturbances of what drives: a vehicle slows down or stops, and something stands in the way.
 
-use egui::{Align, DragValue, Layout, RichText, Ui};
+use egui::{DragValue, RichText, Ui};
 use exact::Rational;
 use workbench::command::{Command, CommandSender};
 use workbench::state::execution::{ExecutionCommand, exact_time};
 use workbench::state::terrain::{TerrainCommand, Tool};
 use workbench::time_text;
 
-use super::disturb::{BUTTON, suffix};
+use super::disturb::{BUTTON, name_cell, suffix};
 use crate::Context;
 use crate::plan::section;
 
@@ -44,12 +44,7 @@ impl Vehicles {
         let duration = exact_time(self.duration);
         for vehicle in declared {
             ui.horizontal(|ui| {
-                let name_width = (ui.available_width() - 2.0 * BUTTON.x - 16.0).max(60.0);
-                let size = egui::vec2(name_width, BUTTON.y);
-                ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-                    ui.set_min_width(name_width);
-                    ui.add(egui::Label::new(vehicle.name.text.as_str()).truncate());
-                });
+                name_cell(ui, &vehicle.name.text);
                 for (text, percent) in [("Stop", 0.0), ("Slow", self.percent)] {
                     let response = ui.add(egui::Button::new(text).min_size(BUTTON));
                     let name = format!("{text} {}", vehicle.name.text);

@@ -467,7 +467,7 @@ impl NetworkPanel {
         }
     }
 
-    /// The connector behind the selected activity.
+    /// The connector after the selected activity.
     fn show_connector(&self, ui: &Ui, context: &Context<'_>, panel: Rect, network: &Network) {
         let selection = &*context.state.selection;
         let selected = selection.occurrence(network).and_then(|id| network.occurrences.get(id.index()));

@@ -3,10 +3,13 @@
 //! What is painted is bounded by the room on screen, however large the search: only rows and states in view, and of
 //! states that would share a pixel one.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, pos2, vec2};
 use kirk::{Event, Trace, TreeChoice, TreeNodeId, TreeStatus};
 use theme::size;
-use tpn::Network;
+use tpn::{DecisionId, Network};
 use workbench::ViewAction;
 use workbench::state::search::focus::concerns;
 use workbench::state::search::{Share, wording};
@@ -53,6 +56,8 @@ pub struct Tree<'a> {
     pub index: &'a TreeIndex,
     /// Where they stand.
     pub drawing: &'a TreeDrawing,
+    /// The names of alternatives, as far as they were needed.
+    pub names: &'a Names,
     /// The step that is looked at, if one is, and its state.
     pub step: Option<(usize, TreeNodeId)>,
     /// The state that the search is for: its plan, or how far it came. The way there is marked while no step is looked
@@ -66,7 +71,21 @@ pub struct Tree<'a> {
     pub merged: Option<Merged<'a>>,
 }
 
+/// The names of alternatives. Finding one takes a walk through the network, too much for each frame.
+#[derive(Default)]
+pub struct Names(RefCell<BTreeMap<(DecisionId, u32), String>>);
+
 impl Tree<'_> {
+    /// A name for a state by what was chosen: of a decision, what the alternative does.
+    fn label(&self, choice: Option<TreeChoice>) -> String {
+        let Some(TreeChoice::Decision { decision, alternative }) = choice else {
+            return short_label(self.network, choice);
+        };
+        let mut names = self.names.0.borrow_mut();
+        let name = names.entry((decision, alternative));
+        name.or_insert_with(|| self.network.alternative_name(decision, alternative)).clone()
+    }
+
     fn step(&self) -> Option<usize> {
         self.step.map(|(step, _)| step)
     }
@@ -590,7 +609,7 @@ impl Scene<'_> {
     /// What the label of a state says where there is room for all, and what it says with less room.
     fn label_forms(&self, id: TreeNodeId) -> Vec<String> {
         let choice = self.tree.trace.tree[id as usize].choice;
-        let (name, short) = (label(self.tree.network, choice), short_label(self.tree.network, choice));
+        let (name, short) = (self.tree.label(choice), short_label(self.tree.network, choice));
         let bound = self.bound(id).map(|bound| format!(" · {bound}")).unwrap_or_default();
         let learned = self.tree.learned(id);
         let learned = learned.map(|it| format!(" · {}", wording::never(self.tree.network, it)));
@@ -625,16 +644,6 @@ impl Scene<'_> {
         );
         job.wrap = egui::text::TextWrapping::truncate_at_width(room);
         self.painter.layout_job(job)
-    }
-}
-
-/// A name for a state by what was chosen: of a decision, what the alternative does.
-fn label(network: &Network, choice: Option<TreeChoice>) -> String {
-    match choice {
-        Some(TreeChoice::Decision { decision, alternative }) => {
-            network.alternative_name(decision, alternative)
-        }
-        _ => short_label(network, choice),
     }
 }
 

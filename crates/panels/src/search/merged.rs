@@ -13,7 +13,7 @@ use workbench::state::search::focus::selection_of;
 use workbench::state::search::{MergedTree, Recording, SearchCommand, Share};
 use workbench::state::window::WindowCommand;
 
-use super::canvas::{self, Pointed, Tree};
+use super::canvas::{self, Names, Pointed, Tree};
 use super::kind_name;
 use super::tree::{TreeDrawing, TreeIndex};
 use crate::{Context, one_line};
@@ -34,6 +34,7 @@ struct Drawn {
     index: TreeIndex,
     own: [TreeIndex; 2],
     drawing: TreeDrawing,
+    names: Names,
     toggled: BTreeSet<TreeNodeId>,
     folds_failed: bool,
 }
@@ -129,6 +130,7 @@ impl MergedSide {
             trace: &drawn.tree.trace,
             index: &drawn.index,
             drawing: &drawn.drawing,
+            names: &drawn.names,
             step: steps[side],
             goal,
             jump: jump.and_then(|to| drawn.tree.here[side].get(to as usize).copied()),
@@ -186,6 +188,7 @@ impl MergedSide {
                 own: traces.map(TreeIndex::new),
                 tree,
                 drawing: TreeDrawing::default(),
+                names: Names::default(),
                 toggled: BTreeSet::new(),
                 folds_failed,
             });

@@ -29,7 +29,7 @@ use workbench::state::settings::SettingsCommand;
 use workbench::state::window::WindowCommand;
 
 use crate::{Context, Panel};
-use canvas::{Pointed, Tree};
+use canvas::{Names, Pointed, Tree};
 use details::Told;
 use merged::MergedSide;
 use tree::{TreeDrawing, TreeIndex};
@@ -68,6 +68,7 @@ struct Drawn {
     recording: Recording,
     index: TreeIndex,
     drawing: TreeDrawing,
+    names: Names,
     /// What the layout depends on besides.
     toggled: BTreeSet<TreeNodeId>,
     folds_failed: bool,
@@ -212,6 +213,7 @@ impl SearchPanel {
                 trace: recording.trace(),
                 index: &drawn.index,
                 drawing: &drawn.drawing,
+                names: &drawn.names,
                 step: view.map(|view| (view.step.step, view.step.tree_node)),
                 goal: drawn.index.goal,
                 jump: view.and_then(|view| canvas::jump(recording.trace(), view.step.step)),
@@ -268,6 +270,7 @@ impl Side {
             recording: recording.clone(),
             index: TreeIndex::new(trace),
             drawing: TreeDrawing::default(),
+            names: Names::default(),
             toggled: BTreeSet::new(),
             folds_failed: false,
             open: Vec::new(),

@@ -635,7 +635,7 @@ fn show_bar(
     respond(ui, &response, painting, plan, (row, bar), is_selected, commands)
 }
 
-/// The connector behind the selected bar.
+/// The connector after the selected bar.
 fn show_connector(ui: &Ui, painting: &Painting<'_>, (row, bar): (usize, &Bar)) {
     let occurrence = bar.occurrence.and_then(|id| painting.network.occurrences.get(id.index()));
     let Some(occurrence) = occurrence.filter(|_| bar.label.is_none()) else { return };

@@ -116,7 +116,7 @@ fn each_mistake_with_parts_gives_one_diagnostic() {
     }
 }
 
-/// Each connection leads over the one before it, twice.
+/// Each connection refers to the previous one twice.
 #[test]
 fn connections_that_rest_on_each_other_are_followed_once() {
     let mut text = "(DEFCLASS P () (PORT w P) (MODE M true))

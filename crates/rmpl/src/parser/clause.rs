@@ -277,7 +277,7 @@ impl Parser<'_> {
         self.begins_clause(next) || self.at_start_of_activity(next)
     }
 
-    /// Whether `at start` and a condition stand at `index`.
+    /// Whether the words `at start` are at `index`.
     pub(super) fn at_start_of_activity(&mut self, index: u32) -> bool {
         let next = self.index_after(index);
         self.kind_at(index) == SyntaxKind::Name

@@ -1,7 +1,7 @@
 //! Conditions: literals with `not`, `!` and parentheses (SPEC 1.2), joined by `and` and `or` (SPEC 14).
 //!
-//! `and`, `or` and `in` are words of the language only behind a literal, `visible` only behind `in`, and `at start` only
-//! behind the bound of a level.
+//! `and`, `or` and `in` are keywords only after a literal, `visible` only after `in`, and `at start` only after the bound of a
+//! level.
 
 use super::{MAX_NESTING, Mark, Parser};
 use crate::diagnostics::syntax;

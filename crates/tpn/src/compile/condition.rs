@@ -34,7 +34,7 @@ impl<'program> Expander<'program> {
         self.labeled(body, fact, mode, condition, span, entry, scope)
     }
 
-    /// `body` while a level is as `condition` says. Nothing asserts a level, which the language has said.
+    /// `body` while a level satisfies `condition`. A level cannot be asserted: rmpl reports that.
     fn with_level(
         &mut self,
         body: &'program Statement,

@@ -232,8 +232,8 @@ impl<'program> Expander<'program> {
         self.builder.uses.push(used);
     }
 
-    /// What `condition` asks of a level where `asked` is selected (SPEC 17); `called` is where the call stands that says what
-    /// parameters are.
+    /// Adds what `condition` requires of a level while `asked.arc` is selected (SPEC 17); `called` is the span of the call that
+    /// gives parameters their values.
     pub(super) fn level(&mut self, condition: &Condition, asked: &Asked, scope: &Scope, called: Span) {
         let Some(level) = &condition.level else { return };
         let name = scope.owned_name(&condition.variable.text);
@@ -243,13 +243,13 @@ impl<'program> Expander<'program> {
             return;
         }
         let Some(resource) = self.resource(&condition.variable, scope, called) else { return };
-        let order = if condition.negated { level.order.opposite() } else { level.order };
-        let bound = self.amount(&level.bound, scope);
-        let starts = [Some(asked.start), (!asked.is_at_start).then_some(asked.end)];
-        for end in starts.into_iter().flatten() {
+        let level =
+            LevelCondition { order: order(condition, level), bound: self.amount(&level.bound, scope) };
+        let ends = [Some(asked.start), (!asked.is_at_start).then_some(asked.end)];
+        for end in ends.into_iter().flatten() {
             self.builder.uses.push(Use {
                 resource,
-                change: if order.is_minimum() { Change::Consumes } else { Change::Produces },
+                change: level.change(),
                 amount: Rational::ZERO,
                 at_least: Rational::ZERO,
                 per_meter: Rational::ZERO,
@@ -257,7 +257,7 @@ impl<'program> Expander<'program> {
                 start: asked.start,
                 end,
                 owner: asked.owner,
-                level: Some(LevelCondition { order, bound }),
+                level: Some(level),
                 span: Some(condition.span),
             });
         }
@@ -266,10 +266,9 @@ impl<'program> Expander<'program> {
     /// `R1.battery>=30`
     pub(super) fn level_text(&self, condition: &Condition, level: &Level, scope: &Scope) -> SmolStr {
         let name = scope.owned_name(&condition.variable.text);
-        let order = if condition.negated { level.order.opposite() } else { level.order };
         // What has no value is an error of its own.
         let bound = bounds::value(&level.bound, &scope.values(&self.constants)).unwrap_or(Bound::ZERO);
-        format_smolstr!("{name}{}{bound}", order.symbol())
+        format_smolstr!("{name}{}{bound}", order(condition, level).symbol())
     }
 
     /// What a name is, if something without a level is called so.
@@ -380,4 +379,9 @@ impl<'program> Expander<'program> {
             })
             .collect()
     }
+}
+
+/// How a level has to compare with its bound.
+const fn order(condition: &Condition, level: &Level) -> program::Order {
+    if condition.negated { level.order.opposite() } else { level.order }
 }

@@ -213,7 +213,7 @@ pub(super) fn ordered_moments(network: &Network, ordering: UseOrdering) -> (Node
     let [first, then] = [ordering.first, ordering.then].map(|used| {
         // Which level is asked for says nothing of when.
         let level = network.uses[used.index()].level.map(|_| 0);
-        amounts::Taken { level, ..amounts::taken(network, used, [0, 0]) }
+        amounts::taken(network, used, [0, 0], level)
     });
     match network.resources[network.uses[first.used.index()].resource.index()].supply {
         tpn::Supply::Reusable { .. } => (first.end, then.start),

@@ -120,17 +120,19 @@ impl Checker<'_> {
         let order = Precedence::new(&self.entailment, &spans);
         // The worst case after an event counts all that may have happened in its own direction, and of the other direction
         // only what must have.
-        let worst = |index: usize, is_production: bool, is_counted: &dyn Fn(usize) -> Option<bool>| {
+        let worst = |index: usize, is_production: bool, left_out: Option<NodeId>| {
             let mut reached = level;
             for (other, another) in changes.iter().enumerate() {
                 let happens_before = other == index || order.is_before(other, index);
                 let happens_after = other == index || order.is_before(index, other);
-                let by_order = if another.is_production == is_production {
+                let is_counted = if left_out == Some(another.moment()) {
+                    false
+                } else if another.is_production == is_production {
                     !happens_after || happens_before
                 } else {
                     happens_before
                 };
-                if is_counted(other).unwrap_or(by_order) {
+                if is_counted {
                     let [least, most] = another.changes();
                     reached += if is_production { most } else { least };
                 }
@@ -138,14 +140,13 @@ impl Checker<'_> {
             reached
         };
         let after: Vec<i128> = (changes.iter().enumerate())
-            .map(|(index, event)| worst(index, event.is_production, &|_| None))
+            .map(|(index, event)| worst(index, event.is_production, None))
             .collect();
         let broken = (conditions.iter().enumerate()).filter_map(|(number, &condition)| {
             let (start, end) = (changes.len() + number, changes.len() + conditions.len() + number);
             if condition.start == condition.end {
                 // Just before its event: what happens at that comes later.
-                let is_later = |other: usize| (changes[other].moment() == condition.start).then_some(false);
-                let before = worst(start, condition.is_production, &is_later);
+                let before = worst(start, condition.is_production, Some(condition.start));
                 let is_broken = !condition.allows(before);
                 return is_broken.then_some(Broken { condition, level: before, by: None });
             }

@@ -67,7 +67,7 @@ pub const COURSE: &[Chapter] = &[
     Chapter { title: "Review", lessons: lessons!["21" "review", "22" "verified", "23" "proof"] },
 ];
 
-/// What Enroute can do, step by step, for somebody who is new: a lesson before the course.
+/// A tour of Enroute for new users: a lesson before the course.
 pub const TOUR: CourseLesson =
     CourseLesson { name: "tour", text: include_str!("../../../../assets/lessons/tour.md") };
 

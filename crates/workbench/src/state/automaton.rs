@@ -272,7 +272,7 @@ impl AutomatonState {
         self.conflicts.as_ref()
     }
 
-    /// Whether the known conflicts are of another step than the one before the current moment.
+    /// Whether the known conflicts belong to a step other than the one before the current moment.
     pub(crate) fn has_other_conflicts(&self) -> bool {
         match (self.last_step(), &self.conflicts) {
             (Some((model, before, after)), Some(known)) => !known.is_of(model, before, after),

@@ -196,8 +196,8 @@ struct Here<'a> {
 }
 
 impl Here<'_> {
-    /// Adds the edit that puts a declaration behind the last one of its kind in the file, or behind the kinds that come
-    /// before it, or in front of everything.
+    /// Adds the edit that puts a declaration after the last one of its kind in the file, or else after the kinds that come
+    /// before it, or else before all code.
     fn insert(&self, edits: &mut Vec<Edit>, kind: Kind, declaration: &str) {
         let (offset, inserted) = if let Some((span, last)) = self.last_before(kind) {
             let between = if last == kind { "\n" } else { "\n\n" };
@@ -224,7 +224,7 @@ impl Here<'_> {
     /// The last declaration of the kind in the file, or of the nearest kind before it that the file has.
     fn last_before(&self, kind: Kind) -> Option<(Span, Kind)> {
         let world = self.world;
-        let is_here = |span: &Span| self.file.start <= span.start && span.end <= self.file.end;
+        let is_here = |span: &Span| self.file.contains(*span);
         let last = |kind| match kind {
             Kind::Terrain => world.terrain.iter().map(|it| it.span).rfind(is_here),
             Kind::Location => world.locations.iter().map(|it| it.span).rfind(is_here),
@@ -337,11 +337,8 @@ mod tests {
                 None,
             );
             let text = document.text().to_owned();
-            let files: Vec<(String, String)> = rmpl::files::split(&text)
-                .into_iter()
-                .map(|(name, text)| (name.to_owned(), text.trim_end().to_owned()))
-                .collect();
-            files.into_iter().map(|(_, text)| text).collect::<Vec<_>>()
+            let files = rmpl::files::split(&text).into_iter();
+            files.map(|(_, text)| text.trim_end().to_owned()).collect::<Vec<_>>()
         };
         assert_eq!(declared(""), ["location P1 (3, 4);\n\nscenario S = { }", "location A (1, 2);", ""]);
         assert_eq!(declared("world.rmpl")[1], "location A (1, 2);\nlocation P1 (3, 4);");

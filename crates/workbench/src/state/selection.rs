@@ -90,7 +90,7 @@ impl Selection {
             _ => None,
         };
         let inner = network.occurrences.get(occurrence.index()).and_then(|occurrence| occurrence.span);
-        outer.zip(inner).is_some_and(|(outer, inner)| outer.start <= inner.start && inner.end <= outer.end)
+        outer.zip(inner).is_some_and(|(outer, inner)| outer.contains(inner))
     }
 
     /// Where the selection is written, for the editor to show.

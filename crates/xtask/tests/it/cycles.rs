@@ -15,7 +15,7 @@ const MAX_FILES: usize = 4;
 
 /// Crates with a larger circle, how many files it has at most, and why it stands.
 const EXCEPTIONS: &[(&str, usize, &str)] = &[
-    ("kirk", 13, "what the solver is told, and what it makes of that, stand beside each other"),
+    ("kirk", 13, "the parts of a problem and the search over them refer to each other"),
     ("panels", 11, "the parts of a panel share what its first file holds"),
     (
         "rmpl",

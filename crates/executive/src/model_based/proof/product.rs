@@ -68,7 +68,7 @@ pub(super) struct Node {
     faults_left: u32,
     /// The length of the shortest run to it, in steps.
     pub(super) depth: u32,
-    /// What is so of each condition.
+    /// Whether each condition holds.
     pub(super) judged: Vec<Judged>,
     /// Why it has no next step, if it has none.
     pub(super) end: Option<End>,
@@ -78,7 +78,7 @@ pub(super) struct Node {
     pub(super) edges: Option<Vec<Edge>>,
 }
 
-/// What a true state says of a condition.
+/// Whether a condition holds in a true state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Judged {
     True,
@@ -387,7 +387,7 @@ impl Explorer {
         into.push(way);
     }
 
-    /// What is so of each condition in a state that shows this.
+    /// Whether each condition holds in a state with this observation.
     fn judge(&self, state: &State, truth: &Observation) -> Vec<Judged> {
         let mut situation = Situation::new(&self.system.model, state, truth);
         let judged = self.conditions.iter().map(|condition| {

@@ -5,6 +5,7 @@ use display::{Anchor, ColorRole, Dash, Fit, Point, Rect, Stroke, Text, Weight};
 
 use super::{BAR_EDGES, Builder, MIN_WIDTH, SIZES};
 use crate::timeline::before::{BarChange, Gone};
+use crate::timeline::scheduled;
 
 impl Builder<'_> {
     /// What differs of the bar at `at`, which is at `place`, in a row that it may have alone.
@@ -44,11 +45,6 @@ impl Builder<'_> {
         self.list.rectangle(place, 3.0, None, Some(dashed));
         self.list.entitle(words.to_owned());
     }
-}
-
-/// When something was scheduled, as early as it could be.
-fn scheduled([start, end]: [[f64; 2]; 2]) -> [f64; 2] {
-    [start[0], end[0].max(start[0])]
 }
 
 /// When something could start and end.

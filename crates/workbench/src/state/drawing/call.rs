@@ -9,7 +9,7 @@ use smol_str::SmolStr;
 
 use super::list::insertion;
 use super::{Drawn, Place, insert, site};
-use crate::state::placing::Names;
+use crate::state::placing::{Names, behind};
 
 /// An activity that a mission declares, with the calls of it that are offered.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -156,11 +156,11 @@ fn undeclared(parse: &Parse, text: &str) -> Vec<String> {
 
 /// Declares something in a file: after its last primitive, or else before its first definition, or at its end.
 pub(super) fn declare(parse: &Parse, file: Span, declaration: &str) -> Edit {
-    let is_there = move |it: &SyntaxNode<'_>| file.start <= it.span().start && it.span().end <= file.end;
+    let is_there = move |it: &SyntaxNode<'_>| file.contains(it.span());
     let find =
         |kind: SyntaxKind| parse.declarations().filter_map(move |root| root.child(kind)).filter(is_there);
     if let Some(last) = find(SyntaxKind::PrimitiveDecl).last() {
-        return insertion(last.span().end, format!("\n{declaration}"));
+        return insertion(behind(parse.text(), last.span().end), format!("\n{declaration}"));
     }
     let activity = find(SyntaxKind::ActivityDecl).next();
     let scenario = find(SyntaxKind::ScenarioDecl).next();

@@ -214,7 +214,7 @@ fn relocate(parse: &Parse, file: Span, what: Span, at: Place) -> Result<Vec<Edit
     let site = Site::of(parse, what)?;
     if let Place::After(other) | Place::Before(other) | Place::Beside(other) | Place::Instead(other) = at {
         let target = Site::of(parse, other)?;
-        if site.span().start <= target.span().start && target.span().end <= site.span().end {
+        if site.span().contains(target.span()) {
             return Err("An activity cannot be moved into itself".to_owned());
         }
         let forwards = matches!(at, Place::Before(_));

@@ -121,7 +121,7 @@ fn is_step(kind: SyntaxKind) -> bool {
 /// The nodes around a span, from the declaration down.
 fn path(parse: &Parse, span: Span) -> Vec<SyntaxNode<'_>> {
     let mut path = Vec::new();
-    let contains = |node: &SyntaxNode<'_>| node.span().start <= span.start && span.end <= node.span().end;
+    let contains = |node: &SyntaxNode<'_>| node.span().contains(span);
     let mut here = parse.declaration_at(span.start).filter(contains);
     while let Some(node) = here {
         path.push(node);

@@ -11,13 +11,13 @@ fn at(text: &str, piece: &str) -> Span {
 }
 
 /// The only file.
-fn scenario_span(parse: &rmpl::Parse) -> Span {
+fn only_file(parse: &rmpl::Parse) -> Span {
     Span::new(0, parse.text().len() as u32)
 }
 
 fn changed(text: &str, change: &Change) -> String {
     let parse = rmpl::parse(text);
-    draw(&parse, scenario_span(&parse), change)
+    draw(&parse, only_file(&parse), change)
         .unwrap_or_else(|reason| panic!("{change:?}: {reason}\n{text}"))
         .apply(text)
 }
@@ -107,9 +107,9 @@ fn what_is_moved_takes_its_bounds_and_its_name_along() {
     assert_eq!(to(" A(), B() ", Place::After, "B()"), " { B(); A() } ");
     let parse = rmpl::parse("scenario S = { A(); B() }");
     let same = Change::Move { what: at(parse.text(), "B()"), at: Place::After(at(parse.text(), "A()")) };
-    assert_eq!(draw(&parse, scenario_span(&parse), &same), Err("It is there already".to_owned()));
+    assert_eq!(draw(&parse, only_file(&parse), &same), Err("It is there already".to_owned()));
     let inside = Change::Move { what: at(parse.text(), "A()"), at: Place::After(at(parse.text(), "A()")) };
-    assert!(draw(&parse, scenario_span(&parse), &inside).is_err());
+    assert!(draw(&parse, only_file(&parse), &inside).is_err());
     assert_eq!(neighbor(&parse, at(parse.text(), "A()"), true), Some(at(parse.text(), "B()")));
     assert_eq!(neighbor(&parse, at(parse.text(), "A()"), false), None);
 }
@@ -137,9 +137,8 @@ fn bounds_are_written_or_replaced_and_typed_over() {
     assert_eq!(bound(" A(); B() "), " A()[3,4]; B() ");
     assert_eq!(bound(" A()[1,2] as X; B() "), " A()[3,4] as X; B() ");
     let parse = rmpl::parse("scenario S = { A() }");
-    let drawn =
-        draw(&parse, scenario_span(&parse), &Change::Bound(at(parse.text(), "A()"), "[3,4]".to_owned()))
-            .expect("bounds");
+    let drawn = draw(&parse, only_file(&parse), &Change::Bound(at(parse.text(), "A()"), "[3,4]".to_owned()))
+        .expect("bounds");
     assert_eq!(&drawn.apply(parse.text())[drawn.typed_over[0].range()], "3,4");
 }
 
@@ -192,4 +191,13 @@ fn a_vehicle_is_sent_to_a_place_behind_all_else_that_it_does() {
     );
     let expected = own.replace("Go(ROCK) };", "Go(ROCK) };\n  Go(ROCK);\n  Shoot(ROCK);");
     assert_eq!(visit(&own, "R"), expected);
+}
+
+#[test]
+fn a_new_declaration_leaves_the_comment_of_the_one_before() {
+    let text = "primitive A()[1,2]; // long drive\nscenario S[0,9] = {\n  A()\n}\n";
+    let parse = rmpl::parse(text);
+    let edit = super::call::declare(&parse, only_file(&parse), "primitive B()[1,5];");
+    let changed = super::Drawn { edits: vec![edit], ..super::Drawn::default() }.apply(text);
+    assert!(changed.starts_with("primitive A()[1,2]; // long drive\nprimitive B()[1,5];\n"), "{changed}");
 }

@@ -254,9 +254,7 @@ pub fn concerns(choice: Option<TreeChoice>, selection: &Selection, network: &Net
             let decision = network.decisions.get(decision.index());
             let alternative = decision.and_then(|it| it.alternative_spans.get(alternative as usize));
             let occurrence = network.occurrences.get(selected.index()).and_then(|it| it.span);
-            let is_inside =
-                |(outer, inner): (&Span, Span)| outer.start <= inner.start && inner.end <= outer.end;
-            alternative.zip(occurrence).is_some_and(is_inside)
+            alternative.zip(occurrence).is_some_and(|(outer, inner)| outer.contains(inner))
         }
         (TreeChoice::Link(link), _) if owns(link.ask) || owns(link.tell) => true,
         (TreeChoice::Order(order), _) if owns(order.first) || owns(order.then) => true,

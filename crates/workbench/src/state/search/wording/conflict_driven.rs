@@ -358,16 +358,20 @@ fn out_of_range(network: &Network, early: &[UseId], late: &[UseId]) -> String {
     let Some(used) = early.first().map(|first| &network.uses[first.index()]) else { return String::new() };
     let resource = &network.resources[used.resource.index()];
     let Supply::Reservoir { least, greatest, .. } = resource.supply else { return String::new() };
+    let earlier = match late.len() {
+        0 => None,
+        1 => Some(users(network, late)),
+        _ => Some(format!("one of {}", users(network, late))),
+    };
     let is_condition = |id: &&UseId| network.uses[id.index()].level.is_some();
     if let Some(&condition) = early.iter().find(is_condition) {
         let others: Vec<UseId> = early.iter().copied().filter(|&id| id != condition).collect();
         let by = if others.is_empty() { String::new() } else { format!(" with {}", users(network, &others)) };
         let asked = network.uses[condition.index()].level_text(&network.resources).unwrap_or_default();
-        let first = match (late.len(), others.len()) {
-            (0, 0) => "nothing can prevent this".to_owned(),
-            (0, _) => "another order must be found".to_owned(),
-            (1, _) => format!("{} must come earlier, or another order must be found", users(network, late)),
-            _ => format!("one of {} must come earlier, or another order must be found", users(network, late)),
+        let first = match earlier {
+            Some(who) => format!("{who} must come earlier, or another order must be found"),
+            None if others.is_empty() => "nothing can prevent this".to_owned(),
+            None => "another order must be found".to_owned(),
         };
         return format!("{} needs {asked}, which fails{by}: {first}.", user(network, condition));
     }
@@ -376,11 +380,10 @@ fn out_of_range(network: &Network, early: &[UseId], late: &[UseId]) -> String {
     let names = users(network, early);
     let verb = if early.len() == 1 { "takes" } else { "take" };
     let those = if early.len() == 1 { "that" } else { "one of them" };
-    let first = match late.len() {
-        0 => "no other use can prevent this".to_owned(),
-        1 => format!("{} must come before {those}", users(network, late)),
-        _ => format!("one of {} must come before {those}", users(network, late)),
-    };
+    let first = earlier.map_or_else(
+        || "no other use can prevent this".to_owned(),
+        |who| format!("{who} must come before {those}"),
+    );
     format!("{names} {verb} {} {place}: {first}.", resource.name)
 }
 
