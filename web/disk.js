@@ -1,6 +1,7 @@
 // Files on the disk that missions were opened from and are saved to, where the browser lets a page write files. A handle
 // for each mission is kept in a database of its own; where there is none, until the page is closed.
 
+import { openDatabase, transact } from "./database.js";
 import { bytesOf } from "./files.js";
 
 const NAME = "enroute-files";
@@ -130,30 +131,18 @@ function openHandles() {
   let database;
   // Opened when it is first needed, and again where that failed.
   const open = () =>
-    (database ??= new Promise((resolve, reject) => {
-      const request = indexedDB.open(NAME, 1);
-      request.onupgradeneeded = () => request.result.createObjectStore(STORE);
-      request.onerror = () => reject(request.error);
-      request.onsuccess = () => resolve(request.result);
-    }).catch((error) => {
+    (database ??= openDatabase(NAME, STORE).catch((error) => {
       database = undefined;
       throw error;
     }));
-  const ask = async (mode, act) => {
-    const store = (await open()).transaction(STORE, mode).objectStore(STORE);
-    return new Promise((resolve, reject) => {
-      const request = act(store);
-      request.onsuccess = () => resolve(request.result);
-      request.onerror = () => reject(request.error);
-    });
-  };
+  const use = async (mode, act) => transact(await open(), STORE, mode, act);
   return {
     of: async (mission) =>
       // Another tab may have saved the mission last.
-      (await ask("readonly", (store) => store.get(mission)).catch(() => undefined)) ?? known.get(mission),
+      (await use("readonly", (store) => store.get(mission)).catch(() => undefined)) ?? known.get(mission),
     async keep(mission, file) {
       known.set(mission, file);
-      await ask("readwrite", (store) => store.put(file, mission)).catch(() => {});
+      await use("readwrite", (store) => store.put(file, mission)).catch(() => {});
     },
   };
 }

@@ -155,6 +155,14 @@ fn use_published(browser: &mut dyn Driven, published: &Path) -> Result<()> {
     assert_eq!(browser.ask("crossOriginIsolated")?, true);
     browser.wait_until("enroute.source().startsWith('// once')")?;
     browser.wait_until("enroute.state().status === 'plan'")?;
+    // A page that is left while it writes keeps no other one from reading.
+    let text = browser.ask("enroute.source()")?;
+    for round in 1..=4 {
+        browser.ask(&format!("enroute.setSource('// once {round}')"))?;
+        browser.open_page(&url)?;
+        browser.wait_until(&format!("enroute.source() === '// once {round}'"))?;
+    }
+    browser.ask(&format!("enroute.setSource({text})"))?;
     drop(server);
     browser.open_page(&url)?;
     browser.wait_until("enroute.source().startsWith('// once')")?;

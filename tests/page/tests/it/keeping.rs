@@ -64,11 +64,11 @@ fn a_closed_tab_and_a_tab_beside_it_have_what_was_typed() -> Result<()> {
 
 #[test]
 fn without_any_storage_the_page_says_so_and_works() -> Result<()> {
-    let page = Opened::altered("web/shelf.js", |text| {
+    let page = Opened::altered("web/database.js", |text| {
         let forbidden = "for (const place of ['localStorage', 'sessionStorage']) {
             Object.defineProperty(window, place, { get() { throw new Error('forbidden'); } });
         }";
-        format!("{forbidden}\n{}", text.replace("indexedDB.open(NAME, 1)", "forbidden()"))
+        format!("{forbidden}\n{}", text.replace("indexedDB.open(name, 1)", "forbidden()"))
     })?;
     page.tab.evaluate("enroute.setSource('A()[l,u] = { Work()[1,2] }')")?;
     page.wait_for("state.library.keeping === 'nothing'")?;
