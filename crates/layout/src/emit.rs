@@ -4,10 +4,9 @@ use display::geometry::{Piece, Point, Rect, curve_bounds};
 use display::list::ARROW_LENGTH;
 use tpn::{ArcId, NodeId, OccurrenceId};
 
+use crate::caption::Line;
 use crate::drawing::{ArcShape, BlockForm, BlockShape, Connector, Item, Route, Slide, TextShape};
-use crate::metrics::{
-    ARCH_CORNER, ARCH_FOOT, COLLAPSED_HEIGHT, OUTLINE_PAD, TEXT_LIFT, TEXT_PAD, TextRole, WORD_GAP,
-};
+use crate::metrics::{ARCH_CORNER, ARCH_FOOT, OUTLINE_PAD, TEXT_LIFT, TEXT_PAD, WORD_GAP};
 use crate::overlay::reversed;
 use crate::place::{Frame, Placer};
 use crate::size::{Arch, Clearance};
@@ -98,13 +97,15 @@ impl Placer<'_> {
         let part = self.tree.part(id);
         let Some(block) = part.block else { return };
         let end = frame.start.shifted(frame.width, 0.0);
+        let caption = self.sizes.captions[caption].clone();
+        let height = caption.height();
         let gap = |clearance: Clearance, side: f64| side.max(clearance.beneath) + 2.0 * TEXT_PAD;
         let (first, last) = (self.sizes.clearance(part.start), self.sizes.clearance(part.end));
         let rect = Rect::new(
             frame.start.x + gap(first, first.after),
-            frame.start.y - COLLAPSED_HEIGHT / 2.0,
+            frame.start.y - height / 2.0,
             end.x - gap(last, last.before),
-            frame.start.y + COLLAPSED_HEIGHT / 2.0,
+            frame.start.y + height / 2.0,
         );
         let from = frame.start.shifted(self.clearance_at(part.start, frame.start).radius, 0.0);
         let to = end.shifted(-self.clearance_at(part.end, end).radius, 0.0);
@@ -112,14 +113,9 @@ impl Placer<'_> {
         self.connect(part.end, Point::new(rect.max.x, end.y), &[Piece::Line(to)]);
         self.boxes[fold as usize] = Some((rect.center(), self.drawing.blocks.len() as u32));
         self.collapsed_ends.insert((part.start, part.end));
-        let caption = self.sizes.captions[caption].clone();
-        let lines = [
-            (caption.title.clone(), TextRole::Title, caption.title_width, caption.sizes[0]),
-            (caption.detail, TextRole::Bounds, caption.detail_width, caption.sizes[1]),
-        ];
-        let mut top =
-            rect.center().y - lines.iter().map(|(_, role, ..)| role.line_height()).sum::<f64>() / 2.0;
-        for (text, role, width, size) in lines {
+        let title = caption.title();
+        let mut top = rect.center().y - caption.text_height() / 2.0;
+        for Line { text, role, width, size } in caption.lines {
             let left = (rect.center().x - width / 2.0).floor();
             let line = Rect::new(left, top, left + width, top + role.line_height());
             top = line.max.y;
@@ -139,7 +135,7 @@ impl Placer<'_> {
             rect,
             depth: frame.depth,
             occurrence: caption.occurrence,
-            title: caption.title,
+            title,
         });
     }
 

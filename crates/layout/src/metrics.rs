@@ -38,8 +38,8 @@ pub(crate) const ARCH_FOOT: f64 = 20.0;
 pub(crate) const ARCH_CORNER: f64 = 10.0;
 /// Between the outline of an activity and what it holds.
 pub(crate) const OUTLINE_PAD: f64 = 5.0;
-/// Height of the box of a collapsed block.
-pub(crate) const COLLAPSED_HEIGHT: f64 = 40.0;
+/// Above and below the lines in the box of a collapsed block.
+pub(crate) const COLLAPSED_PAD: f64 = 4.0;
 /// Narrowest and widest space in which the arcs of a fork spread.
 pub(crate) const GUTTER: (f64, f64) = (22.0, 60.0);
 /// Between the rows of a series that is broken into rows.

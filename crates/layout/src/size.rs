@@ -9,8 +9,8 @@ use crate::caption::{self, Caption};
 use crate::contents::Contents;
 use crate::layered::{self, CoreLayout};
 use crate::metrics::{
-    ARCH_CORNER, ARCH_FIRST, ARCH_FOOT, ARCH_GAP, ARCH_STEP, BEAD_STEP, COLLAPSED_HEIGHT, GUTTER, LANE_GAP,
-    OUTLINE_PAD, SHORTEST_RUN, TEXT_LIFT, TEXT_PAD, TextRole, VERTEX_RADIUS, node_radius,
+    ARCH_CORNER, ARCH_FIRST, ARCH_FOOT, ARCH_GAP, ARCH_STEP, BEAD_STEP, GUTTER, LANE_GAP, OUTLINE_PAD,
+    SHORTEST_RUN, TEXT_LIFT, TEXT_PAD, TextRole, VERTEX_RADIUS, node_radius,
 };
 use crate::options::Options;
 use crate::rows::Rows;
@@ -194,10 +194,10 @@ impl<'a> Sizes<'a> {
             PartKind::Collapsed(_) => {
                 let caption = &self.captions[*next_caption];
                 *next_caption += 1;
-                let text = caption.title_width.max(caption.detail_width) + 4.0 * TEXT_PAD;
+                let (text, half) = (caption.width() + 4.0 * TEXT_PAD, caption.height() / 2.0);
                 let width =
                     start.after.max(start.beneath) + text + end.before.max(end.beneath) + 4.0 * TEXT_PAD;
-                cover(ends, Size { width, above: COLLAPSED_HEIGHT / 2.0, below: COLLAPSED_HEIGHT / 2.0 })
+                cover(ends, Size { width, above: half, below: half })
             }
             PartKind::Core(core) => {
                 let layout = layered::arrange(self, &self.tree.cores[*core as usize]);

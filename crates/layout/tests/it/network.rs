@@ -215,10 +215,41 @@ fn a_collapsed_activity_is_a_box_with_its_name_and_what_it_hides() {
         .filter(|text| text.owner == Item::Block(block))
         .map(|text| text.text.as_str())
         .collect();
-    assert_eq!(texts, ["Group-Enroute", &format!("[450,540] · {inside} events")]);
+    let bounds = format!("[450,540] · {inside} events");
+    assert_eq!(texts, ["Group-Enroute", bounds.as_str(), "Rover1, Rover2 · 1 decision"]);
     assert_eq!(inside, 11, "SPEC 3.4: thirteen nodes, of which two are its start and end");
     assert!(drawing.bounds.width() < draw(&network).bounds.width());
     assert_nothing_overlaps(&drawing, "collapsed");
+}
+
+#[test]
+fn a_box_names_the_call_and_counts_many_vehicles_and_decisions() {
+    let network = network_of(
+        "location CAMP (0, 0); location RIDGE (9, 0);\n\
+         vehicle A, B, C : ATRV at CAMP;\n\
+         group All = A, B, C;\n\
+         primitive Drive(r : vehicle, to : location)[1,9] moves r;\n\
+         primitive Look(to)[1,1];\n\
+         Tour(to) = { each r in All { optional Drive(r, to) }; choose { Look(to), Look(CAMP) } }\n\
+         scenario S[0,99] = { Tour(RIDGE) }",
+    );
+    let is_tour = |block: &&BlockId| match &network.blocks[block.index()].kind {
+        BlockKind::Scope { occurrence: Some(occurrence), .. } => {
+            network.occurrences[occurrence.index()].activity == "Tour"
+        }
+        _ => false,
+    };
+    let blocks: Vec<BlockId> = (0..network.blocks.len()).map(BlockId::from_index).collect();
+    let tour = *blocks.iter().find(is_tour).expect("Tour is a block");
+    let drawing = draw_with(&network, &Options { collapsed: [tour].into(), ..Options::default() });
+    let texts: Vec<&str> = drawing
+        .texts
+        .iter()
+        .filter(|text| text.owner == Item::Block(tour))
+        .map(|text| text.text.as_str())
+        .collect();
+    assert_eq!((texts[0], texts[2]), ("Tour(RIDGE)", "3 vehicles · 4 decisions"));
+    assert_nothing_overlaps(&drawing, "three lines");
 }
 
 #[test]
