@@ -111,10 +111,12 @@ function describe(element, { role, label, value, description, enabled, clickable
   // What only some roles can be; elsewhere a browser would not pass it on.
   const choice = selected ?? toggled ?? null;
   const selects = role === "tab" || role === "option" || role === "row" || role === "treeitem";
+  // Firefox passes the value of a combobox on only as part of its name.
+  const isChosen = role === "combobox" && value;
   const attributes = {
     role: role || null,
     tabindex: clickable || role === "textbox" ? "-1" : null,
-    "aria-label": label || null,
+    "aria-label": isChosen ? `${label}: ${value}` : label || null,
     "aria-description": description,
     "aria-disabled": enabled ? null : "true",
     "aria-checked": checks ? choice : toggled && !pressed && !selects ? toggled : null,
@@ -137,7 +139,7 @@ function describe(element, { role, label, value, description, enabled, clickable
     else if (element.getAttribute(name) !== String(wanted)) element.setAttribute(name, wanted);
   }
   const words = element.firstChild;
-  const text = value ?? (role === "" ? label : "");
+  const text = isChosen ? "" : (value ?? (role === "" ? label : ""));
   if (words.textContent !== text) words.textContent = text;
 }
 

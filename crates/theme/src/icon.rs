@@ -74,14 +74,14 @@ pub fn paint(painter: &Painter, icon: Icon, rect: Rect, size: f32, color: Color3
 
 /// A flat button with an icon, named for assistive technologies and on hover.
 pub fn button(ui: &mut Ui, tokens: &Tokens, icon: Icon, name: &str) -> Response {
-    toggle(ui, tokens, icon, name, false)
+    lit_button(ui, tokens, icon, name, false)
 }
 
-/// A flat button with an icon that shows whether it is on.
-pub fn toggle(ui: &mut Ui, tokens: &Tokens, icon: Icon, name: &str, is_on: bool) -> Response {
+/// A flat button with an icon that is lit while what it started goes on; its name says what a click does.
+pub fn lit_button(ui: &mut Ui, tokens: &Tokens, icon: Icon, name: &str, is_on: bool) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(space::ROW), Sense::click());
     let is_enabled = ui.is_enabled();
-    response.widget_info(|| WidgetInfo::selected(Role::Button, is_enabled, is_on, name));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, is_enabled, name));
     let fill = match (is_on, response.is_pointer_button_down_on(), response.hovered()) {
         (_, true, _) => Some(tokens.pressed),
         (true, ..) => Some(tokens.accent_soft),

@@ -130,6 +130,23 @@ fn arrows_walk_the_tree_and_select_what_was_chosen_there() {
 }
 
 #[test]
+fn arrows_walk_the_tree_that_has_the_keyboard() {
+    let mut app = lesson("");
+    let is_tree = |node: &egui_kittest::kittest::AccessKitNode<'_>| {
+        node.label().is_some_and(|label| label.contains("search tree of"))
+    };
+    app.harness.get_by(|node| is_tree(node)).focus();
+    app.settle();
+    for (key, chosen) in [(Key::R, None), (Key::ArrowDown, Some("D1=0")), (Key::ArrowRight, Some("D1=1"))] {
+        press(&mut app, key);
+        if let Some(chosen) = chosen {
+            assert_eq!(app.json()["selection"]["name"], chosen);
+        }
+        assert!(app.harness.get_by(|node| is_tree(node)).is_focused(), "{key:?}");
+    }
+}
+
+#[test]
 fn running_stops_at_failures_only_and_then_at_the_end() {
     let mut app = lesson("");
     dispatch(&mut app, "search.breakpoints", &json!({ "failure": true }));

@@ -59,8 +59,9 @@ fn stepping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ];
     for (sign, name, command, is_enabled) in buttons {
         let is_on = sign == Icon::Pause;
-        let pressed =
-            ui.add_enabled_ui(is_enabled, |ui| icon::toggle(ui, context.tokens, sign, name, is_on).clicked());
+        let pressed = ui.add_enabled_ui(is_enabled, |ui| {
+            icon::lit_button(ui, context.tokens, sign, name, is_on).clicked()
+        });
         if pressed.inner {
             commands.send(Command::Window(WindowCommand::Activate(PanelKind::Automaton)));
             commands.send(Command::Automaton(command));

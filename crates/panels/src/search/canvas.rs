@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, pos2, vec2};
+use egui::{Align2, Color32, EventFilter, FontId, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, pos2, vec2};
 use kirk::{Event, Trace, TreeChoice, TreeNodeId, TreeStatus};
 use theme::size;
 use tpn::{DecisionId, Network};
@@ -31,6 +31,8 @@ pub struct View {
     least_down: f32,
     /// The state that was last brought into view.
     followed: Option<TreeNodeId>,
+    /// Whether the tree itself has the keyboard.
+    pub(super) has_focus: bool,
 }
 
 impl Default for View {
@@ -41,6 +43,7 @@ impl Default for View {
             fits: true,
             least_down: MIN_DOWN,
             followed: None,
+            has_focus: false,
         }
     }
 }
@@ -207,6 +210,12 @@ impl View {
             let name = format!("{}: search tree of {count} states", tree.name);
             egui::WidgetInfo::labeled(egui::Role::Tree, true, name)
         });
+        self.has_focus = response.has_focus();
+        if self.has_focus {
+            // Arrow keys walk the tree (`keys`) instead of going to the next widget.
+            let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
+            ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        }
         self.navigate(&response, rect, tree);
         self.follow_step(rect, tree);
         let painter = ui.painter_at(rect);

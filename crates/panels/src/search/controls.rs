@@ -48,7 +48,7 @@ fn show_steps(ui: &mut Ui, context: &Context<'_>, recordings: &[Recording], comm
         (Icon::Run, "Next breakpoint (])", SearchCommand::Run(true)),
         (Icon::ToEnd, "Last step (End)", SearchCommand::GoTo(usize::MAX)),
     ] {
-        if icon::toggle(ui, tokens, sign, name, sign == Icon::Pause).clicked() {
+        if icon::lit_button(ui, tokens, sign, name, sign == Icon::Pause).clicked() {
             commands.send(Command::Window(WindowCommand::Activate(PanelKind::Search)));
             commands.send(Command::Search(command));
         }

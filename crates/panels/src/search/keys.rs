@@ -11,18 +11,19 @@ use workbench::state::search::{Recording, SearchCommand};
 use super::tree::TreeIndex;
 use crate::Context;
 
-/// Follows the keys that were pressed, if they are meant for this panel.
+/// Follows the keys that were pressed, if they are meant for this panel: it is active, and no widget but the tree has the
+/// keyboard.
 pub fn follow(
     ui: &egui::Ui,
     context: &Context<'_>,
-    recording: &Recording,
-    index: &TreeIndex,
+    (recording, index): (&Recording, &TreeIndex),
+    tree_has_focus: bool,
     commands: &mut CommandSender,
 ) {
     let trace = recording.trace();
     let is_meant = context.state.window.active_panel == PanelKind::Search
         && context.state.window.dialog.is_none()
-        && !crate::keyboard_navigation::has_focus(ui);
+        && (tree_has_focus || !crate::keyboard_navigation::has_focus(ui));
     if !is_meant {
         return;
     }

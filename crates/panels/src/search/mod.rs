@@ -102,8 +102,9 @@ impl Panel for SearchPanel {
         for (number, recording) in recordings.iter().enumerate() {
             self.sides[number].follow(recording, context, number);
         }
-        if let Some(drawn) = &self.sides[side].drawn {
-            keys::follow(ui, context, &drawn.recording, &drawn.index, commands);
+        let Side { drawn, view, .. } = &self.sides[side];
+        if let Some(drawn) = drawn {
+            keys::follow(ui, context, (&drawn.recording, &drawn.index), view.has_focus, commands);
         }
         let action = context.view_action(PanelKind::Search);
         let room = ui.available_rect_before_wrap().intersect(panel);

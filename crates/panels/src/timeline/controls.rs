@@ -110,7 +110,7 @@ pub(crate) fn playing(ui: &mut Ui, context: &Context<'_>, commands: &mut Command
     ];
     for (sign, name, command) in buttons {
         let is_on = sign == Icon::Pause;
-        if icon::toggle(ui, context.tokens, sign, name, is_on).clicked() {
+        if icon::lit_button(ui, context.tokens, sign, name, is_on).clicked() {
             commands.send(command);
         }
     }
