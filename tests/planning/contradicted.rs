@@ -50,7 +50,7 @@ fn try_mission(text: &str, seed: u64, count: &mut Count) {
     let mut core = Core::default();
     let mut host = Answers::default();
     let compiled = core.compile(&Update::new(1, text), &host);
-    let ground = core.ground(&compiled.program.world).expect("its ground is known");
+    let ground = core.ground(&compiled.program).expect("its ground is known");
     let Some(evaluated) = core.plan(compiled, ground, Manner::unexplained(), &mut host) else { return };
     let snapshot = evaluated.snapshot();
     let Some(plan) = snapshot.plan() else { return };
@@ -252,7 +252,7 @@ primitive Send()[1,2] requires R.at in visible(BASE), R.at=P; scenario S[0,99] =
     let mut core = Core::default();
     let mut host = Answers::default();
     let compiled = core.compile(&Update::new(1, source), &host);
-    let ground = core.ground(&compiled.program.world).expect("its ground is known");
+    let ground = core.ground(&compiled.program).expect("its ground is known");
     let evaluated = core.plan(compiled, ground, Manner::default(), &mut host).expect("it is planned");
     let snapshot = evaluated.snapshot();
     let reviewed = review(&snapshot, &Goal::Default, 0, &mut || false);

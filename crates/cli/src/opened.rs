@@ -9,7 +9,7 @@ use anyhow::Context as _;
 use interchange::Source;
 use link::{Request, Response, Update};
 use mission::{Compiled, Core, CoreHost, Evaluated, Ground, Manner, SavedState, Scenarios};
-use rmpl::program::World;
+use rmpl::program::{Program, World};
 use rmpl::{Diagnostic, Severity};
 use serde_json::Value;
 use snapshot::{Goal, Problem, Snapshot};
@@ -134,16 +134,19 @@ impl Opened {
     /// The ground that a mission names: a terrain of Enroute, or a map file beside the mission. Fails when there is neither,
     /// or the file is not a map.
     pub fn ground(&mut self, compiled: &Compiled) -> anyhow::Result<Option<Ground>> {
-        self.ground_or_problem(&compiled.program.world)?.map_err(|problem| {
+        self.ground_or_problem(&compiled.program)?.map_err(|problem| {
             let hint = problem.hint.map_or_else(String::new, |hint| format!(" ({hint})"));
             anyhow::anyhow!("{}{hint}", problem.message)
         })
     }
 
     /// The ground as `ground` finds it, or what is wrong with the mission that names it. Fails when the file is not a map.
-    pub fn ground_or_problem(&mut self, world: &World) -> anyhow::Result<Result<Option<Ground>, Diagnostic>> {
-        self.import_map(world)?;
-        Ok(self.core.ground(world).map_err(|mut problem| {
+    pub fn ground_or_problem(
+        &mut self,
+        program: &Program,
+    ) -> anyhow::Result<Result<Option<Ground>, Diagnostic>> {
+        self.import_map(&program.world)?;
+        Ok(self.core.ground(program).map_err(|mut problem| {
             let beside = "put the map file into the mission's folder";
             let hint = problem.hint.map_or_else(|| beside.to_owned(), |hint| format!("{hint}; {beside}"));
             problem.hint = Some(hint);

@@ -1,132 +1,371 @@
 //! Movements whose order planning finds (SPEC 10.3): how long each takes at least from wherever its vehicle may be, and how
-//! many meters it drives. Before a path is known that is the straight line, at the greatest speed; what a path says holds
-//! for every plan with that leg.
+//! many meters it drives.
+//!
+//! Where several vehicles come to one location, each has a place of its own there, which depends on their order. So one leg
+//! may have several ways. A bound holds for all of them: before a path is known, that of the straight line at the greatest
+//! speed. The search for an order assumes more: that a leg takes what the paths that are known say.
 
 use snapshot::vehicle;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use exact::{Rational, Time};
-use rmpl::program::Program;
+use nalgebra::{Point2, distance};
 use smol_str::{SmolStr, format_smolstr};
+use terrain::ConfigurationSpace;
 use tpn::worth::rounded_up;
 use tpn::{Departure, Distance, Extent, LabelId, Network, OccurrenceId, ValueId};
 
-use crate::traverse::{self, Route};
+use crate::ground::Grounds;
+use crate::planning::{self, Problem};
+use crate::spots::PossibleSpots;
+use crate::traverse::{self, Route, Waypoint};
 
 /// How long the movements of a mission take, by where they start.
-pub(crate) struct Departures {
+pub(crate) struct Departures<'mission> {
+    problem: Problem<'mission>,
+    spots: PossibleSpots<'mission>,
     movements: Vec<Movement>,
-    /// What paths have told; `None` of what cannot be driven.
-    known: BTreeMap<(OccurrenceId, SmolStr), Known>,
-    /// The routes whose paths were asked. Where several vehicles stand at one place each has a spot of its own there, so
-    /// that one leg can have several.
-    asked: Vec<Route>,
+    /// What paths have told, of each way of a leg.
+    known: BTreeMap<(OccurrenceId, SmolStr), Vec<Known>>,
 }
 
 /// What a path has told.
-#[derive(Clone, Copy)]
 struct Known {
+    waypoints: Vec<Waypoint>,
+    /// `None` if it cannot be driven.
     least: Option<Time>,
     meters: Option<Rational>,
+}
+
+impl Known {
+    fn ends_m(&self) -> Option<[Point2<f64>; 2]> {
+        Some([self.waypoints.first()?.position_m, self.waypoints.last()?.position_m])
+    }
 }
 
 struct Movement {
     occurrence: OccurrenceId,
     arrival: LabelId,
-    /// Each place, with the time that the straight line takes and its meters.
-    places: Vec<(ValueId, SmolStr, Option<Time>, Option<Rational>)>,
+    /// Through the places that the call names; it starts wherever its leader is.
+    route: Route,
+    /// Where its vehicles can be, if they may stand beside a location.
+    space: Option<Arc<ConfigurationSpace>>,
+    places: Vec<Place>,
 }
 
-impl Departures {
-    /// Of the traverses of `network`, by straight lines.
-    pub(crate) fn new(network: &Network, program: &Program) -> Self {
-        let movements = (0..network.occurrences.len())
-            .map(OccurrenceId::from_index)
-            .filter_map(|occurrence| movement(network, program, occurrence));
-        Self { movements: movements.collect(), known: BTreeMap::new(), asked: Vec::new() }
+/// A location where a movement may start.
+struct Place {
+    value: ValueId,
+    middle: Waypoint,
+    /// Whether something brings the vehicle there.
+    is_reached: bool,
+    /// Whether its vehicles may stand at several places there or where the movement ends.
+    is_open: bool,
+    /// By straight lines.
+    straight: Bounds,
+}
+
+/// The least that a leg takes, in time and in meters; no time where it cannot be driven.
+#[derive(Clone, Copy, PartialEq)]
+struct Bounds {
+    least: Option<Time>,
+    meters: Option<Rational>,
+}
+
+/// A way of a leg, with its ends as they are written, and where there is room for them.
+struct Ends<'places> {
+    from: &'places Waypoint,
+    to: &'places Waypoint,
+    free_m: [Point2<f64>; 2],
+}
+
+impl<'mission> Departures<'mission> {
+    /// Of the traverses of a problem, by straight lines.
+    pub(crate) fn new(problem: &Problem<'mission>, grounds: &mut Grounds) -> Self {
+        let spots = PossibleSpots::new(problem.network, problem.program, planning::places(problem));
+        let mut departures = Self { problem: *problem, spots, movements: Vec::new(), known: BTreeMap::new() };
+        for index in 0..problem.network.occurrences.len() {
+            let movement = departures.movement(OccurrenceId::from_index(index), grounds);
+            departures.movements.extend(movement);
+        }
+        departures
+    }
+
+    /// Whether the order of movements decides where some vehicle stands.
+    pub(crate) fn are_open(&self) -> bool {
+        self.movements.iter().any(|movement| movement.places.iter().any(|it| it.is_open && it.is_reached))
     }
 
     /// Whether a path has told how long a route takes.
     pub(crate) fn knows(&self, route: &Route) -> bool {
-        let is_it = |asked: &Route| {
-            (asked.occurrence, &asked.from, &asked.waypoints)
-                == (route.occurrence, &route.from, &route.waypoints)
-        };
-        route.from.is_none() || self.asked.iter().any(is_it)
+        route.from.is_none() || self.known_of(route).is_some()
     }
 
-    /// Learns how long a route takes at least, `None` if it cannot be driven, and its meters. Of several paths of one leg,
-    /// the quickest one bounds the time, because no plan may be refused, and the longest one counts for meters.
+    fn known_of(&self, route: &Route) -> Option<&Known> {
+        let known = self.known.get(&(route.occurrence, route.from.clone()?))?;
+        known.iter().find(|known| known.waypoints == route.waypoints)
+    }
+
+    /// Learns how long a route takes at least, `None` if it cannot be driven, and its meters.
     pub(crate) fn learn(&mut self, route: &Route, least: Option<Time>, meters: Option<Rational>) {
         if let Some(from) = &route.from {
             // The exact time comes with the path; a rounder one that is a little less keeps the planner's numbers small.
             let least = least.map(|least| round_down(least.to_f64()).unwrap_or_default());
-            let key = (route.occurrence, from.clone());
-            let earlier = self.known.get(&key).copied();
-            let quickest = earlier.and_then(|earlier| earlier.least);
-            let least = least.map(|least| quickest.map_or(least, |quickest| quickest.min(least)));
-            let longest = earlier.and_then(|earlier| earlier.meters).max(meters);
-            self.known.insert(key, Known { least, meters: longest });
-            self.asked.push(route.clone());
+            let known = Known { waypoints: route.waypoints.clone(), least, meters };
+            self.known.entry((route.occurrence, from.clone())).or_default().push(known);
         }
     }
 
-    /// At most so many routes whose paths were not asked yet, the shortest first.
-    pub(crate) fn unknown(&self, network: &Network, program: &Program, most: usize) -> Vec<Route> {
+    /// At most so many routes of legs of which nothing is known yet, the shortest first.
+    pub(crate) fn unknown(&self, most: usize) -> Vec<Route> {
         let open = self.movements.iter().flat_map(|movement| {
-            let is_known = |place: &SmolStr| self.known.contains_key(&(movement.occurrence, place.clone()));
-            let places = movement.places.iter().filter(move |(_, place, _, _)| !is_known(place));
-            places.filter_map(|(_, place, _, meters)| Some(((*meters)?, movement.occurrence, place)))
+            let is_known =
+                |place: &Place| self.known.contains_key(&(movement.occurrence, place.middle.name.clone()));
+            let places = movement.places.iter().filter(move |place| !is_known(place));
+            places.filter_map(move |place| Some((place.straight.meters?, movement, place)))
         });
-        let mut open: Vec<(Rational, OccurrenceId, &SmolStr)> = open.collect();
-        open.sort_unstable();
-        let routes = open
-            .into_iter()
-            .filter_map(|(_, occurrence, place)| traverse::route_from(network, program, occurrence, place));
+        let mut open: Vec<(Rational, &Movement, &Place)> = open.collect();
+        open.sort_by_key(|&(meters, movement, place)| (meters, movement.occurrence, place.value));
+        let routes = open.into_iter().filter_map(|(_, movement, place)| {
+            let (from, to) = self.ends(movement, &place.middle);
+            self.route(movement, from.first()?, to.first()?)
+        });
         routes.filter(|route| !self.knows(route)).take(most).collect()
     }
 
-    /// All that is known, for the planner.
-    pub(crate) fn all(&self) -> Vec<Departure> {
-        self.listed(|_, _| true)
+    /// The way of the leg of a route that bounds it from below, if its path is not known.
+    pub(crate) fn shortest_unknown(&self, route: &Route) -> Option<Route> {
+        let movement = self.movements.iter().find(|it| it.occurrence == route.occurrence)?;
+        let place = movement.places.iter().find(|it| Some(&it.middle.name) == route.from.as_ref())?;
+        if !place.is_open {
+            return None;
+        }
+        let known = self.known.get(&(movement.occurrence, place.middle.name.clone()))?;
+        let (from, to) = self.ends(movement, &place.middle);
+        let open = pairs(movement, &from, &to).filter(|ends| !is_known(known, ends));
+        let open = open.filter_map(|ends| Some((self.straight(movement, &ends).least?, ends)));
+        let (least, ends) = open.min_by_key(|(least, _)| *least)?;
+        let is_lower = known.iter().filter_map(|known| known.least).all(|known| least < known);
+        is_lower.then(|| self.route(movement, ends.from, ends.to)).flatten()
     }
 
-    /// What is known of these routes, each of which starts where it does and nowhere else.
+    /// What the search for an order assumes: that each leg takes what its quickest known path does.
+    pub(crate) fn assumed(&self) -> Vec<Departure> {
+        self.listed(|movement, place| self.assumed_of(movement, place).least)
+    }
+
+    /// What holds wherever vehicles stand.
+    pub(crate) fn bounds(&self) -> Vec<Departure> {
+        self.listed(|movement, place| self.bounds_of(movement, place).least)
+    }
+
+    /// What is known of these routes, each of which starts where it does and nowhere else; bounds for all others.
     pub(crate) fn only(&self, routes: &[Route]) -> Vec<Departure> {
-        self.listed(|occurrence, place| {
-            let route = routes.iter().find(|route| route.occurrence == occurrence);
-            route.is_none_or(|route| route.from.as_ref() == Some(place))
+        self.listed(|movement, place| {
+            let Some(route) = routes.iter().find(|route| route.occurrence == movement.occurrence) else {
+                return self.bounds_of(movement, place).least;
+            };
+            let is_its = route.from.as_ref() == Some(&place.middle.name);
+            let known = self.known_of(route).filter(|_| is_its);
+            known.map_or_else(
+                || is_its.then(|| self.bounds_of(movement, place).least).flatten(),
+                |it| it.least,
+            )
         })
     }
 
-    /// How many meters each movement drives at least from each place.
-    pub(crate) fn distances(&self) -> Vec<Distance> {
-        let all = self.movements.iter().flat_map(|movement| {
-            movement.places.iter().filter_map(move |(from, place, _, straight)| {
-                let known = self.known.get(&(movement.occurrence, place.clone()));
-                let meters = known.and_then(|known| known.meters).or(*straight)?;
-                Some(Distance { arrival: movement.arrival, from: *from, meters })
-            })
-        });
-        all.collect()
+    /// How many meters each movement is assumed to drive from each place: of several paths of one leg, the longest.
+    pub(crate) fn assumed_distances(&self) -> Vec<Distance> {
+        self.distances(|movement, place| self.assumed_of(movement, place).meters)
     }
 
-    fn listed(&self, is_possible: impl Fn(OccurrenceId, &SmolStr) -> bool) -> Vec<Departure> {
+    /// How many meters each movement drives at least from each place, wherever vehicles stand.
+    pub(crate) fn distance_bounds(&self) -> Vec<Distance> {
+        self.distances(|movement, place| self.bounds_of(movement, place).meters)
+    }
+
+    /// How many meters these routes drive, and bounds for all others.
+    pub(crate) fn distances_of(&self, routes: &[Route]) -> Vec<Distance> {
+        self.distances(|movement, place| {
+            let is_its = |route: &&Route| {
+                route.occurrence == movement.occurrence && route.from.as_ref() == Some(&place.middle.name)
+            };
+            let known = routes.iter().find(is_its).and_then(|route| self.known_of(route));
+            known.map_or_else(|| self.bounds_of(movement, place).meters, |known| known.meters)
+        })
+    }
+
+    /// Whether what is assumed holds wherever vehicles stand.
+    pub(crate) fn is_bounded_as_assumed(&self) -> bool {
+        self.movements.iter().all(|movement| {
+            let reached = movement.places.iter().filter(|place| place.is_open && place.is_reached);
+            reached
+                .into_iter()
+                .all(|place| self.assumed_of(movement, place) == self.bounds_of(movement, place))
+        })
+    }
+
+    /// How many meters each movement drives at least, wherever it starts.
+    pub(crate) fn least_meters(&self) -> BTreeMap<OccurrenceId, Rational> {
+        let least = |movement: &Movement| {
+            let reached = movement.places.iter().filter(|place| place.is_reached);
+            let meters = reached.filter_map(|place| self.bounds_of(movement, place).meters).min()?;
+            Some((movement.occurrence, meters))
+        };
+        self.movements.iter().filter_map(least).collect()
+    }
+
+    fn assumed_of(&self, movement: &Movement, place: &Place) -> Bounds {
+        match self.known.get(&(movement.occurrence, place.middle.name.clone())) {
+            Some(known) => Bounds {
+                least: known.iter().filter_map(|known| known.least).min(),
+                meters: known.iter().filter_map(|known| known.meters).max(),
+            },
+            None => place.straight,
+        }
+    }
+
+    fn bounds_of(&self, movement: &Movement, place: &Place) -> Bounds {
+        let Some(known) = self.known.get(&(movement.occurrence, place.middle.name.clone())) else {
+            return place.straight;
+        };
+        let (from, to) = if place.is_open { self.ends(movement, &place.middle) } else { Default::default() };
+        let open = pairs(movement, &from, &to).filter(|ends| !is_known(known, ends));
+        let open: Vec<Bounds> = open.map(|ends| self.straight(movement, &ends)).collect();
+        let known = known.iter().map(|known| Bounds { least: known.least, meters: known.meters });
+        least_of(known.chain(open))
+    }
+
+    fn listed(&self, least: impl Fn(&Movement, &Place) -> Option<Time>) -> Vec<Departure> {
         let mut departures = Vec::new();
         for movement in &self.movements {
-            for (value, place, straight, _) in &movement.places {
-                let known = self.known.get(&(movement.occurrence, place.clone())).map(|known| known.least);
-                let least = match (known, straight) {
-                    _ if !is_possible(movement.occurrence, place) => None,
-                    (Some(known), _) => known,
-                    (None, Some(straight)) => Some(*straight),
-                    (None, None) => continue,
-                };
-                departures.push(Departure { arrival: movement.arrival, from: *value, least });
-            }
+            let arrival = movement.arrival;
+            departures.extend(movement.places.iter().map(|place| Departure {
+                arrival,
+                from: place.value,
+                least: least(movement, place),
+            }));
         }
         departures
     }
+
+    fn distances(&self, meters: impl Fn(&Movement, &Place) -> Option<Rational>) -> Vec<Distance> {
+        let mut distances = Vec::new();
+        for movement in &self.movements {
+            let arrival = movement.arrival;
+            distances.extend(movement.places.iter().filter_map(|place| {
+                Some(Distance { arrival, from: place.value, meters: meters(movement, place)? })
+            }));
+        }
+        distances
+    }
+
+    fn movement(&self, occurrence: OccurrenceId, grounds: &mut Grounds) -> Option<Movement> {
+        let (network, program) = (self.problem.network, self.problem.program);
+        let moving = vehicle::moving(program, &network.occurrences[occurrence.index()])?;
+        let name = format_smolstr!("{}.at", moving.vehicles.first()?);
+        let is_arrival = |label: &&tpn::Label| {
+            label.owner == Some(occurrence)
+                && label.extent == Extent::Effect
+                && network.variables[label.literal.variable.index()].name == name
+        };
+        let position = network.labels.iter().position(|label| is_arrival(&label))?;
+        let variable = &network.variables[network.labels[position].literal.variable.index()];
+        let route = traverse::route_from(network, program, occurrence, None)?;
+        let arrival = LabelId::from_index(position);
+        let mut movement = Movement { occurrence, arrival, route, space: None, places: Vec::new() };
+        for (index, name) in variable.values.iter().enumerate() {
+            let Some(middle) = traverse::waypoint(&program.world, name) else { continue };
+            let (from, to) = self.ends(&movement, &middle);
+            let is_beside = from.iter().chain(&to).any(|place| place.slot > 0);
+            if let Some(ground) = self.problem.ground.filter(|_| is_beside && movement.space.is_none()) {
+                let space = planning::space(&self.problem, ground, grounds, &movement.route);
+                movement.space = Some(space.exact);
+            }
+            let straights = pairs(&movement, &from, &to).map(|ends| self.straight(&movement, &ends));
+            let place = Place {
+                value: ValueId::from_index(index),
+                is_reached: !self.spots.before(occurrence, movement.route.vehicles[0], &middle).is_empty(),
+                is_open: from.len() > 1 || to.len() > 1,
+                straight: least_of(straights),
+                middle,
+            };
+            movement.places.push(place);
+        }
+        Some(movement)
+    }
+
+    /// Where a movement may start at a location, and where it may end.
+    fn ends(&self, movement: &Movement, at: &Waypoint) -> (Vec<Waypoint>, Vec<Waypoint>) {
+        let Route { vehicles, waypoints, .. } = &movement.route;
+        let mut from = self.spots.before(movement.occurrence, vehicles[0], at);
+        if from.is_empty() {
+            from.push(at.clone());
+        }
+        let to = waypoints.last().map(|last| self.spots.after(movement.occurrence, vehicles, last));
+        (from, to.unwrap_or_default())
+    }
+
+    /// A movement from one place to another one.
+    fn route(&self, movement: &Movement, from: &Waypoint, to: &Waypoint) -> Option<Route> {
+        let Problem { network, program, .. } = self.problem;
+        let mut route = traverse::route_from(network, program, movement.occurrence, Some(from))?;
+        *route.waypoints.last_mut()? = to.clone();
+        Some(route)
+    }
+
+    /// What a movement takes along straight lines.
+    fn straight(&self, movement: &Movement, ends: &Ends<'_>) -> Bounds {
+        let named = &movement.route.waypoints;
+        let [from_m, to_m] = ends.free_m;
+        let meters = match named.as_slice() {
+            // A drive to where the vehicle is takes nothing.
+            [] => 0.0,
+            [only] if only.position_m == from_m => 0.0,
+            [_] => distance(&from_m, &to_m),
+            [first, .., _] => {
+                let last_m = named[named.len() - 2].position_m;
+                let inner = named[..named.len() - 1].windows(2);
+                let inner: f64 = inner.map(|pair| distance(&pair[0].position_m, &pair[1].position_m)).sum();
+                distance(&from_m, &first.position_m) + inner + distance(&last_m, &to_m)
+            }
+        };
+        let unit_seconds = self.problem.program.options.time_unit.seconds();
+        let speed_mps = movement.route.speed_mps.1.to_f64();
+        let least = round_down(meters / speed_mps / Rational::from_integer(unit_seconds).to_f64());
+        Bounds { least: Some(least.unwrap_or_default()), meters: parts_rounded_down(meters) }
+    }
+}
+
+/// The ways from each of some places to each of others.
+fn pairs<'places>(
+    movement: &Movement,
+    from: &'places [Waypoint],
+    to: &'places [Waypoint],
+) -> impl Iterator<Item = Ends<'places>> {
+    let free_m = |places: &[Waypoint]| -> Vec<Point2<f64>> {
+        places.iter().map(|place| planning::free_m(place, movement.space.as_deref())).collect()
+    };
+    let (from_m, to_m) = (free_m(from), free_m(to));
+    from.iter().zip(from_m).flat_map(move |(from, from_m)| {
+        let to: Vec<_> = to.iter().zip(to_m.iter().copied()).collect();
+        to.into_iter().map(move |(to, to_m)| Ends { from, to, free_m: [from_m, to_m] })
+    })
+}
+
+fn is_known(known: &[Known], ends: &Ends<'_>) -> bool {
+    known.iter().any(|known| known.ends_m() == Some([ends.from.position_m, ends.to.position_m]))
+}
+
+/// What all of some ways take at least.
+fn least_of(ways: impl IntoIterator<Item = Bounds>) -> Bounds {
+    let (mut least, mut meters) = (None, None);
+    for way in ways {
+        least = [least, way.least].into_iter().flatten().min();
+        meters = [meters, way.meters].into_iter().flatten().min();
+    }
+    Bounds { least, meters }
 }
 
 /// How many meters of a route were counted when its plan was chosen: the most that any planned path of it has.
@@ -151,39 +390,6 @@ pub(crate) fn record(network: &mut Network, route: &Route, length_m: f64) {
             distance.meters = meters;
         }
     }
-}
-
-fn movement(network: &Network, program: &Program, occurrence: OccurrenceId) -> Option<Movement> {
-    let moving = vehicle::moving(program, &network.occurrences[occurrence.index()])?;
-    let name = format_smolstr!("{}.at", moving.vehicles.first()?);
-    let is_arrival = |label: &&tpn::Label| {
-        label.owner == Some(occurrence)
-            && label.extent == Extent::Effect
-            && network.variables[label.literal.variable.index()].name == name
-    };
-    let position = network.labels.iter().position(|label| is_arrival(&label))?;
-    let variable = &network.variables[network.labels[position].literal.variable.index()];
-    let unit_seconds = program.options.time_unit.seconds();
-    let places = variable.values.iter().enumerate().map(|(index, place)| {
-        let route = traverse::route_from(network, program, occurrence, place);
-        let meters = route.as_ref().map(straight_meters);
-        let least =
-            route.as_ref().zip(meters).and_then(|(route, meters)| straight(route, meters, unit_seconds));
-        (ValueId::from_index(index), place.clone(), least, meters.and_then(parts_rounded_down))
-    });
-    Some(Movement { occurrence, arrival: LabelId::from_index(position), places: places.collect() })
-}
-
-/// The length of a route along straight lines.
-fn straight_meters(route: &Route) -> f64 {
-    let pairs = route.waypoints.windows(2);
-    pairs.map(|pair| nalgebra::distance(&pair[0].position_m, &pair[1].position_m)).sum()
-}
-
-/// The time of a route along straight lines at the greatest speed.
-fn straight(route: &Route, meters: f64, unit_seconds: i64) -> Option<Time> {
-    let speed_mps = route.speed_mps.1.to_f64();
-    round_down(meters / speed_mps / Rational::from_integer(unit_seconds).to_f64())
 }
 
 /// A time that is no greater, in thousandths of the mission's unit.

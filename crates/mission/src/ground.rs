@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use motion::VehicleModel;
 use nalgebra::{Point2, Vector2};
-use rmpl::program::{ObstacleShape, TerrainDecl, World};
+use rmpl::program::{ObstacleShape, Program, TerrainDecl, World};
 use rmpl::{Code, Diagnostic};
 use sha2::{Digest as _, Sha256};
 use smol_str::SmolStr;
-use snapshot::MapKey;
+use snapshot::{MapKey, standing};
 use terrain::format::ImportOptions;
 use terrain::{ConfigurationSpace, GridFrame, Obstacle, Terrain};
 
@@ -62,11 +62,11 @@ impl Grounds {
         self.imported.get(&name).map(|imported| &imported.map).ok_or_else(String::new)
     }
 
-    /// The map of a mission: the one that it names, or flat ground around its places. `None`, with a diagnostic, when
+    /// The map of a mission: the one that it names, or flat ground around the places where its vehicles may stand. `None`, with a diagnostic, when
     /// the name is unknown, and without one when the mission has no world.
-    pub fn resolve(&mut self, world: &World) -> (Option<(MapKey, Arc<Terrain>)>, Vec<Diagnostic>) {
-        let Some(declared) = &world.terrain else {
-            return (self.flat(world), Vec::new());
+    pub fn resolve(&mut self, program: &Program) -> (Option<(MapKey, Arc<Terrain>)>, Vec<Diagnostic>) {
+        let Some(declared) = &program.world.terrain else {
+            return (self.flat(program), Vec::new());
         };
         let imported = self.imported.get(&declared.asset);
         let version = imported.map(|imported| imported.version);
@@ -124,9 +124,10 @@ impl Grounds {
         space
     }
 
-    fn flat(&mut self, world: &World) -> Option<(MapKey, Arc<Terrain>)> {
-        let (low, high) = extent(world)?;
-        let side_m = (high - low).max().max(20.0) * 1.2;
+    fn flat(&mut self, program: &Program) -> Option<(MapKey, Arc<Terrain>)> {
+        let (low, high) = extent(&program.world)?;
+        let extent_m = (high - low).max();
+        let side_m = (extent_m.max(20.0) * 1.2).max(extent_m + 2.0 * standing::reach_m(program));
         let cell_m = (side_m / f64::from(FLAT_CELLS)).max(0.1);
         let origin_m = nalgebra::center(&low, &high) - Vector2::repeat(side_m / 2.0);
         let key = MapKey {

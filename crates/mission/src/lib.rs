@@ -33,6 +33,7 @@ mod saved_state;
 pub mod separation;
 mod sight;
 mod simulation;
+mod spots;
 pub mod traverse;
 
 pub use self::core::Core;

@@ -50,10 +50,10 @@ pub(crate) fn add_plans(
     stop: &mut dyn FnMut() -> bool,
 ) {
     let mut network = problem.network.as_ref().clone();
-    let departures = Departures::new(problem.network, problem.program);
-    network.departures = departures.all();
+    let departures = Departures::new(problem, grounds);
+    network.departures = departures.bounds();
     if problem.network.counts_meters() {
-        network.distances = departures.distances();
+        network.distances = departures.distance_bounds();
     }
     let network = Arc::new(network);
     let inserted = BTreeMap::new();
@@ -177,7 +177,7 @@ impl Listing<'_, '_> {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<OfWay, String> {
         let mut network = restricted(self.problem.network, &plan.choices);
-        network.departures = Departures::new(self.problem.network, self.problem.program).only(&routes);
+        network.departures = Departures::new(self.problem, grounds).only(&routes);
         let network = Arc::new(network);
         let ways: Vec<_> = routes.iter().map(|route| (route.occurrence, route.waypoints.clone())).collect();
         let problem = Problem { network: &network, ..*self.problem };

@@ -14,6 +14,7 @@ use executive::Facts;
 use executive::facts::StandingPlace;
 use kirk::{Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
+use nalgebra::Point2;
 use rmpl::Diagnostic;
 use rmpl::program::{self, Change, Program, World};
 use snapshot::blocked::name_blocked;
@@ -25,7 +26,9 @@ use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::worth;
 use tpn::worth::rounded_up;
-use tpn::{ArcId, ArcKind, Choice, Departure, LevelCondition, Network, OccurrenceId, Plan, Supply};
+use tpn::{
+    ArcId, ArcKind, Choice, Departure, Distance, Goal, LevelCondition, Network, OccurrenceId, Plan, Supply,
+};
 
 use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
@@ -191,17 +194,16 @@ fn plan_paths(
     stop: &mut dyn FnMut() -> bool,
 ) -> Planned {
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
-    let ordered;
+    let (ordered, unordered) = (&mut None, problem);
     let mut departures = None;
     let is_by_departure = kirk::has_open_order(problem.network) || problem.network.counts_meters();
     let mut unproven = None;
     let problem = if problem.ground.is_some() && is_by_departure {
         match order_movements(problem, grounds, paths, stop) {
             Ok(order) => {
-                ordered = Arc::new(order.network);
                 departures = Some(order.departures);
                 unproven = order.unproven;
-                &Problem { network: &ordered, ..*problem }
+                &Problem { network: ordered.insert(Arc::new(order.network)), ..*problem }
             }
             Err(answer) => return conclude(problem, grounds, answer.network, answer.outcome, answer.tried),
         }
@@ -226,7 +228,13 @@ fn plan_paths(
         let is_new = rounds <= MAX_ROUNDS
             && find_paths(problem, ground, &network, found, grounds, paths, &mut inserted);
         if is_new {
-            network = Arc::new(with_paths(problem, &inserted));
+            let mut described = with_paths(problem, &inserted);
+            if let Some(departures) = &mut departures {
+                let routes = traverse::routes(&network, problem.program, found, places(problem));
+                learn_inserted(problem, departures, &inserted);
+                described.departures = departures.only(&routes);
+            }
+            network = Arc::new(described);
         } else if without_limits.is_some() {
             has_limits = true;
         } else {
@@ -244,12 +252,74 @@ fn plan_paths(
             None => (outcome.status, outcome.failure) = (Status::Limit, None),
         }
     }
-    if let Some(departures) = departures.filter(|_| has_plan(&outcome)) {
+    let is_said = |plan: &Plan| plan.quality.is_optimal == Some(true);
+    let is_proof = match outcome.plans.first() {
+        Some(plan) => is_said(plan),
+        None => outcome.status == Status::NoPlan && !inserted.is_empty() && departures.is_none(),
+    };
+    if is_proof && problem.ground.is_some() {
+        let departures = departures.get_or_insert_with(|| Departures::new(unordered, grounds));
+        learn_inserted(unordered, departures, &inserted);
+        if departures.are_open() && !departures.is_bounded_as_assumed() {
+            let found = search_bounds(unordered, departures, &BTreeMap::new(), grounds, paths, stop);
+            admit_other_spots(problem, (&network, &mut outcome), &inserted, found);
+        }
+    }
+    if let Some(departures) = departures.filter(|_| is_by_departure && has_plan(&outcome)) {
         // What is asked of the plan from here on, such as what else could be, is not bound to its places.
-        Arc::make_mut(&mut network).departures = departures;
+        Arc::make_mut(&mut network).departures = departures.bounds();
     }
     conclude(problem, grounds, network, outcome, inserted)
 }
+
+/// Where the order of movements decides where vehicles stand, a plan is the best one, or there is none, only if that is so
+/// wherever they stand. `found` is what a search with such bounds finds.
+fn admit_other_spots(
+    problem: &Problem<'_>,
+    (network, outcome): (&Network, &mut Outcome),
+    inserted: &BTreeMap<OccurrenceId, Inserted>,
+    (_, asked, found): (Network, Arc<Network>, Outcome),
+) {
+    let (Some(plan), Some(other)) = (outcome.plans.first_mut(), found.plans.first()) else {
+        if outcome.plans.is_empty() && found.status != Status::NoPlan {
+            (outcome.status, outcome.failure) = (Status::Limit, None);
+        }
+        return;
+    };
+    let routes = traverse::routes(&asked, problem.program, other, places(problem));
+    let bound_m: f64 = routes.iter().map(|route| departures::counted_m(&asked, route)).sum();
+    let routes = traverse::routes(network, problem.program, plan, places(problem));
+    let own_m: f64 = routes
+        .iter()
+        .filter_map(|route| inserted.get(&route.occurrence)?.legs.as_ref().ok())
+        .map(|legs| snapshot::joined(legs).length_m())
+        .sum();
+    let bounds =
+        worth::goal_values(&asked, other, bound_m).filter(|_| other.quality.is_optimal == Some(true));
+    let values = worth::goal_values(network, plan, own_m);
+    let Some((values, bounds)) = values.zip(bounds) else {
+        plan.quality.is_optimal = Some(false);
+        return;
+    };
+    let mut goals = network.objective.iter().zip(values.into_iter().zip(bounds));
+    let differing = goals.find(|(goal, (value, bound))| !is_as_good(goal, *value, *bound, routes.len()));
+    if let Some((_, (_, bound))) = differing {
+        plan.quality.is_optimal = Some(false);
+        outcome.bound = Some(bound);
+    }
+}
+
+/// Whether a value of a goal is as good as its bound, in which what each of so many movements takes is rounded.
+fn is_as_good(goal: &Goal, value: Rational, bound: Rational, movements: usize) -> bool {
+    let factors: f64 = goal.terms.iter().map(|(factor, _)| factor.to_f64().abs()).sum();
+    let rounding = factors * ROUNDING * (movements + 1) as f64;
+    let lost = value.to_f64() - bound.to_f64();
+    let lost = if goal.is_maximized { -lost } else { lost };
+    lost <= rounding
+}
+
+/// Times and meters of bounds are rounded to multiples of this.
+const ROUNDING: f64 = 0.001;
 
 /// The network with reservoirs that never run over, where that may be due to meters that are not known yet: what a path takes
 /// of a reservoir also makes room in it. `None` where all that matters is known.
@@ -285,11 +355,11 @@ pub(crate) fn without_upper_limits(
 }
 
 /// The network in which movements start where they do in the best plan.
-struct Order {
+struct Order<'input> {
     network: Network,
     /// How long they take from every place that they may start from.
-    departures: Vec<Departure>,
-    /// There, if the search for the best plan was stopped.
+    departures: Departures<'input>,
+    /// There, if the search for the best plan was stopped, or what it assumed does not hold wherever vehicles stand.
     unproven: Option<Unproven>,
 }
 
@@ -301,6 +371,9 @@ struct Unproven {
 
 /// How many legs that a plan does not have are looked at after the first one; after each plan it is twice as many.
 const LEGS_AT_FIRST: usize = 8;
+/// Searches with bounds that hold wherever vehicles stand, at most, and decisions of them all after which none follows.
+const MAX_BOUND_SEARCHES: usize = 12;
+const MAX_BOUND_DECISIONS: u64 = 50_000;
 
 /// The result where movements fit in no order.
 struct NoOrder {
@@ -313,28 +386,28 @@ struct NoOrder {
 /// tells how long its leg takes, and excludes the orders in which there is no time for it (SPEC 10.3). Of the legs that the
 /// plan does not have, more and more of the shortest are looked at as well, so that the straight lines of those that are not
 /// known do not promise plans for long.
-fn order_movements(
-    problem: &Problem<'_>,
+fn order_movements<'input>(
+    problem: &Problem<'input>,
     grounds: &mut Grounds,
     paths: &mut Paths,
     stop: &mut dyn FnMut() -> bool,
-) -> Result<Order, Box<NoOrder>> {
-    let mut departures = Departures::new(problem.network, problem.program);
+) -> Result<Order<'input>, Box<NoOrder>> {
+    let mut departures = Departures::new(problem, grounds);
     let (mut extra, mut promised) = (LEGS_AT_FIRST, None);
     let mut tried: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     loop {
-        let mut network = problem.network.as_ref().clone();
-        network.departures = departures.all();
-        network.distances = distances(problem, &departures);
-        let asked = match problem.facts {
-            Some(facts) => facts.apply(&network, problem.network.nodes.len()),
-            None => network.clone(),
-        };
-        let asked = Arc::new(asked);
-        let asked = without_upper_limits(&asked, &tried).unwrap_or(asked);
+        let distances = || departures.assumed_distances();
+        let (mut network, mut asked) = asked(problem, departures.assumed(), distances, &tried);
         // Without a plan, the last round tells why.
-        let options = Options { all: false, best: 1, ..problem.options };
-        let outcome = problem.searched(&asked, &options, stop);
+        let is_assumed = !departures.is_bounded_as_assumed();
+        let explain = problem.options.explain && !is_assumed;
+        let options = Options { all: false, best: 1, explain, ..problem.options };
+        let mut outcome = problem.searched(&asked, &options, stop);
+        let is_refuted = is_assumed && outcome.status == Status::NoPlan;
+        if is_refuted {
+            // Elsewhere vehicles may have less to drive.
+            (network, asked, outcome) = search_bounds(problem, &mut departures, &tried, grounds, paths, stop);
+        }
         let (Some(ground), Some(plan)) = (problem.ground, outcome.plans.first()) else {
             return Err(Box::new(NoOrder { network: asked, outcome, tried }));
         };
@@ -345,10 +418,7 @@ fn order_movements(
                 continue;
             }
             is_new = true;
-            let legs = legs(problem, ground, grounds, paths, route);
-            let least = legs.as_ref().ok().and_then(|legs| least_duration(problem, route, legs));
-            let length_m = legs.as_ref().ok().map(|legs| snapshot::joined(legs).length_m());
-            departures.learn(route, least, length_m.and_then(rounded_up));
+            let legs = learn_legs(problem, ground, &mut departures, grounds, paths, route);
             is_drivable &= legs.is_ok();
             if legs.is_err() {
                 let (waypoints, route) = (route.waypoints.clone(), route.clone());
@@ -357,40 +427,138 @@ fn order_movements(
         }
         let is_optimal = plan.quality.is_optimal;
         // With straight lines for what is not known no plan is worse than it is.
-        if is_optimal == Some(true) && !asked.counts_meters() {
+        if is_optimal == Some(true) && !is_assumed && !asked.counts_meters() {
             let values = worth::goal_values(&asked, plan, 0.0);
             promised = values.and_then(|values| values.first().copied()).or(promised);
         }
         // A search that was stopped goes no further than the order of the best plan so far.
         let is_stopped = problem.has_enough() && is_drivable;
         if !is_new || is_stopped {
-            let all = std::mem::replace(&mut network.departures, departures.only(&routes));
-            network.distances = distances(problem, &departures);
-            let is_proven = !is_new && is_optimal != Some(false);
-            let unproven = Unproven { bound: promised.or(outcome.bound).filter(|_| is_optimal.is_some()) };
-            return Ok(Order { network, departures: all, unproven: (!is_proven).then_some(unproven) });
+            network.departures = departures.only(&routes);
+            network.distances = counted(problem, || departures.distances_of(&routes));
+            let is_proven = !is_new && !is_refuted && is_optimal != Some(false);
+            let bound = promised.or(outcome.bound).filter(|_| is_optimal.is_some() && !is_assumed);
+            return Ok(Order { network, departures, unproven: (!is_proven).then_some(Unproven { bound }) });
         }
-        for route in departures.unknown(problem.network, problem.program, extra) {
+        for route in departures.unknown(extra) {
             if stop() {
                 break;
             }
             // Where none is found, the vehicles may stand at other spots in a plan: that asks by itself.
             if let Ok(legs) = legs(problem, ground, grounds, paths, &route) {
-                let length_m = snapshot::joined(&legs).length_m();
-                departures.learn(&route, least_duration(problem, &route, &legs), rounded_up(length_m));
+                learn(problem, &mut departures, &route, Some(&legs));
             }
         }
         extra *= 2;
     }
 }
 
-/// The meters that movements drive at least, where the objective counts them.
-fn distances(problem: &Problem<'_>, departures: &Departures) -> Vec<tpn::Distance> {
-    if problem.network.counts_meters() { departures.distances() } else { Vec::new() }
+/// The network of a problem with what is known of its movements, and what a search is asked: the same as it is now, with
+/// reservoirs that do not run over where that depends on unknown meters.
+fn asked(
+    problem: &Problem<'_>,
+    departures: Vec<Departure>,
+    distances: impl FnOnce() -> Vec<Distance>,
+    tried: &BTreeMap<OccurrenceId, Inserted>,
+) -> (Network, Arc<Network>) {
+    let mut network = problem.network.as_ref().clone();
+    network.departures = departures;
+    network.distances = counted(problem, distances);
+    let asked = match problem.facts {
+        Some(facts) => facts.apply(&network, problem.network.nodes.len()),
+        None => network.clone(),
+    };
+    let asked = Arc::new(asked);
+    let asked = without_upper_limits(&asked, tried).unwrap_or(asked);
+    (network, asked)
+}
+
+/// Searches with bounds that hold wherever vehicles stand. Each leg of a plan whose bound is that of a straight line is given
+/// the bound of its path, until no plan has such a leg.
+fn search_bounds(
+    problem: &Problem<'_>,
+    departures: &mut Departures<'_>,
+    tried: &BTreeMap<OccurrenceId, Inserted>,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    stop: &mut dyn FnMut() -> bool,
+) -> (Network, Arc<Network>, Outcome) {
+    let options = Options { all: false, best: 1, ..problem.options };
+    let mut num_decisions = 0;
+    for round in 1.. {
+        let distances = || departures.distance_bounds();
+        let (network, mut asked) = asked(problem, departures.bounds(), distances, tried);
+        count_least_meters(Arc::make_mut(&mut asked), departures);
+        let outcome = problem.searched(&asked, &options, stop);
+        num_decisions += outcome.stats.expanded;
+        let is_last = round == MAX_BOUND_SEARCHES || num_decisions > MAX_BOUND_DECISIONS || stop();
+        let (Some(ground), Some(plan), false) = (problem.ground, outcome.plans.first(), is_last) else {
+            return (network, asked, outcome);
+        };
+        let routes = traverse::routes(&asked, problem.program, plan, places(problem));
+        let shorter: Vec<Route> =
+            routes.iter().filter_map(|route| departures.shortest_unknown(route)).collect();
+        if shorter.is_empty() {
+            return (network, asked, outcome);
+        }
+        for route in &shorter {
+            let _ = learn_legs(problem, ground, departures, grounds, paths, route);
+        }
+    }
+    unreachable!("the last round returns")
+}
+
+/// Looks for the legs of a route, and learns how long it takes.
+fn learn_legs(
+    problem: &Problem<'_>,
+    ground: (&MapKey, &Arc<Terrain>),
+    departures: &mut Departures<'_>,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    route: &Route,
+) -> Result<Vec<Leg>, Undrivable> {
+    let legs = legs(problem, ground, grounds, paths, route);
+    learn(problem, departures, route, legs.as_ref().ok());
+    legs
+}
+
+/// Learns how long the routes of the plan take that nothing is known of.
+fn learn_inserted(
+    problem: &Problem<'_>,
+    departures: &mut Departures<'_>,
+    inserted: &BTreeMap<OccurrenceId, Inserted>,
+) {
+    for Inserted { route, legs, .. } in inserted.values() {
+        if !departures.knows(route) {
+            learn(problem, departures, route, legs.as_ref().ok());
+        }
+    }
+}
+
+/// Learns how long a route takes with these legs, or that it cannot be driven.
+fn learn(problem: &Problem<'_>, departures: &mut Departures<'_>, route: &Route, legs: Option<&Vec<Leg>>) {
+    let least = legs.and_then(|legs| least_duration(problem, route, legs));
+    let length_m = legs.map(|legs| snapshot::joined(legs).length_m());
+    departures.learn(route, least, length_m.and_then(rounded_up));
+}
+
+/// Adds what movements take of resources for each meter, wherever their vehicles stand.
+fn count_least_meters(network: &mut Network, departures: &Departures<'_>) {
+    let least = departures.least_meters();
+    for used in network.uses.iter_mut().filter(|used| used.change == Change::Consumes) {
+        let meters = used.owner.and_then(|owner| least.get(&owner));
+        let more = meters.and_then(|&meters| used.per_meter.checked_mul(meters));
+        used.amount = more.and_then(|more| used.amount.checked_add(more)).unwrap_or(used.amount);
+    }
+}
+
+/// The meters that movements drive, where the objective counts them.
+fn counted(problem: &Problem<'_>, distances: impl FnOnce() -> Vec<Distance>) -> Vec<Distance> {
+    if problem.network.counts_meters() { distances() } else { Vec::new() }
 }
 
 /// Where vehicles stand that have stopped on their way.
-fn places<'input>(problem: &Problem<'input>) -> &'input [StandingPlace] {
+pub(crate) fn places<'input>(problem: &Problem<'input>) -> &'input [StandingPlace] {
     problem.facts.map_or(&[], |facts| &facts.places)
 }
 
@@ -452,14 +620,13 @@ fn find_paths(
 /// The legs of a route: the roomy ones, or the shortest where there is no time for these.
 fn found_legs(
     problem: &Problem<'_>,
-    (key, map): (&MapKey, &Arc<Terrain>),
+    ground: (&MapKey, &Arc<Terrain>),
     grounds: &mut Grounds,
     paths: &mut Paths,
     route: &Route,
 ) -> Result<Vec<Leg>, Undrivable> {
-    let keep_outs = problem.keep_outs.and_then(|keep_outs| keep_outs.get(&route.occurrence));
-    let obstacles = route.obstacles.iter().chain(keep_outs.into_iter().flatten()).cloned().collect();
-    let space = grounds.space(key, map, &route.model, obstacles);
+    let space = space(problem, ground, grounds, route);
+    let map = ground.1;
     let route = &on_free_ground(route, &space);
     let mut legs = paths.legs(route, &space, problem.seed, Preference::Roomy);
     let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, route, legs, map).is_some();
@@ -469,13 +636,31 @@ fn found_legs(
     legs.map_err(|(leg, reason)| Undrivable { occurrence: route.occurrence, leg, reason })
 }
 
+/// Where the vehicles of a route can be.
+pub(crate) fn space(
+    problem: &Problem<'_>,
+    (key, map): (&MapKey, &Arc<Terrain>),
+    grounds: &mut Grounds,
+    route: &Route,
+) -> FreeSpace {
+    let keep_outs = problem.keep_outs.and_then(|keep_outs| keep_outs.get(&route.occurrence));
+    let obstacles = route.obstacles.iter().chain(keep_outs.into_iter().flatten()).cloned().collect();
+    grounds.space(key, map, &route.model, obstacles)
+}
+
 /// A route whose ends are free where they are not the locations themselves but places beside them.
 fn on_free_ground(route: &Route, space: &FreeSpace) -> Route {
     let mut route = route.clone();
-    for place in route.waypoints.iter_mut().filter(|place| place.slot > 0) {
-        place.position_m = nearest_free(&space.exact, place.position_m).unwrap_or(place.position_m);
+    for place in &mut route.waypoints {
+        place.position_m = free_m(place, Some(&space.exact));
     }
     route
+}
+
+/// The place itself, or the nearest free one if it is beside its location.
+pub(crate) fn free_m(place: &Waypoint, space: Option<&ConfigurationSpace>) -> Point2<f64> {
+    let free = space.filter(|_| place.slot > 0).and_then(|space| nearest_free(space, place.position_m));
+    free.unwrap_or(place.position_m)
 }
 
 /// The legs of a route that can be driven within its bounds.

@@ -16,7 +16,7 @@ pub(crate) fn ground(program: &Program, grounds: &mut Grounds) -> Option<Ground>
     if program.world.terrain.is_none() || !asks(program) {
         return None;
     }
-    grounds.resolve(&program.world).0
+    grounds.resolve(program).0
 }
 
 /// Whether a condition asks what is in sight.

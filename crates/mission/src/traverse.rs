@@ -14,12 +14,12 @@ use rmpl::program::{ObstacleShape, Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
 use snapshot::ground::closed_to;
-use snapshot::standing::{self, Start};
 use snapshot::vehicle::{Moving, moving};
 use terrain::ConfigurationSpace;
 use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
+use crate::spots::{ON_THE_WAY, Spots};
 
 /// A traverse of a plan: who drives, and through which places.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,23 +52,12 @@ pub struct Waypoint {
     pub slot: usize,
 }
 
-/// The slot of a place where a vehicle has stopped on its way, away from the location that it came from.
-const ON_THE_WAY: usize = usize::MAX;
-
 /// The routes of the traverses that `plan` selects, in order of their earliest departure. Each vehicle starts where its
 /// previous movement left it, or from its own start (SPEC 1.8); one of `places`, from where it has stopped.
 pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[StandingPlace]) -> Vec<Route> {
     let world = &program.world;
-    let spacings_m = [false, true].map(|fly| standing::spacing_m(program, fly));
-    let flies = |vehicle: usize| vehicle::flies(world, vehicle as u32);
-    let spacing_m = |vehicle: usize| spacings_m[usize::from(flies(vehicle))];
-    let starts = standing::starts(program, &network.occurrences);
-    let mut positions: Vec<Option<Waypoint>> = (world.vehicles.iter().zip(starts))
-        .map(|(vehicle, start)| {
-            let Start { place_m, slot, .. } = start?;
-            Some(Waypoint { name: vehicle.start.text.clone(), position_m: place_m, slot })
-        })
-        .collect();
+    let spots = Spots::new(network, program);
+    let mut positions = spots.starts.clone();
     let mut moving: Vec<(OccurrenceId, Moving<'_>)> = network
         .occurrences
         .iter()
@@ -97,17 +86,8 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
             false
         });
         let Some(mut route) = route(network, world, id, &moving, &positions) else { continue };
-        if let (Some(last), Some(&leader)) = (route.waypoints.last_mut(), route.vehicles.first()) {
-            // What stands there already stays where it is; what flies is above what drives.
-            let others = (positions.iter().enumerate()).filter(|&(vehicle, _)| {
-                !route.vehicles.contains(&vehicle) && flies(vehicle) == flies(leader)
-            });
-            let taken: Vec<usize> = (others.filter_map(|(_, place)| place.as_ref()))
-                .filter(|place| place.name == last.name)
-                .map(|place| place.slot)
-                .collect();
-            let free = (0..taken.len()).find(|slot| !taken.contains(slot)).unwrap_or(taken.len());
-            *last = last.at_slot(free, spacing_m(leader));
+        if let Some(last) = route.waypoints.last_mut() {
+            *last = spots.free(last, &route.vehicles, &positions);
             for &vehicle in &route.vehicles {
                 positions[vehicle] = Some(last.clone());
             }
@@ -149,17 +129,10 @@ fn in_plan_order<'program>(
     ordered
 }
 
-fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
+/// The middle of a location.
+pub(crate) fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
     let location = world.locations.iter().find(|location| location.name.text == name)?;
     Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m.into(), slot: 0 })
-}
-
-impl Waypoint {
-    /// Another place at the same location, whose middle this one is.
-    fn at_slot(&self, slot: usize, spacing_m: f64) -> Self {
-        let position_m = standing::place_m(self.position_m, slot, spacing_m);
-        Self { name: self.name.clone(), position_m, slot }
-    }
 }
 
 fn route(
@@ -213,16 +186,16 @@ fn route(
     Some(Route { occurrence: id, vehicles, model, speed_mps, obstacles, limits, from, waypoints })
 }
 
-/// The route of a traverse whose leader is at `place` before; `None` if it is no traverse, or no such place is known.
+/// The route of a traverse whose leader is at a place before, or just the places that its call names; `None` if it is no
+/// traverse, or names none.
 pub(crate) fn route_from(
     network: &Network,
     program: &Program,
     occurrence: OccurrenceId,
-    place: &str,
+    place: Option<&Waypoint>,
 ) -> Option<Route> {
     let moving = moving(program, &network.occurrences[occurrence.index()])?;
-    let place = waypoint(&program.world, place)?;
-    let positions = vec![Some(place); program.world.vehicles.len()];
+    let positions = vec![place.cloned(); program.world.vehicles.len()];
     route(network, &program.world, occurrence, &moving, &positions)
 }
 

@@ -325,14 +325,15 @@ fn worth(snapshot: &Snapshot, planning: &Planning, network: &Network, places: &P
     let mut text = tpn::worth::words(network, plan)?;
     let mut status = status_by_checker(planning);
     let has_end = tpn::worth::measures(network).contains(&Measure::End);
-    // Who has the location itself depends on who comes first, and so do the paths. The search weighs each leg with one path.
+    // Who has the location itself depends on who comes first, and so do the paths.
     let stops_beside =
         |traverse: &snapshot::Traverse| short_of_its_goal_m(&snapshot.program.world, traverse).is_some();
     let depends_on_order =
         (has_end || network.counts_meters()) && snapshot.traverses.iter().any(stops_beside);
+    let is_optimal = plan.quality.is_optimal;
     let standing = match tpn::worth::standing(plan) {
-        Some(_) if depends_on_order && plan.quality.is_optimal == Some(true) => Some(
-            "optimal for these paths: in another order, vehicles that stop beside each other may have shorter ones",
+        Some(_) if depends_on_order && is_optimal == Some(false) => Some(
+            "not proven optimal: in another order, vehicles that stop beside each other may have shorter paths",
         ),
         standing => standing,
     };
@@ -340,7 +341,7 @@ fn worth(snapshot: &Snapshot, planning: &Planning, network: &Network, places: &P
         text.push_str("; ");
         text.push_str(standing);
     }
-    if plan.quality.is_optimal == Some(false) || (standing.is_some() && depends_on_order) {
+    if is_optimal == Some(false) {
         status = status.max(Status::Attention);
     }
     if has_end {

@@ -51,9 +51,13 @@ pub fn start_slots(program: &Program, occurrences: &[Occurrence]) -> Vec<usize> 
 /// Meters between places at one location, of the vehicles that fly or of those that do not: twice the room that any two of
 /// them need, so that one can drive between two others, and room for what follows them in formation.
 pub fn spacing_m(program: &Program, fly: bool) -> f64 {
+    2.0 * room_m(&program.world, fly) * most_together(program) as f64
+}
+
+/// How many vehicles an activity moves at most, and at least one.
+fn most_together(program: &Program) -> usize {
     let moves = program.primitives.iter().filter_map(|primitive| primitive.moves.as_ref());
-    let most = moves.map(|moves| moves.vehicles.len()).max().unwrap_or(1).max(1);
-    2.0 * room_m(&program.world, fly) * most as f64
+    moves.map(|moves| moves.vehicles.len()).max().unwrap_or(1).max(1)
 }
 
 /// Meters between the centers of any two vehicles that fly, or do not, when they keep apart.
@@ -67,14 +71,11 @@ fn room_m(world: &World, fly: bool) -> f64 {
 
 /// The place with a number at a location. Rings lie a spacing apart, and so do the places on each.
 pub fn place_m(location_m: Point2<f64>, slot: usize, spacing_m: f64) -> Point2<f64> {
-    let (mut ring, mut at) = (0, slot);
-    while at >= (ON_FIRST_RING * ring).max(1) {
-        at -= (ON_FIRST_RING * ring).max(1);
-        ring += 1;
-    }
+    let ring = ring(slot) as usize;
     if ring == 0 {
         return location_m;
     }
+    let at = slot - 1 - ON_FIRST_RING * (ring * (ring - 1) / 2);
     // The corners of a hexagon, south first, and places between them.
     let high = 0.75_f64.sqrt();
     let corners = [(0.0, -1.0), (high, -0.5), (high, 0.5), (0.0, 1.0), (-high, 0.5), (-high, -0.5)]
@@ -82,6 +83,30 @@ pub fn place_m(location_m: Point2<f64>, slot: usize, spacing_m: f64) -> Point2<f
     let (corner, part) = (at / ring, (at % ring) as f64 / ring as f64);
     let (from, to) = (corners[corner % ON_FIRST_RING], corners[(corner + 1) % ON_FIRST_RING]);
     location_m + (from + (to - from) * part) * (spacing_m * ring as f64)
+}
+
+/// How far from its location a vehicle may stand, in meters, with its body and as much room again.
+pub fn reach_m(program: &Program) -> f64 {
+    let world = &program.world;
+    let all = || 0..world.vehicles.len() as u32;
+    let away_m = |fly: bool| {
+        let last = all().filter(|&vehicle| vehicle::flies(world, vehicle) == fly).count().saturating_sub(1);
+        // What follows in formation is behind the place of its leader.
+        let formation_m = room_m(world, fly) * (most_together(program) - 1) as f64;
+        f64::from(ring(last)) * spacing_m(program, fly) + formation_m
+    };
+    let widest_m = all().map(|vehicle| vehicle::radius_m(world, vehicle)).fold(0.0, f64::max);
+    away_m(false).max(away_m(true)) + 2.0 * widest_m
+}
+
+/// The number of the ring of a place.
+fn ring(slot: usize) -> u32 {
+    let (mut ring, mut last) = (0, 0);
+    while last < slot {
+        ring += 1;
+        last += ON_FIRST_RING * ring as usize;
+    }
+    ring
 }
 
 /// Where a vehicle stands from the beginning.

@@ -78,7 +78,7 @@ fn answer(checked: Vec<(String, Vec<Problem>)>) -> Value {
 /// All that the front end, the compilers and planning have to say about a text, in either notation: what the report says.
 fn check(mission: &mut Opened, deadline: Deadline) -> anyhow::Result<Vec<Problem>> {
     let Scenarios { program, mut diagnostics, scenarios } = mission.compile_all()?;
-    let ground = mission.ground_or_problem(&program.world)?.unwrap_or_else(|problem| {
+    let ground = mission.ground_or_problem(&program)?.unwrap_or_else(|problem| {
         diagnostics.push(problem);
         None
     });

@@ -7,7 +7,7 @@ use exact::Time;
 use executive::{PlanError, Script};
 use link::Update;
 use rmpl::Diagnostic;
-use rmpl::program::World;
+use rmpl::program::{Program, World};
 use snapshot::content::Keyed;
 use snapshot::{Goal, RobustnessSettings, Tally, Timings};
 use tpn::{Network, Plan};
@@ -96,8 +96,8 @@ impl Core {
     }
 
     /// The ground of a mission, or what is wrong with the terrain that it names.
-    pub fn ground(&mut self, world: &World) -> Result<Option<Ground>, Box<Diagnostic>> {
-        let (ground, problems) = self.grounds.resolve(world);
+    pub fn ground(&mut self, program: &Program) -> Result<Option<Ground>, Box<Diagnostic>> {
+        let (ground, problems) = self.grounds.resolve(program);
         problems.into_iter().next().map_or(Ok(ground), |problem| Err(Box::new(problem)))
     }
 
@@ -129,7 +129,7 @@ impl Core {
         let Some(network) = compiled.network.clone() else {
             return Some(Err("the mission has errors".to_owned()));
         };
-        let (ground, _) = self.grounds.resolve(&compiled.program.world);
+        let (ground, _) = self.grounds.resolve(&compiled.program);
         let manner = Manner::of(update);
         let planned = self.plan_kept(&compiled, &network, ground.as_ref(), manner, host)?.planned.clone();
         Some(Ok(Evaluated { compiled, network: network.value, ground, planned, manner }))

@@ -159,7 +159,7 @@ impl Core {
         }
         let begun = host.now_millis();
         let mut compiled = self.compile(update, host);
-        let (ground, found) = self.grounds.resolve(&compiled.program.world);
+        let (ground, found) = self.grounds.resolve(&compiled.program);
         compiled.diagnostics.extend(found);
         let planning = host.now_millis();
         let parse_millis = compiled.timings.parse_millis;

@@ -18,7 +18,7 @@ fn planned(world: &str, scenario: &str) -> Evaluated {
     );
     let compiled = core.compile(&Update::new(1, text), &SilentHost);
     assert!(compiled.network().is_some(), "{:?}", compiled.diagnostics);
-    let ground = core.ground(&compiled.program.world).expect("known ground");
+    let ground = core.ground(&compiled.program).expect("known ground");
     core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network")
 }
 

@@ -37,7 +37,7 @@ impl Planner {
         let mut diagnostics = parse.diagnostics();
         let network = mission::compile(&program, &Goal::Default, &mut diagnostics);
         let network = Arc::new(network.unwrap_or_else(|| panic!("{diagnostics:?}")));
-        let (ground, found) = self.grounds.resolve(&program.world);
+        let (ground, found) = self.grounds.resolve(&program);
         assert!(found.is_empty(), "{found:?}");
         let problem = Problem {
             ground: ground.as_ref().map(|(key, map)| (key, map)),
@@ -448,8 +448,8 @@ fn a_mission_on_an_imported_map_of_phobos_keeps_to_ground_that_can_be_driven() {
         scenario S[0,inf] = { Drive(MONOLITH)[0,inf] }";
     let model = motion::vehicle_model("ATRV").expect("known");
     let map = {
-        let world = rmpl::parse(source).program().world;
-        let (ground, found) = planner.grounds.resolve(&world);
+        let program = rmpl::parse(source).program();
+        let (ground, found) = planner.grounds.resolve(&program);
         assert!(found.is_empty(), "{found:?}");
         ground.expect("it was imported").1
     };

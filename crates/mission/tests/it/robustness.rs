@@ -207,7 +207,7 @@ const DETOUR: &str = include_str!("../../../../assets/missions/detour.rmpl");
 fn on_ground(source: &str, settings: &RobustnessSettings, numbers: std::ops::Range<u64>) -> Tally {
     let mission = Mission::read(source);
     let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
-    let (ground, _) = grounds.resolve(&mission.program.world);
+    let (ground, _) = grounds.resolve(&mission.program);
     let problem = Problem { ground: ground.as_ref().map(|(key, map)| (key, map)), ..mission.problem() };
     let planned = planning::plan(&problem, &mut grounds, &mut paths, &mut || false);
     let sampler = Sampler::new(&problem, &planned, &settings.uncertainty);

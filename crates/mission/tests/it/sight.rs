@@ -25,7 +25,7 @@ fn planned(scenario: &str) -> Evaluated {
     let update = update(scenario);
     let compiled = core.compile(&update, &SilentHost);
     assert!(compiled.network().is_some(), "{:?}", compiled.diagnostics);
-    let ground = core.ground(&compiled.program.world).expect("known ground");
+    let ground = core.ground(&compiled.program).expect("known ground");
     core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network")
 }
 
@@ -131,7 +131,7 @@ fn the_example_reports_from_where_it_sees_its_base() {
     let network = compiled.network().expect("a network");
     let hidden: Vec<&str> = network.sights[0].hidden.iter().map(|hidden| hidden.place.as_str()).collect();
     assert_eq!(hidden, ["HOLLOW", "SLACK"]);
-    let ground = core.ground(&compiled.program.world).expect("known ground");
+    let ground = core.ground(&compiled.program).expect("known ground");
     let evaluated = core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network");
     let planning = &evaluated.planned.planning;
     assert!(planning.verdict.as_ref().is_some_and(|verdict| verdict.valid));

@@ -124,3 +124,53 @@ fn a_drive_to_another_name_of_the_same_place_leads_there() {
     let execution = Mission::read(source).executed(0, &[]);
     assert_eq!(execution.ending, executive::Ending::Finished, "{:?}", execution.log);
 }
+
+/// A drive starts where its vehicle stands, beside its location, and no bound of its leg says that it takes longer.
+#[test]
+fn bounds_hold_wherever_a_vehicle_stands() {
+    let planned = plan(
+        "objective minimize end; location SOUTH (30, -20); group Two = R1, R2;
+         scenario S[0,2000] = { any rover in Two { Drive(rover, SOUTH) } }",
+    );
+    let plan = &planned.planning.outcome.plans[0];
+    // R2 stands south of R1.
+    let occurrence = &planned.network.occurrences[planned.traverses[0].occurrence.index()];
+    assert_eq!(occurrence.arguments[0], "R2");
+    assert!(planned.traverses[0].length_m < 49.0, "{} m", planned.traverses[0].length_m);
+    assert!(plan.quality.end.to_f64() < 98.0, "{:?}", plan.quality);
+    assert_eq!(plan.quality.is_optimal, Some(true));
+}
+
+/// Which place of a location a vehicle has depends on when others leave it, so that an earlier end is possible.
+#[test]
+fn a_plan_is_optimal_only_for_all_places_where_vehicles_may_stand() {
+    let is_optimal = |first: &str| {
+        let source = format!(
+            "objective minimize end; location P (30, 200); location Q (80, 200);
+             scenario S[0,9000] = {{
+               {{ Drive(R1, {first}); delay[0,3000]; Drive(R1, Q) }}, {{ delay[2000,2000]; Drive(R4, P) }}
+             }}"
+        );
+        let planned = plan(&source);
+        let (optimal, bound) =
+            (planned.planning.outcome.plans[0].quality.is_optimal, planned.planning.outcome.bound);
+        (optimal, bound.map(exact::Rational::to_f64), planned.planning.outcome.plans[0].quality.end.to_f64())
+    };
+    // If R1 is still at P, R4 stops before it.
+    let (optimal, bound, end) = is_optimal("P");
+    assert_eq!(optimal, Some(false));
+    let bound = bound.expect("it is known how much earlier the end may be");
+    assert!(bound < end - 5.0 && bound > end - 20.0, "{bound} and {end}");
+    assert_eq!(is_optimal("EAST").0, Some(true));
+}
+
+/// Without a terrain, the ground reaches as far as vehicles may stand.
+#[test]
+fn vehicles_beside_a_location_at_the_edge_are_on_the_map() {
+    let source = "location A (0, 0); location B (20, 0); vehicle F[1..5] : ATRV at A;
+         primitive Convoy(a, b, c, d, to)[1,90] moves a, b, c, d; primitive Drive(r, to)[1,90] moves r;
+         scenario S[0,200] = { Drive(F[2], B); Drive(F[4], B); Drive(F[5], B) }";
+    let planned = Mission::read(source).with_plan((kirk::Options::default(), 0), |_, planned, _, _| planned);
+    assert!(planned.planning.undrivable.is_empty(), "{:?}", planned.planning.undrivable);
+    assert_eq!(planned.traverses.len(), 3);
+}

@@ -34,7 +34,7 @@ fn tried(source: &str, rules: &[&str], change: impl FnOnce(&mut Review)) -> Vec<
 fn evaluated(core: &mut Core, source: &str) -> Evaluated {
     let mut host = Answers::default();
     let compiled = core.compile(&link::Update::new(1, source), &host);
-    let ground = core.ground(&compiled.program.world).expect("its ground is known");
+    let ground = core.ground(&compiled.program).expect("its ground is known");
     core.plan(compiled, ground, Manner::default(), &mut host).expect("it has no errors")
 }
 

@@ -44,7 +44,7 @@ impl Mission {
         work: impl FnOnce(&Problem<'_>, Planned, &mut Grounds, &mut Paths) -> T,
     ) -> T {
         let (mut grounds, mut paths) = (Grounds::default(), Paths::default());
-        let (ground, found) = grounds.resolve(&self.program.world);
+        let (ground, found) = grounds.resolve(&self.program);
         assert!(found.is_empty(), "{found:?}");
         let enough = Cell::new(false);
         let problem = Problem {
