@@ -16,7 +16,7 @@ use kirk::{Options, Outcome, Stats, Status};
 use motion::{SegmentTiming, SpeedLimits};
 use nalgebra::Point2;
 use rmpl::Diagnostic;
-use rmpl::program::{self, Change, Program, World};
+use rmpl::program::{self, Change, Measure, Program, World};
 use snapshot::blocked::name_blocked;
 use snapshot::standing;
 use snapshot::{
@@ -186,8 +186,52 @@ fn plan_first(
     meetings::kept_apart(problem, planned, &mut |problem| plan_paths(problem, grounds, paths, stop))
 }
 
-/// Plans `problem` with the paths of its first plan; others that are asked for have theirs only as far as they share them.
+/// Plans `problem` with the paths of its first plan; others that are asked for have theirs only as far as they share them. Where
+/// the first order of movements drives too many meters for some resource, the shortest one is tried.
 fn plan_paths(
+    problem: &Problem<'_>,
+    grounds: &mut Grounds,
+    paths: &mut Paths,
+    stop: &mut dyn FnMut() -> bool,
+) -> Planned {
+    let planned = plan_order(problem, grounds, paths, stop);
+    let is_refused = planned.planning.outcome.status == Status::NoPlan && is_by_departure(problem);
+    if !is_refused || !takes_for_meters(problem.network) || stop() {
+        return planned;
+    }
+    let mut network = problem.network.as_ref().clone();
+    let length = Goal { is_maximized: false, terms: vec![(Rational::ONE, Measure::Length)], span: None };
+    network.objective.insert(0, length);
+    let options = Options { explain: false, relax: false, trace_events: None, ..problem.options };
+    let of_shortest = Problem { network: &Arc::new(network), options, ..*problem };
+    let mut shortest = plan_order(&of_shortest, grounds, paths, stop);
+    let planning = Arc::make_mut(&mut shortest.planning);
+    let Some(plan) = planning.outcome.plans.first_mut() else { return planned };
+    // It is the shortest one, and nothing is known of what the mission asks for.
+    let network = Arc::make_mut(&mut shortest.network);
+    network.objective.clone_from(&problem.network.objective);
+    if !network.counts_meters() {
+        network.distances.clear();
+    }
+    plan.quality.is_optimal = (!network.objective.is_empty()).then_some(false);
+    planning.verdict = Some(verify::check_plan(network, plan));
+    planning.outcome.bound = None;
+    shortest
+}
+
+/// Whether planning finds where movements start, or meters count.
+fn is_by_departure(problem: &Problem<'_>) -> bool {
+    let is_open = kirk::has_open_order(problem.network) || problem.network.counts_meters();
+    problem.ground.is_some() && is_open
+}
+
+/// Whether some movement takes of a resource for each meter.
+fn takes_for_meters(network: &Network) -> bool {
+    network.uses.iter().any(|used| used.change == Change::Consumes && used.per_meter.is_positive())
+}
+
+/// Plans `problem` with the paths of its first plan, in the order of movements that is found without what their meters take.
+fn plan_order(
     problem: &Problem<'_>,
     grounds: &mut Grounds,
     paths: &mut Paths,
@@ -196,13 +240,14 @@ fn plan_paths(
     let mut inserted: BTreeMap<OccurrenceId, Inserted> = BTreeMap::new();
     let (ordered, unordered) = (&mut None, problem);
     let mut departures = None;
-    let is_by_departure = kirk::has_open_order(problem.network) || problem.network.counts_meters();
-    let mut unproven = None;
-    let problem = if problem.ground.is_some() && is_by_departure {
+    let is_by_departure = is_by_departure(problem);
+    let (mut unproven, mut promised) = (None, None);
+    let problem = if is_by_departure {
         match order_movements(problem, grounds, paths, stop) {
             Ok(order) => {
                 departures = Some(order.departures);
                 unproven = order.unproven;
+                promised = order.promised;
                 &Problem { network: ordered.insert(Arc::new(order.network)), ..*problem }
             }
             Err(answer) => return conclude(problem, grounds, answer.network, answer.outcome, answer.tried),
@@ -252,6 +297,10 @@ fn plan_paths(
             None => (outcome.status, outcome.failure) = (Status::Limit, None),
         }
     }
+    if let Some(bounds) = promised.filter(|_| takes_for_meters(problem.network)) {
+        // What meters take may allow more in another order.
+        hold_against(problem, (&network, &mut outcome), &inserted, Some(bounds));
+    }
     let is_said = |plan: &Plan| plan.quality.is_optimal == Some(true);
     let is_proof = match outcome.plans.first() {
         Some(plan) => is_said(plan),
@@ -280,22 +329,37 @@ fn admit_other_spots(
     inserted: &BTreeMap<OccurrenceId, Inserted>,
     (_, asked, found): (Network, Arc<Network>, Outcome),
 ) {
-    let (Some(plan), Some(other)) = (outcome.plans.first_mut(), found.plans.first()) else {
-        if outcome.plans.is_empty() && found.status != Status::NoPlan {
-            (outcome.status, outcome.failure) = (Status::Limit, None);
-        }
+    if outcome.plans.is_empty() && found.status != Status::NoPlan {
+        (outcome.status, outcome.failure) = (Status::Limit, None);
+    }
+    if let Some(other) = found.plans.first() {
+        hold_against(problem, (network, outcome), inserted, promised_values(problem, &asked, other));
+    }
+}
+
+/// What a plan promises for each goal by what is known of movements, if none is better.
+fn promised_values(problem: &Problem<'_>, asked: &Network, plan: &Plan) -> Option<Vec<Rational>> {
+    let routes = traverse::routes(asked, problem.program, plan, places(problem));
+    let meters: f64 = routes.iter().map(|route| departures::counted_m(asked, route)).sum();
+    worth::goal_values(asked, plan, meters).filter(|_| plan.quality.is_optimal == Some(true))
+}
+
+/// Calls a plan optimal only if it is as good as these bounds of its goals.
+fn hold_against(
+    problem: &Problem<'_>,
+    (network, outcome): (&Network, &mut Outcome),
+    inserted: &BTreeMap<OccurrenceId, Inserted>,
+    bounds: Option<Vec<Rational>>,
+) {
+    let Some(plan) = outcome.plans.first_mut().filter(|plan| plan.quality.is_optimal == Some(true)) else {
         return;
     };
-    let routes = traverse::routes(&asked, problem.program, other, places(problem));
-    let bound_m: f64 = routes.iter().map(|route| departures::counted_m(&asked, route)).sum();
     let routes = traverse::routes(network, problem.program, plan, places(problem));
     let own_m: f64 = routes
         .iter()
         .filter_map(|route| inserted.get(&route.occurrence)?.legs.as_ref().ok())
         .map(|legs| snapshot::joined(legs).length_m())
         .sum();
-    let bounds =
-        worth::goal_values(&asked, other, bound_m).filter(|_| other.quality.is_optimal == Some(true));
     let values = worth::goal_values(network, plan, own_m);
     let Some((values, bounds)) = values.zip(bounds) else {
         plan.quality.is_optimal = Some(false);
@@ -361,6 +425,8 @@ struct Order<'input> {
     departures: Departures<'input>,
     /// There, if the search for the best plan was stopped, or what it assumed does not hold wherever vehicles stand.
     unproven: Option<Unproven>,
+    /// What its best plan comes to in each goal, before what meters take of resources.
+    promised: Option<Vec<Rational>>,
 }
 
 /// That another order may be better, or the only one.
@@ -438,7 +504,9 @@ fn order_movements<'input>(
             network.distances = counted(problem, || departures.distances_of(&routes));
             let is_proven = !is_new && !is_refuted && is_optimal != Some(false);
             let bound = promised.or(outcome.bound).filter(|_| is_optimal.is_some() && !is_assumed);
-            return Ok(Order { network, departures, unproven: (!is_proven).then_some(Unproven { bound }) });
+            let promised = promised_values(problem, &asked, plan);
+            let unproven = (!is_proven).then_some(Unproven { bound });
+            return Ok(Order { network, departures, unproven, promised });
         }
         for route in departures.unknown(extra) {
             if stop() {

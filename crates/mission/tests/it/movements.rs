@@ -138,3 +138,18 @@ fn of_two_ways_the_shorter_one_is_taken_though_it_stands_second() {
     assert_eq!((plan.choices[0].alternative, plan.quality.is_optimal), (1, Some(true)));
     assert_driven_one_after_the_other(&ways, 2);
 }
+
+/// The first order that fits the time takes too much of the battery; another one does not.
+#[test]
+fn the_shortest_order_is_tried_where_meters_take_too_much() {
+    let sites = |level: &str| {
+        plan(&format!(
+            "resource Battery 0..200 = {level}; primitive Drive(to) moves R1 speed (0.02, 0.5) consumes Battery 1 per metre;
+             scenario X[0,600] = {{ unordered {{ Drive(A); Drive(B); Drive(C); Drive(D); Drive(E) }} }}"
+        ))
+    };
+    let tight = sites("190");
+    assert_driven_one_after_the_other(&tight, 5);
+    assert_eq!(tight.planning.outcome.plans[0].quality.is_optimal, None);
+    assert!(sites("170").planning.outcome.failure.is_some(), "the shortest way needs more");
+}
