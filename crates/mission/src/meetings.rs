@@ -65,7 +65,7 @@ pub(crate) fn kept_apart(
 }
 
 /// The first plan, with the meters that are counted for it.
-fn best_plan(planned: &Planned) -> Option<(&Plan, f64)> {
+pub(crate) fn best_plan(planned: &Planned) -> Option<(&Plan, f64)> {
     Some((planned.planning.outcome.plans.first()?, planned.counted_m))
 }
 

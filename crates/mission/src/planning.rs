@@ -34,7 +34,7 @@ use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
 use crate::ground::{FreeSpace, Grounds};
 use crate::listing::{self, Listed};
-use crate::meetings::{self, KeepOuts};
+use crate::meetings::{self, KeepOuts, best_plan};
 use crate::programs::{self, Programs};
 use crate::separation::{self, Meeting};
 use crate::simulation::nearest_free;
@@ -194,9 +194,22 @@ fn plan_paths(
     paths: &mut Paths,
     stop: &mut dyn FnMut() -> bool,
 ) -> Planned {
-    let planned = plan_order(problem, grounds, paths, stop);
-    let is_refused = planned.planning.outcome.status == Status::NoPlan && is_by_departure(problem);
-    if !is_refused || !takes_for_meters(problem.network) || stop() {
+    let planned = plan_order(problem, Starts::Fixed, grounds, paths, stop);
+    if !is_by_departure(problem) || !takes_for_meters(problem.network) || stop() {
+        return planned;
+    }
+    if let Some((plan, _)) = best_plan(&planned) {
+        if plan.quality.is_optimal != Some(false) || problem.has_enough() {
+            return planned;
+        }
+        let open = plan_order(problem, Starts::Open, grounds, paths, stop);
+        let is_valid = open.planning.verdict.as_ref().is_some_and(|verdict| verdict.valid);
+        let is_better = best_plan(&open).is_some_and(|(other, _)| {
+            is_valid && worth::compare(problem.network, other, plan) == std::cmp::Ordering::Less
+        });
+        return if is_better { open } else { planned };
+    }
+    if planned.planning.outcome.status != Status::NoPlan {
         return planned;
     }
     let mut network = problem.network.as_ref().clone();
@@ -204,7 +217,7 @@ fn plan_paths(
     network.objective.insert(0, length);
     let options = Options { explain: false, relax: false, trace_events: None, ..problem.options };
     let of_shortest = Problem { network: &Arc::new(network), options, ..*problem };
-    let mut shortest = plan_order(&of_shortest, grounds, paths, stop);
+    let mut shortest = plan_order(&of_shortest, Starts::Fixed, grounds, paths, stop);
     let planning = Arc::make_mut(&mut shortest.planning);
     let Some(plan) = planning.outcome.plans.first_mut() else { return planned };
     // It is the shortest one, and nothing is known of what the mission asks for.
@@ -230,9 +243,20 @@ fn takes_for_meters(network: &Network) -> bool {
     network.uses.iter().any(|used| used.change == Change::Consumes && used.per_meter.is_positive())
 }
 
-/// Plans `problem` with the paths of its first plan, in the order of movements that is found without what their meters take.
+/// Where movements may start once an order of them is found.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Starts {
+    /// Where they do in that order.
+    Fixed,
+    /// Wherever another plan starts them: what meters take of resources may leave no time or room for some of them.
+    Open,
+}
+
+/// Plans `problem` with the paths of its first plan, beginning with the order of movements that is found without what their
+/// meters take.
 fn plan_order(
     problem: &Problem<'_>,
+    starts: Starts,
     grounds: &mut Grounds,
     paths: &mut Paths,
     stop: &mut dyn FnMut() -> bool,
@@ -244,7 +268,10 @@ fn plan_order(
     let (mut unproven, mut promised) = (None, None);
     let problem = if is_by_departure {
         match order_movements(problem, grounds, paths, stop) {
-            Ok(order) => {
+            Ok(mut order) => {
+                if starts == Starts::Open {
+                    order.network.departures = order.departures.bounds();
+                }
                 departures = Some(order.departures);
                 unproven = order.unproven;
                 promised = order.promised;
@@ -277,7 +304,10 @@ fn plan_order(
             if let Some(departures) = &mut departures {
                 let routes = traverse::routes(&network, problem.program, found, places(problem));
                 learn_inserted(problem, departures, &inserted);
-                described.departures = departures.only(&routes);
+                described.departures = match starts {
+                    Starts::Fixed => departures.only(&routes),
+                    Starts::Open => departures.bounds(),
+                };
             }
             network = Arc::new(described);
         } else if without_limits.is_some() {
@@ -468,7 +498,16 @@ fn order_movements<'input>(
         let is_assumed = !departures.is_bounded_as_assumed();
         let explain = problem.options.explain && !is_assumed;
         let options = Options { all: false, best: 1, explain, ..problem.options };
-        let mut outcome = problem.searched(&asked, &options, stop);
+        let mut counting = None;
+        if !problem.network.objective.is_empty() && takes_for_meters(problem.network) {
+            // What movements take at least tells what is worth driving to; what is too much is explained with real meters.
+            let mut counted = asked.as_ref().clone();
+            count_least_meters(&mut counted, &departures);
+            let quietly = Options { explain: false, ..options };
+            let outcome = problem.searched(&Arc::new(counted), &quietly, stop);
+            counting = (!outcome.plans.is_empty()).then_some(outcome);
+        }
+        let mut outcome = counting.unwrap_or_else(|| problem.searched(&asked, &options, stop));
         let is_refuted = is_assumed && outcome.status == Status::NoPlan;
         if is_refuted {
             // Elsewhere vehicles may have less to drive.

@@ -153,3 +153,27 @@ fn the_shortest_order_is_tried_where_meters_take_too_much() {
     assert_eq!(tight.planning.outcome.plans[0].quality.is_optimal, None);
     assert!(sites("170").planning.outcome.failure.is_some(), "the shortest way needs more");
 }
+
+/// What meters take of a battery is known before an order is chosen, and what is called optimal is.
+#[test]
+fn what_is_worth_driving_to_depends_on_the_meters_that_a_battery_allows() {
+    let best = |level: &str, visits: &str| {
+        let planned = plan(&format!(
+            "resource Battery 0..200 = {level}; objective maximize reward, minimize end;
+             primitive Drive(to) moves R1 speed (0.02, 0.5) consumes Battery 1 per metre rewards 5;
+             primitive Photo(at)[1,1] requires R1.at=at rewards 50;
+             scenario X[0,600] = {{ {visits} }}"
+        ));
+        let plan = planned.planning.outcome.plans.first().expect("there is one");
+        (plan.quality.reward, plan.quality.is_optimal)
+    };
+    let any = "unordered { optional Drive(A); optional Drive(B); optional { Drive(C); Photo(C) };
+        optional Drive(D); optional Drive(E) }";
+    for level in ["60", "90", "120"] {
+        let (reward, is_optimal) = best(level, any);
+        assert!(reward >= exact::Rational::from_integer(55), "{level}: {reward}, with the picture alone 55");
+        if level == "90" && is_optimal == Some(true) {
+            assert!(reward >= best(level, "Drive(C); Photo(C); Drive(E)").0);
+        }
+    }
+}
