@@ -8,13 +8,13 @@ use tpn::{Extent, LabelId, Network, NodeId, Occurrence, OccurrenceKind, Plan, Su
 
 /// One schedule of a plan.
 #[derive(Clone, Copy)]
-pub(super) struct Scheduled<'a> {
-    pub(super) program: &'a Program,
-    pub(super) network: &'a Network,
-    pub(super) plan: &'a Plan,
-    pub(super) times: &'a [Option<Time>],
+pub(crate) struct Scheduled<'a> {
+    pub(crate) program: &'a Program,
+    pub(crate) network: &'a Network,
+    pub(crate) plan: &'a Plan,
+    pub(crate) times: &'a [Option<Time>],
     /// Whether an activity takes the least or greatest time that it is declared with, for a purpose.
-    pub(super) is_extreme: bool,
+    pub(crate) is_extreme: bool,
 }
 
 /// One time of it. At a moment, what touches it counts.
@@ -36,7 +36,7 @@ struct Told {
 
 impl<'a> Scheduled<'a> {
     /// The first instant at which the rule is not known to hold, if there is one.
-    pub(super) fn first_breach(self, rule: &Rule) -> Option<Time> {
+    pub(crate) fn first_breach(self, rule: &Rule) -> Option<Time> {
         let mut instants = self.instants(&rule.moment);
         instants.sort_unstable();
         instants.dedup();

@@ -20,7 +20,7 @@ use snapshot::Snapshot;
 use tpn::plan_json::node_name;
 use tpn::{Network, NodeId, Plan};
 
-use self::instant::Scheduled;
+pub(crate) use self::instant::Scheduled;
 use self::promise::Promise;
 use self::runs::Runs;
 use self::schedules::{Made, Schedules};
@@ -303,7 +303,7 @@ impl Trial {
 }
 
 /// The times of the events that have names, and of nodes without events.
-fn named_times(network: &Network, plan: &Plan, times: &[Option<Time>]) -> BTreeMap<SmolStr, Time> {
+pub(crate) fn named_times(network: &Network, plan: &Plan, times: &[Option<Time>]) -> BTreeMap<SmolStr, Time> {
     let mut named = BTreeMap::new();
     for (index, (node, time)) in network.nodes.iter().zip(times).enumerate() {
         let Some(time) = *time else { continue };

@@ -7,10 +7,15 @@ use std::collections::BTreeMap;
 
 use exact::{Bound, Time};
 use executive::PlanNetwork;
+use executive::plan_network::ADDED;
 use stn::INFINITE;
 use tpn::{Network, NodeId, Plan};
 
 use super::Stretch;
+
+/// An instant that must not touch an event is at least one of so many parts of a tick away from it. Everything else is whole
+/// ticks apart, and a cycle of constraints has such a distance at most twice: before the instant and after it.
+pub(super) const PARTS: i64 = 4;
 
 /// On which side of an instant an event lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +131,39 @@ impl Times {
             };
         }
         (from, to)
+    }
+
+    /// The earliest times of an execution that has an instant between these events, by node; `None` if there is none, or if
+    /// times do not fit.
+    pub(super) fn execution(
+        &self,
+        network: &Network,
+        plan: &Plan,
+        edges: &[Edge],
+    ) -> Option<Vec<Option<Time>>> {
+        let mut fine = self.network.clone();
+        let part = Time::new(1, self.network.scale().ticks_per_unit().checked_mul(PARTS)?)?;
+        fine.refine_for(network, plan, &[part]).ok()?;
+        for past in edges.iter().filter(|edge| edge.is_past) {
+            for future in edges.iter().filter(|edge| !edge.is_past) {
+                let least = past.offset.checked_sub(future.offset)?.checked_mul(PARTS)?;
+                let least = least.checked_add(i64::from(!(past.may_touch && future.may_touch)))?;
+                if past.node != future.node {
+                    let (from, to) = (fine.point(past.node)?, fine.point(future.node)?);
+                    fine.stn.constrain(from, to, least, None, ADDED).ok()?;
+                } else if least > 0 {
+                    return None;
+                }
+            }
+        }
+        let mut distances = Vec::new();
+        fine.stn.distances_to(fine.origin(), &mut distances).ok()?;
+        let mut times = vec![None; network.nodes.len()];
+        for point in fine.all_points() {
+            let distance = distances.get(point.index()).copied().filter(|&distance| distance != INFINITE);
+            times[fine.node(point).index()] = Some(fine.time(-distance.unwrap_or(0)));
+        }
+        Some(times)
     }
 
     /// A range of ticks as a stretch of time.

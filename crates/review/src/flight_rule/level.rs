@@ -6,6 +6,9 @@
 use std::collections::VecDeque;
 
 use exact::Rational;
+use rmpl::program::Change as Changes;
+use rmpl::rule::Order;
+use tpn::{Network, Supply, Use};
 
 use super::cases::Case;
 use super::cut::{Edge, Times};
@@ -25,6 +28,27 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
+    /// That a resource compares so with an amount.
+    pub(super) const fn new(resource: usize, order: Order, amount: Rational, is_instant: bool) -> Self {
+        let (is_above, may_equal) = match order {
+            Order::Below => (false, false),
+            Order::AtMost => (false, true),
+            Order::Above => (true, false),
+            Order::AtLeast => (true, true),
+        };
+        Self { resource, is_above, amount, may_equal, is_instant }
+    }
+
+    /// How the resource compares with the amount.
+    pub(super) const fn order(&self) -> Order {
+        match (self.is_above, self.may_equal) {
+            (false, false) => Order::Below,
+            (false, true) => Order::AtMost,
+            (true, false) => Order::Above,
+            (true, true) => Order::AtLeast,
+        }
+    }
+
     pub(super) const fn negated(self) -> Self {
         Self { is_above: !self.is_above, may_equal: !self.may_equal, ..self }
     }
@@ -55,12 +79,25 @@ pub(super) struct Change {
 }
 
 impl Change {
+    /// What a use does to a level.
+    pub(super) fn of_use(used: &Use) -> Vec<Self> {
+        if used.amount.is_zero() {
+            return Vec::new();
+        }
+        let change = |node, more, is_start| Self { node, more, is_start };
+        if used.change == Changes::Uses {
+            let less = used.amount.checked_neg().unwrap_or(Rational::ZERO);
+            return vec![change(used.start, [used.amount; 2], true), change(used.end, [less; 2], false)];
+        }
+        vec![change(used.moment(), used.level_changes(), used.change == Changes::Consumes)]
+    }
+
     pub(super) fn has_come(&self, is_instant: bool) -> Edge {
         Edge::past(self.node, !(is_instant && self.is_start))
     }
 
     /// The change of the level: the greatest possible one if `is_above`, otherwise the least.
-    const fn toward(&self, is_above: bool) -> Rational {
+    pub(super) const fn toward(&self, is_above: bool) -> Rational {
         self.more[is_above as usize]
     }
 
@@ -85,6 +122,14 @@ impl Change {
 }
 
 impl Resource {
+    /// How much there is before anything has come.
+    pub(super) fn first_of(network: &Network, resource: usize) -> Rational {
+        match network.resources[resource].supply {
+            Supply::Reusable { .. } => Rational::ZERO,
+            Supply::Reservoir { level, .. } => level,
+        }
+    }
+
     /// The level of `case` that is the furthest where `wanted` looks, and which changes have come then; `None` where figures
     /// are too large.
     pub(super) fn furthest(

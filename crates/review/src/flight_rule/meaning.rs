@@ -6,13 +6,14 @@ mod words;
 
 use std::ops::ControlFlow;
 
-use exact::{Bound, Rational, Time};
-use rmpl::program::{Change as Changes, Program};
+use exact::{Bound, Time};
+use rmpl::program::Program;
 use rmpl::rule::{Activity, Moment, Rule};
-use tpn::{Network, NodeId, OccurrenceKind, Plan, PlanOrder, Supply};
+use tpn::{Network, NodeId, Occurrence, OccurrenceKind, Plan, PlanOrder};
 
-use self::breach::{Breach, at_levels, earliest};
-use self::known::{Asked, Reading};
+pub(super) use self::breach::Breach;
+use self::breach::{at_levels, earliest};
+pub(super) use self::known::{Asked, Reading, tells, untouched};
 use super::cases::{Condition, MAX_PAIRS, TooMany, each_case};
 use super::cut::{Edge, Times, joined};
 use super::level::{Change, Resource};
@@ -38,10 +39,13 @@ pub(super) struct Meaning<'a> {
 }
 
 /// Where instants are looked for.
-struct Place {
-    scope: Condition,
+pub(super) struct Place<'network> {
+    /// Between these events.
+    pub(super) edges: Vec<Edge>,
     /// An instant at which something starts or ends: what touches it counts, as for `requires at start`.
-    is_instant: bool,
+    pub(super) is_instant: bool,
+    /// The activity whose moment it is.
+    pub(super) of: Option<&'network Occurrence>,
 }
 
 impl<'a> Meaning<'a> {
@@ -50,13 +54,14 @@ impl<'a> Meaning<'a> {
         Self { program, network, plan, times, resources, order: PlanOrder::new(plan) }
     }
 
-    /// Holds the plan against a rule; `None` if there are too many cases.
+    /// Holds the plan against a rule; with the earliest breach, or what is not sure, if there is one. `None` if there are too
+    /// many cases.
     pub(super) fn examine(
         &mut self,
         text: &str,
         rule: &Rule,
         stop: &mut dyn FnMut() -> bool,
-    ) -> Option<Finding> {
+    ) -> Option<(Finding, Option<Breach>)> {
         let (mut applies, mut doubts, mut breaches) = (Vec::new(), Vec::new(), Vec::new());
         for place in self.places(&rule.moment)? {
             let reading = if place.is_instant { Reading::Touching } else { Reading::Between };
@@ -65,7 +70,8 @@ impl<'a> Meaning<'a> {
                 Some(during) => meaning.condition(during, asked, reading.of_negation()),
                 None => Condition::All(Vec::new()),
             };
-            let looked_at = Condition::All(vec![place.scope.clone(), during(self, Asked::NotDenied)]);
+            let scope = Condition::All(place.edges.iter().copied().map(Condition::Edge).collect());
+            let looked_at = Condition::All(vec![scope, during(self, Asked::NotDenied)]);
             applies.extend(self.breaches(&looked_at, stop).ok()?.into_iter().map(|it| it.stretch));
             let not_held = self.condition(&rule.holds, Asked::NotKnown, reading);
             let doubt = Condition::All(vec![looked_at, not_held]);
@@ -83,7 +89,8 @@ impl<'a> Meaning<'a> {
         let told = if is_broken { &breaks } else { &open };
         let Some(breach) = earliest(if is_broken { breaches } else { doubts }) else {
             let outcome = if applies.is_empty() { Outcome::NeverApplies } else { Outcome::Holds };
-            return Some(Finding { applies: joined(applies), ..Finding::without_times(text, outcome) });
+            let finding = Finding { applies: joined(applies), ..Finding::without_times(text, outcome) };
+            return Some((finding, None));
         };
         let nodes = self.decisive(&breach);
         let stretch = told.iter().find(|it| it.from <= breach.stretch.from && breach.stretch.to <= it.to);
@@ -92,57 +99,39 @@ impl<'a> Meaning<'a> {
         names.dedup();
         let outcome = if is_broken { Outcome::Broken(words) } else { Outcome::Unsure(words) };
         let nodes = nodes.into_iter().map(|(node, _)| node).collect();
-        Some(Finding { rule: text.to_owned(), outcome, applies: joined(applies), breaks, open, names, nodes })
+        let rule = text.to_owned();
+        let finding = Finding { rule, outcome, applies: joined(applies), breaks, open, names, nodes };
+        Some((finding, Some(breach)))
     }
 
-    fn places(&self, moment: &Moment) -> Option<Vec<Place>> {
-        let (start, end) = (self.network.start, self.network.end);
-        let at = |node: NodeId| {
-            Condition::All(vec![
-                Condition::Edge(Edge::past(node, true)),
-                Condition::Edge(Edge::future(node, true)),
-            ])
+    /// The times of an execution that has an instant of a breach, by node: the earliest ones.
+    pub(super) fn execution(&self, breach: &Breach) -> Option<Vec<Option<Time>>> {
+        let mut edges = [breach.case.past.clone(), breach.case.future.clone()].concat();
+        edges.extend(breach.level.iter().flat_map(|level| level.edges.iter().copied()));
+        self.times.execution(self.network, self.plan, &edges)
+    }
+
+    fn places(&self, moment: &Moment) -> Option<Vec<Place<'a>>> {
+        let of = match moment {
+            Moment::Start(of) | Moment::End(of) => of.as_ref(),
+            Moment::Throughout | Moment::Within { .. } => None,
         };
-        let instant = |node: NodeId| Place { scope: at(node), is_instant: true };
-        let within =
-            vec![Condition::Edge(Edge::past(start, true)), Condition::Edge(Edge::future(end, false))];
-        Some(match moment {
-            Moment::Throughout => {
-                vec![Place { scope: Condition::All(within), is_instant: false }, instant(end)]
-            }
-            Moment::Within { from, to } => {
-                let mut bounds =
-                    vec![Condition::Edge(Edge::past(start, true).after(self.times.ticks(*from)?))];
-                if let Bound::Finite(to) = *to {
-                    let to = self.times.ticks(to)?;
-                    bounds.push(Condition::Edge(Edge::future(start, false).after(to)));
-                }
-                let inside = [within, bounds.clone()].concat();
-                bounds.push(at(end));
-                vec![
-                    Place { scope: Condition::All(inside), is_instant: false },
-                    Place { scope: Condition::All(bounds), is_instant: true },
-                ]
-            }
-            Moment::Start(None) => vec![instant(start)],
-            Moment::End(None) => vec![instant(end)],
-            Moment::Start(Some(of)) => self.occurrences(of).map(|(start, _)| instant(start)).collect(),
-            Moment::End(Some(of)) => self.occurrences(of).map(|(_, end)| instant(end)).collect(),
+        let occurrences = of.into_iter().flat_map(|of| self.selected(of));
+        places(self.network, moment, occurrences, |time| self.times.ticks(time))
+    }
+
+    /// The activities of the plan that are meant.
+    fn selected(&self, of: &Activity) -> impl Iterator<Item = &'a Occurrence> {
+        let plan = self.plan;
+        meant(self.network, of).filter(move |it| {
+            it.arc.is_none_or(|arc| plan.selected_arcs.get(arc.index()) == Some(&true))
+                && plan.selected_nodes.get(it.start.index()) == Some(&true)
         })
     }
 
-    /// The activities of the plan that are meant, from start to end.
+    /// These, from start to end.
     fn occurrences(&self, of: &Activity) -> impl Iterator<Item = (NodeId, NodeId)> {
-        let is_meant = move |it: &&tpn::Occurrence| {
-            matches!(it.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity)
-                && it.activity == of.name
-                && of.arguments.as_ref().is_none_or(|arguments| *arguments == it.arguments)
-        };
-        let is_selected = |it: &&tpn::Occurrence| {
-            let arc = it.arc.is_none_or(|arc| self.plan.selected_arcs.get(arc.index()) == Some(&true));
-            arc && self.plan.selected_nodes.get(it.start.index()) == Some(&true)
-        };
-        self.network.occurrences.iter().filter(is_meant).filter(is_selected).map(|it| (it.start, it.end))
+        self.selected(of).map(|it| (it.start, it.end))
     }
 
     /// The cases that meet a condition, with when that is.
@@ -168,25 +157,54 @@ impl<'a> Meaning<'a> {
 
 /// The changes of a resource in a plan.
 fn resource(network: &Network, plan: &Plan, index: usize) -> Resource {
-    let supply = network.resources[index].supply;
     let selected = network.uses.iter().filter(|used| {
         used.resource.index() == index && plan.selected_arcs.get(used.arc.index()) == Some(&true)
     });
-    let less = |amount: Rational| amount.checked_neg().unwrap_or(Rational::ZERO);
-    let mut changes = Vec::new();
-    for used in selected.filter(|used| !used.amount.is_zero()) {
-        let (start, end, amount) = (used.start, used.end, used.amount);
-        if used.change == Changes::Uses {
-            changes.push(Change { node: start, more: [amount; 2], is_start: true });
-            changes.push(Change { node: end, more: [less(amount); 2], is_start: false });
-        } else {
-            let is_start = used.change == Changes::Consumes;
-            changes.push(Change { node: used.moment(), more: used.level_changes(), is_start });
-        }
+    Resource {
+        first: Resource::first_of(network, index),
+        changes: selected.flat_map(Change::of_use).collect(),
     }
-    let first = match supply {
-        Supply::Reusable { .. } => Rational::ZERO,
-        Supply::Reservoir { level, .. } => level,
-    };
-    Resource { first, changes }
+}
+
+/// Where a rule of a mission looks at instants; `None` if times are too large. `occurrences` are the activities that its
+/// moment is about, and `ticks` tells a time in ticks.
+pub(super) fn places<'network>(
+    network: &Network,
+    moment: &Moment,
+    occurrences: impl Iterator<Item = &'network Occurrence>,
+    ticks: impl Fn(Time) -> Option<i64>,
+) -> Option<Vec<Place<'network>>> {
+    let (start, end) = (network.start, network.end);
+    let at = |node: NodeId| vec![Edge::past(node, true), Edge::future(node, true)];
+    let instant = |node: NodeId| Place { edges: at(node), is_instant: true, of: None };
+    let within = vec![Edge::past(start, true), Edge::future(end, false)];
+    Some(match moment {
+        Moment::Throughout => vec![Place { edges: within, is_instant: false, of: None }, instant(end)],
+        Moment::Within { from, to } => {
+            let mut bounds = vec![Edge::past(start, true).after(ticks(*from)?)];
+            if let Bound::Finite(to) = *to {
+                bounds.push(Edge::future(start, false).after(ticks(to)?));
+            }
+            vec![
+                Place { edges: [within, bounds.clone()].concat(), is_instant: false, of: None },
+                Place { edges: [bounds, at(end)].concat(), is_instant: true, of: None },
+            ]
+        }
+        Moment::Start(None) => vec![instant(start)],
+        Moment::End(None) => vec![instant(end)],
+        Moment::Start(Some(_)) => occurrences.map(|it| Place { of: Some(it), ..instant(it.start) }).collect(),
+        Moment::End(Some(_)) => occurrences.map(|it| Place { of: Some(it), ..instant(it.end) }).collect(),
+    })
+}
+
+/// The activities of a network that a rule means.
+pub(super) fn meant<'network>(
+    network: &'network Network,
+    of: &Activity,
+) -> impl Iterator<Item = &'network Occurrence> {
+    network.occurrences.iter().filter(move |it| {
+        matches!(it.kind, OccurrenceKind::Primitive | OccurrenceKind::Activity)
+            && it.activity == of.name
+            && of.arguments.as_ref().is_none_or(|arguments| *arguments == it.arguments)
+    })
 }

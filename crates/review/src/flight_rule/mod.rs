@@ -9,6 +9,7 @@ mod cut;
 mod finding;
 mod level;
 mod meaning;
+pub mod proof;
 
 use rmpl::Diagnostic;
 use rmpl::program::Program;
@@ -56,7 +57,7 @@ fn finding(
     let rule = read(program, network, text).map_err(|found| unreadable(text, &found))?;
     let times = cut::Times::new(network, plan, &meaning::times_of(&rule)).ok_or(Outcome::Undecided)?;
     let mut meaning = meaning::Meaning::new(program, network, plan, times);
-    meaning.examine(text, &rule, stop).ok_or(Outcome::Undecided)
+    meaning.examine(text, &rule, stop).map(|(finding, _)| finding).ok_or(Outcome::Undecided)
 }
 
 /// Reads a rule in view of all that the mission has.

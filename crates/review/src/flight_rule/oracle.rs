@@ -9,10 +9,10 @@ use super::super::tests::snapshot;
 use super::{MissionRule, Outcome, evaluate};
 
 /// Numbers that look like chance (Knuth's linear congruential generator).
-struct Chance(u64);
+pub(super) struct Chance(pub(super) u64);
 
 impl Chance {
-    fn below(&mut self, count: u64) -> u64 {
+    pub(super) fn below(&mut self, count: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % count
     }
@@ -22,7 +22,7 @@ impl Chance {
         format!("[{lower},{}]", lower + self.below(3))
     }
 
-    fn statement(&mut self) -> String {
+    pub(super) fn statement(&mut self) -> String {
         match self.below(12) {
             0 => format!("delay{}", self.bounds()),
             1 => "Raise()".to_owned(),
@@ -39,9 +39,14 @@ impl Chance {
     }
 
     fn mission(&mut self) -> String {
+        self.mission_of(&mut Self::statement)
+    }
+
+    /// A mission of such statements.
+    pub(super) fn mission_of(&mut self, statement: &mut dyn FnMut(&mut Self) -> String) -> String {
         let mut threads = Vec::new();
         for _ in 0..=self.below(2) {
-            let parts: Vec<String> = (0..=self.below(2)).map(|_| self.statement()).collect();
+            let parts: Vec<String> = (0..=self.below(2)).map(|_| statement(self)).collect();
             threads.push(format!("{{ {} }}", parts.join("; ")));
         }
         format!(
@@ -81,7 +86,7 @@ scenario S[0,6] = {{ {} }}",
         ATOMS[self.below(ATOMS.len() as u64) as usize]
     }
 
-    fn rule(&mut self) -> String {
+    pub(super) fn rule(&mut self) -> String {
         let word = ["", "always ", "never "][self.below(3) as usize];
         let joint = ["", " and ", " or "][self.below(3) as usize];
         let second = if joint.is_empty() { "" } else { self.atom() };

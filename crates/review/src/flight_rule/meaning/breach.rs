@@ -9,7 +9,7 @@ use super::super::cut::{Edge, Times};
 use super::super::level::{Change, Resource};
 
 /// A case that breaks a rule, and from when to when.
-pub(super) struct Breach {
+pub(in crate::flight_rule) struct Breach {
     pub(super) case: Case,
     pub(super) stretch: Stretch,
     pub(super) level: Option<Level>,
@@ -17,11 +17,13 @@ pub(super) struct Breach {
 
 /// A level that breaks a rule.
 #[derive(Clone)]
-pub(super) struct Level {
+pub(in crate::flight_rule) struct Level {
     pub(super) resource: usize,
     pub(super) amount: Rational,
     /// What has led to it.
     pub(super) by: Vec<NodeId>,
+    /// Which changes have come then, and which have not.
+    pub(super) edges: Vec<Edge>,
 }
 
 /// Resources with more changes than this are not drawn change by change.
@@ -130,14 +132,22 @@ fn met(times: &mut Times, resources: &[Resource], case: &Case, pairs: &mut usize
         let come = resource.changes.iter().zip(&has_come);
         let by = come.filter(|(change, has_come)| **has_come && leads(change));
         let by = by.map(|(change, _)| change.node).collect();
-        let found = Level { resource: wanted.resource, amount: level, by };
+        let side = |(change, &has_come): (&Change, &bool)| {
+            let edge = change.has_come(wanted.is_instant);
+            if has_come { edge } else { edge.negated() }
+        };
+        let edges = resource.changes.iter().zip(&has_come).map(side).collect();
+        let found = Level { resource: wanted.resource, amount: level, by, edges };
         let is_of_one = case.levels.iter().all(|other| other.resource == wanted.resource);
         if is_of_one && resource.meets(&has_come, &case.levels) {
             return Met::Yes(Some(found));
         }
         shown = shown.or(Some(found));
     }
-    let Some(open) = largest_open(times, resources, case) else { return Met::Yes(shown) };
+    let Some(open) = largest_open(times, resources, case) else {
+        // The case says itself which changes have come.
+        return Met::Yes(shown.map(|level| Level { edges: Vec::new(), ..level }));
+    };
     let changes: usize = case.levels.iter().map(|wanted| resources[wanted.resource].changes.len()).sum();
     let Some(left) = pairs.checked_sub(changes * changes) else { return Met::Unknown };
     *pairs = left;

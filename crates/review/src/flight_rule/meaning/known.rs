@@ -2,9 +2,10 @@
 //! not to hold, or to be open.
 
 use exact::Time;
-use rmpl::program::LabelMode;
-use rmpl::rule::{Formula, Order};
-use tpn::{Extent, LabelId, NodeId, ValueSet};
+use rmpl::program::{LabelMode, Program};
+use rmpl::rule::Formula;
+use smol_str::SmolStr;
+use tpn::{Extent, LabelId, NodeId, ValueId, ValueSet, Variable};
 
 use super::super::cases::Condition;
 use super::super::cut::Edge;
@@ -13,7 +14,7 @@ use super::Meaning;
 
 /// What is asked of a condition: what holds is known, or not known, or the contrary is.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Asked {
+pub(in crate::flight_rule) enum Asked {
     Known,
     NotKnown,
     Denied,
@@ -22,7 +23,7 @@ pub(super) enum Asked {
 
 impl Asked {
     /// What is asked of a condition when this is asked of its negation.
-    const fn of_negation(self) -> Self {
+    pub(in crate::flight_rule) const fn of_negation(self) -> Self {
         match self {
             Self::Known => Self::Denied,
             Self::NotKnown => Self::NotDenied,
@@ -34,7 +35,7 @@ impl Asked {
 
 /// When conditions are asked for, and how what touches a moment is taken.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Reading {
+pub(in crate::flight_rule) enum Reading {
     /// At any instant: what starts counts, what ends does not.
     Between,
     /// At a moment: what touches it counts.
@@ -45,14 +46,14 @@ pub(super) enum Reading {
 
 impl Reading {
     /// How the inside of a `not` is read: a condition and its negation never are both known.
-    pub(super) const fn of_negation(self) -> Self {
+    pub(in crate::flight_rule) const fn of_negation(self) -> Self {
         match self {
             Self::Between => Self::Between,
             Self::Touching | Self::Strict => Self::Strict,
         }
     }
 
-    const fn touches(self) -> bool {
+    pub(in crate::flight_rule) const fn touches(self) -> bool {
         !matches!(self, Self::Between)
     }
 }
@@ -120,14 +121,7 @@ impl Meaning<'_> {
                         Asked::NotKnown | Asked::NotDenied => Condition::All(Vec::new()),
                     };
                 };
-                let (is_above, may_equal) = match order {
-                    Order::Below => (false, false),
-                    Order::AtMost => (false, true),
-                    Order::Above => (true, false),
-                    Order::AtLeast => (true, true),
-                };
-                let is_instant = reading.touches();
-                let wanted = Wanted { resource, is_above, amount: *amount, may_equal, is_instant };
+                let wanted = Wanted::new(resource, *order, *amount, reading.touches());
                 Condition::Level(match asked {
                     Asked::Known | Asked::NotDenied => wanted,
                     Asked::NotKnown | Asked::Denied => wanted.negated(),
@@ -137,38 +131,15 @@ impl Meaning<'_> {
     }
 
     /// It is known that a variable has one of these values, or that it has another.
-    fn is_one_of(
-        &self,
-        variable: &str,
-        values: &[smol_str::SmolStr],
-        is_among: bool,
-        is_instant: bool,
-    ) -> Condition {
+    fn is_one_of(&self, variable: &str, values: &[SmolStr], is_among: bool, is_instant: bool) -> Condition {
         let Some(index) = self.network.variables.iter().position(|it| it.name == variable) else {
-            return match self.untouched(variable) {
+            return match untouched(self.program, variable) {
                 // It is so from the start of the mission to its end.
                 Some(value) if values.contains(value) == is_among => Condition::All(Vec::new()),
                 _ => Condition::Any(Vec::new()),
             };
         };
         let declared = &self.network.variables[index];
-        let is_meant = |value: tpn::ValueId| {
-            declared.values.get(value.index()).is_some_and(|name| values.contains(name))
-        };
-        let is_told = |set: &ValueSet| match set {
-            ValueSet::In(ids) => ids.iter().all(|&id| is_meant(id) == is_among),
-            ValueSet::NotIn(ids) if declared.closed => {
-                let left = (0..declared.values.len()).map(tpn::ValueId::from_index);
-                left.filter(|id| !ids.contains(id)).all(|id| is_meant(id) == is_among)
-            }
-            // Of all that it may be besides, only that it is none of these is known.
-            ValueSet::NotIn(ids) => {
-                let named = |value: &smol_str::SmolStr| declared.values.iter().position(|it| it == value);
-                let is_excluded =
-                    |value| named(value).is_some_and(|at| ids.contains(&tpn::ValueId::from_index(at)));
-                !is_among && values.iter().all(is_excluded)
-            }
-        };
         let mut told: Vec<LabelId> = (self.network.labels.iter().enumerate())
             .filter(|(_, label)| {
                 label.literal.variable.index() == index
@@ -177,7 +148,9 @@ impl Meaning<'_> {
             })
             .map(|(at, _)| LabelId::from_index(at))
             .collect();
-        let is_meant = |label: &LabelId| is_told(&self.network.labels[label.index()].literal.values);
+        let is_meant = |label: &LabelId| {
+            tells(declared, &self.network.labels[label.index()].literal.values, values, is_among)
+        };
         if !declared.is_lasting {
             let parts = told.into_iter().filter(is_meant).map(|label| {
                 let (start, end) = self.network.interval(label);
@@ -196,18 +169,6 @@ impl Meaning<'_> {
             Condition::All(edges)
         });
         Condition::Any(parts.collect())
-    }
-
-    /// The value that a state keeps which nothing in the mission asks for or changes. What is read from the plant is not
-    /// known that way: components fail.
-    fn untouched(&self, variable: &str) -> Option<&smol_str::SmolStr> {
-        let mut declared = self.program.variables.iter().filter(|it| it.name.text == variable);
-        if let Some(declared) = declared.next() {
-            return declared.initial.as_ref().filter(|_| !declared.is_from_plant).map(|value| &value.text);
-        }
-        let vehicle = variable.strip_suffix(".at")?;
-        let mut vehicles = self.program.world.vehicles.iter();
-        vehicles.find(|it| it.name.text == vehicle).map(|it| &it.start.text)
     }
 
     /// What sorts changes of one variable: the first value, then by when they can begin.
@@ -242,6 +203,46 @@ impl Meaning<'_> {
     fn is_ordered(&self, first: LabelId, then: LabelId) -> bool {
         self.order.is_before(first, then)
     }
+}
+
+/// Whether a set of values tells that a variable has one of `values`, or, unless `is_among`, that it has another.
+pub(in crate::flight_rule) fn tells(
+    variable: &Variable,
+    set: &ValueSet,
+    values: &[SmolStr],
+    is_among: bool,
+) -> bool {
+    let is_meant = |value: ValueId| {
+        variable.values.get(value.index()).is_some_and(|name| values.contains(name)) == is_among
+    };
+    match set {
+        ValueSet::In(ids) => ids.iter().all(|&id| is_meant(id)),
+        ValueSet::NotIn(ids) if variable.closed => {
+            let left = (0..variable.values.len()).map(ValueId::from_index);
+            left.filter(|id| !ids.contains(id)).all(is_meant)
+        }
+        // Of all that it may be besides, only that it is none of these is known.
+        ValueSet::NotIn(ids) => {
+            let named = |value: &SmolStr| variable.values.iter().position(|it| it == value);
+            let is_excluded = |value| named(value).is_some_and(|at| ids.contains(&ValueId::from_index(at)));
+            !is_among && values.iter().all(is_excluded)
+        }
+    }
+}
+
+/// The value that a state keeps which nothing in the mission asks for or changes. What is read from the plant is not
+/// known that way: components fail.
+pub(in crate::flight_rule) fn untouched<'program>(
+    program: &'program Program,
+    variable: &str,
+) -> Option<&'program SmolStr> {
+    let mut declared = program.variables.iter().filter(|it| it.name.text == variable);
+    if let Some(declared) = declared.next() {
+        return declared.initial.as_ref().filter(|_| !declared.is_from_plant).map(|value| &value.text);
+    }
+    let vehicle = variable.strip_suffix(".at")?;
+    let mut vehicles = program.world.vehicles.iter();
+    vehicles.find(|it| it.name.text == vehicle).map(|it| &it.start.text)
 }
 
 /// Between two events; at an instant, what touches it counts.

@@ -1,0 +1,276 @@
+//! From a plan with an instant to a plan of the mission that breaks the rule, with a schedule that shows it.
+//!
+//! What the solver found is never believed: the plan is planned again in the mission's own network, where the environment
+//! has its say, the checker checks it, and the rule is held against it as against any plan.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use exact::{Bound, Time};
+use executive::{PlanNetwork, Script};
+use kirk::{Options, Status};
+use rmpl::program::Program;
+use rmpl::rule::Rule;
+use stn::INFINITE;
+use tpn::plan_json::plan_to_json;
+use tpn::{
+    ArcKind, Choice, Network, NodeId, Ordering, Plan, Precedence, ResourceId, Supply, UseId, UseOrdering,
+};
+use verify::Rule as Checked;
+
+use super::super::Outcome;
+use super::super::cut::Times;
+use super::super::meaning::{Meaning, times_of};
+use super::question::Sought;
+use super::witness::bare_arc;
+use super::{Counterexample, Meter, OPTIONS, WithPaths};
+use crate::contradict::{Scheduled, named_times};
+
+/// What became of the choices of a plan with an instant.
+pub(super) enum Tried {
+    Shown(Box<Counterexample>),
+    /// No plan that makes these choices breaks the rule.
+    Refuted,
+    /// Those that were looked at do not, for this reason.
+    Open(String),
+}
+
+/// The most plans that are listed to refute some choices.
+const MAX_LISTED: usize = 200;
+
+/// Beyond so many uses their order is not taken over from the instant's plan.
+const MAX_USES: usize = 300;
+
+/// A rule that is held against plans.
+#[derive(Clone, Copy)]
+pub(super) struct Judge<'a> {
+    pub(super) program: &'a Program,
+    pub(super) text: &'a str,
+    pub(super) rule: &'a Rule,
+    pub(super) sought: Sought,
+}
+
+impl Judge<'_> {
+    /// What shows that a plan is as sought, if the checker accepts it, with a schedule of it.
+    pub(super) fn shown(
+        self,
+        network: &Network,
+        plan: &Plan,
+        is_own: bool,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Option<Box<Counterexample>> {
+        if !verify::check_plan(network, plan).valid {
+            return None;
+        }
+        let times = Times::new(network, plan, &times_of(self.rule))?;
+        let mut meaning = Meaning::new(self.program, network, plan, times);
+        let (finding, breach) = meaning.examine(self.text, self.rule, stop)?;
+        let text = match finding.outcome {
+            Outcome::Broken(text) => text,
+            Outcome::Unsure(text) if self.sought == Sought::Unsure => text,
+            _ => return None,
+        };
+        let times = meaning.execution(&breach?)?;
+        // That the checker cannot decide the order within an instant is nothing against a schedule.
+        let checked = verify::check_schedule(network, plan, &times);
+        let is_schedule = checked.violations.iter().all(|it| it.rule == Checked::Form);
+        let scheduled = Scheduled { program: self.program, network, plan, times: &times, is_extreme: false };
+        if !is_schedule || scheduled.first_breach(self.rule).is_none() {
+            return None;
+        }
+        Some(Box::new(Counterexample {
+            text,
+            plan: plan_to_json(network, plan),
+            choices: plan.choices.clone(),
+            is_own,
+            script: Script { schedule: named_times(network, plan, &times), ..Script::default() },
+        }))
+    }
+
+    /// Looks for a plan of the mission that makes the choices of a plan with an instant, and is as sought.
+    pub(super) fn tried(
+        self,
+        network: &Network,
+        (extended, found): (&Network, &Plan),
+        mut with_paths: Option<&mut WithPaths<'_>>,
+        meter: &mut Meter<'_>,
+    ) -> Tried {
+        let choices = own_choices(network, found);
+        let mut reason = "the plans that may violate it were not confirmed".to_owned();
+        for orders in [Some(Orders::default()), Orders::of(network, extended, found)].into_iter().flatten() {
+            let bare = kirk::plan(&restricted(network, &choices, &orders), &OPTIONS, meter);
+            if bare.status == Status::NoPlan && orders.precedences.is_empty() {
+                return Tried::Refuted;
+            }
+            let Some(plan) = bare.plans.into_iter().next() else { continue };
+            let shown = match with_paths.as_deref_mut() {
+                None => {
+                    self.shown(network, &plan_of(network, plan, &orders), false, &mut || meter.is_stopped())
+                }
+                Some(with_paths) => match with_paths(&plan) {
+                    Err(why) => {
+                        reason = why;
+                        None
+                    }
+                    Ok(network) => {
+                        let driven = kirk::plan(&restricted(&network, &choices, &orders), &OPTIONS, meter);
+                        driven.plans.into_iter().next().and_then(|plan| {
+                            let plan = plan_of(&network, plan, &orders);
+                            self.shown(&network, &plan, false, &mut || meter.is_stopped())
+                        })
+                    }
+                },
+            };
+            if let Some(shown) = shown {
+                return Tried::Shown(shown);
+            }
+        }
+        // Plans that differ only in paths or in orders of uses are not listed one by one.
+        if with_paths.is_some() || !network.uses.is_empty() {
+            return Tried::Open(reason);
+        }
+        let none = Orders::default();
+        let all = Options { all: true, max_plans: MAX_LISTED, ..OPTIONS };
+        let listed = kirk::plan(&restricted(network, &choices, &none), &all, meter);
+        let is_complete = listed.status == Status::Plan && listed.plans.len() < MAX_LISTED;
+        for plan in listed.plans {
+            let plan = plan_of(network, plan, &none);
+            if let Some(shown) = self.shown(network, &plan, false, &mut || meter.is_stopped()) {
+                return Tried::Shown(shown);
+            }
+        }
+        if is_complete && meter.limit.is_none() { Tried::Refuted } else { Tried::Open(reason) }
+    }
+}
+
+/// The choices of a plan with an instant that are the mission's.
+pub(super) fn own_choices(network: &Network, found: &Plan) -> Vec<Choice> {
+    let own = found.choices.iter().filter(|choice| choice.decision.index() < network.decisions.len());
+    own.copied().collect()
+}
+
+/// The network with these choices and orders: the arcs to other alternatives would have to take at least one unit and at most
+/// none.
+fn restricted(network: &Network, choices: &[Choice], orders: &Orders) -> Network {
+    let mut network = network.clone();
+    network.objective.clear();
+    for choice in choices {
+        let alternatives = network.decisions[choice.decision.index()].alternatives.clone();
+        for (_, arc) in (0..).zip(alternatives).filter(|&(number, _)| number != choice.alternative) {
+            network.arcs[arc.index()].lower = Time::ONE;
+            network.arcs[arc.index()].upper = Bound::ZERO;
+        }
+    }
+    for order in &orders.precedences {
+        let bounds = (order.least, Bound::Infinite);
+        network.arcs.push(bare_arc(order.earlier, order.later, bounds, ArcKind::Constraint));
+    }
+    network
+}
+
+/// A plan of the restricted network as one of the mission's.
+fn plan_of(network: &Network, mut plan: Plan, orders: &Orders) -> Plan {
+    plan.selected_arcs.truncate(network.arcs.len());
+    let known: BTreeSet<Ordering> = plan.orderings_added.iter().copied().collect();
+    plan.orderings_added.extend(orders.labels.iter().filter(|order| !known.contains(order)));
+    let known: BTreeSet<UseOrdering> = plan.uses_ordered.iter().copied().collect();
+    plan.uses_ordered.extend(orders.uses.iter().filter(|order| !known.contains(order)));
+    // Nobody looked for the best one.
+    plan.quality.is_optimal = (!network.objective.is_empty()).then_some(false);
+    plan
+}
+
+/// What of the orders of a plan with an instant may be so because of the instant.
+#[derive(Default)]
+struct Orders {
+    labels: Vec<Ordering>,
+    uses: Vec<UseOrdering>,
+    precedences: Vec<Precedence>,
+}
+
+impl Orders {
+    /// `None` if there are none, or if times do not fit.
+    fn of(network: &Network, extended: &Network, found: &Plan) -> Option<Self> {
+        let is_own = |order: &Ordering| {
+            order.first.index() < network.labels.len() && order.then.index() < network.labels.len()
+        };
+        let mut bare = found.clone();
+        bare.choices = own_choices(network, found);
+        bare.selected_nodes.truncate(network.nodes.len());
+        bare.selected_arcs.truncate(network.arcs.len());
+        bare.windows.truncate(network.nodes.len());
+        bare.causal_links.retain(|link| link.ask.index() < network.labels.len());
+        bare.conflict_order.retain(is_own);
+        bare.state_order.retain(|order| order.variable.index() < network.variables.len());
+        bare.orderings_added.clear();
+        bare.uses_ordered.clear();
+        let natures = network.natures_events(&bare.selected_arcs);
+        let mut without = Entailed::new(network, &bare)?;
+        let mut orders = Self::default();
+        let mut labels: Vec<Ordering> =
+            found.orderings_added.iter().copied().filter(|order| is_own(order)).collect();
+        labels.extend(bare.telling_order(network));
+        labels.sort_unstable();
+        labels.dedup();
+        for order in labels {
+            let precedence = bare.ordering_precedence(network, &order, &natures);
+            if !without.holds(&Precedence { least: Time::ZERO, ..precedence })? {
+                orders.labels.push(order);
+                orders.precedences.push(precedence);
+            }
+        }
+        if network.uses.len() <= MAX_USES {
+            let mut with = Entailed::new(extended, found)?;
+            for resource in (0..network.resources.len()).map(ResourceId::from_index) {
+                let is_reusable =
+                    matches!(network.resources[resource.index()].supply, Supply::Reusable { .. });
+                let selected = network.uses.iter().zip(0..).filter(|(used, _)| {
+                    used.resource == resource
+                        && found.selected_arcs.get(used.arc.index()) == Some(&true)
+                        && (!used.amount.is_zero() || used.level.is_some())
+                });
+                let selected: Vec<UseId> =
+                    selected.map(|(_, index): (_, usize)| UseId::from_index(index)).collect();
+                for &first in &selected {
+                    for &then in selected.iter().filter(|&&then| then != first) {
+                        let order = UseOrdering { first, then };
+                        let precedence = order.precedence(network);
+                        let is_one = precedence.earlier == precedence.later
+                            || (!is_reusable
+                                && network.uses[first.index()].owner == network.uses[then.index()].owner);
+                        if !is_one && with.holds(&precedence)? && !without.holds(&precedence)? {
+                            orders.uses.push(order);
+                            orders.precedences.push(precedence);
+                        }
+                    }
+                }
+            }
+        }
+        (!orders.precedences.is_empty()).then_some(orders)
+    }
+}
+
+/// What the constraints of a plan entail.
+struct Entailed {
+    network: PlanNetwork,
+    rows: BTreeMap<NodeId, Vec<i64>>,
+}
+
+impl Entailed {
+    fn new(network: &Network, plan: &Plan) -> Option<Self> {
+        let network = PlanNetwork::new(network, plan).ok()?;
+        Some(Self { network, rows: BTreeMap::new() })
+    }
+
+    /// Whether one event never comes later than another; `None` if times do not fit.
+    fn holds(&mut self, precedence: &Precedence) -> Option<bool> {
+        let (later, earlier) =
+            (self.network.point(precedence.later)?, self.network.point(precedence.earlier)?);
+        if !self.rows.contains_key(&precedence.later) {
+            let mut row = Vec::new();
+            self.network.stn.distances_from(later, &mut row).ok()?;
+            self.rows.insert(precedence.later, row);
+        }
+        let distance = self.rows.get(&precedence.later)?.get(earlier.index()).copied().unwrap_or(INFINITE);
+        Some(distance <= 0)
+    }
+}

@@ -1,0 +1,336 @@
+//! Whether a flight rule holds in every plan of its mission (SPEC 16.4): whatever is chosen, linked, ordered and scheduled,
+//! and whatever the environment does.
+//!
+//! That is planning with the rule negated. The mission gets one more event, an instant that breaks the rule, and the planner
+//! looks for a plan that has it. If there is none, the rule holds in every plan. If there is one, it is a counterexample once
+//! the checker accepts it as a plan of the mission and the rule, held against it as against any plan, is broken.
+
+mod candidate;
+mod question;
+mod witness;
+
+use std::sync::Arc;
+
+use exact::{Scale, Time};
+use executive::Script;
+use kirk::{Options, Search, Stats, Status, Termination};
+use rmpl::program::Program;
+use rmpl::rule::Rule;
+use serde::{Deserialize, Serialize};
+use tpn::{ArcId, Choice, Network, Plan};
+
+use self::candidate::{Judge, Tried, own_choices};
+use self::question::{Question, Sought, Unknown};
+use self::witness::with_instant;
+use super::meaning::times_of;
+use super::{MissionRule, Outcome, read, unreadable};
+
+/// A rule, and whether it holds in every plan of a mission.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Proven {
+    /// What the rule says.
+    pub rule: String,
+    pub verdict: Verdict,
+    /// How many alternatives the planner tried.
+    pub alternatives: u64,
+}
+
+/// How the plans of a mission stand to a rule.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Verdict {
+    /// No execution of any plan breaks it.
+    Holds,
+    /// No plan comes to what the rule is about.
+    NeverApplies,
+    /// This plan breaks it.
+    Broken(Box<Counterexample>),
+    /// No plan breaks it, but the mission does not say enough to be sure of it in this plan.
+    Unsure(Box<Counterexample>),
+    /// Nobody knows, for this reason.
+    Open(String),
+    /// The rule cannot be read in this mission: the character in it, from 1, and what is wrong there.
+    Unreadable {
+        column: u32,
+        message: String,
+    },
+    NoPlan,
+}
+
+/// A plan that does not keep a rule, with a schedule that shows it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Counterexample {
+    /// When, and between which events.
+    pub text: String,
+    /// The plan, as `enroute plan --format json` has it.
+    #[serde(with = "snapshot::json_text")]
+    pub plan: serde_json::Value,
+    /// What it chooses.
+    pub choices: Vec<Choice>,
+    /// Whether it is the plan that the mission has.
+    pub is_own: bool,
+    /// A run that has the times of the schedule.
+    #[serde(with = "snapshot::json_text")]
+    pub script: Script,
+}
+
+/// A mission whose plans are asked about.
+#[derive(Clone, Copy)]
+pub struct Mission<'a> {
+    pub program: &'a Program,
+    /// Its network without paths, whose plans are all that may be plans with paths.
+    pub network: &'a Network,
+    /// Its plan, in a network that may have paths; without one there is nothing to prove.
+    pub plan: Option<(&'a Network, &'a Plan)>,
+}
+
+/// The network with the paths of a plan; why there are none.
+pub type WithPaths<'a> = dyn FnMut(&Plan) -> Result<Arc<Network>, String> + 'a;
+
+/// How long to look, and what to ask.
+pub struct Effort<'a> {
+    /// How many alternatives the planner tries for one rule.
+    pub alternatives: u64,
+    /// Whether to leave the rest open.
+    pub stop: &'a mut dyn FnMut() -> bool,
+    /// Finds paths, where the mission's vehicles need them.
+    pub with_paths: Option<&'a mut WithPaths<'a>>,
+}
+
+impl Verdict {
+    /// Its name in documents.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::NeverApplies => "never-applies",
+            Self::Broken(_) => "broken",
+            Self::Unsure(_) => "unsure",
+            Self::Open(_) => "open",
+            Self::Unreadable { .. } => "unreadable",
+            Self::NoPlan => "no-plan",
+        }
+    }
+
+    /// The plan that does not keep the rule.
+    pub fn counterexample(&self) -> Option<&Counterexample> {
+        match self {
+            Self::Broken(found) | Self::Unsure(found) => Some(found),
+            _ => None,
+        }
+    }
+
+    /// What was found, in one sentence without an end.
+    pub fn sentence(&self) -> String {
+        let of = |found: &Counterexample| if found.is_own { "this plan" } else { "another plan" };
+        match self {
+            Self::Holds => "holds in every plan".to_owned(),
+            Self::NeverApplies => "never applies in any plan".to_owned(),
+            Self::Broken(found) => format!("{} can violate it: {}", of(found), found.text),
+            Self::Unsure(found) => format!("not sure in {}: {}", of(found), found.text),
+            Self::Open(why) => format!("not decided: {why}"),
+            Self::Unreadable { column, message } => format!("error at character {column}: {message}"),
+            Self::NoPlan => "the mission has no plan".to_owned(),
+        }
+    }
+}
+
+/// How many choices are tried of which the solver says that they break a rule.
+const MAX_CANDIDATES: usize = 12;
+
+/// Any plan will do, and nobody asks why there is none.
+const OPTIONS: Options = Options {
+    search: Search::ConflictDirected,
+    threat_gap: None,
+    all: false,
+    max_plans: 1,
+    best: 1,
+    trace_events: None,
+    traced: None,
+    explain: false,
+    relax: false,
+};
+
+/// How many alternatives are tried where nothing else is asked for.
+pub const ALTERNATIVES: u64 = 200_000;
+
+/// Proves that a rule holds in every plan of a mission, or finds a plan that breaks it.
+pub fn prove(mission: Mission<'_>, rule: &MissionRule, effort: Effort<'_>) -> Proven {
+    let Effort { alternatives, stop, with_paths } = effort;
+    let meter = Meter { left: alternatives, before: 0, last: 0, stop, limit: None };
+    let mut proof = Proof { mission, with_paths, meter };
+    let verdict = proof.verdict(&rule.rule);
+    Proven { rule: rule.rule.clone(), verdict, alternatives: proof.meter.tried() }
+}
+
+/// Counts alternatives over several searches, and stops them.
+struct Meter<'a> {
+    left: u64,
+    before: u64,
+    last: u64,
+    stop: &'a mut dyn FnMut() -> bool,
+    limit: Option<String>,
+}
+
+impl Meter<'_> {
+    const fn tried(&self) -> u64 {
+        self.before + self.last
+    }
+
+    fn is_stopped(&mut self) -> bool {
+        if self.limit.is_none() && (self.stop)() {
+            self.limit = Some("the search was stopped".to_owned());
+        }
+        self.limit.is_some()
+    }
+}
+
+impl Termination for Meter<'_> {
+    fn should_stop(&mut self, stats: &Stats) -> bool {
+        if stats.expanded < self.last {
+            self.before += self.last;
+        }
+        self.last = stats.expanded;
+        if self.limit.is_none() && self.tried() >= self.left {
+            self.limit = Some(format!("the limit of {} alternatives was reached", self.left));
+        }
+        self.is_stopped()
+    }
+}
+
+struct Proof<'a, 'b> {
+    mission: Mission<'a>,
+    with_paths: Option<&'b mut WithPaths<'b>>,
+    meter: Meter<'b>,
+}
+
+/// What a search for a plan with an instant came to.
+enum Found {
+    Shown(Box<Counterexample>),
+    /// There is no such plan.
+    None,
+    Open(String),
+}
+
+const TOO_LARGE: &str = "its times are too large to compute exactly";
+
+impl Proof<'_, '_> {
+    fn verdict(&mut self, text: &str) -> Verdict {
+        let Mission { program, network, plan } = self.mission;
+        let rule = match read(program, network, text).map_err(|found| unreadable(text, &found)) {
+            Ok(rule) => rule,
+            Err(Outcome::Unreadable { column, message }) => return Verdict::Unreadable { column, message },
+            Err(_) => return Verdict::NoPlan,
+        };
+        if plan.is_none() {
+            return Verdict::NoPlan;
+        }
+        match self.find(text, &rule, Sought::Broken) {
+            Found::Shown(found) => return Verdict::Broken(found),
+            Found::Open(why) => return Verdict::Open(why),
+            Found::None => {}
+        }
+        match self.find(text, &rule, Sought::Unsure) {
+            Found::Shown(found) => return Verdict::Unsure(found),
+            Found::Open(why) => return Verdict::Open(why),
+            Found::None => {}
+        }
+        match self.find(text, &rule, Sought::Applying) {
+            Found::None => Verdict::NeverApplies,
+            Found::Shown(_) | Found::Open(_) => Verdict::Holds,
+        }
+    }
+
+    /// Looks for a plan with an instant that is as sought.
+    fn find(&mut self, text: &str, rule: &Rule, sought: Sought) -> Found {
+        let Mission { program, network, plan } = self.mission;
+        let judge = Judge { program, text, rule, sought };
+        if let Some((network, plan)) = plan.filter(|_| sought != Sought::Applying)
+            && let Some(shown) = judge.shown(network, plan, true, &mut || self.meter.is_stopped())
+        {
+            return Found::Shown(shown);
+        }
+        if network.root.is_none() {
+            return Found::Open("the file is a network without the structure of a mission".to_owned());
+        }
+        let Some(scale) = scale_of(network, rule) else { return Found::Open(TOO_LARGE.to_owned()) };
+        let requirements = match (Question { program, network, scale }).requirements(rule, sought) {
+            Ok(requirements) => requirements,
+            Err(Unknown::TooLarge) => return Found::Open(TOO_LARGE.to_owned()),
+            Err(Unknown::Meters(resource)) => {
+                return Found::Open(format!(
+                    "{resource} changes with the meters driven, which only the paths of a plan tell"
+                ));
+            }
+        };
+        let mut open = None;
+        for requirement in requirements.iter().filter(|it| !it.is_impossible()) {
+            let found = match with_instant(network, scale, requirement) {
+                Some(extended) => self.plan_with_instant(judge, extended),
+                None => Found::Open(TOO_LARGE.to_owned()),
+            };
+            match found {
+                Found::None => {}
+                Found::Open(why) => open = open.or(Some(why)),
+                Found::Shown(shown) => return Found::Shown(shown),
+            }
+        }
+        open.map_or(Found::None, Found::Open)
+    }
+
+    fn plan_with_instant(&mut self, judge: Judge<'_>, mut extended: Network) -> Found {
+        let network = self.mission.network;
+        // Before what the environment begins there is no gap (SPEC 13.1), and in the extended network it begins nothing.
+        let has_environment = (0..network.arcs.len()).any(|arc| network.is_uncertain(ArcId::from_index(arc)));
+        let mut is_complete = !has_environment || network.threat_gap.is_zero();
+        let mut excluded: Vec<Vec<Choice>> = Vec::new();
+        let mut open: Option<String> = None;
+        loop {
+            let outcome = kirk::plan_except(&extended, &OPTIONS, &excluded, &mut self.meter);
+            match (outcome.status, outcome.plans.first()) {
+                (Status::Plan, Some(_)) if judge.sought == Sought::Applying => {
+                    return Found::Open(String::new());
+                }
+                (Status::Plan, Some(found)) => {
+                    let with_paths = self.with_paths.as_deref_mut();
+                    match judge.tried(network, (&extended, found), with_paths, &mut self.meter) {
+                        Tried::Shown(shown) => return Found::Shown(shown),
+                        Tried::Refuted => {}
+                        Tried::Open(why) => open = open.or(Some(why)),
+                    }
+                    let choices = own_choices(network, found);
+                    if choices.is_empty() {
+                        return open.map_or(Found::None, Found::Open);
+                    }
+                    excluded.push(choices);
+                    if excluded.len() > MAX_CANDIDATES {
+                        return Found::Open(open.unwrap_or_else(|| "too many plans come close".to_owned()));
+                    }
+                }
+                (Status::Plan | Status::NoPlan, _) if is_complete => {
+                    return open.map_or(Found::None, Found::Open);
+                }
+                (Status::Plan | Status::NoPlan, _) => {
+                    is_complete = true;
+                    extended.threat_gap = Time::ZERO;
+                }
+                (Status::Limit, _) => {
+                    let limit = self.meter.limit.clone();
+                    return Found::Open(
+                        limit.unwrap_or_else(|| "a limit of the planner was reached".to_owned()),
+                    );
+                }
+                (Status::Error, _) => return Found::Open(TOO_LARGE.to_owned()),
+            }
+        }
+    }
+}
+
+/// The ticks of all times of a mission and a rule; `None` if they are too large.
+fn scale_of(network: &Network, rule: &Rule) -> Option<Scale> {
+    let arcs = network.arcs.iter().flat_map(|arc| [Some(arc.lower), arc.upper.finite()]);
+    let departures = network.departures.iter().map(|departure| departure.least);
+    let times = arcs.chain(departures).flatten().chain([network.threat_gap]).chain(times_of(rule));
+    Scale::common(times).ok()
+}
+
+#[cfg(test)]
+mod tests;
