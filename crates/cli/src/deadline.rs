@@ -52,6 +52,8 @@ pub enum Undecided {
     Robustness,
     /// What a review says of the plan.
     Review,
+    /// Whether every plan keeps the rules.
+    Proof,
 }
 
 impl Undecided {
@@ -62,6 +64,7 @@ impl Undecided {
             Self::Execution => "the execution did not end",
             Self::Robustness => "not all runs ended",
             Self::Review => "the plan was not reviewed",
+            Self::Proof => "undecided whether every plan keeps the rules",
         }
     }
 }

@@ -26,6 +26,7 @@ mod program_chance;
 pub mod program_executor;
 mod program_proof;
 pub mod programs;
+mod proving;
 mod reading;
 pub mod repairs;
 pub mod sampling;

@@ -14,6 +14,7 @@ pub mod import;
 pub mod path;
 pub mod plan;
 pub mod prove;
+mod prove_rules;
 pub mod reconfigure;
 pub mod report;
 pub mod review;

@@ -1,4 +1,5 @@
-//! `enroute prove`: the properties of a control program that hold in every run with its plant.
+//! `enroute prove`: the properties of a control program that hold in every run with its plant, and the flight rules of a
+//! mission that hold in every plan.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -10,16 +11,35 @@ use executive::model_based::proof::{
 };
 use executive::model_based::{Options, Run, RunStatus, StepInput, System};
 use plant::{Interval, Model};
+use review::flight_rule::proof::ALTERNATIVES;
 use serde_json::{Map, Value, json};
 
+use crate::commands::prove_rules::{self, Call};
 use crate::commands::run::{KnowledgeArg, read_system};
+use crate::deadline::TimeLimit;
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
+use crate::target::Target;
 
-/// Prove properties of a control program over all its runs.
+/// Prove properties of a control program in all runs, or rules of a mission in all plans.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Control program; - reads standard input.
+    /// Control program, or with --rules a mission; - reads standard input.
     file: PathBuf,
+    /// Prove these flight rules of a mission in every plan.
+    #[arg(long, value_name = "RULES.json", conflicts_with_all = PROGRAM_OPTIONS)]
+    rules: Option<PathBuf>,
+    /// Scenario of the mission [default: first in file].
+    #[arg(long, requires = "rules")]
+    scenario: Option<String>,
+    /// Save the first plan that violates a rule.
+    #[arg(long, short, value_name = "PLAN.json", requires = "rules")]
+    output: Option<PathBuf>,
+    /// Stop after N alternatives for each rule (exit status 3).
+    #[arg(long, value_name = "N", default_value_t = ALTERNATIVES, requires = "rules", value_parser = clap::value_parser!(u64).range(1..))]
+    alternatives: u64,
+    /// Seed for path planning in a mission.
+    #[arg(long, default_value_t = 0, requires = "rules")]
+    seed: u64,
     /// Plant model [default: the one that the program file declares].
     #[arg(long, value_name = "M.rmpl")]
     model: Option<PathBuf>,
@@ -41,18 +61,38 @@ pub struct Args {
     /// Also compute the probability that the program ends within N steps.
     #[arg(long, value_name = "N")]
     chance: Option<u32>,
+    #[command(flatten)]
+    time_limit: TimeLimit,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
+/// What is asked of control programs only.
+const PROGRAM_OPTIONS: [&str; 7] = ["model", "property", "faults", "knowledge", "states", "steps", "chance"];
+
 /// In each step, this many of the most likely places of a run are followed; the others leave its probability open.
 const MAX_PLACES: usize = 20_000;
 
-const ABOUT_MISSIONS: &str = "save the program of its `control` block in a file of its own";
+const ABOUT_MISSIONS: &str =
+    "save the program of its `control` block in a file of its own, or prove flight rules with --rules";
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let deadline = args.time_limit.start();
+    if let Some(rules) = &args.rules {
+        let target =
+            Target { file: args.file.clone(), scenario: args.scenario.clone(), activity: None, bounds: None };
+        let call = Call {
+            target: &target,
+            rules,
+            output: args.output.as_deref(),
+            alternatives: args.alternatives,
+            seed: args.seed,
+            format: args.format,
+        };
+        return prove_rules::run(&call, deadline);
+    }
     let (system, problems) = read_system(&args.file, args.model.as_deref(), args.format, ABOUT_MISSIONS)?;
     let Some(system) = &system else {
         if args.format == Format::Json {
@@ -68,7 +108,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let knowledge = args.knowledge.into();
     let steps = args.steps.unwrap_or(u32::MAX);
     let scope = Scope { faults: args.faults, knowledge, states: args.states as usize, steps };
-    let proof = prove(system, &properties, scope, &mut |_| true)?;
+    let proof = prove(system, &properties, scope, &mut |_| !deadline.is_over())?;
     let chance = match args.chance {
         Some(steps) => Some((steps, chance_to_end(system, knowledge, steps, MAX_PLACES)?)),
         None => None,
@@ -132,7 +172,7 @@ fn verdict_json(property: &Property, verdict: &Verdict, model: &Model) -> Value 
     }
 }
 
-fn count(number: usize, one: &str) -> String {
+pub(super) fn count(number: usize, one: &str) -> String {
     format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }
 

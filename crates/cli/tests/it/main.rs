@@ -14,6 +14,7 @@ mod networks;
 mod pddl;
 mod pddl_rules;
 mod plandev;
+mod proven_rules;
 mod ptpn;
 mod public_files;
 mod reference;

@@ -203,6 +203,12 @@ fn every_answer_keeps_the_schema() {
     schema.holds(&["prove", PROGRAM, "--model", PLANT, "--chance", "8"], 0);
     schema.holds(&["prove", PROGRAM, "--model", PLANT, "--faults", "2"], 1);
     schema.holds(&["prove", PROGRAM, "--model", PLANT, "--states", "2"], 3);
+    let rules = &file(
+        "schema-rules.json",
+        r#"{"format":"enroute-rules/1","rules":[{"name":"R","rule":"never Group-Wait"}]}"#,
+    );
+    schema.holds(&["prove", MISSION, "--rules", rules], 1);
+    schema.holds(&["prove", none, "--rules", rules], 1);
     schema.holds(&["reconfigure", PLANT, "--state", state, "--goal", goal], 0);
 }
 
@@ -230,6 +236,7 @@ fn every_command_answers_what_it_cannot_use() {
         &["step", PROGRAM, "--estimates", empty],
         &["run", MISSION],
         &["prove", MISSION],
+        &["prove", MISSION, "--rules", empty],
         &["prove", PROGRAM, "--model", PLANT, "--property", "soon"],
         &["estimate", PLANT, "--prior", empty, "--commands", empty, "--observations", empty],
         &["reconfigure", PLANT, "--state", empty, "--goal", empty],

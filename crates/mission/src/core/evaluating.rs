@@ -6,6 +6,8 @@ use std::sync::Arc;
 use exact::Time;
 use executive::{PlanError, Script};
 use link::Update;
+use review::MissionRule;
+use review::flight_rule::proof::Proven;
 use rmpl::Diagnostic;
 use rmpl::program::{Program, World};
 use snapshot::content::Keyed;
@@ -20,6 +22,7 @@ use crate::given_plan;
 use crate::host::CoreHost;
 use crate::listing;
 use crate::programs::Programs;
+use crate::proving;
 use crate::reading;
 use crate::sampling::Sampler;
 use crate::saved_state::SavedState;
@@ -163,6 +166,19 @@ impl Core {
         tally: &mut Tally,
     ) -> Result<(), PlanError> {
         sampler.run(&evaluated.problem(), settings, number, &mut self.grounds, &mut self.paths, tally)
+    }
+
+    /// Proves that a flight rule holds in every plan of the mission, or finds one that breaks it; the planner tries so many
+    /// alternatives.
+    pub fn prove_rule(
+        &mut self,
+        evaluated: &Evaluated,
+        rule: &MissionRule,
+        alternatives: u64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Proven {
+        let ways = (&mut self.grounds, &mut self.paths);
+        proving::prove_rule(evaluated, rule, alternatives, ways, stop)
     }
 
     /// The network with the paths of another plan than the one that was found; why there are none.

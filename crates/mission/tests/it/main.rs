@@ -16,6 +16,7 @@ mod nature;
 mod networks;
 mod paths;
 mod programs;
+mod proving;
 mod repairs;
 mod ridge;
 mod robustness;

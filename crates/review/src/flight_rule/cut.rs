@@ -134,14 +134,25 @@ impl Times {
     }
 
     /// The earliest times of an execution that has an instant between these events, by node; `None` if there is none, or if
-    /// times do not fit.
+    /// times do not fit. If that can be, a path is driven as fast as its segments say.
     pub(super) fn execution(
         &self,
         network: &Network,
         plan: &Plan,
         edges: &[Edge],
     ) -> Option<Vec<Option<Time>>> {
-        let mut fine = self.network.clone();
+        let strict = PlanNetwork::new(network, plan).ok();
+        let strict = strict.and_then(|points| self.execution_of(points, network, plan, edges));
+        strict.or_else(|| self.execution_of(self.network.clone(), network, plan, edges))
+    }
+
+    fn execution_of(
+        &self,
+        mut fine: PlanNetwork,
+        network: &Network,
+        plan: &Plan,
+        edges: &[Edge],
+    ) -> Option<Vec<Option<Time>>> {
         let part = Time::new(1, self.network.scale().ticks_per_unit().checked_mul(PARTS)?)?;
         fine.refine_for(network, plan, &[part]).ok()?;
         for past in edges.iter().filter(|edge| edge.is_past) {

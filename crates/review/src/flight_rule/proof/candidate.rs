@@ -22,7 +22,7 @@ use super::super::cut::Times;
 use super::super::meaning::{Meaning, times_of};
 use super::question::Sought;
 use super::witness::bare_arc;
-use super::{Counterexample, Meter, OPTIONS, WithPaths};
+use super::{Counterexample, Meter, OPTIONS};
 use crate::contradict::{Scheduled, named_times};
 
 /// What became of the choices of a plan with an instant.
@@ -32,6 +32,15 @@ pub(super) enum Tried {
     Refuted,
     /// Those that were looked at do not, for this reason.
     Open(String),
+}
+
+/// How a plan stands to what is sought.
+pub(super) enum Held {
+    Shown(Box<Counterexample>),
+    /// It is not as sought.
+    Kept,
+    /// It may be as sought, and nothing shows it.
+    Unknown,
 }
 
 /// The most plans that are listed to refute some choices.
@@ -50,40 +59,51 @@ pub(super) struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// What shows that a plan is as sought, if the checker accepts it, with a schedule of it.
-    pub(super) fn shown(
+    /// Holds a plan against the rule: it is as sought if the checker accepts it, with a schedule that shows it.
+    pub(super) fn hold(
         self,
         network: &Network,
         plan: &Plan,
         is_own: bool,
         stop: &mut dyn FnMut() -> bool,
-    ) -> Option<Box<Counterexample>> {
-        if !verify::check_plan(network, plan).valid {
-            return None;
-        }
-        let times = Times::new(network, plan, &times_of(self.rule))?;
+    ) -> Held {
+        let Some(times) = Times::new(network, plan, &times_of(self.rule)) else { return Held::Unknown };
         let mut meaning = Meaning::new(self.program, network, plan, times);
-        let (finding, breach) = meaning.examine(self.text, self.rule, stop)?;
+        let Some((finding, breach)) = meaning.examine(self.text, self.rule, stop) else {
+            return Held::Unknown;
+        };
         let text = match finding.outcome {
             Outcome::Broken(text) => text,
             Outcome::Unsure(text) if self.sought == Sought::Unsure => text,
-            _ => return None,
+            _ => return Held::Kept,
         };
-        let times = meaning.execution(&breach?)?;
-        // That the checker cannot decide the order within an instant is nothing against a schedule.
-        let checked = verify::check_schedule(network, plan, &times);
-        let is_schedule = checked.violations.iter().all(|it| it.rule == Checked::Form);
-        let scheduled = Scheduled { program: self.program, network, plan, times: &times, is_extreme: false };
-        if !is_schedule || scheduled.first_breach(self.rule).is_none() {
-            return None;
+        let times = breach.and_then(|breach| meaning.execution(&breach));
+        match times.filter(|times| self.is_shown_by(network, plan, times)) {
+            Some(times) => Held::Shown(Box::new(Counterexample {
+                text,
+                plan: plan_to_json(network, plan),
+                choices: plan.choices.clone(),
+                is_own,
+                script: Script { schedule: named_times(network, plan, &times), ..Script::default() },
+            })),
+            None => Held::Unknown,
         }
-        Some(Box::new(Counterexample {
-            text,
-            plan: plan_to_json(network, plan),
-            choices: plan.choices.clone(),
-            is_own,
-            script: Script { schedule: named_times(network, plan, &times), ..Script::default() },
-        }))
+    }
+
+    /// Whether the checker accepts a plan and its schedule, and the rule is not known to hold at an instant of it.
+    fn is_shown_by(self, network: &Network, plan: &Plan, times: &[Option<Time>]) -> bool {
+        let has_path = network
+            .arcs
+            .iter()
+            .zip(&plan.selected_arcs)
+            .any(|(arc, is_selected)| *is_selected && arc.kind == ArcKind::Path);
+        // That the checker cannot decide the order within an instant is nothing against a schedule, and vertices of a path
+        // are no deadlines (SPEC 6.2).
+        let is_allowed = |rule: Checked| rule == Checked::Form || (has_path && rule == Checked::Duration);
+        let scheduled = Scheduled { program: self.program, network, plan, times, is_extreme: false };
+        verify::check_plan(network, plan).valid
+            && verify::check_schedule(network, plan, times).violations.iter().all(|it| is_allowed(it.rule))
+            && scheduled.first_breach(self.rule).is_some()
     }
 
     /// Looks for a plan of the mission that makes the choices of a plan with an instant, and is as sought.
@@ -91,54 +111,45 @@ impl Judge<'_> {
         self,
         network: &Network,
         (extended, found): (&Network, &Plan),
-        mut with_paths: Option<&mut WithPaths<'_>>,
         meter: &mut Meter<'_>,
     ) -> Tried {
-        let choices = own_choices(network, found);
-        let mut reason = "the plans that may violate it were not confirmed".to_owned();
+        let mut chosen = chosen(network, &own_choices(network, found));
+        chosen.objective.clear();
         for orders in [Some(Orders::default()), Orders::of(network, extended, found)].into_iter().flatten() {
-            let bare = kirk::plan(&restricted(network, &choices, &orders), &OPTIONS, meter);
+            let bare = meter.plan(&orders.added_to(&chosen), &OPTIONS, &[]);
             if bare.status == Status::NoPlan && orders.precedences.is_empty() {
                 return Tried::Refuted;
             }
-            let Some(plan) = bare.plans.into_iter().next() else { continue };
-            let shown = match with_paths.as_deref_mut() {
-                None => {
-                    self.shown(network, &plan_of(network, plan, &orders), false, &mut || meter.is_stopped())
-                }
-                Some(with_paths) => match with_paths(&plan) {
-                    Err(why) => {
-                        reason = why;
-                        None
-                    }
-                    Ok(network) => {
-                        let driven = kirk::plan(&restricted(&network, &choices, &orders), &OPTIONS, meter);
-                        driven.plans.into_iter().next().and_then(|plan| {
-                            let plan = plan_of(&network, plan, &orders);
-                            self.shown(&network, &plan, false, &mut || meter.is_stopped())
-                        })
-                    }
-                },
-            };
-            if let Some(shown) = shown {
+            if let Held::Shown(shown) = self.hold_all(network, bare.plans, &orders, meter) {
                 return Tried::Shown(shown);
             }
         }
-        // Plans that differ only in paths or in orders of uses are not listed one by one.
-        if with_paths.is_some() || !network.uses.is_empty() {
-            return Tried::Open(reason);
+        let open = || Tried::Open("the plans that may violate it were not confirmed".to_owned());
+        // Plans that differ only in orders of uses are not listed one by one.
+        if !network.uses.is_empty() {
+            return open();
         }
-        let none = Orders::default();
         let all = Options { all: true, max_plans: MAX_LISTED, ..OPTIONS };
-        let listed = kirk::plan(&restricted(network, &choices, &none), &all, meter);
+        let listed = meter.plan(&chosen, &all, &[]);
         let is_complete = listed.status == Status::Plan && listed.plans.len() < MAX_LISTED;
-        for plan in listed.plans {
-            let plan = plan_of(network, plan, &none);
-            if let Some(shown) = self.shown(network, &plan, false, &mut || meter.is_stopped()) {
-                return Tried::Shown(shown);
+        match self.hold_all(network, listed.plans, &Orders::default(), meter) {
+            Held::Shown(shown) => Tried::Shown(shown),
+            Held::Kept if is_complete && meter.limit.is_none() => Tried::Refuted,
+            Held::Kept | Held::Unknown => open(),
+        }
+    }
+
+    /// Holds plans against the rule, until one is shown to be as sought.
+    fn hold_all(self, network: &Network, plans: Vec<Plan>, orders: &Orders, meter: &mut Meter<'_>) -> Held {
+        let mut all = Held::Kept;
+        for plan in plans {
+            match self.hold(network, &plan_of(network, plan, orders), false, &mut || meter.is_stopped()) {
+                Held::Kept => {}
+                Held::Unknown => all = Held::Unknown,
+                shown @ Held::Shown(_) => return shown,
             }
         }
-        if is_complete && meter.limit.is_none() { Tried::Refuted } else { Tried::Open(reason) }
+        all
     }
 }
 
@@ -148,21 +159,15 @@ pub(super) fn own_choices(network: &Network, found: &Plan) -> Vec<Choice> {
     own.copied().collect()
 }
 
-/// The network with these choices and orders: the arcs to other alternatives would have to take at least one unit and at most
-/// none.
-fn restricted(network: &Network, choices: &[Choice], orders: &Orders) -> Network {
+/// The network with these choices: the arcs to other alternatives would have to take at least one unit and at most none.
+pub(super) fn chosen(network: &Network, choices: &[Choice]) -> Network {
     let mut network = network.clone();
-    network.objective.clear();
     for choice in choices {
         let alternatives = network.decisions[choice.decision.index()].alternatives.clone();
         for (_, arc) in (0..).zip(alternatives).filter(|&(number, _)| number != choice.alternative) {
             network.arcs[arc.index()].lower = Time::ONE;
             network.arcs[arc.index()].upper = Bound::ZERO;
         }
-    }
-    for order in &orders.precedences {
-        let bounds = (order.least, Bound::Infinite);
-        network.arcs.push(bare_arc(order.earlier, order.later, bounds, ArcKind::Constraint));
     }
     network
 }
@@ -188,6 +193,16 @@ struct Orders {
 }
 
 impl Orders {
+    /// A network in which they hold.
+    fn added_to(&self, network: &Network) -> Network {
+        let mut network = network.clone();
+        for order in &self.precedences {
+            let bounds = (order.least, Bound::Infinite);
+            network.arcs.push(bare_arc(order.earlier, order.later, bounds, ArcKind::Constraint));
+        }
+        network
+    }
+
     /// `None` if there are none, or if times do not fit.
     fn of(network: &Network, extended: &Network, found: &Plan) -> Option<Self> {
         let is_own = |order: &Ordering| {

@@ -9,8 +9,6 @@ mod candidate;
 mod question;
 mod witness;
 
-use std::sync::Arc;
-
 use exact::{Scale, Time};
 use executive::Script;
 use kirk::{Options, Search, Stats, Status, Termination};
@@ -19,8 +17,8 @@ use rmpl::rule::Rule;
 use serde::{Deserialize, Serialize};
 use tpn::{ArcId, Choice, Network, Plan};
 
-use self::candidate::{Judge, Tried, own_choices};
-use self::question::{Question, Sought, Unknown};
+use self::candidate::{Held, Judge, Tried, chosen, own_choices};
+use self::question::{Question, Sought};
 use self::witness::with_instant;
 use super::meaning::times_of;
 use super::{MissionRule, Outcome, read, unreadable};
@@ -83,8 +81,8 @@ pub struct Mission<'a> {
     pub plan: Option<(&'a Network, &'a Plan)>,
 }
 
-/// The network with the paths of a plan; why there are none.
-pub type WithPaths<'a> = dyn FnMut(&Plan) -> Result<Arc<Network>, String> + 'a;
+/// The network with the paths of a plan, in which its movements start where they do in it; why there are none.
+pub type WithPaths<'a> = dyn FnMut(&Plan) -> Result<Network, String> + 'a;
 
 /// How long to look, and what to ask.
 pub struct Effort<'a> {
@@ -175,6 +173,14 @@ impl Meter<'_> {
         self.before + self.last
     }
 
+    /// Plans, without the plans that make the choices of one of `excluded`.
+    fn plan(&mut self, network: &Network, options: &Options, excluded: &[Vec<Choice>]) -> kirk::Outcome {
+        let outcome = kirk::plan_except(network, options, excluded, self);
+        self.before += outcome.stats.expanded;
+        self.last = 0;
+        outcome
+    }
+
     fn is_stopped(&mut self) -> bool {
         if self.limit.is_none() && (self.stop)() {
             self.limit = Some("the search was stopped".to_owned());
@@ -185,9 +191,6 @@ impl Meter<'_> {
 
 impl Termination for Meter<'_> {
     fn should_stop(&mut self, stats: &Stats) -> bool {
-        if stats.expanded < self.last {
-            self.before += self.last;
-        }
         self.last = stats.expanded;
         if self.limit.is_none() && self.tried() >= self.left {
             self.limit = Some(format!("the limit of {} alternatives was reached", self.left));
@@ -243,28 +246,34 @@ impl Proof<'_, '_> {
     fn find(&mut self, text: &str, rule: &Rule, sought: Sought) -> Found {
         let Mission { program, network, plan } = self.mission;
         let judge = Judge { program, text, rule, sought };
-        if let Some((network, plan)) = plan.filter(|_| sought != Sought::Applying)
-            && let Some(shown) = judge.shown(network, plan, true, &mut || self.meter.is_stopped())
-        {
-            return Found::Shown(shown);
+        if let Some((network, plan)) = plan.filter(|_| sought != Sought::Applying) {
+            match judge.hold(network, plan, true, &mut || self.meter.is_stopped()) {
+                Held::Shown(shown) => return Found::Shown(shown),
+                Held::Kept => {}
+                Held::Unknown => {
+                    return Found::Open(
+                        "no schedule was confirmed in which this plan violates it".to_owned(),
+                    );
+                }
+            }
         }
         if network.root.is_none() {
             return Found::Open("the file is a network without the structure of a mission".to_owned());
         }
-        let Some(scale) = scale_of(network, rule) else { return Found::Open(TOO_LARGE.to_owned()) };
-        let requirements = match (Question { program, network, scale }).requirements(rule, sought) {
-            Ok(requirements) => requirements,
-            Err(Unknown::TooLarge) => return Found::Open(TOO_LARGE.to_owned()),
-            Err(Unknown::Meters(resource)) => {
-                return Found::Open(format!(
-                    "{resource} changes with the meters driven, which only the paths of a plan tell"
-                ));
-            }
+        self.find_in(network, self.with_paths.is_some(), judge)
+    }
+
+    /// Looks for it among the plans of a network, which may await the paths of its plans.
+    fn find_in(&mut self, network: &Network, awaits_paths: bool, judge: Judge<'_>) -> Found {
+        let Some(scale) = scale_of(network, judge.rule) else { return Found::Open(TOO_LARGE.to_owned()) };
+        let question = Question { program: self.mission.program, network, scale, awaits_paths };
+        let Some(requirements) = question.requirements(judge.rule, judge.sought) else {
+            return Found::Open(TOO_LARGE.to_owned());
         };
         let mut open = None;
         for requirement in requirements.iter().filter(|it| !it.is_impossible()) {
             let found = match with_instant(network, scale, requirement) {
-                Some(extended) => self.plan_with_instant(judge, extended),
+                Some(extended) => self.plan_with_instant(network, awaits_paths, judge, extended),
                 None => Found::Open(TOO_LARGE.to_owned()),
             };
             match found {
@@ -276,27 +285,36 @@ impl Proof<'_, '_> {
         open.map_or(Found::None, Found::Open)
     }
 
-    fn plan_with_instant(&mut self, judge: Judge<'_>, mut extended: Network) -> Found {
-        let network = self.mission.network;
+    fn plan_with_instant(
+        &mut self,
+        network: &Network,
+        awaits_paths: bool,
+        judge: Judge<'_>,
+        mut extended: Network,
+    ) -> Found {
         // Before what the environment begins there is no gap (SPEC 13.1), and in the extended network it begins nothing.
         let has_environment = (0..network.arcs.len()).any(|arc| network.is_uncertain(ArcId::from_index(arc)));
         let mut is_complete = !has_environment || network.threat_gap.is_zero();
         let mut excluded: Vec<Vec<Choice>> = Vec::new();
         let mut open: Option<String> = None;
         loop {
-            let outcome = kirk::plan_except(&extended, &OPTIONS, &excluded, &mut self.meter);
+            let outcome = self.meter.plan(&extended, &OPTIONS, &excluded);
             match (outcome.status, outcome.plans.first()) {
                 (Status::Plan, Some(_)) if judge.sought == Sought::Applying => {
                     return Found::Open(String::new());
                 }
                 (Status::Plan, Some(found)) => {
-                    let with_paths = self.with_paths.as_deref_mut();
-                    match judge.tried(network, (&extended, found), with_paths, &mut self.meter) {
+                    let choices = own_choices(network, found);
+                    let tried = if awaits_paths {
+                        self.driven(network, judge, &choices)
+                    } else {
+                        judge.tried(network, (&extended, found), &mut self.meter)
+                    };
+                    match tried {
                         Tried::Shown(shown) => return Found::Shown(shown),
                         Tried::Refuted => {}
                         Tried::Open(why) => open = open.or(Some(why)),
                     }
-                    let choices = own_choices(network, found);
                     if choices.is_empty() {
                         return open.map_or(Found::None, Found::Open);
                     }
@@ -320,6 +338,31 @@ impl Proof<'_, '_> {
                 }
                 (Status::Error, _) => return Found::Open(TOO_LARGE.to_owned()),
             }
+        }
+    }
+
+    /// Looks for it among the plans that make these choices, with the paths of their traverses.
+    fn driven(&mut self, network: &Network, judge: Judge<'_>, choices: &[Choice]) -> Tried {
+        let mut bare = chosen(network, choices);
+        bare.objective.clear();
+        let outcome = self.meter.plan(&bare, &OPTIONS, &[]);
+        let (Some(plan), Some(with_paths)) = (outcome.plans.first(), &mut self.with_paths) else {
+            return match outcome.status {
+                Status::NoPlan => Tried::Refuted,
+                _ => Tried::Open("no plan was found that makes its choices".to_owned()),
+            };
+        };
+        // Where the text orders all movements, the choices say where each traverse starts.
+        let is_only_way = !kirk::has_open_order(network);
+        match with_paths(plan) {
+            Err(_) if is_only_way => Tried::Refuted,
+            Err(why) => Tried::Open(why),
+            Ok(driven) => match self.find_in(&chosen(&driven, choices), false, judge) {
+                Found::Shown(shown) => Tried::Shown(shown),
+                Found::Open(why) => Tried::Open(why),
+                Found::None if is_only_way => Tried::Refuted,
+                Found::None => Tried::Open("its vehicles may take other paths in another order".to_owned()),
+            },
         }
     }
 }

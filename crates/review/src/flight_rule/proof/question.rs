@@ -6,7 +6,7 @@
 //! first.
 
 use exact::Scale;
-use rmpl::program::{Change as Changes, LabelMode, Program};
+use rmpl::program::{LabelMode, Program};
 use rmpl::rule::{Activity, Formula, Moment, Rule};
 use smol_str::SmolStr;
 use tpn::{ArcId, Extent, LabelId, Network, NodeId, Occurrence};
@@ -50,15 +50,8 @@ pub(super) struct Question<'a> {
     pub(super) network: &'a Network,
     /// The ticks of all times.
     pub(super) scale: Scale,
-}
-
-/// Why a rule cannot be negated exactly.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Unknown {
-    /// The resource changes with the meters that are driven, which the paths of a plan tell.
-    Meters(SmolStr),
-    /// Times are too large.
-    TooLarge,
+    /// Whether paths are not known yet, so that levels may be anything that change with the meters driven.
+    pub(super) awaits_paths: bool,
 }
 
 impl Requirement {
@@ -95,25 +88,24 @@ impl Requirement {
 }
 
 impl Question<'_> {
-    /// What an instant has to be like for each place at which a rule looks.
-    pub(super) fn requirements(self, rule: &Rule, sought: Sought) -> Result<Vec<Requirement>, Unknown> {
+    /// What an instant has to be like for each place at which a rule looks; `None` if times are too large.
+    pub(super) fn requirements(self, rule: &Rule, sought: Sought) -> Option<Vec<Requirement>> {
         let of = match &rule.moment {
             Moment::Start(of) | Moment::End(of) => of.as_ref(),
             Moment::Throughout | Moment::Within { .. } => None,
         };
         let occurrences = of.into_iter().flat_map(|of| meant(self.network, of));
         let places = places(self.network, &rule.moment, occurrences, |time| self.scale.ticks(time).ok());
-        let places = places.ok_or(Unknown::TooLarge)?;
-        places.iter().map(|place| self.at_place(rule, place, sought)).collect()
+        Some(places?.iter().map(|place| self.at_place(rule, place, sought)).collect())
     }
 
-    fn at_place(self, rule: &Rule, place: &Place<'_>, sought: Sought) -> Result<Requirement, Unknown> {
+    fn at_place(self, rule: &Rule, place: &Place<'_>, sought: Sought) -> Requirement {
         let reading = if place.is_instant { Reading::Touching } else { Reading::Between };
         let mut parts: Vec<Requirement> = place.edges.iter().copied().map(Requirement::Edge).collect();
         parts.extend(place.of.map(|of| Requirement::Selected(self.arc(of))));
         if let Some(during) = &rule.during {
             let asked = if sought == Sought::Broken { Asked::Known } else { Asked::NotDenied };
-            parts.push(self.condition(during, asked, reading.of_negation())?);
+            parts.push(self.condition(during, asked, reading.of_negation()));
         }
         let holds: &[Asked] = match sought {
             // At an instant, a condition that it touches as well as its contrary is known.
@@ -123,26 +115,23 @@ impl Question<'_> {
             Sought::Applying => &[],
         };
         for &asked in holds {
-            parts.push(self.condition(&rule.holds, asked, reading)?);
+            parts.push(self.condition(&rule.holds, asked, reading));
         }
-        Ok(Requirement::all(parts))
+        Requirement::all(parts)
     }
 
-    fn condition(self, formula: &Formula, asked: Asked, reading: Reading) -> Result<Requirement, Unknown> {
-        let parts = |parts: &[Formula]| {
-            let parts = parts.iter().map(|it| self.condition(it, asked, reading));
-            parts.collect::<Result<Vec<_>, Unknown>>()
+    fn condition(self, formula: &Formula, asked: Asked, reading: Reading) -> Requirement {
+        let parts = |parts: &[Formula]| -> Vec<Requirement> {
+            parts.iter().map(|it| self.condition(it, asked, reading)).collect()
         };
         let is_conjunction = match formula {
             Formula::All(_) => matches!(asked, Asked::Known | Asked::NotDenied),
             _ => matches!(asked, Asked::NotKnown | Asked::Denied),
         };
-        Ok(match formula {
-            Formula::Not(inner) => {
-                return self.condition(inner, asked.of_negation(), reading.of_negation());
-            }
-            Formula::All(inner) | Formula::Any(inner) if is_conjunction => Requirement::all(parts(inner)?),
-            Formula::All(inner) | Formula::Any(inner) => Requirement::any(parts(inner)?),
+        match formula {
+            Formula::Not(inner) => self.condition(inner, asked.of_negation(), reading.of_negation()),
+            Formula::All(inner) | Formula::Any(inner) if is_conjunction => Requirement::all(parts(inner)),
+            Formula::All(inner) | Formula::Any(inner) => Requirement::any(parts(inner)),
             Formula::Is { .. } | Formula::Underway(_) if reading == Reading::Strict => {
                 let contrary = match asked {
                     Asked::Known => Asked::NotDenied,
@@ -150,8 +139,8 @@ impl Question<'_> {
                     Asked::NotKnown => Asked::Denied,
                     Asked::NotDenied => Asked::Known,
                 };
-                let own = self.condition(formula, asked, Reading::Touching)?;
-                let other = self.condition(formula, contrary, Reading::Touching)?;
+                let own = self.condition(formula, asked, Reading::Touching);
+                let other = self.condition(formula, contrary, Reading::Touching);
                 match asked {
                     Asked::Known | Asked::Denied => Requirement::all([own, other]),
                     Asked::NotKnown | Asked::NotDenied => Requirement::any([own, other]),
@@ -167,31 +156,27 @@ impl Question<'_> {
             Formula::Amount { resource, order, amount } => {
                 let Some(resource) = self.network.resources.iter().position(|it| it.name == *resource) else {
                     // Nothing is known of it.
-                    return Ok(match asked {
+                    return match asked {
                         Asked::Known | Asked::Denied => Requirement::NEVER,
                         Asked::NotKnown | Asked::NotDenied => Requirement::All(Vec::new()),
-                    });
+                    };
                 };
                 let wanted = Wanted::new(resource, *order, *amount, reading.touches());
                 self.level(match asked {
                     Asked::Known | Asked::NotDenied => wanted,
                     Asked::NotKnown | Asked::Denied => wanted.negated(),
-                })?
+                })
             }
-        })
+        }
     }
 
-    /// A level, if meters that no path has told yet can only lead away from it.
-    fn level(self, wanted: Wanted) -> Result<Requirement, Unknown> {
-        let leads_there = |used: &&tpn::Use| {
-            used.resource.index() == wanted.resource
-                && !used.per_meter.is_zero()
-                && (used.change != Changes::Consumes) == wanted.is_above
-        };
-        if self.network.uses.iter().any(|used| leads_there(&used)) {
-            return Err(Unknown::Meters(self.network.resources[wanted.resource].name.clone()));
+    fn level(self, wanted: Wanted) -> Requirement {
+        let counts_meters =
+            |used: &tpn::Use| used.resource.index() == wanted.resource && !used.per_meter.is_zero();
+        if self.awaits_paths && self.network.uses.iter().any(counts_meters) {
+            return Requirement::All(Vec::new());
         }
-        Ok(Requirement::Level(wanted))
+        Requirement::Level(wanted)
     }
 
     fn underway(self, activity: &Activity, asked: Asked, touches: bool) -> Requirement {

@@ -28,6 +28,88 @@ fn a_rule_that_only_some_choices_break_is_broken_by_another_plan() {
     assert_eq!(proven(source, "B at end of A").verdict.name(), "broken");
 }
 
+#[track_caller]
+fn is(source: &str, rule: &str, verdict: &str) -> Verdict {
+    let found = proven(source, rule).verdict;
+    assert_eq!(found.name(), verdict, "{rule}: {}", found.sentence());
+    if let Some(counterexample) = found.counterexample() {
+        // The plan is one of the mission, as anybody reads it.
+        let snapshot = snapshot(source);
+        let network = snapshot.network.as_deref().expect("a network");
+        let plan = tpn::plan_json::plan_from_json(network, &counterexample.plan).expect("a plan");
+        assert!(verify::check_plan(network, &plan).valid, "{rule}");
+    }
+    found
+}
+
+const ROVER: &str = "state Mast : {UP, DOWN} = DOWN; var Comm : {ON, OFF}; resource Battery 0..100 = 60;
+resource Power capacity 3; primitive Raise()[1,2] sets Mast=UP; primitive Lower()[1,2] sets Mast=DOWN;
+primitive Short()[5,9] consumes Battery 20 uses Power; primitive Long()[8,12] consumes Battery 45 uses Power 2;
+primitive Charge()[4,4] produces Battery 30; primitive Talk()[2,3] uses Power;
+scenario Day[0,60] = { { Raise(); delay; Lower() }, { choose { Short(), Long() }; delay; Charge() },
+  { delay; Comm=ON [3,5]; delay; choose { Talk(), Comm=OFF [1,1] } } }";
+
+#[test]
+fn every_kind_of_condition_is_negated() {
+    // Levels: which alternative is chosen, and what has come.
+    is(ROVER, "Battery >= 15", "holds");
+    is(ROVER, "Battery >= 16", "broken");
+    is(ROVER, "Battery <= 70", "holds");
+    is(ROVER, "Battery < 70 at end", "broken");
+    is(ROVER, "Battery >= 15 at start of Charge", "holds");
+    is(ROVER, "Power <= 3", "holds");
+    is(ROVER, "Power <= 2", "broken");
+    is(ROVER, "never (Battery > 20 and Battery < 40)", "holds");
+    is(ROVER, "Power <= 0 from 0 to 1", "broken");
+    // States, and activities that may overlap them.
+    is(ROVER, "Mast=DOWN at end", "holds");
+    is(ROVER, "Mast=UP while Charge", "broken");
+    is(ROVER, "never Talk while Long", "broken");
+    // Outside of what asserts a condition, it is not known to be false.
+    is(ROVER, "never Talk while Comm=ON", "unsure");
+    is(ROVER, "never Short while Long", "holds");
+    is(ROVER, "never (Short and Long)", "holds");
+    is(ROVER, "never Rest", "unreadable");
+    // What nothing asserts is not known.
+    is(ROVER, "Comm=ON or Comm=OFF", "unsure");
+    is(ROVER, "Comm=ON at end", "broken");
+    is(ROVER, "Mast=DOWN at start", "holds");
+}
+
+#[test]
+fn what_the_environment_chooses_breaks_a_rule_but_no_plan() {
+    let source = |most: u32| {
+        format!(
+            "primitive Drive() contingent [5,{most}]; primitive Talk()[3,3]; primitive Wait()[1,1];
+             scenario S[0,30] = {{ Drive(), {{ delay[9,9]; choose {{ Talk(), Wait() }} }} }}"
+        )
+    };
+    is(&source(9), "never Drive while Talk", "holds");
+    is(&source(10), "never Drive while Talk", "broken");
+    // Where the environment may drive longer than there is time, there is no such plan.
+    let tight = "primitive Drive() contingent [5,10]; primitive Short()[1,1]; primitive Talk()[3,3];
+        scenario S[0,12] = { Drive(); choose { Short(), Talk() } }";
+    is(tight, "never Talk", "holds");
+    is(tight, "never Short", "broken");
+    // With a gap as well.
+    let gap = "option threat_gap = 1; var C : {ON, OFF}; primitive Drive() contingent [5,10];
+        scenario S[0,40] = { { Drive(); C=ON [2,3] }, { delay; C=OFF [2,2]; delay } }";
+    is(gap, "never C=OFF while Drive", "broken");
+    is(gap, "never (C=ON and C=OFF)", "unsure");
+}
+
+#[test]
+fn a_mission_without_a_plan_and_a_search_that_is_stopped_prove_nothing() {
+    is("primitive A()[9,9]; scenario S[0,5] = { A() }", "never A", "no-plan");
+    let snapshot = snapshot(ROVER);
+    let network = snapshot.network.as_deref().expect("a network");
+    let plan = snapshot.plan().map(|plan| (network, plan));
+    let mission = Mission { program: &snapshot.program, network, plan };
+    let rule = MissionRule { rule: "Battery >= 15".into(), ..MissionRule::default() };
+    let effort = Effort { alternatives: ALTERNATIVES, stop: &mut || true, with_paths: None };
+    assert_eq!(prove(mission, &rule, effort).verdict.name(), "open");
+}
+
 /// How the plans of a mission stand to a rule, by listing them: the worst of all.
 fn worst(snapshot: &snapshot::Snapshot, network: &Network, rule: &str) -> Option<&'static str> {
     const MAX_PLANS: usize = 60;
@@ -76,6 +158,8 @@ fn a_proof_agrees_with_the_list_of_all_plans() {
             }
         };
         let source = chance.mission_of(&mut statement);
+        let gap = chance.below(2);
+        let source = source.replace("threat_gap = 0", &format!("threat_gap = {gap}"));
         let snapshot = snapshot(&source);
         let (Some(network), Some(_)) = (snapshot.network.as_deref(), snapshot.plan()) else { continue };
         for _ in 0..6 {

@@ -24,6 +24,10 @@ pub(super) fn with_instant(network: &Network, scale: Scale, requirement: &Requir
     // Whether a rule holds does not depend on what plans are worth, and the environment does what breaks it.
     extended.objective.clear();
     extended.controllability = Controllability::None;
+    // Vertices of a path are no deadlines (SPEC 6.2).
+    for segment in extended.arcs.iter_mut().filter(|arc| arc.kind == ArcKind::Path) {
+        segment.upper = Bound::Infinite;
+    }
     let (start, end) = (network.start, network.end);
     let ticks_per_unit = scale.ticks_per_unit();
     let part = Time::new(1, ticks_per_unit.checked_mul(PARTS)?)?;
