@@ -109,6 +109,8 @@ export type State = {
   robustness: Robustness | null;
   /** How the passed lines of the review were tried; `null` until some were. */
   contradiction: Contradiction | null;
+  /** Which flight rules hold in every plan; `null` until some were proven. */
+  ruleProofs: RuleProofs | null;
   selection: { kind: string; name: string | null; id: unknown } | null;
   caret: Caret;
   canUndo: boolean;
@@ -335,6 +337,23 @@ export type Contradiction = {
   /** How many schedules and runs have been tried, and how many are to be; `null` unless some are being tried. */
   progress: [number, number] | null;
   items: Array<TriedItem>;
+};
+
+/** Which flight rules hold in every plan of the mission. */
+export type RuleProofs = {
+  isRunning: boolean;
+  /** How many rules are answered, and how many are to be; `null` unless some are being proven. */
+  progress: [number, number] | null;
+  rules: Array<ProvenRule>;
+};
+
+/** What was found of one rule. */
+export type ProvenRule = {
+  /** What it says. */
+  rule: string;
+  verdict: "holds" | "never-applies" | "broken" | "unsure" | "open" | "unreadable" | "no-plan";
+  /** In one sentence. */
+  outcome: string;
 };
 
 /** How one line was tried. */

@@ -37,6 +37,8 @@ pub enum Kind {
     Review,
     /// Look for counterexamples of what has passed in a review.
     Contradict,
+    /// Find out whether a flight rule holds in every plan.
+    ProveRule,
     /// Plan another text, to compare with.
     Evaluate,
     /// Search a network both ways.
@@ -70,9 +72,9 @@ pub struct Rule {
 }
 
 /// The rules of all kinds, in the order of [`Kind`].
-pub const RULES: [Rule; 12] = {
+pub const RULES: [Rule; 13] = {
     use Kind::{
-        CompareSearches, Contradict, Evaluate, Execute, GrowPath, ImportMap, ProveProgram, Review,
+        CompareSearches, Contradict, Evaluate, Execute, GrowPath, ImportMap, ProveProgram, ProveRule, Review,
         RunControl, Sample, SampleProgram, Update,
     };
     [
@@ -83,6 +85,7 @@ pub const RULES: [Rule; 12] = {
                 Update,
                 Review,
                 Contradict,
+                ProveRule,
                 CompareSearches,
                 Execute,
                 Sample,
@@ -105,6 +108,12 @@ pub const RULES: [Rule; 12] = {
             supersedes: &[Contradict],
             key: "as of Update, the review, the line, how much is tried, the first step",
             kept: "as of Update, and how far the lines were tried",
+        },
+        Rule {
+            kind: ProveRule,
+            supersedes: &[ProveRule],
+            key: "as of Update, the rule, how many alternatives are tried",
+            kept: "as of Update, and paths",
         },
         Rule { kind: Evaluate, supersedes: &[Evaluate], key: "token, as of Update", kept: "paths" },
         Rule {
@@ -174,6 +183,7 @@ impl Request {
             Self::Update(_) => Kind::Update,
             Self::Review { .. } => Kind::Review,
             Self::Contradict { .. } => Kind::Contradict,
+            Self::ProveRule { .. } => Kind::ProveRule,
             Self::Evaluate { .. } => Kind::Evaluate,
             Self::CompareSearches(_) => Kind::CompareSearches,
             Self::Execute { .. } => Kind::Execute,
@@ -192,6 +202,7 @@ impl Request {
             Self::Update(update)
             | Self::Review { update, .. }
             | Self::Contradict { update, .. }
+            | Self::ProveRule { update, .. }
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. } => Some(update.revision),
@@ -208,6 +219,7 @@ impl Request {
             Self::Update(update)
             | Self::Review { update, .. }
             | Self::Contradict { update, .. }
+            | Self::ProveRule { update, .. }
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. }
@@ -225,6 +237,7 @@ impl Request {
             Self::Update(update)
             | Self::Review { update, .. }
             | Self::Contradict { update, .. }
+            | Self::ProveRule { update, .. }
             | Self::CompareSearches(update)
             | Self::Execute { update, .. }
             | Self::Sample { update, .. }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use review::contradict::{Effort, Tried};
+use review::flight_rule::proof::Proven;
 use review::record::LineKey;
 use review::{MissionRule, Review};
 use serde::{Deserialize, Serialize};
@@ -81,6 +82,14 @@ pub enum Request {
         /// How many schedules and runs have been tried.
         from: u64,
     },
+    /// Find out whether a flight rule holds in every plan of a text: see [`review::flight_rule::proof`].
+    ProveRule {
+        /// The text and how it is planned.
+        update: Update,
+        rule: MissionRule,
+        /// How many alternatives the planner tries.
+        alternatives: u64,
+    },
     /// Plan another text than the open one, to compare with: answered once, when it is done.
     Evaluate {
         /// Comes back with the answer.
@@ -153,6 +162,17 @@ pub enum Response {
         progress: [u64; 2],
         /// The lines so far; or why they cannot be tried.
         tried: Result<Vec<Tried>, String>,
+    },
+    /// What was found of a flight rule.
+    RuleProven {
+        /// The revision of the text.
+        revision: u64,
+        /// What the rule says.
+        rule: String,
+        /// How many alternatives the planner was to try.
+        alternatives: u64,
+        /// What was found; or why it cannot be proven.
+        proven: Result<Proven, String>,
     },
     /// Another text, planned.
     Evaluated {

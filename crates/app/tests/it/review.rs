@@ -596,3 +596,33 @@ fn a_saved_plan_and_another_mission_can_be_compared_with() {
     open(&mut app, "wrong.json", "{\"plans\": 3}");
     assert_eq!(app.json()["compare"]["with"], "both-paths.rmpl", "a wrong file changes nothing");
 }
+
+#[test]
+fn a_rule_says_whether_it_holds_in_this_plan_only_or_in_every_plan() {
+    let mut app = reviewing();
+    let source = "primitive Walk()[5,9]; primitive Run()[1,2]; \
+        scenario S[0,30] = { choose { Walk(), Run() }; delay }";
+    app.harness.state_mut().run(Command::SetSource(source.to_owned()));
+    app.settle();
+    let rules = json!([
+        { "name": "Floor", "rule": "never (Walk and Run)" },
+        { "name": "Pace", "rule": "never Run" },
+    ]);
+    app.harness.state_mut().dispatch("review.createKey", &json!({ "name": "Ada" })).expect("a key");
+    app.settle();
+    app.harness.state_mut().dispatch("review.rules", &json!({ "rules": rules })).expect("flight rules");
+    app.harness.state_mut().dispatch("review.run", &json!(null)).expect("a review");
+    app.settle();
+    click_exactly(&mut app, "Prove: Floor");
+    let says = |app: &App, words: &str| app.harness.query_all_by_label_contains(words).next().is_some();
+    assert!(says(&app, "Holds in every plan"), "{}", app.json()["ruleProofs"]);
+    assert!(!says(&app, "Holds in this plan only"));
+    click_exactly(&mut app, "Prove all rules");
+    assert!(
+        says(&app, "Holds in this plan only. Another plan can violate it"),
+        "{}",
+        app.json()["ruleProofs"]
+    );
+    click_exactly(&mut app, "Open plan: Pace");
+    assert_eq!(app.json()["compare"]["with"], json!("plan that can violate \u{201c}never Run\u{201d}"));
+}

@@ -76,6 +76,9 @@ impl Core {
             Request::Contradict { update, review, only, effort, from } => {
                 self.contradict(&update, &review, (only.as_ref(), effort), from, host);
             }
+            Request::ProveRule { update, rule, alternatives } => {
+                self.prove_rule_of(&update, &rule, alternatives, host);
+            }
             Request::Evaluate { token, update } => self.evaluate_beside(token, &update, host),
             Request::CompareSearches(update) => self.search_both_ways(&update, host),
             Request::RunControl(wanted) => self.run_control(&wanted, host),

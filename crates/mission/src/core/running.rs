@@ -5,9 +5,9 @@ use std::sync::Arc;
 use exact::Time;
 use executive::{PlanError, Script};
 use link::{ProgramChance, ProofQuestion, Response, Update};
-use review::Review;
 use review::contradict::{Effort, Observed, Trial};
 use review::record::LineKey;
+use review::{MissionRule, Review};
 use snapshot::{RobustnessSettings, Tally};
 
 use super::Core;
@@ -147,6 +147,23 @@ impl Core {
         });
         let (progress, tried) = tried.map_or_else(|reason| ([0; 2], Err(reason)), |(at, it)| (at, Ok(it)));
         host.answer(Response::Contradicted { revision, only: only.cloned(), progress, tried });
+    }
+
+    /// Finds out whether a rule holds in every plan.
+    pub(super) fn prove_rule_of(
+        &mut self,
+        update: &Update,
+        rule: &MissionRule,
+        alternatives: u64,
+        host: &mut dyn CoreHost,
+    ) {
+        let Some(evaluated) = self.evaluate(update, host) else { return };
+        let proven = evaluated
+            .map(|evaluated| self.prove_rule(&evaluated, rule, alternatives, &mut || host.is_superseded()));
+        if !host.is_superseded() {
+            let (revision, rule) = (update.revision, rule.rule.clone());
+            host.answer(Response::RuleProven { revision, rule, alternatives, proven });
+        }
     }
 
     /// Runs a control program many times.

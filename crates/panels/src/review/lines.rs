@@ -10,7 +10,7 @@ use workbench::state::Selection;
 
 use super::capital::sentence;
 use super::people::People;
-use super::{List, contradict, row};
+use super::{List, contradict, every_plan, row};
 
 /// Shows a line of any section.
 pub(super) fn line(
@@ -45,6 +45,12 @@ pub(super) fn line(
         ui.horizontal_wrapped(|ui| {
             ui.add_space(row::INDENT);
             contradict::of_line(ui, list.context, list.review, (section, line), commands);
+        });
+    }
+    if section == Section::MissionRules && !list.is_stale {
+        ui.horizontal_wrapped(|ui| {
+            ui.add_space(row::INDENT);
+            every_plan::of_rule(ui, list.context, list.review, index, commands);
         });
     }
     if line.status == Status::Attention && !list.is_stale {

@@ -6,6 +6,7 @@ pub(crate) mod capital;
 pub(crate) mod changes;
 mod contradict;
 mod events;
+mod every_plan;
 mod history;
 mod keys;
 mod lines;
@@ -133,6 +134,9 @@ impl ReviewPanel {
                 contradict::of_line(ui, list.context, list.review, (section, &settled), commands);
             }
             return;
+        }
+        if section == Section::MissionRules && !list.is_stale {
+            every_plan::all(ui, list.context, list.review, commands);
         }
         let is_expanded = self.expanded.contains(section.title());
         let most = if section == Section::Events { events::FIRST_EVENTS } else { FIRST_LINES };

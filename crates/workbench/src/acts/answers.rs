@@ -120,6 +120,10 @@ impl AppState {
                 let update = self.update_with_plan();
                 self.contradict.take(answer, update, self.frame.now_secs, &mut self.window);
             }
+            Response::RuleProven { .. } => {
+                let update = self.update_with_plan();
+                self.rule_proof.take(answer, update, &mut self.window);
+            }
             Response::ProgramProven { .. } => {
                 self.automaton.take_proof(answer, &self.document, &mut self.window);
             }

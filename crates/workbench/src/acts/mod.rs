@@ -30,6 +30,7 @@ use crate::state::execution::ExecutionCommand;
 use crate::state::pins::PinCommand;
 use crate::state::playback;
 use crate::state::program_chance::ProgramChanceCommand;
+use crate::state::rule_proof::RuleProofCommand;
 use crate::state::search::{self, SearchCommand};
 use crate::state::selection::Selection;
 use crate::state::terrain::{TerrainCommand, Tool};
@@ -100,6 +101,7 @@ impl AppState {
             }
             Command::Chance(command) => self.apply_to_chance(command),
             Command::Contradict(command) => self.apply_to_contradict(command),
+            Command::RuleProof(command) => self.apply_to_rule_proof(command),
             Command::ProgramChance(command) => self.apply_to_program_chance(command),
             Command::ProgramProof(command) => {
                 self.automaton.apply_to_proof(command, &self.document);
@@ -201,6 +203,37 @@ impl AppState {
         }
     }
 
+    fn apply_to_rule_proof(&mut self, command: RuleProofCommand) {
+        let hash = self.review.current().map(|review| review.content_hash.clone());
+        match command {
+            RuleProofCommand::Stop => {
+                self.window.ask(Effect::Stop);
+                self.rule_proof.give_up();
+            }
+            RuleProofCommand::Start(only) => match self.update_with_plan().zip(hash) {
+                Some((update, hash)) => {
+                    let rules = self.review.record().rules().rules.iter();
+                    let rules = rules.filter(|rule| only.as_ref().is_none_or(|only| *only == rule.rule));
+                    let rules = rules.cloned().collect();
+                    self.rule_proof.start(update, hash, rules, &mut self.window);
+                }
+                None => self.window.failed("Review the current text first"),
+            },
+            RuleProofCommand::Open(rule) => {
+                let found = hash.and_then(|hash| self.rule_proof.counterexample(&hash, &rule).cloned());
+                let Some(found) = found else { return };
+                if found.is_own {
+                    self.show_workspace(Workspace::Execute);
+                    self.apply_to_run(ExecutionCommand::Replay(Box::new(found.script)));
+                } else {
+                    self.window.show(PanelKind::Compare);
+                    let name = format!("plan that can violate “{rule}”");
+                    self.compare.show_plan(&name, &found.plan, &mut self.window);
+                }
+            }
+        }
+    }
+
     /// Holds the reviews against runs that have ended, and keeps these with the mission.
     fn keep_ended_runs(&mut self, content: Option<String>) {
         if let Some(content) = content {
@@ -275,6 +308,7 @@ impl AppState {
         self.automaton.give_up();
         self.chance.give_up();
         self.contradict.give_up();
+        self.rule_proof.give_up();
         self.execution.give_up();
         if let Some(revision) = revision {
             self.snapshots.give_up(revision);

@@ -24,6 +24,7 @@ use crate::state::playback::TransportCommand;
 use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::program_proof::ProgramProofCommand;
 use crate::state::review::ReviewCommand;
+use crate::state::rule_proof::RuleProofCommand;
 use crate::state::search::SearchCommand;
 use crate::state::selection::Selection;
 use crate::state::settings::SettingsCommand;
@@ -100,6 +101,8 @@ pub enum Command {
     Chance(ChanceCommand),
     /// Something that concerns counterexamples of what the review has passed.
     Contradict(ContradictCommand),
+    /// Something about proofs of flight rules over every plan.
+    RuleProof(RuleProofCommand),
     /// Something that concerns many runs of a control program with chance.
     ProgramChance(ProgramChanceCommand),
     /// Something that concerns what holds in all runs of a control program.

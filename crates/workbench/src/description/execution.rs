@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use exact::{Bound, Time};
 use executive::{Actor, Course, Disturbance, Ending, Entry, Happening};
 use review::contradict::{Tried, Verdict};
+use review::flight_rule::proof::Proven;
 use serde::Serialize;
 use serde_json::{Value, json};
 use snapshot::Snapshot;
@@ -88,6 +89,35 @@ pub struct TriedItem {
     #[cfg_attr(test, ts(type = "\"survived\" | \"contradicted\" | \"not-tried\""))]
     pub status: Verdict,
     /// How it came out, in one sentence.
+    pub outcome: String,
+}
+
+/// Which flight rules hold in every plan of the mission.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct RuleProofs {
+    pub is_running: bool,
+    /// How many rules are answered, and how many are to be; `null` unless some are being proven.
+    #[cfg_attr(test, ts(type = "[number, number] | null"))]
+    pub progress: Option<[usize; 2]>,
+    pub rules: Vec<ProvenRule>,
+}
+
+/// What was found of one rule.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+pub struct ProvenRule {
+    /// What it says.
+    pub rule: String,
+    #[cfg_attr(
+        test,
+        ts(
+            type = "\"holds\" | \"never-applies\" | \"broken\" | \"unsure\" | \"open\" | \"unreadable\" | \"no-plan\""
+        )
+    )]
+    pub verdict: &'static str,
+    /// In one sentence.
     pub outcome: String,
 }
 
@@ -229,6 +259,22 @@ pub(super) fn contradiction(state: &AppState) -> Option<Contradiction> {
         is_running: progress.is_some(),
         progress,
         items,
+    })
+}
+
+pub(super) fn rule_proofs(state: &AppState) -> Option<RuleProofs> {
+    let review = state.review.current()?;
+    let progress = state.rule_proof.progress();
+    let proven = |proven: &Proven| ProvenRule {
+        rule: proven.rule.clone(),
+        verdict: proven.verdict.name(),
+        outcome: proven.verdict.sentence(),
+    };
+    let rules: Vec<ProvenRule> = state.rule_proof.of_content(&review.content_hash).map(proven).collect();
+    (progress.is_some() || !rules.is_empty()).then_some(RuleProofs {
+        is_running: progress.is_some(),
+        progress,
+        rules,
     })
 }
 

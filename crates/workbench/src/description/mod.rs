@@ -33,7 +33,7 @@ use ts_rs::TS;
 use crate::state::AppState;
 use crate::state::snapshots::Status;
 
-pub use self::execution::{Contradiction, Execution, Pinned, Robustness};
+pub use self::execution::{Contradiction, Execution, Pinned, Robustness, RuleProofs};
 pub use self::lesson::{Lessons, Manual};
 pub use self::library::Library;
 pub use self::program::{PlantState, ProgramRun};
@@ -112,6 +112,8 @@ pub struct State {
     pub robustness: Option<Robustness>,
     /// How the passed lines of the review were tried; `null` until some were.
     pub contradiction: Option<Contradiction>,
+    /// Which flight rules hold in every plan; `null` until some were proven.
+    pub rule_proofs: Option<RuleProofs>,
     #[cfg_attr(test, ts(type = "{ kind: string; name: string | null; id: unknown } | null"))]
     pub selection: Value,
     pub caret: Caret,
@@ -318,6 +320,7 @@ impl State {
             execution: execution::execution(state),
             robustness: execution::robustness(state),
             contradiction: execution::contradiction(state),
+            rule_proofs: execution::rule_proofs(state),
             selection: state.selection.to_json(network),
             caret: Caret { anchor: caret.anchor, head: caret.head },
             can_undo: state.document.can_undo(),

@@ -202,6 +202,8 @@ fn interface() -> String {
     declare::<execution::Deadline>(&mut out);
     declare::<execution::Robustness>(&mut out);
     declare::<execution::Contradiction>(&mut out);
+    declare::<execution::RuleProofs>(&mut out);
+    declare::<execution::ProvenRule>(&mut out);
     declare::<execution::TriedItem>(&mut out);
     declare::<execution::Pinned>(&mut out);
     declare::<execution::NatureRun>(&mut out);

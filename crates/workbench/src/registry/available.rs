@@ -14,6 +14,7 @@ pub(super) fn while_working(state: &AppState) -> Availability {
         || state.review.is_running()
         || state.chance.is_running()
         || state.contradict.progress().is_some()
+        || state.rule_proof.progress().is_some()
         || state.execution.is_working()
         || state.automaton.chance.is_running();
     if is_working { Ok(()) } else { Err("no planning in progress") }
@@ -54,6 +55,18 @@ pub(super) fn with_plan(state: &AppState) -> Availability {
 pub(super) fn with_review(state: &AppState) -> Availability {
     with_plan(state)?;
     if state.review.current().is_some() { Ok(()) } else { Err("review the current text first") }
+}
+
+/// Whether the present text has been reviewed, has a plan, and has rules in its own language.
+pub(super) fn with_rules(state: &AppState) -> Availability {
+    with_review(state)?;
+    let has_rules = !state.review.record().rules().rules.is_empty();
+    if has_rules { Ok(()) } else { Err("add a rule in the mission's language first") }
+}
+
+/// Whether flight rules are being proven.
+pub(super) fn with_rule_proof(state: &AppState) -> Availability {
+    if state.rule_proof.progress().is_some() { Ok(()) } else { Err("no proof in progress") }
 }
 
 /// Whether counterexamples are being looked for.

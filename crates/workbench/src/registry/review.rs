@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::arguments::text_argument;
 use super::available::{
     with_approval, with_mission, with_natures_choice, with_pins, with_plan, with_record, with_review,
-    with_trial,
+    with_rule_proof, with_rules, with_trial,
 };
 use super::spec::{called, plain, when};
 use crate::command::Command;
@@ -22,6 +22,7 @@ use crate::state::keys::KeyChange;
 use crate::state::pins::PinCommand;
 use crate::state::pins::event_by_name;
 use crate::state::review::{Person, ReviewCommand};
+use crate::state::rule_proof::RuleProofCommand;
 use crate::state::window::WindowCommand;
 
 /// In the order of the menus.
@@ -54,6 +55,29 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
     }),
     called("review.replay", "Replay counterexample", Group::Review, |state, arguments| {
         Ok(Command::Contradict(ContradictCommand::Replay(item(state, arguments)?)))
+    }),
+    when(
+        plain(
+            "review.proveRules",
+            "Prove rules in every plan",
+            Group::Review,
+            &[],
+            Scope::Everywhere,
+            |_| Command::RuleProof(RuleProofCommand::Start(None)),
+        ),
+        with_rules,
+    ),
+    when(
+        plain("review.stopProof", "Stop proving rules", Group::Review, &[], Scope::Everywhere, |_| {
+            Command::RuleProof(RuleProofCommand::Stop)
+        }),
+        with_rule_proof,
+    ),
+    called("review.proveRule", "Prove rule in every plan", Group::Review, |state, arguments| {
+        Ok(Command::RuleProof(RuleProofCommand::Start(Some(rule(state, arguments)?))))
+    }),
+    called("review.openRulePlan", "Open plan that violates rule", Group::Review, |state, arguments| {
+        Ok(Command::RuleProof(RuleProofCommand::Open(rule(state, arguments)?)))
     }),
     when(
         plain("file.report", "Write report", Group::Review, &[], Scope::Everywhere, |_| Command::WriteReport),
@@ -261,6 +285,14 @@ fn item(state: &AppState, arguments: &Value) -> Result<LineKey, String> {
     let (section, line) =
         index.and_then(|index| lines.nth(index)).ok_or("\"item\" must be the number of a review item")?;
     Ok(LineKey::new(section, line))
+}
+
+/// What the flight rule of a name says.
+fn rule(state: &AppState, arguments: &Value) -> Result<String, String> {
+    let name = arguments.get("rule").and_then(Value::as_str);
+    let mut rules = state.review.record().rules().rules.iter();
+    let found = name.and_then(|name| rules.find(|rule| rule.name == name));
+    found.map(|rule| rule.rule.clone()).ok_or_else(|| "\"rule\" must be the name of a flight rule".to_owned())
 }
 
 /// What is said with it, if anything.

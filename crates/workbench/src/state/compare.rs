@@ -130,13 +130,18 @@ impl CompareState {
             }
             return;
         }
-        match Side::of_json(name, &document) {
+        self.show_plan(name, &document, window);
+    }
+
+    /// Compares with a plan, or the first plan of a document.
+    pub(crate) fn show_plan(&mut self, name: &str, document: &Value, window: &mut Window) {
+        match Side::of_json(name, document) {
             Ok(side) => {
                 self.reference = Some(Arc::new(side));
                 self.text = None;
                 self.waiting = None;
             }
-            Err(reason) => window.failed(failed(reason.to_string())),
+            Err(reason) => window.failed(format!("Couldn't compare with {name}: {reason}")),
         }
     }
 

@@ -32,6 +32,7 @@ pub mod playback;
 pub mod program_chance;
 pub mod program_proof;
 pub mod review;
+pub mod rule_proof;
 pub mod search;
 pub mod selection;
 mod services;
@@ -112,6 +113,8 @@ pub struct AppState {
     pub chance: Part<chance::ChanceState>,
     /// Counterexamples of what its review has passed.
     pub contradict: Part<contradict::ContradictState>,
+    /// Which flight rules hold in every plan.
+    pub rule_proof: Part<rule_proof::RuleProofState>,
     /// The time shown, and whether it runs.
     pub playback: Part<Playback>,
     /// Events that are pinned to times, to see what that leaves of the plan.
@@ -204,6 +207,7 @@ impl AppState {
             execution: Part::default(),
             chance: Part::default(),
             contradict: Part::default(),
+            rule_proof: Part::default(),
             playback: Part::default(),
             pins: Part::default(),
             settings: Part::default(),

@@ -239,6 +239,45 @@ fn passed_lines_are_contradicted_a_few_tries_at_a_time_and_what_is_found_replays
 }
 
 #[test]
+fn rules_are_proven_in_every_plan_and_the_plan_that_breaks_one_opens() {
+    let mut app = test_support::start();
+    app.run(Command::SetSource(
+        "primitive Walk()[5,9]; primitive Run()[1,2]; scenario S[0,30] = { choose { Walk(), Run() }; delay }"
+            .to_owned(),
+    ));
+    let rules = json!([
+        { "name": "Floor", "rule": "never (Walk and Run)" },
+        { "name": "Walk", "rule": "never Run" },
+        { "name": "Own", "rule": "never Walk from 6 to 20" },
+    ]);
+    app.dispatch("review.createKey", &json!({ "name": "Ada" }));
+    app.dispatch("review.rules", &json!({ "rules": rules }));
+    app.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(app.json()["ruleProofs"], json!(null));
+    app.dispatch("review.proveRules", &json!(null));
+    for _ in 0..20 {
+        app.settle();
+    }
+    let found = app.json()["ruleProofs"].clone();
+    let verdict = |index: usize| found["rules"][index]["verdict"].clone();
+    assert_eq!(found["isRunning"], false, "{found}");
+    assert_eq!([verdict(0), verdict(1), verdict(2)], ["holds", "broken", "broken"], "{found}");
+    let outcome = found["rules"][1]["outcome"].as_str().expect("a sentence");
+    assert!(outcome.starts_with("another plan can violate it: "), "{outcome}");
+    // Another plan is compared with this one, and a schedule of this one is replayed.
+    app.dispatch("review.openRulePlan", &json!({ "rule": "Walk" }));
+    let side = app.session.state().compare.reference().expect("a plan to compare with").clone();
+    assert!(side.is_planned && side.name.contains("never Run"), "{}", side.name);
+    app.dispatch("review.openRulePlan", &json!({ "rule": "Own" }));
+    assert!(app.session.state().execution.is_replay());
+    // Of another text nothing is known.
+    let source = app.session.source();
+    app.run(Command::SetSource(source.replace("[5,9]", "[5,8]")));
+    app.run(Command::Review(ReviewCommand::Run));
+    assert_eq!(app.json()["ruleProofs"], json!(null));
+}
+
+#[test]
 fn flight_rules_are_changed_kept_with_the_mission_and_part_of_what_is_signed() {
     let mut app = test_support::start();
     app.run(Command::Review(ReviewCommand::Run));
