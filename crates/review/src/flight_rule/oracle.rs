@@ -282,13 +282,22 @@ fn place(
 
 /// All schedules in whole ticks, unless there are too many.
 fn schedules(network: &Network, plan: &Plan) -> Option<Vec<Vec<i64>>> {
+    schedules_in_order(network, plan, &plan.precedences(network))
+}
+
+/// All schedules in whole ticks of what a plan selects, in such an order.
+pub(super) fn schedules_in_order(
+    network: &Network,
+    plan: &Plan,
+    orders: &[tpn::Precedence],
+) -> Option<Vec<Vec<i64>>> {
     let mut constraints: Vec<(usize, usize, i64, i64)> = Vec::new();
     for (index, arc) in network.arcs.iter().enumerate().filter(|(index, _)| plan.selected_arcs[*index]) {
         let _ = index;
         let upper = arc.upper.finite().map_or(99, exact::Time::numerator);
         constraints.push((arc.from.index(), arc.to.index(), arc.lower.numerator(), upper));
     }
-    for order in plan.precedences(network) {
+    for order in orders {
         constraints.push((order.earlier.index(), order.later.index(), order.least.numerator(), 99));
     }
     let nodes: Vec<usize> = (0..network.nodes.len()).filter(|&node| plan.selected_nodes[node]).collect();

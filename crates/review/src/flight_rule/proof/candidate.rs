@@ -73,6 +73,9 @@ impl Judge<'_> {
             return Held::Unknown;
         };
         let text = match finding.outcome {
+            Outcome::NeverApplies => return Held::Kept,
+            // That a rule applies needs no schedule.
+            _ if self.sought == Sought::Applying => return Held::Unknown,
             Outcome::Broken(text) => text,
             Outcome::Unsure(text) if self.sought == Sought::Unsure => text,
             _ => return Held::Kept,

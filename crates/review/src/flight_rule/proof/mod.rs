@@ -246,7 +246,7 @@ impl Proof<'_, '_> {
     fn find(&mut self, text: &str, rule: &Rule, sought: Sought) -> Found {
         let Mission { program, network, plan } = self.mission;
         let judge = Judge { program, text, rule, sought };
-        if let Some((network, plan)) = plan.filter(|_| sought != Sought::Applying) {
+        if let Some((network, plan)) = plan {
             match judge.hold(network, plan, true, &mut || self.meter.is_stopped()) {
                 Held::Shown(shown) => return Found::Shown(shown),
                 Held::Kept => {}
@@ -300,9 +300,6 @@ impl Proof<'_, '_> {
         loop {
             let outcome = self.meter.plan(&extended, &OPTIONS, &excluded);
             match (outcome.status, outcome.plans.first()) {
-                (Status::Plan, Some(_)) if judge.sought == Sought::Applying => {
-                    return Found::Open(String::new());
-                }
                 (Status::Plan, Some(found)) => {
                     let choices = own_choices(network, found);
                     let tried = if awaits_paths {
@@ -313,6 +310,8 @@ impl Proof<'_, '_> {
                     match tried {
                         Tried::Shown(shown) => return Found::Shown(shown),
                         Tried::Refuted => {}
+                        // A plan to which the rule applies is all that is sought.
+                        Tried::Open(why) if judge.sought == Sought::Applying => return Found::Open(why),
                         Tried::Open(why) => open = open.or(Some(why)),
                     }
                     if choices.is_empty() {

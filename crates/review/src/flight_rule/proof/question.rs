@@ -248,10 +248,10 @@ impl Question<'_> {
             // What comes before it has ended when it begins, and nothing has changed it yet.
             let kept = meant.iter().chain(&others).filter(|&&other| self.ends(own, other)).map(|&other| {
                 let (first, last) = self.network.interval(other);
-                Requirement::any([
-                    Requirement::Edge(Edge::future(first, touches)),
-                    Requirement::Order { earlier: last, later: start },
-                ])
+                let is_first = self.network.labels[own.index()].extent == Extent::Initial;
+                // Nothing comes before the first value, not even at the same instant.
+                let before = (!is_first).then_some(Requirement::Order { earlier: last, later: start });
+                Requirement::any([Requirement::Edge(Edge::future(first, touches))].into_iter().chain(before))
             });
             Requirement::all(edges(self.network.ready(own), None).chain([selected]).chain(kept))
         };

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::super::evaluate_plan;
-use super::super::oracle::Chance;
+use super::super::oracle::{Chance, schedules_in_order};
 use super::*;
+use crate::contradict::Scheduled;
 use crate::tests::snapshot;
 
 fn proven(source: &str, rule: &str) -> Proven {
@@ -138,7 +139,7 @@ fn worst(snapshot: &snapshot::Snapshot, network: &Network, rule: &str) -> Option
 fn a_proof_agrees_with_the_list_of_all_plans() {
     let mut chance = Chance(7);
     let (mut decided, mut seen) = (0, BTreeMap::new());
-    while decided < 600 {
+    while decided < 1_200 {
         let has_uses = chance.below(2) == 0;
         let mut statement = |chance: &mut Chance| {
             let plain = |chance: &mut Chance| loop {
@@ -178,5 +179,64 @@ fn a_proof_agrees_with_the_list_of_all_plans() {
     for verdict in ["never-applies", "holds", "broken", "unsure"] {
         assert!(seen.get(verdict).is_some_and(|count| *count > 10), "{seen:?}");
     }
-    assert!(seen.get("open").is_none_or(|count| *count < 12), "{seen:?}");
+    assert!(seen.get("open").is_none_or(|count| *count < 24), "{seen:?}");
+}
+
+/// A mission with choices, of statements that use resources.
+fn mission_of_uses(chance: &mut Chance) -> String {
+    chance.mission_of(&mut |chance: &mut Chance| match chance.below(4) {
+        0 => format!("choose {{ {}, {} }}", chance.statement(), chance.statement()),
+        _ => chance.statement(),
+    })
+}
+
+/// What is proven is held against every schedule in whole ticks of everything that can be chosen, whatever plan it is of: uses
+/// of resources may come in any order.
+#[test]
+fn what_is_proven_no_schedule_breaks() {
+    let mut chance = Chance(11);
+    let (mut kept, mut tried) = (0, 0);
+    while kept < 400 {
+        let source = mission_of_uses(&mut chance);
+        let snapshot = snapshot(&source);
+        let (Some(network), Some(_)) = (snapshot.network.as_deref(), snapshot.plan()) else { continue };
+        let options = Options { all: true, max_plans: 60, ..OPTIONS };
+        let listed = kirk::plan(network, &options, &mut kirk::ExpansionLimit(20_000));
+        // One plan of each selection tells what is selected.
+        let mut selections: Vec<&Plan> = Vec::new();
+        for plan in &listed.plans {
+            if selections.iter().all(|known| known.choices != plan.choices) {
+                selections.push(plan);
+            }
+        }
+        let schedules: Option<Vec<_>> =
+            selections.iter().map(|plan| schedules_in_order(network, plan, &[])).collect();
+        let Some(schedules) = schedules.filter(|_| listed.status == Status::Plan) else { continue };
+        for _ in 0..4 {
+            let text = chance.rule();
+            let verdict = proven(&source, &text).verdict;
+            if !matches!(verdict, Verdict::Holds | Verdict::NeverApplies) {
+                continue;
+            }
+            kept += 1;
+            let rule = read(&snapshot.program, network, &text).expect("a rule");
+            for (plan, times) in selections
+                .iter()
+                .zip(&schedules)
+                .flat_map(|(plan, all)| all.iter().map(move |times| (*plan, times)))
+            {
+                let times: Vec<Option<Time>> =
+                    times.iter().map(|&at| (at >= 0).then(|| Time::from(at))).collect();
+                let scheduled =
+                    Scheduled { program: &snapshot.program, network, plan, times: &times, is_extreme: false };
+                let breach = scheduled.first_breach(&rule);
+                if breach.is_some() {
+                    let checked = verify::check_schedule(network, plan, &times);
+                    assert!(!checked.valid, "{text} at {breach:?} of {times:?}\n{source}");
+                }
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 10_000, "{tried}");
 }
