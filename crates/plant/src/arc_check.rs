@@ -7,15 +7,16 @@ use rmpl::diagnostics::{ambiguous, constraint, probability, unreachable};
 use rmpl::{Diagnostic, Span};
 
 use crate::assignment::{Found, describe, satisfying};
-use crate::formula::{Formula, values};
+use crate::formula::Formula;
 use crate::model::{Component, ComponentId, Mode, Model};
+use crate::value_set::ValueSet;
 
 /// Adds what is wrong with the modes and arcs of a component.
 pub(crate) fn check_arcs(model: &Model, id: ComponentId, diagnostics: &mut Vec<Diagnostic>) {
     let Some(component) = model.component(id) else { return };
     let mut sets = model.full.clone();
-    for (number, mode) in component.modes.iter().enumerate() {
-        sets[Model::mode_symbol(id) as usize] = 1 << number;
+    for (number, mode) in (0..=u8::MAX).zip(&component.modes) {
+        sets[Model::mode_symbol(id) as usize] = ValueSet::one(number);
         let impossible = satisfying(&[&mode.constraint], &mut sets) == Found::Nothing;
         let impossible = impossible.then(|| constraint::impossible_mode(&mode.name, mode.span));
         let found = impossible.into_iter().chain(choices(model, component, mode, &mut sets));
@@ -32,9 +33,9 @@ pub(crate) fn check_reach(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
     let mut reached: BTreeMap<Span, (&str, &str, bool)> = BTreeMap::new();
     for component in &model.components {
         let modes = reach(component);
-        for (number, mode) in component.modes.iter().enumerate() {
+        for (number, mode) in (0..=u8::MAX).zip(&component.modes) {
             let entry = reached.entry(mode.span).or_insert((&component.class, &mode.name, false));
-            entry.2 |= modes >> number & 1 == 1;
+            entry.2 |= modes.contains(number);
         }
     }
     for (span, (class, mode, _)) in reached.into_iter().filter(|(_, (.., is_reached))| !is_reached) {
@@ -42,16 +43,16 @@ pub(crate) fn check_reach(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
     }
 }
 
-/// The modes that a component can reach, one bit each.
-fn reach(component: &Component) -> u64 {
-    let mut reached = component.prior.iter().fold(0_u64, |modes, (mode, _)| modes | 1 << mode);
+/// The modes that a component can reach.
+fn reach(component: &Component) -> ValueSet {
+    let mut reached = component.prior.iter().map(|(mode, _)| *mode).collect::<ValueSet>();
     loop {
         let before = reached;
-        for mode in values(before).filter_map(|mode| component.modes.get(usize::from(mode))) {
+        for mode in before.values().filter_map(|mode| component.modes.get(usize::from(mode))) {
             let outcomes = mode.choices.iter().flat_map(|choice| choice.outcomes.iter().map(|(to, _)| *to));
             reached = outcomes
                 .chain(mode.faults.iter().map(|fault| fault.to))
-                .fold(reached, |all, to| all | 1 << to);
+                .fold(reached, |all, to| all | ValueSet::one(to));
         }
         if reached == before {
             return reached;
@@ -60,7 +61,7 @@ fn reach(component: &Component) -> u64 {
 }
 
 /// Pairs of guards that can hold together and lead to different modes.
-fn choices(model: &Model, component: &Component, mode: &Mode, sets: &mut [u64]) -> Vec<Diagnostic> {
+fn choices(model: &Model, component: &Component, mode: &Mode, sets: &mut [ValueSet]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (at, second) in mode.choices.iter().enumerate() {
         for first in mode.choices.iter().take(at).filter(|first| first.differs(second)) {
@@ -79,7 +80,7 @@ fn choices(model: &Model, component: &Component, mode: &Mode, sets: &mut [u64]) 
 }
 
 /// Faults that are possible together and sum to more than 1.
-fn faults(model: &Model, component: &Component, mode: &Mode, sets: &mut [u64]) -> Option<Diagnostic> {
+fn faults(model: &Model, component: &Component, mode: &Mode, sets: &mut [ValueSet]) -> Option<Diagnostic> {
     let sum = mode.faults.iter().map(|fault| u128::from(fault.numerator)).sum::<u128>();
     if sum <= u128::from(mode.denominator) {
         return None;
@@ -92,7 +93,7 @@ fn faults(model: &Model, component: &Component, mode: &Mode, sets: &mut [u64]) -
 /// Values with which faults from a place on, beside those whose guards are held already, sum to more than 1.
 fn too_probable<'mode>(
     mode: &'mode Mode,
-    sets: &mut [u64],
+    sets: &mut [ValueSet],
     held: &mut Vec<&'mode Formula>,
     at: usize,
     sum: u128,

@@ -2,8 +2,9 @@
 
 use smol_str::{SmolStr, format_smolstr};
 
-use crate::formula::{Formula, Truth, values};
+use crate::formula::{Formula, Truth};
 use crate::model::{ComponentId, Model};
+use crate::value_set::ValueSet;
 
 /// A search stops after this many trials.
 const MAX_TRIALS: u32 = 20_000;
@@ -19,7 +20,7 @@ pub(crate) enum Found {
 }
 
 /// Values within `sets` with which all `formulas` hold. Exponential in the symbols that are open at worst.
-pub(crate) fn satisfying(formulas: &[&Formula], sets: &mut [u64]) -> Found {
+pub(crate) fn satisfying(formulas: &[&Formula], sets: &mut [ValueSet]) -> Found {
     let mut trials = 0;
     match search(formulas, sets, &mut Vec::new(), &mut trials) {
         Some(assignment) => Found::Assignment(assignment),
@@ -30,7 +31,7 @@ pub(crate) fn satisfying(formulas: &[&Formula], sets: &mut [u64]) -> Found {
 
 fn search(
     formulas: &[&Formula],
-    sets: &mut [u64],
+    sets: &mut [ValueSet],
     assigned: &mut Vec<(u32, u8)>,
     trials: &mut u32,
 ) -> Option<Vec<(u32, u8)>> {
@@ -42,7 +43,7 @@ fn search(
             Truth::False => return None,
             Truth::Open => {
                 formula.symbols(&mut |symbol| {
-                    let is_open = sets.get(symbol as usize).is_some_and(|set| set.count_ones() > 1);
+                    let is_open = sets.get(symbol as usize).is_some_and(|set| set.len() > 1);
                     if is_open && open.is_none() {
                         open = Some(symbol);
                     }
@@ -53,11 +54,11 @@ fn search(
     let Some(symbol) = open else { return Some(assigned.clone()) };
     let before = sets[symbol as usize];
     let mut found = None;
-    for value in values(before) {
+    for value in before.values() {
         if *trials > MAX_TRIALS {
             break;
         }
-        sets[symbol as usize] = 1 << value;
+        sets[symbol as usize] = ValueSet::one(value);
         assigned.push((symbol, value));
         found = search(formulas, sets, assigned, trials);
         assigned.pop();
@@ -70,7 +71,7 @@ fn search(
 }
 
 /// Whether the same values within `sets` satisfy both; false if the search stopped at its limit.
-pub(crate) fn are_equal(model: &Model, left: &Formula, right: &Formula, sets: &mut [u64]) -> bool {
+pub(crate) fn are_equal(model: &Model, left: &Formula, right: &Formula, sets: &mut [ValueSet]) -> bool {
     let mut implies = |from: &Formula, to: &Formula| {
         satisfying(&[from, &model.opposite(to.clone())], sets) == Found::Nothing
     };

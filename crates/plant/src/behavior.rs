@@ -19,10 +19,10 @@ use rmpl::{Code, Diagnostic};
 use smol_str::{SmolStr, SmolStrBuilder, ToSmolStr as _, format_smolstr};
 
 use crate::assignment::{Found, satisfying};
-use crate::formula::{Formula, all_values};
+use crate::formula::Formula;
+use crate::value_set::ValueSet;
 
-/// A class has at most this many modes, because sets of modes are words of 64 bits.
-const MAX_MODES: usize = 64;
+const MAX_MODES: usize = ValueSet::MOST;
 const MAX_TRANSITIONS: usize = 65_536;
 /// So many combinations of answers are followed, in all steps of a class.
 const MAX_ANSWERS: usize = 4 * MAX_TRANSITIONS;
@@ -181,7 +181,7 @@ fn refuse(expression: &Expression, into: &mut Vec<Diagnostic>) {
 struct Values {
     /// By name, the number of the variable and its values.
     variables: BTreeMap<SmolStr, (u32, Vec<SmolStr>)>,
-    full: Vec<u64>,
+    full: Vec<ValueSet>,
 }
 
 impl Values {
@@ -197,7 +197,7 @@ impl Values {
             let count = domain.as_ref().map_or(variable.values.len() + 1, Vec::len);
             let domain = domain.unwrap_or_else(|| variable.values.clone());
             values.variables.insert(variable.name.clone(), (values.full.len() as u32, domain));
-            values.full.push(all_values(count));
+            values.full.push(ValueSet::first_values(count));
         }
         values
     }
@@ -210,10 +210,10 @@ impl Values {
         let Some((symbol, values)) = self.variables.get(variable) else {
             return Formula::Constant(!wanted);
         };
-        let full = self.full.get(*symbol as usize).copied().unwrap_or(0);
+        let full = self.full.get(*symbol as usize).copied().unwrap_or_default();
         match values.iter().position(|known| known == value) {
             Some(at) => {
-                let set = 1_u64 << at.min(63);
+                let set = ValueSet::one(at.min(ValueSet::MOST - 1) as u8);
                 Formula::Member { symbol: *symbol, set: if wanted { set } else { full & !set } }
             }
             // For two variables, and for errors that are reported later, both answers are possible.

@@ -18,6 +18,7 @@ use crate::model::{Commands, Model, Observation};
 use crate::normalization::Normalization;
 use crate::odds::{Bests, Odds, best_of, multiply};
 use crate::successor::{Choices, EstimateError, distributions};
+use crate::value_set::ValueSet;
 
 /// How many states as likely as the last one wanted are looked at, to list the first of them in the order of modes.
 const MAX_TIES: usize = 16;
@@ -101,19 +102,19 @@ fn exact_weights(belief: &Belief, choices: &Choices, states: &[State]) -> (Vec<B
     let mut common = vec![1_u64; choices.components()];
     let mut relevant: Vec<usize> = Vec::new();
     for (component, common) in common.iter_mut().enumerate() {
-        let modes = states.iter().fold(0_u64, |modes, state| modes | 1 << state.0[component]);
+        let modes: ValueSet = states.iter().map(|state| state.0[component]).collect();
         let mut divisor = 0;
         let mut is_same = true;
         for row in (0..rows).filter(|row| !choices.is_repeated(*row, component)) {
             let mut missing = modes;
             for &(mode, weight) in choices.of(row, component) {
-                if modes >> mode & 1 == 1 && weight != divisor {
+                if modes.contains(mode) && weight != divisor {
                     is_same &= divisor == 0;
                     divisor = divisor.gcd(&weight);
                 }
-                missing &= !(1 << mode);
+                missing &= !ValueSet::one(mode);
             }
-            is_same &= missing == 0;
+            is_same &= missing.is_empty();
         }
         *common = divisor.max(1);
         let all: u64 = choices.of(0, component).iter().map(|(_, weight)| weight).sum();
@@ -211,7 +212,7 @@ struct Search {
 #[derive(Default)]
 struct Nodes {
     /// Per node and free component, the options that it may have.
-    sets: Vec<u64>,
+    sets: Vec<ValueSet>,
     /// Per node and free component, the option of the state looked at.
     chosen: Vec<u8>,
     /// Per node, where its split starts and ends.
@@ -323,16 +324,14 @@ impl Search {
         let mut likelihood = None;
         if let Some(conflict) = self.conflict(new, likelihoods) {
             let components = self.known[conflict].iter().map(|(component, _)| *component);
-            self.nodes
-                .split
-                .extend(components.filter(|&at| self.nodes.sets[new + at as usize].count_ones() > 1));
+            self.nodes.split.extend(components.filter(|&at| self.nodes.sets[new + at as usize].len() > 1));
         } else {
             let mut value: f64 = self.odds.products(&self.nodes.chosen[new..]).sum();
             for &at in &self.joint {
                 value *= likelihoods.chance(at, &self.state.0);
             }
             likelihood = (value > 0.0).then_some(value);
-            let several = |at: &u32| self.nodes.sets[new + *at as usize].count_ones() > 1;
+            let several = |at: &u32| self.nodes.sets[new + *at as usize].len() > 1;
             self.nodes.split.extend((0..count as u32).filter(several));
         }
         let end = self.nodes.split.len();
@@ -369,7 +368,7 @@ impl Search {
         for (place, &at) in split.iter().enumerate() {
             let at = at as usize;
             let chosen = self.nodes.chosen[new + at];
-            let others = self.nodes.sets[new + at] & !(1 << chosen);
+            let others = self.nodes.sets[new + at] & !ValueSet::one(chosen);
             let after = &suffix[(place + 1) * rows..][..rows];
             let parts = fixed.iter().zip(self.odds.ranked(at)).zip(after);
             let bound = parts.map(|((fixed, ranked), after)| fixed * best_of(ranked, others).0 * after);
@@ -435,7 +434,7 @@ impl Nodes {
         self.sets.extend_from_within(parent..parent + count);
         for at in start..=part.at {
             let component = self.split[at as usize] as usize;
-            let option = 1_u64 << self.chosen[parent + component];
+            let option = ValueSet::one(self.chosen[parent + component]);
             let set = &mut self.sets[new + component];
             *set = if at == part.at { *set & !option } else { option };
         }

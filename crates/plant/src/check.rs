@@ -9,10 +9,10 @@ use rmpl::{Code, Diagnostic, Span, diagnostics};
 use smol_str::SmolStr;
 
 use crate::probability;
+use crate::value_set::ValueSet;
 use rmpl::control::{MergedClass, MergedFault, MergedVariable};
 
-/// Value sets are words of 64 bits.
-const MAX_VALUES: usize = 64;
+const MAX_VALUES: usize = ValueSet::MOST;
 
 /// Adds what is wrong with the classes and components of a file that parsed without errors.
 pub(crate) fn check(

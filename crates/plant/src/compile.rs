@@ -17,13 +17,14 @@ use crate::assignment::{Found, are_equal, describe, satisfying};
 use crate::behavior::written_out;
 use crate::belief::Belief;
 use crate::check::check;
-use crate::formula::{Formula, all_values};
+use crate::formula::Formula;
 use crate::guard_check::check_guards;
 use crate::model::{
     Choice, CommandVariable, CommandVariableId, Component, ComponentId, Fault, Mode, Model, PlantVariable,
     Transition, VariableId,
 };
 use crate::probability;
+use crate::value_set::ValueSet;
 
 /// Of the states in which a plant may start, at most this many are tried one by one for modes that can hold together; after
 /// that, such a state is searched for.
@@ -215,7 +216,7 @@ fn prior(initial: &Initial, class: &MergedClass<'_>) -> Vec<(u8, u64)> {
     let mut prior: Vec<(u8, u64)> = match initial {
         Initial::FirstMode => vec![(0, 1)],
         Initial::Mode(mode) => vec![(class.mode(&mode.text).unwrap_or(0) as u8, 1)],
-        Initial::AnyMode => (0..class.modes.len() as u8).map(|mode| (mode, 1)).collect(),
+        Initial::AnyMode => (0..=u8::MAX).zip(&class.modes).map(|(mode, _)| (mode, 1)).collect(),
         Initial::Prior(_) => {
             let weights = initial.prior().into_iter();
             weights.filter_map(|(mode, weight)| Some((class.mode(mode)? as u8, weight))).collect()
@@ -293,9 +294,11 @@ impl Compiler<'_, '_> {
     fn fill(&mut self) {
         let classes: Vec<&MergedClass<'_>> =
             self.units.iter().filter_map(|unit| self.classes.get(&unit.class)).collect();
-        let modes = classes.iter().map(|class| all_values(class.modes.len()));
-        let variables = self.model.variables.iter().map(|variable| all_values(variable.values.len()));
-        let commands = self.model.command_variables.iter().map(|command| all_values(command.values.len()));
+        let modes = classes.iter().map(|class| ValueSet::first_values(class.modes.len()));
+        let variables =
+            self.model.variables.iter().map(|variable| ValueSet::first_values(variable.values.len()));
+        let commands =
+            self.model.command_variables.iter().map(|command| ValueSet::first_values(command.values.len()));
         self.model.full = modes.chain(variables).chain(commands).collect();
         let mut all = Vec::with_capacity(classes.len());
         for (id, class) in (0..).map(ComponentId).zip(classes) {
@@ -314,7 +317,7 @@ impl Compiler<'_, '_> {
 
     fn modes(&mut self, id: ComponentId, class: &MergedClass<'_>) -> Vec<Mode> {
         let mut modes = Vec::with_capacity(class.modes.len());
-        for (number, (name, constraints)) in (0_u8..).zip(&class.modes) {
+        for (number, (name, constraints)) in (0..=u8::MAX).zip(&class.modes) {
             let (faults, denominator) = self.faults(id, class, &name.text);
             let constraint = constraints.iter().map(|constraint| self.formula(id, constraint, true));
             let constraint = Formula::All(constraint.collect());
@@ -375,7 +378,7 @@ impl Compiler<'_, '_> {
         leaving: &[&MergedTransition<'_>],
     ) -> Vec<Choice> {
         let mut sets = self.model.full.clone();
-        sets[Model::mode_symbol(id) as usize] = 1 << from;
+        sets[Model::mode_symbol(id) as usize] = ValueSet::one(from);
         let mut grouped: Vec<(Formula, Vec<&MergedTransition<'_>>)> = Vec::new();
         for transition in leaving {
             let guard = self.guard(id, transition);
@@ -412,7 +415,7 @@ impl Compiler<'_, '_> {
         from: u8,
         guard: Formula,
         outcomes: &[&MergedTransition<'_>],
-        sets: &mut [u64],
+        sets: &mut [ValueSet],
     ) -> Option<Choice> {
         let span = outcomes.first()?.guard.span;
         let mode = class.modes.get(usize::from(from))?.0;
@@ -478,9 +481,9 @@ impl Compiler<'_, '_> {
     /// That a name has a value, or the value of another name, or that it has not.
     fn equality(&self, id: ComponentId, name: &str, value: &str, wanted: bool) -> Option<Formula> {
         let left = self.named(id, name)?;
-        let full = |symbol: u32| self.model.full.get(symbol as usize).copied().unwrap_or(0);
+        let full = |symbol: u32| self.model.full.get(symbol as usize).copied().unwrap_or_default();
         let member = |symbol: u32, value: usize, wanted: bool| {
-            let set = 1_u64 << value;
+            let set = ValueSet::one(value as u8);
             Formula::Member { symbol, set: if wanted { set } else { full(symbol) & !set } }
         };
         if let Some(at) = left.values.iter().position(|known| *known == value) {

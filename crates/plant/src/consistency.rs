@@ -1,10 +1,11 @@
 //! Whether modes, and what is observed, can hold together: propagation over value sets, then search.
 
 use crate::domains::{Domains, Settled, Standing};
-use crate::formula::{Formula, Truth, values};
+use crate::formula::{Formula, Truth};
 use crate::island::{Island, Places, Saying, place_bit};
 use crate::model::Model;
 use crate::table::Clause;
+use crate::value_set::ValueSet;
 
 /// The assumption that some components of an island are in some modes: `None` where nothing is assumed.
 pub(crate) struct Assumed<'model> {
@@ -117,7 +118,7 @@ impl<'model> Assumed<'model> {
         for (place, mode) in modes.iter().enumerate().filter(|(place, _)| places & place_bit(*place) != 0) {
             let (Some(mode), Some(component)) = (mode, self.island.components.get(place)) else { continue };
             let symbol = Model::mode_symbol(*component);
-            let set = 1_u64.checked_shl(u32::from(*mode)).unwrap_or(0);
+            let set = ValueSet::one(*mode);
             if !domains.narrow(symbol, set, place_bit(place)) {
                 return Err(domains.reason_for(&[symbol], place));
             }
@@ -223,11 +224,11 @@ impl<'model> Assumed<'model> {
     /// The same where all consequences of the assumed modes were drawn already.
     pub(crate) fn search(&self, domains: &mut Domains) -> Result<(), Places> {
         let Some((symbol, place)) = self.open_symbol(domains) else { return Ok(()) };
-        let set = domains.sets.get(symbol as usize).copied().unwrap_or(0);
+        let set = domains.sets.get(symbol as usize).copied().unwrap_or_default();
         let mut reason = place_bit(place) | domains.reason_of(symbol);
         let point = domains.point();
-        for value in values(set) {
-            match self.restrict([(symbol, 1 << value)], domains) {
+        for value in set.values() {
+            match self.restrict([(symbol, ValueSet::one(value))], domains) {
                 Ok(true) => return Ok(()),
                 Ok(false) => match self.search(domains) {
                     Ok(()) => return Ok(()),
@@ -245,7 +246,7 @@ impl<'model> Assumed<'model> {
     /// Answers and errors are those of [`Self::propagate`].
     pub(crate) fn restrict(
         &self,
-        given: impl IntoIterator<Item = (u32, u64)>,
+        given: impl IntoIterator<Item = (u32, ValueSet)>,
         domains: &mut Domains,
     ) -> Result<bool, Places> {
         let mark = domains.mark();
@@ -267,7 +268,7 @@ impl<'model> Assumed<'model> {
             }
             let mut found = None;
             formula.symbols(&mut |symbol| {
-                let open = domains.sets.get(symbol as usize).is_some_and(|set| set.count_ones() > 1);
+                let open = domains.sets.get(symbol as usize).is_some_and(|set| set.len() > 1);
                 if open && found.is_none() {
                     found = Some(symbol);
                 }

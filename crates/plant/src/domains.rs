@@ -2,6 +2,7 @@
 
 use crate::island::{Places, place_bit};
 use crate::model::{Model, Observation};
+use crate::value_set::ValueSet;
 
 /// The values that symbols may still have, and which components' modes are the reason.
 ///
@@ -9,10 +10,10 @@ use crate::model::{Model, Observation};
 #[derive(Clone, Debug)]
 pub(crate) struct Domains {
     /// Indexed by symbol.
-    pub(crate) sets: Vec<u64>,
+    pub(crate) sets: Vec<ValueSet>,
     pub(crate) reasons: Vec<Places>,
     /// What was narrowed: the symbol, and its set and reasons before.
-    pub(crate) trail: Vec<(u32, u64, Places)>,
+    pub(crate) trail: Vec<(u32, ValueSet, Places)>,
     /// Places whose constraints have to be looked at again.
     pub(crate) waiting: Vec<u32>,
     /// Per place of the island under work.
@@ -66,7 +67,7 @@ impl Domains {
                 continue;
             }
             if let Some(set) = domains.sets.get_mut(model.variable_symbol(variable) as usize) {
-                *set &= 1_u64.checked_shl(u32::from(value)).unwrap_or(0);
+                *set &= ValueSet::one(value);
             }
         }
         domains
@@ -105,7 +106,7 @@ impl Domains {
 
     /// Leaves a symbol only values of `set`, because of `reason`; false when none are left.
     #[inline]
-    pub(crate) fn narrow(&mut self, symbol: u32, set: u64, reason: Places) -> bool {
+    pub(crate) fn narrow(&mut self, symbol: u32, set: ValueSet, reason: Places) -> bool {
         let at = symbol as usize;
         let Some(&before) = self.sets.get(at) else { return false };
         let narrowed = before & set;
@@ -114,7 +115,7 @@ impl Domains {
             self.sets[at] = narrowed;
             self.reasons[at] |= reason;
         }
-        narrowed != 0
+        !narrowed.is_empty()
     }
 
     /// The reason for a symbol's values.

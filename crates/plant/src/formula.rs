@@ -1,5 +1,6 @@
 //! Constraints over modes, variables and commands, compiled to value sets in negation normal form.
 
+use crate::value_set::ValueSet;
 use rmpl::control::{Constraint, ConstraintKind};
 use serde::{Deserialize, Serialize};
 
@@ -12,8 +13,7 @@ pub enum Formula {
     Member {
         /// Index of the symbol in the model.
         symbol: u32,
-        /// The values, one bit each.
-        set: u64,
+        set: ValueSet,
     },
     All(Vec<Formula>),
     /// At least one holds.
@@ -26,22 +26,6 @@ pub(crate) enum Truth {
     True,
     False,
     Open,
-}
-
-/// The values in a set, lowest first.
-pub(crate) fn values(mut set: u64) -> impl Iterator<Item = u8> {
-    std::iter::from_fn(move || {
-        (set != 0).then(|| {
-            let value = set.trailing_zeros() as u8;
-            set &= set - 1;
-            value
-        })
-    })
-}
-
-/// All values of a symbol that has this many, one bit each.
-pub(crate) const fn all_values(count: usize) -> u64 {
-    if count >= 64 { u64::MAX } else { (1 << count) - 1 }
 }
 
 impl Formula {
@@ -68,7 +52,7 @@ impl Formula {
     }
 
     /// The opposite, where `full` gives all values of a symbol.
-    pub(crate) fn negated(self, full: &impl Fn(u32) -> u64) -> Self {
+    pub(crate) fn negated(self, full: &impl Fn(u32) -> ValueSet) -> Self {
         match self {
             Self::Constant(value) => Self::Constant(!value),
             Self::Member { symbol, set } => Self::Member { symbol, set: full(symbol) & !set },
@@ -102,7 +86,7 @@ impl Formula {
         match self {
             Self::Constant(value) => Self::Constant(*value),
             Self::Member { symbol, set } => match value_of(*symbol) {
-                Some(value) => Self::Constant(set >> value & 1 == 1),
+                Some(value) => Self::Constant(set.contains(value)),
                 None => self.clone(),
             },
             Self::All(parts) => joined(parts, true),
@@ -111,7 +95,7 @@ impl Formula {
     }
 
     /// Truth when each symbol may have the values in `domains`; open also where only search could tell.
-    pub(crate) fn truth(&self, domains: &[u64]) -> Truth {
+    pub(crate) fn truth(&self, domains: &[ValueSet]) -> Truth {
         let joined = |parts: &[Self], deciding: Truth, neutral: Truth| {
             let mut result = neutral;
             for part in parts {
@@ -134,10 +118,10 @@ impl Formula {
                 }
             }
             Self::Member { symbol, set } => {
-                let domain = domains.get(*symbol as usize).copied().unwrap_or(0);
-                if domain & set == 0 {
+                let domain = domains.get(*symbol as usize).copied().unwrap_or_default();
+                if (domain & *set).is_empty() {
                     Truth::False
-                } else if domain & !set == 0 {
+                } else if (domain & !*set).is_empty() {
                     Truth::True
                 } else {
                     Truth::Open
@@ -158,7 +142,7 @@ impl Formula {
     }
 
     /// All ways to satisfy it as conjunctions of memberships; `None` when there are more than `most`.
-    pub(crate) fn alternatives(&self, most: usize) -> Option<Vec<Vec<(u32, u64)>>> {
+    pub(crate) fn alternatives(&self, most: usize) -> Option<Vec<Vec<(u32, ValueSet)>>> {
         match self {
             Self::Constant(true) => Some(vec![Vec::new()]),
             Self::Constant(false) => Some(Vec::new()),
@@ -189,13 +173,16 @@ impl Formula {
 }
 
 /// Both memberships at once; `None` when no value is left to a symbol.
-pub(crate) fn conjunction(left: &[(u32, u64)], right: &[(u32, u64)]) -> Option<Vec<(u32, u64)>> {
+pub(crate) fn conjunction(
+    left: &[(u32, ValueSet)],
+    right: &[(u32, ValueSet)],
+) -> Option<Vec<(u32, ValueSet)>> {
     let mut both = left.to_vec();
     for &(symbol, set) in right {
         match both.iter_mut().find(|(known, _)| *known == symbol) {
             Some((_, known)) => {
                 *known &= set;
-                if *known == 0 {
+                if known.is_empty() {
                     return None;
                 }
             }

@@ -8,10 +8,10 @@ use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
 use crate::formula::Formula;
-use crate::formula::values;
 use crate::island::Island;
 use crate::model::{Commands, ComponentId, Model, Observation};
 use crate::successor::is_entailed;
+use crate::value_set::ValueSet;
 
 /// A guard with more alternatives is not judged.
 const MAX_ALTERNATIVES: usize = 256;
@@ -22,7 +22,7 @@ const MAX_COMBINATIONS: usize = 4096;
 pub(crate) fn check_guards(model: &Model, diagnostics: &mut Vec<Diagnostic>) {
     let mut reported: BTreeSet<Span> = BTreeSet::new();
     for (id, component) in model.component_ids().zip(&model.components) {
-        for (from, mode) in (0_u8..).zip(&component.modes) {
+        for (from, mode) in (0..=u8::MAX).zip(&component.modes) {
             for choice in mode.choices.iter().filter(|choice| choice.nominal != from) {
                 if can_hold(model, id, from, &choice.guard) || !reported.insert(choice.span) {
                     continue;
@@ -56,7 +56,7 @@ fn can_hold(model: &Model, component: ComponentId, from: u8, guard: &Formula) ->
     if islands.is_empty() {
         // Other components and commands can be brought into whatever is asked for.
         let own = Model::mode_symbol(component);
-        let fits = |(symbol, set): &(u32, u64)| *symbol != own || set >> from & 1 == 1;
+        let fits = |(symbol, set): &(u32, ValueSet)| *symbol != own || set.contains(from);
         return alternatives.iter().any(|alternative| alternative.iter().all(fits));
     }
     involved.extend(islands.iter().flat_map(|island| &island.components));
@@ -82,11 +82,11 @@ fn can_hold(model: &Model, component: ComponentId, from: u8, guard: &Formula) ->
 }
 
 /// The first commands that an alternative of a guard asks for, all others idle.
-fn commands_of(model: &Model, alternative: &[(u32, u64)]) -> Commands {
+fn commands_of(model: &Model, alternative: &[(u32, ValueSet)]) -> Commands {
     let mut commands = model.idle();
     for (symbol, set) in alternative {
         if let Some(command) = model.symbol_command(*symbol)
-            && let Some((slot, value)) = commands.0.get_mut(command.0 as usize).zip(values(*set).next())
+            && let Some((slot, value)) = commands.0.get_mut(command.0 as usize).zip(set.values().next())
         {
             *slot = value;
         }

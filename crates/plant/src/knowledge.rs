@@ -10,11 +10,12 @@ use crate::belief::{Belief, State};
 use crate::consistency::Assumed;
 use crate::domains::Domains;
 use crate::factored::FactoredBelief;
-use crate::formula::{Formula, Truth, values};
+use crate::formula::{Formula, Truth};
 use crate::group::Group;
 use crate::interval::Interval;
 use crate::model::{ComponentId, Model, Observation, VariableId};
 use crate::probability::Probability;
+use crate::value_set::ValueSet;
 
 /// The opposite of a condition is looked at in at most so many alternatives; a condition with more is not entailed.
 const MAX_ALTERNATIVES: usize = 4096;
@@ -26,17 +27,17 @@ const MAX_RESTS: usize = 10_000;
 impl Model {
     /// The condition that a component is in a mode.
     pub const fn mode_is(component: ComponentId, mode: u8) -> Formula {
-        Formula::Member { symbol: Self::mode_symbol(component), set: 1 << mode }
+        Formula::Member { symbol: Self::mode_symbol(component), set: ValueSet::one(mode) }
     }
 
     /// The condition that a variable has a value, by its number.
     pub fn value_is(&self, variable: VariableId, value: u8) -> Formula {
-        Formula::Member { symbol: self.variable_symbol(variable), set: 1 << value }
+        Formula::Member { symbol: self.variable_symbol(variable), set: ValueSet::one(value) }
     }
 
     /// The condition that another one does not hold.
     pub fn opposite(&self, condition: Formula) -> Formula {
-        condition.negated(&|symbol| self.full.get(symbol as usize).copied().unwrap_or(0))
+        condition.negated(&|symbol| self.full.get(symbol as usize).copied().unwrap_or_default())
     }
 }
 
@@ -55,7 +56,7 @@ impl<'model> Situation<'model> {
         let mut domains = Domains::observed(model, observation);
         for component in model.component_ids() {
             if let Some(set) = domains.sets.get_mut(component.0 as usize) {
-                *set = 1_u64.checked_shl(u32::from(state.mode(component))).unwrap_or(0);
+                *set = ValueSet::one(state.mode(component));
             }
         }
         Self { model, state, domains, is_propagated: false }
@@ -75,8 +76,9 @@ impl<'model> Situation<'model> {
 
     /// The combinations of values that some symbols may have.
     fn combinations(&mut self, symbols: &[u32]) -> Vec<Vec<u8>> {
-        let set = |domains: &Domains, symbol: &u32| domains.sets.get(*symbol as usize).copied().unwrap_or(0);
-        if symbols.iter().any(|symbol| set(&self.domains, symbol).count_ones() > 1) {
+        let set =
+            |domains: &Domains, symbol: &u32| domains.sets.get(*symbol as usize).copied().unwrap_or_default();
+        if symbols.iter().any(|symbol| set(&self.domains, symbol).len() > 1) {
             self.propagate();
         }
         let mut found: Vec<Vec<u8>> = vec![Vec::with_capacity(symbols.len())];
@@ -85,14 +87,17 @@ impl<'model> Situation<'model> {
             found = found
                 .iter()
                 .flat_map(|before| {
-                    values(set).map(move |value| before.iter().copied().chain([value]).collect())
+                    set.values().map(move |value| before.iter().copied().chain([value]).collect())
                 })
                 .collect();
         }
         if (2..=MAX_COMBINATIONS).contains(&found.len()) {
             found.retain(|values| {
-                let given: Vec<(u32, u64)> =
-                    symbols.iter().zip(values).map(|(symbol, value)| (*symbol, 1 << value)).collect();
+                let given: Vec<(u32, ValueSet)> = symbols
+                    .iter()
+                    .zip(values)
+                    .map(|(symbol, value)| (*symbol, ValueSet::one(*value)))
+                    .collect();
                 is_possible(self.model, self.state, &self.domains, &given)
             });
         }
@@ -124,12 +129,12 @@ pub(crate) fn is_entailed_by_search(
 }
 
 /// Whether the modes of a state can hold together, within some domains, where symbols have values of these sets.
-fn is_possible(model: &Model, state: &State, start: &Domains, given: &[(u32, u64)]) -> bool {
+fn is_possible(model: &Model, state: &State, start: &Domains, given: &[(u32, ValueSet)]) -> bool {
     let mut domains = start.clone();
     for (symbol, set) in given {
         if let Some(domain) = domains.sets.get_mut(*symbol as usize) {
-            *domain &= set;
-            if *domain == 0 {
+            *domain &= *set;
+            if domain.is_empty() {
                 return false;
             }
         }

@@ -41,6 +41,7 @@ pub mod simulate;
 mod spans;
 pub mod successor;
 mod table;
+pub mod value_set;
 
 pub use belief::{Belief, State};
 pub use best_first::{SearchStatistics, update_best};
@@ -65,3 +66,4 @@ pub use probability::Probability;
 pub use reconfigure::{Command, Goal, NextCommands, Plan, Unreachable};
 pub use simulate::{Random, SimulatedPlant};
 pub use successor::{EstimateError, intended, successor};
+pub use value_set::ValueSet;

@@ -10,9 +10,9 @@ use num_traits::{One as _, ToPrimitive as _, Zero as _};
 use crate::consistency::Assumed;
 use crate::diagnosis::shrink;
 use crate::domains::{Domains, Settled};
-use crate::formula::values;
 use crate::island::{Island, Places};
 use crate::model::{ComponentId, Model, Observation, VariableId};
+use crate::value_set::ValueSet;
 
 /// Of islands with at most so many combinations of modes all are looked at for the one that admits the fewest observations.
 const MAX_COMBINATIONS: usize = 4096;
@@ -32,9 +32,9 @@ struct Sensor {
 
 impl Sensor {
     /// The weight of all true values in a set.
-    fn weight(&self, set: u64) -> BigUint {
-        let is_possible = set >> self.observed & 1 == 1;
-        let others = u64::from(set.count_ones()) - u64::from(is_possible);
+    fn weight(&self, set: ValueSet) -> BigUint {
+        let is_possible = set.contains(self.observed);
+        let others = u64::from(set.len()) - u64::from(is_possible);
         let wrong = &self.wrong * others;
         if is_possible { wrong + &self.right } else { wrong }
     }
@@ -76,12 +76,12 @@ fn product_of_values(observed: &[u32], domains: &Domains, sensors: &Sensors) -> 
     let mut product = BigUint::one();
     let mut gathered = 1_u64;
     for symbol in observed {
-        let set = domains.sets.get(*symbol as usize).copied().unwrap_or(0);
+        let set = domains.sets.get(*symbol as usize).copied().unwrap_or_default();
         if let Some(sensor) = sensors.get(symbol) {
             product *= sensor.weight(set);
             continue;
         }
-        let values = u64::from(set.count_ones());
+        let values = u64::from(set.len());
         gathered = gathered.checked_mul(values).unwrap_or_else(|| {
             product *= gathered;
             values
@@ -117,7 +117,7 @@ fn product_over_parts(
 /// The undetermined symbols of constraints that are still open, joined where they share one.
 fn parts(assumed: &Assumed<'_>, settled: &Settled, domains: &Domains) -> Vec<Vec<u32>> {
     let mut parts: Vec<Vec<u32>> = Vec::new();
-    let is_open = |symbol: &u32| domains.sets.get(*symbol as usize).is_some_and(|set| set.count_ones() > 1);
+    let is_open = |symbol: &u32| domains.sets.get(*symbol as usize).is_some_and(|set| set.len() > 1);
     for symbols in assumed.open_symbols(settled) {
         let mut mine: Vec<u32> = symbols.iter().copied().filter(is_open).collect();
         for at in (0..parts.len()).rev() {
@@ -140,17 +140,16 @@ pub(crate) fn combinations(assumed: &Assumed<'_>, domains: &mut Domains, observe
 /// The weight of all combinations of true values of the observed variables; all consequences of the modes were drawn.
 fn count(assumed: &Assumed<'_>, domains: &mut Domains, observed: &[u32], sensors: &Sensors) -> BigUint {
     let point = domains.point();
-    let open = observed
-        .iter()
-        .find(|&&symbol| domains.sets.get(symbol as usize).is_some_and(|set| set.count_ones() > 1));
+    let open =
+        observed.iter().find(|&&symbol| domains.sets.get(symbol as usize).is_some_and(|set| set.len() > 1));
     let Some(&symbol) = open else {
         let is_possible = assumed.search(domains).is_ok();
         domains.return_to(&point);
         return if is_possible { product_of_values(observed, domains, sensors) } else { BigUint::zero() };
     };
     let mut sum = BigUint::zero();
-    for value in values(domains.sets.get(symbol as usize).copied().unwrap_or(0)) {
-        match assumed.restrict([(symbol, 1 << value)], domains) {
+    for value in domains.sets.get(symbol as usize).copied().unwrap_or_default().values() {
+        match assumed.restrict([(symbol, ValueSet::one(value))], domains) {
             Ok(true) => sum += product_of_values(observed, domains, sensors),
             Ok(false) => sum += count(assumed, domains, observed, sensors),
             Err(_) => {}
@@ -173,7 +172,7 @@ fn explains(assumed: &mut Assumed<'_>, place: usize, domains: &mut Domains, node
         domains.return_to(&point);
         return is_possible;
     };
-    for mode in 0..component.modes.len() as u8 {
+    for (mode, _) in (0..=u8::MAX).zip(&component.modes) {
         let found = assumed.add(place, mode, domains).is_ok() && explains(assumed, place + 1, domains, nodes);
         assumed.modes[place] = None;
         domains.return_to(&point);
@@ -245,7 +244,7 @@ impl<'model> Likelihoods<'model> {
         let mut observed = Domains::observed(model, observation);
         // A sensor that is always wrong never shows the true value.
         for (symbol, sensor) in sensors.iter().flatten().filter(|(_, sensor)| sensor.right.is_zero()) {
-            observed.sets[*symbol as usize] &= !(1 << sensor.observed);
+            observed.sets[*symbol as usize] &= !ValueSet::one(sensor.observed);
         }
         Self {
             model,
@@ -372,7 +371,7 @@ impl<'model> Likelihoods<'model> {
         let is_settled = assumed.propagate_from(&mut self.settled[at], &mut self.free)?;
         let contradicts = |symbol: &&u32| {
             let sets = self.free.sets.get(**symbol as usize).zip(self.observed.sets.get(**symbol as usize));
-            sets.is_some_and(|(left, right)| left & right == 0)
+            sets.is_some_and(|(left, right)| (*left & *right).is_empty())
         };
         if let Some(contradicted) = observed.iter().find(contradicts) {
             return Err(self.free.reason_of(*contradicted));

@@ -11,6 +11,7 @@ use crate::belief::State;
 use crate::likelihood::Likelihoods;
 use crate::model::{Commands, ComponentId, Mode, Model};
 use crate::successor::{EstimateError, distribution};
+use crate::value_set::ValueSet;
 
 /// At most this many states are held at once.
 const MAX_HELD: usize = 300_000;
@@ -84,8 +85,8 @@ pub(crate) fn move_all(
 /// The common denominator of what a component may do in any of some states.
 fn denominator(model: &Model, component: ComponentId, states: &[Moving]) -> u64 {
     let Some(data) = model.component(component) else { return 1 };
-    let present = states.iter().fold(0_u64, |modes, moving| modes | 1 << moving.state.mode(component));
-    let modes = data.modes.iter().enumerate().filter(|(at, _)| present >> at & 1 == 1);
+    let present: ValueSet = states.iter().map(|moving| moving.state.mode(component)).collect();
+    let modes = (0..=u8::MAX).zip(&data.modes).filter(|(at, _)| present.contains(*at));
     let each = modes.flat_map(|(_, mode)| {
         let choices = mode.choices.iter().map(|choice| choice.denominator);
         choices.chain([1]).map(|denominator| denominator * mode.denominator)

@@ -8,6 +8,7 @@ use smol_str::SmolStr;
 
 use crate::formula::Formula;
 use crate::island::Island;
+use crate::value_set::ValueSet;
 
 /// Index of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -154,10 +155,10 @@ pub struct Model {
     pub(crate) islands: Vec<Island>,
     /// Per symbol the places, in its island, of the components whose modes speak of it.
     pub(crate) watchers: Vec<Vec<u32>>,
-    /// Per component its modes in which only commands decide where it goes, one bit each.
-    pub(crate) led_by_commands: Vec<u64>,
-    /// Per symbol all its values, one bit each.
-    pub(crate) full: Vec<u64>,
+    /// Per component its modes in which only commands decide where it goes.
+    pub(crate) led_by_commands: Vec<ValueSet>,
+    /// Per symbol all its values.
+    pub(crate) full: Vec<ValueSet>,
 }
 
 impl Model {
@@ -217,7 +218,7 @@ impl Model {
 
     /// Whether only commands decide where a component goes from a mode.
     pub(crate) fn is_led_by_commands(&self, component: ComponentId, mode: u8) -> bool {
-        self.led_by_commands.get(component.0 as usize).is_some_and(|modes| modes >> mode & 1 == 1)
+        self.led_by_commands.get(component.0 as usize).is_some_and(|modes| modes.contains(mode))
     }
 
     /// The variable of a symbol, if it is one.

@@ -148,7 +148,7 @@ impl Model {
             .map(VariableId)
             .filter_map(|variable| {
                 let set = domains.sets.get(self.variable_symbol(variable) as usize).copied()?;
-                set.is_power_of_two().then(|| (variable, set.trailing_zeros() as u8))
+                Some((variable, set.only()?))
             })
             .collect()
     }

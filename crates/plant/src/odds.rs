@@ -4,10 +4,10 @@
 //! for all prior states at once.
 
 use crate::belief::{Belief, State};
-use crate::formula::{all_values, values};
 use crate::likelihood::Likelihoods;
 use crate::model::{ComponentId, Model};
 use crate::successor::Choices;
+use crate::value_set::ValueSet;
 
 /// Probabilities of the modes that the free components, which may enter several, may enter.
 #[derive(Default)]
@@ -53,16 +53,16 @@ impl Odds {
         for (component, island) in islands.into_iter().enumerate() {
             let rows = (0..rows).filter(|row| !choices.is_repeated(*row, component));
             let entered = rows.flat_map(|row| choices.of(row, component));
-            let modes = entered.fold(0_u64, |modes, (mode, _)| modes | 1 << mode);
+            let modes: ValueSet = entered.map(|(mode, _)| *mode).collect();
             let first = odds.modes.len();
-            for mode in values(modes) {
+            for mode in modes.values() {
                 state.0[component] = mode;
                 factors.push(island.map_or(1.0, |island| likelihoods.chance(island, &state.0)));
             }
-            if modes.count_ones() > 1 {
+            if modes.len() > 1 {
                 odds.free.push(component);
                 odds.starts.push(first);
-                odds.modes.extend(values(modes));
+                odds.modes.extend(modes.values());
             } else {
                 let factor = factors.pop().unwrap_or(0.0);
                 odds.prior.iter_mut().for_each(|prior| *prior *= factor);
@@ -95,7 +95,8 @@ impl Odds {
                     let option = start + option;
                     self.table[option * rows + row] = *weight as f64 / total * factors[option];
                 }
-                self.ranked.extend((start..end).map(|option| self.table[option * rows + row]).zip(0..));
+                self.ranked
+                    .extend((start..end).map(|option| self.table[option * rows + row]).zip(0..=u8::MAX));
                 self.ranked[first..].sort_by(|left, right| right.0.total_cmp(&left.0));
             }
         }
@@ -117,9 +118,9 @@ impl Odds {
         self.modes[self.starts[at] + option as usize]
     }
 
-    /// All options of a free component, one bit each.
-    pub(crate) fn full_set(&self, at: usize) -> u64 {
-        all_values(self.starts[at + 1] - self.starts[at])
+    /// All options of a free component.
+    pub(crate) fn full_set(&self, at: usize) -> ValueSet {
+        ValueSet::first_values(self.starts[at + 1] - self.starts[at])
     }
 
     /// By prior state, the probability of a free component's option.
@@ -149,7 +150,7 @@ impl Odds {
 #[derive(Default)]
 pub(crate) struct Bests {
     /// The sets for which the following holds.
-    sets: Vec<u64>,
+    sets: Vec<ValueSet>,
     /// Per free component and prior state, the largest entry.
     values: Vec<f64>,
     /// The same, its option.
@@ -160,9 +161,9 @@ pub(crate) struct Bests {
 
 impl Bests {
     /// Works out the best entries within `sets`; answers the largest product and its prior state.
-    pub(crate) fn update(&mut self, odds: &Odds, sets: &[u64]) -> (f64, usize) {
+    pub(crate) fn update(&mut self, odds: &Odds, sets: &[ValueSet]) -> (f64, usize) {
         let rows = odds.rows();
-        self.sets.resize(sets.len(), 0);
+        self.sets.resize(sets.len(), ValueSet::EMPTY);
         self.values.resize(sets.len() * rows, 0.0);
         self.options.resize(sets.len() * rows, 0);
         for (at, (before, &set)) in self.sets.iter_mut().zip(sets).enumerate() {
@@ -208,8 +209,8 @@ impl Bests {
 
 /// The best of a component's ranked entries whose option is in `set`; zero for an empty set.
 #[inline]
-pub(crate) fn best_of(ranked: &[(f64, u8)], set: u64) -> (f64, u8) {
-    ranked.iter().copied().find(|(_, option)| set >> option & 1 == 1).unwrap_or((0.0, 0))
+pub(crate) fn best_of(ranked: &[(f64, u8)], set: ValueSet) -> (f64, u8) {
+    ranked.iter().copied().find(|(_, option)| set.contains(*option)).unwrap_or((0.0, 0))
 }
 
 /// Multiplies number by number.

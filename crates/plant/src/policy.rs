@@ -6,10 +6,10 @@ use std::sync::Arc;
 use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
-use crate::formula::values;
 use crate::model::{CommandVariableId, Commands, ComponentId, Model, Observation};
 use crate::order::CausalOrder;
 use crate::successor::successor;
+use crate::value_set::ValueSet;
 
 /// A guard with more alternatives than this is not planned with.
 const MAX_ALTERNATIVES: usize = 256;
@@ -20,9 +20,9 @@ pub struct PlannedStep {
     /// The mode entered.
     pub to: u8,
     /// Command variables and the values that will do.
-    pub commands: Vec<(CommandVariableId, u64)>,
+    pub commands: Vec<(CommandVariableId, ValueSet)>,
     /// Other components and the modes that will do.
-    pub conditions: Vec<(ComponentId, u64)>,
+    pub conditions: Vec<(ComponentId, ValueSet)>,
 }
 
 /// The policies of a model, and its causal order.
@@ -58,14 +58,7 @@ impl Planner {
         let all = |_: &PlannedStep| true;
         let policy = steps
             .iter()
-            .map(|modes| {
-                let from_each = 0..modes.len() as u8;
-                from_each
-                    .map(|from| {
-                        (0..modes.len() as u8).map(|to| first_step(modes, from, 1 << to, &all)).collect()
-                    })
-                    .collect()
-            })
+            .map(|modes| (0..=u8::MAX).zip(modes).map(|(from, _)| first_steps(modes, from, &all)).collect())
             .collect();
         let (order, model) = (CausalOrder::new(model), Arc::clone(model));
         Self { model, order, steps, policy, is_complete, joint_causes }
@@ -109,7 +102,7 @@ impl Planner {
             }
             let steps = self.steps.get(component.0 as usize).into_iter().flatten().flatten();
             for step in steps {
-                let command = |&(id, _): &(CommandVariableId, u64)| {
+                let command = |&(id, _): &(CommandVariableId, ValueSet)| {
                     self.model.command_variables.get(id.0 as usize).map(|command| command.component)
                 };
                 open.extend(step.commands.iter().filter_map(command));
@@ -128,7 +121,7 @@ impl Planner {
     }
 
     /// The modes of a variable's component that by themselves keep the variable within a set of values.
-    pub fn modes_ensuring(&self, variable: crate::VariableId, set: u64) -> (ComponentId, u64) {
+    pub fn modes_ensuring(&self, variable: crate::VariableId, set: ValueSet) -> (ComponentId, ValueSet) {
         let owner =
             self.model.variables.get(variable.0 as usize).map_or(ComponentId(0), |data| data.component);
         (owner, ensuring(&self.model, owner, self.model.variable_symbol(variable), set))
@@ -136,12 +129,15 @@ impl Planner {
 
     /// Whether a goal is in reach as far as its component and what it depends on tell.
     pub fn may_reach(&self, state: &State, goal: &crate::Goal) -> bool {
-        self.reach(state).get(goal.component.0 as usize).is_some_and(|reach| reach & goal.modes != 0)
+        self.reach(state)
+            .get(goal.component.0 as usize)
+            .is_some_and(|reach| !(*reach & goal.modes).is_empty())
     }
 
     /// For every component the modes it can get to if everything it depends on is as helpful as it can be.
-    pub(crate) fn reach(&self, state: &State) -> Vec<u64> {
-        let mut reach: Vec<u64> = self.model.component_ids().map(|id| 1 << state.mode(id)).collect();
+    pub(crate) fn reach(&self, state: &State) -> Vec<ValueSet> {
+        let mut reach: Vec<ValueSet> =
+            self.model.component_ids().map(|id| ValueSet::one(state.mode(id))).collect();
         let mut order: Vec<usize> = (0..reach.len()).collect();
         // Causes first, so that one round is enough where there is no cycle.
         order.sort_by_key(|&at| std::cmp::Reverse(self.order.numbers[at]));
@@ -151,10 +147,10 @@ impl Planner {
                 let mut grown = reach[at];
                 loop {
                     let mut more = grown;
-                    for from in values(grown) {
+                    for from in grown.values() {
                         for step in self.steps[at].get(from as usize).into_iter().flatten() {
                             if is_feasible(step, &reach) {
-                                more |= 1 << step.to;
+                                more |= ValueSet::one(step.to);
                             }
                         }
                     }
@@ -176,11 +172,11 @@ impl Planner {
         &self,
         component: ComponentId,
         from: u8,
-        goal: u64,
-        reach: &[u64],
+        goal: ValueSet,
+        reach: &[ValueSet],
     ) -> Option<&PlannedStep> {
         let modes = self.steps.get(component.0 as usize)?;
-        if let Some(only) = goal.is_power_of_two().then(|| goal.trailing_zeros() as u8)
+        if let Some(only) = goal.only()
             && self.follows_policy(component, from, only, reach)
         {
             return self.policy(component, from, only);
@@ -190,8 +186,8 @@ impl Planner {
     }
 
     /// Whether the precompiled path can be taken as things are.
-    fn follows_policy(&self, component: ComponentId, mut from: u8, to: u8, reach: &[u64]) -> bool {
-        for _ in 0..64 {
+    fn follows_policy(&self, component: ComponentId, mut from: u8, to: u8, reach: &[ValueSet]) -> bool {
+        for _ in 0..ValueSet::MOST {
             if from == to {
                 return true;
             }
@@ -212,14 +208,14 @@ impl Planner {
     ) -> Option<Commands> {
         let mut commands = self.model.idle();
         for (variable, set) in &step.commands {
-            *commands.0.get_mut(variable.0 as usize)? = values(*set).next()?;
+            *commands.0.get_mut(variable.0 as usize)? = set.values().next()?;
         }
         let does = |commands: &Commands| successor(&self.model, component, state, commands) == Ok(step.to);
         if does(&commands) {
             return Some(commands);
         }
         for (variable, set) in &step.commands {
-            for value in values(*set) {
+            for value in set.values() {
                 let mut other = commands.clone();
                 *other.0.get_mut(variable.0 as usize)? = value;
                 if does(&other) {
@@ -231,35 +227,66 @@ impl Planner {
     }
 }
 
-fn is_feasible(step: &PlannedStep, reach: &[u64]) -> bool {
+fn is_feasible(step: &PlannedStep, reach: &[ValueSet]) -> bool {
     step.conditions
         .iter()
-        .all(|(cause, modes)| reach.get(cause.0 as usize).is_some_and(|reach| reach & modes != 0))
+        .all(|(cause, modes)| reach.get(cause.0 as usize).is_some_and(|reach| !(*reach & *modes).is_empty()))
 }
 
-/// Breadth first over a component's own modes; ties go to the transition declared first.
+/// The first step of a shortest path from a mode to any of `goal`.
 fn first_step(
     modes: &[Vec<PlannedStep>],
     from: u8,
-    goal: u64,
+    goal: ValueSet,
     usable: &dyn Fn(&PlannedStep) -> bool,
 ) -> Option<u32> {
-    let mut seen = 1_u64 << from;
+    let mut found = None;
+    visit_reached(modes, from, usable, &mut |mode, first| {
+        let is_goal = goal.contains(mode);
+        found = if is_goal { first } else { None };
+        !is_goal
+    });
+    found
+}
+
+/// For each mode, the first step of a shortest path there.
+fn first_steps(
+    modes: &[Vec<PlannedStep>],
+    from: u8,
+    usable: &dyn Fn(&PlannedStep) -> bool,
+) -> Vec<Option<u32>> {
+    let mut steps = vec![None; modes.len()];
+    visit_reached(modes, from, usable, &mut |mode, first| {
+        if let Some(step) = steps.get_mut(usize::from(mode)) {
+            *step = first;
+        }
+        true
+    });
+    steps
+}
+
+/// Breadth first over a component's own modes, until `visit` returns false; ties go to the transition declared first.
+fn visit_reached(
+    modes: &[Vec<PlannedStep>],
+    from: u8,
+    usable: &dyn Fn(&PlannedStep) -> bool,
+    visit: &mut dyn FnMut(u8, Option<u32>) -> bool,
+) {
+    let mut seen = ValueSet::one(from);
     let mut waiting: Vec<(u8, Option<u32>)> = vec![(from, None)];
     let mut at = 0;
     while let Some(&(mode, first)) = waiting.get(at) {
         at += 1;
-        if goal >> mode & 1 == 1 {
-            return first;
+        if !visit(mode, first) {
+            return;
         }
         for (number, step) in modes.get(mode as usize).into_iter().flatten().enumerate() {
-            if seen >> step.to & 1 == 0 && usable(step) {
-                seen |= 1 << step.to;
+            if !seen.contains(step.to) && usable(step) {
+                seen |= ValueSet::one(step.to);
                 waiting.push((step.to, first.or(Some(number as u32))));
             }
         }
     }
-    None
 }
 
 /// The ways to leave each mode of a component. Where an alternative of a guard needs modes of several components together,
@@ -296,7 +323,7 @@ fn planned(
     component: ComponentId,
     from: u8,
     to: u8,
-    alternative: &[(u32, u64)],
+    alternative: &[(u32, ValueSet)],
     is_complete: &mut bool,
 ) -> Option<PlannedStep> {
     let mut step = PlannedStep { to, commands: Vec::new(), conditions: Vec::new() };
@@ -313,7 +340,7 @@ fn planned(
             (ComponentId(symbol), set)
         };
         if owner == component {
-            if modes >> from & 1 == 0 {
+            if !modes.contains(from) {
                 return None;
             }
         } else {
@@ -323,13 +350,13 @@ fn planned(
             }
         }
     }
-    step.conditions.iter().all(|(_, modes)| *modes != 0).then_some(step)
+    step.conditions.iter().all(|(_, modes)| !modes.is_empty()).then_some(step)
 }
 
 /// The components whose modes together may decide the variables of a guard's alternative.
 fn components_behind<'model>(
     model: &'model Model,
-    alternative: &'model [(u32, u64)],
+    alternative: &'model [(u32, ValueSet)],
 ) -> impl Iterator<Item = ComponentId> + 'model {
     let variables = alternative.iter().filter_map(|(symbol, _)| model.symbol_variable(*symbol));
     let islands = variables.filter_map(|variable| {
@@ -339,19 +366,22 @@ fn components_behind<'model>(
 }
 
 /// The modes of a component that by themselves keep a symbol within a set.
-fn ensuring(model: &Model, component: ComponentId, symbol: u32, set: u64) -> u64 {
+fn ensuring(model: &Model, component: ComponentId, symbol: u32, set: ValueSet) -> ValueSet {
     let Some(island) = model.islands.iter().find(|island| island.components.contains(&component)) else {
-        return 0;
+        return ValueSet::EMPTY;
     };
-    let count = model.component(component).map_or(0, |data| data.modes.len() as u8);
-    (0..count)
+    let modes = model.component(component).map_or(&[][..], |data| data.modes.as_slice());
+    (0..=u8::MAX)
+        .zip(modes)
+        .map(|(mode, _)| mode)
         .filter(|mode| {
             let mut domains = Domains::observed(model, &Observation::default());
             let Some(domain) = domains.sets.get_mut(symbol as usize) else { return false };
             *domain &= !set;
+            let is_empty = domain.is_empty();
             let alone = |other: &ComponentId| (*other == component).then_some(*mode);
             let assumed = Assumed { model, island, modes: island.components.iter().map(alone).collect() };
-            *domain == 0 || assumed.satisfy(&mut domains).is_err()
+            is_empty || assumed.satisfy(&mut domains).is_err()
         })
-        .fold(0, |modes, mode| modes | 1 << mode)
+        .collect()
 }

@@ -28,7 +28,7 @@ pub fn targets(
     let nominal = successor(model, component, state, commands)?;
     let intended = intended(model, component, state, commands)?;
     let (weights, _) = distribution(model, component, state, commands)?;
-    let target = |(mode, weight): (u8, u64)| Target { mode, weight, is_fault: intended >> mode & 1 == 0 };
+    let target = |(mode, weight): (u8, u64)| Target { mode, weight, is_fault: !intended.contains(mode) };
     let mut targets: Vec<Target> = weights.into_iter().map(target).collect();
     targets.sort_by_key(|target| (target.mode != nominal, target.mode));
     Ok(targets)

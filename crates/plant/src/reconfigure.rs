@@ -8,10 +8,10 @@ use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::diagnosis::shrink;
 use crate::domains::Domains;
-use crate::formula::values;
 use crate::model::{Commands, ComponentId, Model, Observation};
 use crate::policy::Planner;
 use crate::successor::nominal;
+use crate::value_set::ValueSet;
 
 /// A search over whole states gives up after this many of them.
 const MAX_STATES: usize = 20_000;
@@ -20,20 +20,21 @@ const MAX_STATES: usize = 20_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Goal {
     pub component: ComponentId,
-    /// The modes that will do, one bit each.
-    pub modes: u64,
+    /// The modes that will do.
+    pub modes: ValueSet,
 }
 
 impl Goal {
     /// The goal of one mode.
     pub const fn mode(component: ComponentId, mode: u8) -> Self {
-        Self { component, modes: 1 << mode }
+        Self { component, modes: ValueSet::one(mode) }
     }
 
     /// The goal in the form `EngineA=Standby`.
     pub fn describe(&self, model: &Model) -> String {
         let name = model.component(self.component).map_or("?", |data| data.name.as_str());
-        let modes: Vec<&str> = values(self.modes).map(|mode| model.mode_name(self.component, mode)).collect();
+        let modes: Vec<&str> =
+            self.modes.values().map(|mode| model.mode_name(self.component, mode)).collect();
         format!("{name}={}", modes.join(" or "))
     }
 }
@@ -117,16 +118,16 @@ impl Planner {
 
     /// Joins goals of the same component; contradicting ones are given back as unreachable.
     fn consistent(&self, goals: &[Goal]) -> (Vec<Goal>, Vec<Unreachable>) {
-        let mut joined: BTreeMap<ComponentId, (u64, Vec<Goal>)> = BTreeMap::new();
+        let mut joined: BTreeMap<ComponentId, (ValueSet, Vec<Goal>)> = BTreeMap::new();
         for goal in goals {
-            let entry = joined.entry(goal.component).or_insert((u64::MAX, Vec::new()));
+            let entry = joined.entry(goal.component).or_insert((ValueSet::FULL, Vec::new()));
             entry.0 &= goal.modes;
             entry.1.push(*goal);
         }
         let mut unreachable = Vec::new();
         let mut kept = Vec::new();
         for (component, (modes, given)) in joined {
-            if modes == 0 {
+            if modes.is_empty() {
                 let all: Vec<String> = given.iter().map(|goal| goal.describe(&self.model)).collect();
                 let reason = format!("{} are inconsistent", all.join(" and "));
                 let failed = given.iter().map(|goal| Unreachable {
@@ -151,7 +152,7 @@ impl Planner {
         for island in &self.model.islands {
             let wanted = |component: &ComponentId| {
                 let goal = goals.iter().find(|goal| goal.component == *component)?;
-                goal.modes.is_power_of_two().then(|| goal.modes.trailing_zeros() as u8)
+                goal.modes.only()
             };
             let mut assumed =
                 Assumed { model: &self.model, island, modes: island.components.iter().map(wanted).collect() };
@@ -228,8 +229,9 @@ impl Planner {
     /// The policies' plan if it gets there, otherwise one found by search.
     fn plan(&self, state: &State, goals: &[Goal]) -> Result<Plan, Failure> {
         let reach = self.reach(state);
-        let out_of_reach =
-            |goal: &Goal| reach.get(goal.component.0 as usize).is_none_or(|reach| reach & goal.modes == 0);
+        let out_of_reach = |goal: &Goal| {
+            reach.get(goal.component.0 as usize).is_none_or(|reach| (*reach & goal.modes).is_empty())
+        };
         if self.is_complete && goals.iter().any(out_of_reach) {
             return Err(Failure::Impossible);
         }
@@ -259,8 +261,8 @@ impl Planner {
     }
 
     /// The command for the unmet goal furthest downstream, or for what it needs first.
-    fn next(&self, state: &State, goals: &[Goal], reach: &[u64]) -> Option<Commands> {
-        let goal = goals.iter().find(|goal| goal.modes >> state.mode(goal.component) & 1 == 0)?;
+    fn next(&self, state: &State, goals: &[Goal], reach: &[ValueSet]) -> Option<Commands> {
+        let goal = goals.iter().find(|goal| !goal.modes.contains(state.mode(goal.component)))?;
         let step = self.toward(goal.component, state.mode(goal.component), goal.modes, reach)?;
         let mut needed: Vec<Goal> =
             step.conditions.iter().map(|&(component, modes)| Goal { component, modes }).collect();
@@ -278,7 +280,7 @@ impl Planner {
             goals.iter().flat_map(|goal| self.upstream(goal.component)).collect();
         for (at, variable) in self.model.command_variables.iter().enumerate() {
             if involved.contains(&variable.component) {
-                for value in 1..variable.values.len() as u8 {
+                for (value, _) in (0..=u8::MAX).zip(&variable.values).skip(1) {
                     let mut commands = self.model.idle();
                     commands.0[at] = value;
                     choices.push(commands);
@@ -314,7 +316,7 @@ impl Planner {
             );
         }
         let reach = self.reach(state);
-        if reach.get(goal.component.0 as usize).is_some_and(|reach| reach & goal.modes != 0) {
+        if reach.get(goal.component.0 as usize).is_some_and(|reach| !(*reach & goal.modes).is_empty()) {
             let others: Vec<String> = accepted.iter().map(|goal| goal.describe(&self.model)).collect();
             let what = goal.describe(&self.model);
             return if others.is_empty() {
@@ -327,13 +329,13 @@ impl Planner {
     }
 
     /// Why no mode of a goal is in reach: no transition leads there, or one needs what is out of reach itself.
-    fn why(&self, state: &State, goal: Goal, reach: &[u64]) -> String {
+    fn why(&self, state: &State, goal: Goal, reach: &[ValueSet]) -> String {
         let name = self.model.component(goal.component).map_or("?", |data| data.name.as_str());
         let mode = |mode: u8| self.model.mode_name(goal.component, mode);
         let from = state.mode(goal.component);
-        let target = values(goal.modes).find(|&to| self.policy(goal.component, from, to).is_some());
+        let target = goal.modes.values().find(|&to| self.policy(goal.component, from, to).is_some());
         let Some(target) = target else {
-            let wanted: Vec<&str> = values(goal.modes).map(mode).collect();
+            let wanted: Vec<&str> = goal.modes.values().map(mode).collect();
             return format!(
                 "no commanded transition of `{name}` leads from {} to {}",
                 mode(from),
@@ -341,10 +343,10 @@ impl Planner {
             );
         };
         let mut at = from;
-        for _ in 0..64 {
+        for _ in 0..ValueSet::MOST {
             let Some(step) = self.policy(goal.component, at, target) else { break };
-            let out = |(cause, modes): &&(ComponentId, u64)| {
-                reach.get(cause.0 as usize).is_none_or(|reach| reach & modes == 0)
+            let out = |(cause, modes): &&(ComponentId, ValueSet)| {
+                reach.get(cause.0 as usize).is_none_or(|reach| (*reach & *modes).is_empty())
             };
             if let Some(&(component, modes)) = step.conditions.iter().find(out) {
                 let needed = Goal { component, modes };
@@ -367,7 +369,7 @@ impl Planner {
 }
 
 fn is_met(state: &State, goals: &[Goal]) -> bool {
-    goals.iter().all(|goal| goal.modes >> state.mode(goal.component) & 1 == 1)
+    goals.iter().all(|goal| goal.modes.contains(state.mode(goal.component)))
 }
 
 fn path(nodes: &[(State, Option<(usize, usize)>)], mut at: usize, choices: &[Commands]) -> Plan {

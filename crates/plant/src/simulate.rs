@@ -10,11 +10,11 @@ use num_traits::{ToPrimitive as _, Zero as _};
 use crate::belief::State;
 use crate::consistency::Assumed;
 use crate::domains::Domains;
-use crate::formula::values;
 use crate::island::Island;
 use crate::likelihood::combinations;
 use crate::model::{Commands, ComponentId, Model, Observation, VariableId};
 use crate::successor::{EstimateError, distribution, nominal};
+use crate::value_set::ValueSet;
 
 /// Random numbers from a seed, the same on every machine (`SplitMix64`, Steele, Lea and Flood 2014).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -234,7 +234,7 @@ fn show(model: &Model, island: &Island, assumed: &Assumed<'_>, domains: &mut Dom
     for id in observed_of(model, island) {
         let Some(shows) = model.variables.get(id.0 as usize).and_then(|data| data.shows) else { continue };
         let point = domains.point();
-        let restricted = assumed.restrict([(model.variable_symbol(id), 1 << shows)], domains);
+        let restricted = assumed.restrict([(model.variable_symbol(id), ValueSet::one(shows))], domains);
         if !restricted.is_ok_and(|is_true| is_true || is_completable(assumed, domains)) {
             domains.return_to(&point);
         }
@@ -260,9 +260,9 @@ pub(crate) fn shown_values(
         let symbol = model.variable_symbol(variable) as usize;
         let mut next = Vec::new();
         for (chosen, domains) in &found {
-            for value in values(domains.sets.get(symbol).copied().unwrap_or(0)) {
+            for value in domains.sets.get(symbol).copied().unwrap_or_default().values() {
                 let mut trial = domains.clone();
-                trial.sets[symbol] = 1 << value;
+                trial.sets[symbol] = ValueSet::one(value);
                 if assumed.settle_all(&mut trial).is_ok() && assumed.check(&mut trial).is_ok() {
                     let mut chosen: Vec<(VariableId, u8)> = chosen.clone();
                     chosen.push((variable, value));
@@ -290,11 +290,13 @@ fn true_values(model: &Model, island: &Island, state: &State, random: &mut Rando
     let symbols: Vec<u32> = observed.iter().map(|id| model.variable_symbol(*id)).collect();
     let mut values_drawn = Vec::with_capacity(observed.len());
     for (at, (id, &symbol)) in observed.iter().zip(&symbols).enumerate() {
-        let set = domains.sets.get(symbol as usize).copied().unwrap_or(0);
-        let value = if set.count_ones() > 1 {
-            let each = values(set).map(|value| {
+        let set = domains.sets.get(symbol as usize).copied().unwrap_or_default();
+        let value = if let Some(value) = set.only() {
+            value
+        } else {
+            let each = set.values().map(|value| {
                 let point = domains.point();
-                let is_possible = assumed.restrict([(symbol, 1 << value)], &mut domains).is_ok();
+                let is_possible = assumed.restrict([(symbol, ValueSet::one(value))], &mut domains).is_ok();
                 let weight = if is_possible {
                     combinations(&assumed, &mut domains, &symbols[at + 1..])
                 } else {
@@ -305,10 +307,8 @@ fn true_values(model: &Model, island: &Island, state: &State, random: &mut Rando
             });
             let each: Vec<(u8, BigUint)> = each.collect();
             random.weighted_exactly(&each)
-        } else {
-            set.trailing_zeros() as u8
         };
-        if assumed.restrict([(symbol, 1 << value)], &mut domains).is_err() {
+        if assumed.restrict([(symbol, ValueSet::one(value))], &mut domains).is_err() {
             return values_drawn;
         }
         values_drawn.push((*id, value));
@@ -328,9 +328,9 @@ pub fn observation_of(model: &Model, state: &State) -> Observation {
         show(model, island, &assumed, &mut domains);
         for variable in observed_of(model, island) {
             let symbol = model.variable_symbol(variable) as usize;
-            for value in values(domains.sets.get(symbol).copied().unwrap_or(0)) {
+            for value in domains.sets.get(symbol).copied().unwrap_or_default().values() {
                 let mut trial = domains.clone();
-                trial.sets[symbol] = 1 << value;
+                trial.sets[symbol] = ValueSet::one(value);
                 let settled = assumed.settle_all(&mut trial);
                 if settled.is_ok() && assumed.check(&mut trial).is_ok() {
                     domains = trial;

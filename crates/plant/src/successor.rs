@@ -8,6 +8,7 @@ use crate::domains::Domains;
 use crate::formula::{Formula, Truth};
 use crate::knowledge::is_entailed_by_search;
 use crate::model::{Choice, CommandVariableId, Commands, Component, ComponentId, Mode, Model, Observation};
+use crate::value_set::ValueSet;
 
 /// What can go wrong in a step of estimation or simulation.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -94,17 +95,17 @@ impl Choice {
     }
 }
 
-/// The modes that a component may enter without a fault, one bit each.
+/// The modes that a component may enter without a fault.
 pub fn intended(
     model: &Model,
     component: ComponentId,
     state: &State,
     commands: &Commands,
-) -> Result<u64, EstimateError> {
+) -> Result<ValueSet, EstimateError> {
     let enabled = enabled(model, component, state, commands)?;
     Ok(enabled.map_or_else(
-        || 1 << state.mode(component),
-        |choice| choice.outcomes.iter().fold(0, |modes, (to, _)| modes | 1 << to),
+        || ValueSet::one(state.mode(component)),
+        |choice| choice.outcomes.iter().map(|(to, _)| *to).collect(),
     ))
 }
 
@@ -250,8 +251,8 @@ pub(crate) fn distributions(
     Ok(Choices { components, ranges, weights })
 }
 
-/// Per component the modes in which only commands decide where it goes, one bit each; called once per model.
-pub(crate) fn led_by_commands(model: &Model) -> Vec<u64> {
+/// Per component the modes in which only commands decide where it goes; called once per model.
+pub(crate) fn led_by_commands(model: &Model) -> Vec<ValueSet> {
     let asks_only_commands = |mode: &Mode| {
         let mut result = true;
         for guard in mode.guards() {
@@ -260,8 +261,8 @@ pub(crate) fn led_by_commands(model: &Model) -> Vec<u64> {
         result
     };
     let modes_of = |component: &Component| {
-        let modes = component.modes.iter().enumerate().filter(|(_, mode)| asks_only_commands(mode));
-        modes.fold(0, |modes, (at, _)| modes | 1 << at)
+        let modes = (0..=u8::MAX).zip(&component.modes).filter(|(_, mode)| asks_only_commands(mode));
+        modes.map(|(at, _)| at).collect()
     };
     model.components.iter().map(modes_of).collect()
 }
@@ -304,7 +305,7 @@ fn direct(model: &Model, guard: &Formula, state: &State, commands: &Commands) ->
                     .map(|CommandVariableId(command)| commands.0.get(command as usize).copied().unwrap_or(0)),
             };
             match value {
-                Some(value) if set >> value & 1 == 1 => Truth::True,
+                Some(value) if set.contains(value) => Truth::True,
                 Some(_) => Truth::False,
                 None => Truth::Open,
             }
@@ -320,12 +321,12 @@ fn is_entailed_with(model: &Model, guard: &Formula, state: &State, commands: &Co
     for (at, &command) in commands.0.iter().enumerate() {
         let symbol = model.command_symbol(CommandVariableId(at as u32)) as usize;
         if let Some(set) = start.sets.get_mut(symbol) {
-            *set &= 1_u64.checked_shl(u32::from(command)).unwrap_or(0);
+            *set &= ValueSet::one(command);
         }
     }
     for component in model.component_ids() {
         if let Some(set) = start.sets.get_mut(component.0 as usize) {
-            *set = 1_u64.checked_shl(u32::from(state.mode(component))).unwrap_or(0);
+            *set = ValueSet::one(state.mode(component));
         }
     }
     is_entailed_by_search(model, guard, state, &start)

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::formula::{Formula, conjunction};
+use crate::value_set::ValueSet;
 
 /// A constraint as clauses, of each of which one alternative has to hold, which is a conjunction of memberships.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,7 +19,7 @@ pub(crate) struct Table {
 pub(crate) struct Member {
     pub(crate) symbol: u32,
     ends: Ends,
-    pub(crate) set: u64,
+    pub(crate) set: ValueSet,
 }
 
 /// What ends with a membership.
@@ -93,23 +94,23 @@ impl Table {
 
     /// What `domains` make of the clause whose members start at `start`, and where the next one starts.
     #[inline]
-    pub(crate) fn clause(&self, start: usize, domains: &[u64]) -> Option<(Clause<'_>, usize)> {
+    pub(crate) fn clause(&self, start: usize, domains: &[ValueSet]) -> Option<(Clause<'_>, usize)> {
         let members = self.members.get(start..)?;
-        let (mut first, mut misses, mut exceeds) = (0, false, 0);
+        let (mut first, mut misses, mut exceeds) = (0, false, ValueSet::EMPTY);
         let (mut is_true, mut possible, mut needed) = (false, 0_u32, 0..0);
         for (at, member) in members.iter().enumerate() {
             let domain = domains[member.symbol as usize];
-            misses |= domain & member.set == 0;
+            misses |= (domain & member.set).is_empty();
             exceeds |= domain & !member.set;
             if member.ends == Ends::Nothing {
                 continue;
             }
             if !misses {
-                is_true |= exceeds == 0;
+                is_true |= exceeds.is_empty();
                 possible += 1;
                 needed = first..at + 1;
             }
-            (first, misses, exceeds) = (at + 1, false, 0);
+            (first, misses, exceeds) = (at + 1, false, ValueSet::EMPTY);
             if member.ends == Ends::Clause {
                 let clause = match possible {
                     _ if is_true => Clause::True,
@@ -129,8 +130,13 @@ mod tests {
     use super::*;
     use crate::formula::Truth;
 
+    fn values(bits: u64) -> ValueSet {
+        (0..64).filter(|value| bits >> value & 1 == 1).collect()
+    }
+
+    /// The values are the bits of `set`.
     fn member(symbol: u32, set: u64) -> Formula {
-        Formula::Member { symbol, set }
+        Formula::Member { symbol, set: values(set) }
     }
 
     /// Every clause of three symbols with two values each, under all domains that are not empty.
@@ -148,7 +154,7 @@ mod tests {
         let table = Table::new(&formula).expect("flat enough");
         assert_eq!(table.clauses, 3);
         for code in 0..27_u64 {
-            let domains = [code % 3 + 1, code / 3 % 3 + 1, code / 9 + 1];
+            let domains = [code % 3 + 1, code / 3 % 3 + 1, code / 9 + 1].map(values);
             let mut start = 0;
             for part in parts {
                 let truth = part.truth(&domains);

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use hca::{Choice, StepObserver, Stepper, TestId, TraceStep, locks};
 use plant::{
     Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Formula, Goal, Interval, Known,
-    NextCommands, Observation, Random, SimulatedPlant, Situation, State, draw_initial, intended,
+    NextCommands, Observation, Random, SimulatedPlant, Situation, State, ValueSet, draw_initial, intended,
 };
 use serde::{Deserialize, Serialize};
 use smol_str::{SmolStr, ToSmolStr as _};
@@ -343,12 +343,12 @@ impl ClosedLoop {
         };
         let ids = system.model.component_ids();
         let intended = ids.map(|id| intended(&system.model, id, self.plant.state(), commands));
-        let intended = intended.collect::<Result<Vec<u64>, _>>()?;
+        let intended = intended.collect::<Result<Vec<ValueSet>, _>>()?;
         self.plant.step_with_chance(commands, &input.injected, random)?;
         let state = self.plant.state();
         let is_chance = |id: &ComponentId| {
             let is_intended =
-                intended.get(id.0 as usize).is_some_and(|modes| modes >> state.mode(*id) & 1 == 1);
+                intended.get(id.0 as usize).is_some_and(|modes| modes.contains(state.mode(*id)));
             !is_intended && !input.injected.contains_key(id)
         };
         let by_chance = system.model.component_ids().filter(is_chance);

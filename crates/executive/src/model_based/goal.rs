@@ -1,6 +1,6 @@
 //! From asserted constraints to goals that the reactive planner takes.
 
-use plant::{ComponentId, Goal, Model, Planner, State};
+use plant::{ComponentId, Goal, Model, Planner, State, ValueSet};
 use rmpl::control::{Constraint, ConstraintKind};
 
 /// A constraint with more goal configurations is pursued by its first ones only.
@@ -24,7 +24,7 @@ impl GoalConfigurations {
     /// `None` for a constraint that can never hold.
     pub(super) fn goals(&self, planner: &Planner, state: &State) -> Option<&[Goal]> {
         let met = |configuration: &&Vec<Goal>| {
-            configuration.iter().all(|goal| goal.modes >> state.mode(goal.component) & 1 == 1)
+            configuration.iter().all(|goal| goal.modes.contains(state.mode(goal.component)))
         };
         let reachable =
             |configuration: &&Vec<Goal>| configuration.iter().all(|goal| planner.may_reach(state, goal));
@@ -58,19 +58,20 @@ fn configurations(model: &Model, planner: &Planner, constraint: &Constraint, wan
         ConstraintKind::Equals { variable, value } => {
             let goal = if let Some(component) = model.component_named(&variable.text) {
                 let modes = model.component(component).map_or(0, |data| data.modes.len());
-                let set = model.mode_named(component, &value.text).map_or(0, |mode| 1_u64 << mode);
+                let set = model.mode_named(component, &value.text).map_or(ValueSet::EMPTY, ValueSet::one);
                 Goal { component, modes: chosen(set, modes, wanted) }
             } else if let Some(id) = model.variable_named(&variable.text) {
                 let values =
                     model.variables.get(id.0 as usize).map_or(&[][..], |data| data.values.as_slice());
-                let set = values.iter().position(|known| *known == value.text).map_or(0, |at| 1_u64 << at);
+                let at = values.iter().position(|known| *known == value.text);
+                let set = at.map_or(ValueSet::EMPTY, |at| ValueSet::one(at as u8));
                 let (component, modes) = planner.modes_ensuring(id, chosen(set, values.len(), wanted));
                 Goal { component, modes }
             } else {
                 // A variable of the program's own comes true by being asserted.
                 return vec![Vec::new()];
             };
-            if goal.modes == 0 { Vec::new() } else { vec![vec![goal]] }
+            if goal.modes.is_empty() { Vec::new() } else { vec![vec![goal]] }
         }
         ConstraintKind::True => {
             if wanted {
@@ -89,9 +90,8 @@ fn configurations(model: &Model, planner: &Planner, constraint: &Constraint, wan
     }
 }
 
-fn chosen(set: u64, count: usize, wanted: bool) -> u64 {
-    let full = if count >= 64 { u64::MAX } else { (1 << count) - 1 };
-    if wanted { set } else { full & !set }
+fn chosen(set: ValueSet, count: usize, wanted: bool) -> ValueSet {
+    if wanted { set } else { ValueSet::first_values(count) & !set }
 }
 
 fn all(model: &Model, planner: &Planner, parts: &[Constraint], wanted: bool) -> Vec<Vec<Goal>> {

@@ -177,7 +177,7 @@ fn fault_menu(
     let Some(component) = model.component(id) else { return };
     let menu = ui.menu_button(component.name.as_str(), |ui| {
         ui.label(RichText::new("Force mode in this step:").small());
-        for (mode, data) in (0_u8..).zip(&component.modes) {
+        for (mode, data) in (0..=u8::MAX).zip(&component.modes) {
             if ui.selectable_label(injected == Some(mode), data.name.as_str()).clicked() {
                 commands.send(Command::Automaton(AutomatonCommand::Inject(id, Some(mode))));
                 ui.close();

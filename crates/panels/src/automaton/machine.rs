@@ -100,7 +100,7 @@ impl Machine {
         let placed = placement(rect, &self.drawing, scale);
         DisplayPainter::new(ui.painter(), ui.clip_rect(), placed, context.tokens)
             .paint(&[&self.list(component, standing)], Vec::new());
-        for (mode, shape) in (0_u8..).zip(&self.drawing.modes) {
+        for (mode, shape) in (0..=u8::MAX).zip(&self.drawing.modes) {
             let rect = placed.screen_rect(*shape);
             let id = ui.scope_id().with(("mode", standing.id.0, mode));
             let response = ui.interact(rect, id, Sense::click());
@@ -114,7 +114,7 @@ impl Machine {
 
     /// The display list of the machine as things stand.
     fn list(&self, component: &Component, standing: &Standing) -> DisplayList {
-        let modes: Vec<ModeState> = (0_u8..)
+        let modes: Vec<ModeState> = (0..=u8::MAX)
             .zip(&component.modes)
             .map(|(mode, data)| ModeState {
                 name: data.name.as_str().into(),

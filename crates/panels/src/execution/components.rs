@@ -98,7 +98,7 @@ fn choices(model: &plant::Model) -> Vec<Choice> {
         let component = model.component(id)?;
         let is_fault =
             |mode: u8| component.modes.iter().flat_map(|it| &it.faults).any(|fault| fault.to == mode);
-        let mut modes: Vec<(bool, String)> = (0_u8..)
+        let mut modes: Vec<(bool, String)> = (0..=u8::MAX)
             .zip(&component.modes)
             .map(|(mode, data)| (!is_fault(mode), data.name.to_string()))
             .collect();

@@ -115,7 +115,7 @@ fn what_a_behavior_cannot_be_is_reported() {
         (class("(LOCK (flow = no) (flow = no))"), "E-FORM"),
         (class("(CHOOSE-REWARD (1 (flow = no)) (2 (flow = yes)))"), "E-FORM"),
         (class("(Missing)"), "E-UNDEF"),
-        (class("(WAIT 1000)"), "E-SIZE"),
+        (class("(WAIT 256)"), "E-SIZE"),
         (class("(flow = odd)"), "E-VALUE"),
         (class("(cmd = open)"), "E-CONSTRAINT"),
         (class("(SEQUENCE (WHEN-DONEXT (other = yes) (flow = no)) (flow = yes))"), "E-UNDEF"),
@@ -124,6 +124,36 @@ fn what_a_behavior_cannot_be_is_reported() {
         let found = compile(&parsed.file).1;
         assert_eq!(found.iter().map(|found| found.code.0).collect::<Vec<_>>(), [code], "{text}: {found:?}");
     }
+}
+
+/// 255 steps of waiting and the end are as many modes as a class can have.
+#[test]
+fn a_behavior_with_256_modes_is_estimated_and_planned_with() {
+    let model = std::sync::Arc::new(model(&format!(
+        "{} {} (DEFINSTANCE w W) (DEFINSTANCE h H)",
+        "(DEFCLASS W () (BEHAVIOR (WAIT 255)))",
+        "(DEFCLASS H () (COMMAND cmd {none go stop}) (BEHAVIOR (SEQUENCE
+          (WHEN-DONEXT (cmd = go) (WAIT 252)) (DO-WATCHING (cmd = stop) (ALWAYS true)))))",
+    )));
+    let (waiting, led) = (plant::ComponentId(0), plant::ComponentId(1));
+    let modes: Vec<usize> = model.components.iter().map(|component| component.modes.len()).collect();
+    assert_eq!(modes, [256, 255]);
+    let last = |id: plant::ComponentId| (modes[id.0 as usize] - 1) as u8;
+    assert_eq!(model.mode_name(waiting, last(waiting)), "ended");
+    let mut belief = Belief::initial(&model, 100).expect("a start");
+    for step in 0..=u8::MAX {
+        assert_eq!(belief.most_likely().mode(waiting), step);
+        let (idle, nothing) = (model.idle(), plant::Observation::default());
+        belief = update_exact(&model, &belief, &idle, &nothing).expect("an update");
+    }
+    assert_eq!(belief.most_likely().mode(waiting), last(waiting));
+    assert_eq!(belief.most_likely().mode(led), 0, "nobody commanded it");
+    let planner = plant::Planner::new(&model);
+    let goal = plant::Goal::mode(led, last(led));
+    assert!(planner.may_reach(belief.most_likely(), &goal));
+    let plan = planner.reconfigure(belief.most_likely(), &[goal]).expect("a plan");
+    assert_eq!(plan.steps.len(), 254, "one step to start, 252 of waiting, and one to stop");
+    assert_eq!(planner.policy(waiting, last(waiting), 0), None);
 }
 
 #[test]

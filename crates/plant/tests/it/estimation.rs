@@ -222,7 +222,7 @@ fn holds(formula: &plant::formula::Formula, symbols: &[u8]) -> bool {
     use plant::formula::Formula;
     match formula {
         Formula::Constant(value) => *value,
-        Formula::Member { symbol, set } => set >> symbols[*symbol as usize] & 1 == 1,
+        Formula::Member { symbol, set } => set.contains(symbols[*symbol as usize]),
         Formula::All(parts) => parts.iter().all(|part| holds(part, symbols)),
         Formula::Any(parts) => parts.iter().any(|part| holds(part, symbols)),
     }

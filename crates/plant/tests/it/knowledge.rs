@@ -199,7 +199,7 @@ fn is_true(model: &Model, condition: &Formula, state: &State, values: &[u8]) -> 
         Formula::Member { symbol, set } => {
             let at = *symbol as usize;
             let value = state.0.get(at).copied().unwrap_or_else(|| values[at - model.components.len()]);
-            set >> value & 1 == 1
+            set.contains(value)
         }
         Formula::All(parts) => parts.iter().all(|part| is_true(model, part, state, values)),
         Formula::Any(parts) => parts.iter().any(|part| is_true(model, part, state, values)),

@@ -354,7 +354,7 @@ fn is_true(formula: &Formula, state: &[u8], values: &[u8], commands: &[u8]) -> b
         Formula::Any(parts) => all(parts).contains(&true),
         Formula::Member { symbol, set } => {
             let symbols: Vec<u8> = state.iter().chain(values).chain(commands).copied().collect();
-            set >> symbols[*symbol as usize] & 1 == 1
+            set.contains(symbols[*symbol as usize])
         }
     }
 }

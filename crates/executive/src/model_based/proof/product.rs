@@ -337,7 +337,8 @@ impl Explorer {
                     continue;
                 };
                 if entered.faults + seen.errors < most_faults && others > 0 {
-                    for value in (0..data.values.len() as u8).filter(|value| *value != truth) {
+                    let values = (0..=u8::MAX).zip(&data.values).map(|(value, _)| value);
+                    for value in values.filter(|value| *value != truth) {
                         let mut wrong = seen.clone();
                         wrong.observation.0.insert(variable, value);
                         wrong.unusual.retain(|(id, _)| *id != variable);
