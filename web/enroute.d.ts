@@ -719,6 +719,8 @@ export type PlantState = {
   commands: { [key in string]: string } | null;
   nextCommands: { [key in string]: string } | null;
   unachievable: Array<Unachievable>;
+  /** The choices by rewards that led into the last step. */
+  chosen: Array<Chosen>;
   /** The conditions that the program asked for in the last step; empty without the option `entailment`. */
   asked: Array<Asked>;
   /** Whether no state explains the observations, so that the run ends here. */
@@ -742,6 +744,19 @@ export type StateProbability = string | [string, string];
 export type Unachievable = {
   goal: string;
   reason: string;
+};
+
+/** A choice by rewards. */
+export type Chosen = {
+  choice: string;
+  /** Which alternative was chosen, from 1. */
+  alternative: number;
+  /** The expected sum of rewards of each alternative, as decimals or fractions. */
+  expected: Array<string>;
+  /** Over how many steps. */
+  horizon: number;
+  /** Whether the program asks for more steps than could be followed. */
+  isShortened: boolean;
 };
 
 /** A condition that a program asked for. */

@@ -127,7 +127,7 @@ pub enum CompositeKind {
     Timeout,
     /// `LOCK`: a location that waits, one that asserts what is locked, and what is done meanwhile.
     Lock,
-    /// `CHOOSE-PROB`: a start starts one of the children.
+    /// `CHOOSE-PROB` and `CHOOSE-REWARD`: a start starts one of the children.
     Choice,
 }
 
@@ -183,7 +183,7 @@ pub struct Automaton {
     pub held: Vec<HeldCondition>,
     /// Its locks, in textual order.
     pub locks: Vec<Lock>,
-    /// Its choices by chance, in textual order.
+    /// Its choices by chance and by rewards, in textual order.
     pub choices: Vec<Choice>,
     /// For each composite, what starting it does.
     pub(crate) starts: Vec<Start>,
@@ -191,20 +191,45 @@ pub struct Automaton {
     pub(crate) watched_by: Vec<Vec<CompositeId>>,
 }
 
-/// Alternatives with their probabilities.
+/// One of the children of a composite is to be started.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Choice {
     pub composite: CompositeId,
-    /// Of each child; they sum to the common denominator of the probabilities.
-    pub weights: Vec<u64>,
+    pub by: ChosenBy,
+}
+
+/// What decides a choice.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ChosenBy {
+    /// `CHOOSE-PROB`: the weights of the children; they sum to the common denominator of the probabilities.
+    Chance(Vec<u64>),
+    /// `CHOOSE-REWARD`: what counts when a child completes.
+    Reward(Vec<Rational>),
 }
 
 impl Choice {
-    /// The most likely alternative, of several the first.
-    pub fn likeliest(&self) -> usize {
-        let most = self.weights.iter().max();
-        self.weights.iter().position(|weight| Some(weight) == most).unwrap_or(0)
+    /// The alternative that is taken where neither chance nor a plant decides: the most likely one, or that with the largest
+    /// reward; of several the first.
+    pub fn first_best(&self) -> usize {
+        match &self.by {
+            ChosenBy::Chance(weights) => first_largest(weights),
+            ChosenBy::Reward(rewards) => first_largest(rewards),
+        }
     }
+
+    /// What counts when a child completes, if that decides the choice.
+    pub fn rewards(&self) -> Option<&[Rational]> {
+        match &self.by {
+            ChosenBy::Chance(_) => None,
+            ChosenBy::Reward(rewards) => Some(rewards),
+        }
+    }
+}
+
+fn first_largest<Value: Ord>(values: &[Value]) -> usize {
+    let most = values.iter().max();
+    values.iter().position(|value| Some(value) == most).unwrap_or(0)
 }
 
 /// What starting an element does.
@@ -299,7 +324,13 @@ impl Automaton {
             CompositeKind::Timeout => Some(self.clock(composite.clock?)?.label.clone()),
             CompositeKind::Lock => Some(self.locks.iter().find(|lock| lock.composite == id)?.label.clone()),
             CompositeKind::Choice => {
-                let weights = &self.choice(id)?.weights;
+                let weights = match &self.choice(id)?.by {
+                    ChosenBy::Chance(weights) => weights,
+                    ChosenBy::Reward(rewards) => {
+                        let rewards: Vec<String> = rewards.iter().map(Rational::to_string).collect();
+                        return Some(format_smolstr!("choose by reward {}", rewards.join(", ")));
+                    }
+                };
                 let total: u64 = weights.iter().sum();
                 let share = |weight: &u64| {
                     Rational::from_wide(i128::from(*weight), i128::from(total)).unwrap_or(Rational::ZERO)

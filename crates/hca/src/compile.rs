@@ -13,8 +13,8 @@ use rmpl::{Code, Diagnostic, Span};
 use smol_str::{SmolStr, format_smolstr};
 
 use crate::automaton::{
-    Assertion, Automaton, Choice, Composite, CompositeId, CompositeKind, Element, Location, LocationId,
-    LocationKind, Start, Test, TestId, Transition,
+    Assertion, Automaton, Choice, ChosenBy, Composite, CompositeId, CompositeKind, Element, Location,
+    LocationId, LocationKind, Start, Test, TestId, Transition,
 };
 use crate::clock::{Clock, ClockId, ClockKind, HeldCondition};
 use crate::condition::{Condition, Formula};
@@ -460,7 +460,16 @@ impl<'vocabulary> Compiler<'vocabulary> {
                 element
             }
             ExpressionKind::Lock { constraint, body } => self.lock(constraint, body, parent, span),
-            ExpressionKind::ChooseProb(alternatives) => self.choice(alternatives, parent, span),
+            ExpressionKind::ChooseProb(alternatives) => {
+                let given: Vec<&str> = weights_of(alternatives).collect();
+                let weights = rmpl::control::probability_weights(&given);
+                let weights = weights.map_or(Vec::new(), |(weights, _)| weights);
+                self.choice(alternatives, ChosenBy::Chance(weights), parent, span)
+            }
+            ExpressionKind::ChooseReward(alternatives) => {
+                let rewards = weights_of(alternatives).map(|reward| reward.parse().unwrap_or(Rational::ZERO));
+                self.choice(alternatives, ChosenBy::Reward(rewards.collect()), parent, span)
+            }
             ExpressionKind::Reward(reward) => {
                 let label = format_smolstr!("reward {}", reward.text);
                 let location = self.location(LocationKind::Reward, label, parent, span);
@@ -468,13 +477,6 @@ impl<'vocabulary> Compiler<'vocabulary> {
                     data.reward = reward.text.parse().ok();
                 }
                 Element::Location(location)
-            }
-            ExpressionKind::ChooseReward(_) => {
-                let message = "CHOOSE-REWARD cannot be run";
-                let hint = "choose by what is known with IF-THENNEXT-ELSENEXT, or at random with CHOOSE-PROB";
-                self.diagnostics.push(Diagnostic::error(Code("E-FORM"), span, message).with_hint(hint));
-                let constraint = Constraint { kind: ConstraintKind::True, span };
-                Element::Location(self.assertion(&constraint, parent, span))
             }
             // Neither is left in an expanded program without errors; doing nothing is the safe reading.
             ExpressionKind::Call { .. } | ExpressionKind::Unreadable => {
@@ -570,7 +572,13 @@ impl<'vocabulary> Compiler<'vocabulary> {
         element
     }
 
-    fn choice(&mut self, alternatives: &[Alternative], parent: CompositeId, span: Span) -> Element {
+    fn choice(
+        &mut self,
+        alternatives: &[Alternative],
+        by: ChosenBy,
+        parent: CompositeId,
+        span: Span,
+    ) -> Element {
         let id = self.open(CompositeKind::Choice, Some(parent), None, span);
         let children: Vec<Element> =
             alternatives.iter().map(|alternative| self.expression(&alternative.body, id)).collect();
@@ -578,10 +586,7 @@ impl<'vocabulary> Compiler<'vocabulary> {
         if let Some(start) = self.automaton.starts.get_mut(id.0 as usize) {
             *start = Start { choices: vec![id], ..Start::default() };
         }
-        let given: Vec<&str> =
-            alternatives.iter().map(|alternative| alternative.weight.text.as_str()).collect();
-        let weights = rmpl::control::probability_weights(&given).map_or(Vec::new(), |(weights, _)| weights);
-        self.automaton.choices.push(Choice { composite: id, weights });
+        self.automaton.choices.push(Choice { composite: id, by });
         element
     }
 
@@ -708,6 +713,11 @@ impl<'vocabulary> Compiler<'vocabulary> {
             _ => goals.push(format_smolstr!("{constraint}")),
         }
     }
+}
+
+/// The probabilities or rewards of alternatives.
+fn weights_of(alternatives: &[Alternative]) -> impl Iterator<Item = &str> {
+    alternatives.iter().map(|alternative| alternative.weight.text.as_str())
 }
 
 fn constraints_of<'tree>(expression: &'tree Expression, into: &mut Vec<&'tree Constraint>) {

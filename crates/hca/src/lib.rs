@@ -18,8 +18,8 @@ pub mod trace;
 pub mod vocabulary;
 
 pub use automaton::{
-    Assertion, Automaton, Choice, Composite, CompositeId, CompositeKind, Element, Location, LocationId,
-    LocationKind, TestId, Transition, TransitionId,
+    Assertion, Automaton, Choice, ChosenBy, Composite, CompositeId, CompositeKind, Element, Location,
+    LocationId, LocationKind, TestId, Transition, TransitionId,
 };
 pub use clock::{Clock, ClockId, ClockKind, HeldCondition};
 pub use compile::{Compilation, compile, compile_text};

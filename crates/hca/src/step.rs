@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use exact::Rational;
 use smol_str::SmolStr;
 
 use crate::automaton::{
@@ -26,6 +27,8 @@ pub trait StepObserver {
     fn continued(&mut self, _sequence: CompositeId, _child: usize) {}
     /// A clock was up and did what it is for.
     fn elapsed(&mut self, _clock: ClockId) {}
+    /// An alternative of a choice by rewards completed, for which this counts.
+    fn earned(&mut self, _reward: Rational) {}
 }
 
 /// Observes nothing.
@@ -136,10 +139,10 @@ pub struct Stepper {
 
 // Functions that only forms in time need are marked cold, so that the compiler inlines the guards of plain programs.
 impl Stepper {
-    /// Starts in the automaton's start marking; choices are made by what is likeliest.
+    /// Starts in the automaton's start marking; choices are made by what is likeliest, or has the largest reward.
     pub fn new(automaton: &Arc<Automaton>) -> Self {
         let mut stepper = Self::undecided(automaton);
-        stepper.choose_likeliest();
+        stepper.choose_first_best();
         stepper
     }
 
@@ -153,11 +156,11 @@ impl Stepper {
                 Some(Watch { composite, test: data.maintenance?, range: data.locations.clone() })
             })
             .collect();
-        let matters = matters_to_others(&automaton.composites, &automaton.locations);
+        let matters = matters_to_others(automaton);
         let mut stages: Vec<Stage> = numbered()
             .filter(|(id, data)| {
                 let acts = matches!(data.kind, CompositeKind::Sequence | CompositeKind::Timeout);
-                acts || matters[id.0 as usize]
+                acts || is_rewarded(automaton, *id) || matters[id.0 as usize]
             })
             .map(|(composite, data)| Stage { composite, kind: data.kind, range: data.locations.clone() })
             .collect();
@@ -239,7 +242,7 @@ impl Stepper {
         self.aside.copy_from(&standing.aside);
     }
 
-    /// The first choice by chance that has been started and not been made.
+    /// The first choice that has been started and not been made.
     pub fn open_choice(&self) -> Option<&Choice> {
         self.automaton.choice(*self.times.open.first()?)
     }
@@ -257,10 +260,10 @@ impl Stepper {
         }
     }
 
-    fn choose_likeliest(&mut self) {
+    fn choose_first_best(&mut self) {
         while let Some(choice) = self.open_choice() {
-            let likeliest = choice.likeliest();
-            self.choose(likeliest);
+            let alternative = choice.first_best();
+            self.choose(alternative);
         }
     }
 
@@ -312,12 +315,12 @@ impl Stepper {
         held.map(|(lock, _)| lock.label.clone()).collect()
     }
 
-    /// After a step of a program that runs alone: grants locks, and makes the likeliest choices.
+    /// After a step of a program that runs alone: grants locks, and makes choices without chance and plant.
     fn settle(&mut self) {
         if !self.times.locks.is_empty() {
             locks::grant(&mut [&mut *self]);
         }
-        self.choose_likeliest();
+        self.choose_first_best();
         if !self.times.locks.is_empty() {
             locks::set_aside(&mut [&mut *self]);
         }
@@ -399,7 +402,7 @@ impl Stepper {
     /// Takes one step when the plant is known to be in one of several states: what is true in all of them is known.
     ///
     /// An empty slice knows nothing. Locks are granted as to a program that runs alone, and choices are made by what is
-    /// likeliest.
+    /// likeliest, or has the largest reward.
     pub fn step_observed(&mut self, states: &[Estimate], observer: &mut impl StepObserver) {
         self.step_known(states, observer);
         if self.acts_after_step {
@@ -663,9 +666,11 @@ impl Stepper {
                     self.dropped.get(id.0 as usize) == Some(&true) || self.body_completes(id)
                 }
                 CompositeKind::Timeout => self.time_out(id, observer),
-                CompositeKind::Guarded | CompositeKind::Choice | CompositeKind::Program => {
+                CompositeKind::Choice => {
+                    self.earn(id, observer);
                     self.some_child_completes(id)
                 }
+                CompositeKind::Guarded | CompositeKind::Program => self.some_child_completes(id),
             }
         };
         if let Some(is_completed) = self.is_completed.get_mut(id.0 as usize) {
@@ -699,6 +704,18 @@ impl Stepper {
                 completes
             }
             None => true,
+        }
+    }
+
+    /// Counts the rewards of the alternatives that complete.
+    #[cold]
+    fn earn(&self, id: CompositeId, observer: &mut impl StepObserver) {
+        let rewards = self.automaton.choice(id).and_then(Choice::rewards);
+        let children = self.automaton.composite(id).map_or(&[][..], |data| data.children.as_slice());
+        for (&child, &reward) in children.iter().zip(rewards.unwrap_or_default()) {
+            if self.completes(child) {
+                observer.earned(reward);
+            }
         }
     }
 
@@ -834,18 +851,17 @@ fn forget_waits(automaton: &Automaton, range: &std::ops::Range<u32>, times: &mut
 }
 
 /// Of each composite, whether something around it depends on its completion: the parts of a sequence but for the last,
-/// and what completes with something that matters. ALWAYS, WHENEVER, and the whole program never complete, and a join
+/// alternatives whose completion counts, and what completes with something that matters. ALWAYS, WHENEVER, and the whole program never complete, and a join
 /// looks at the marks inside it.
-fn matters_to_others(composites: &[Composite], locations: &[Location]) -> Vec<bool> {
+fn matters_to_others(automaton: &Automaton) -> Vec<bool> {
+    let Automaton { composites, locations, .. } = automaton;
     let mut matters = vec![false; composites.len()];
     for (at, composite) in composites.iter().enumerate() {
         let own_matters = matters[at];
         let of_children = |place: usize| match composite.kind {
             CompositeKind::Sequence => own_matters || place + 1 < composite.children.len(),
-            CompositeKind::DoWatching
-            | CompositeKind::Guarded
-            | CompositeKind::Choice
-            | CompositeKind::Lock => own_matters,
+            CompositeKind::DoWatching | CompositeKind::Guarded | CompositeKind::Lock => own_matters,
+            CompositeKind::Choice => own_matters || is_rewarded(automaton, CompositeId(at as u32)),
             // What is dropped when the time is up may complete in that step.
             CompositeKind::Timeout => own_matters || place == 0,
             CompositeKind::Parallel | CompositeKind::Program => false,
@@ -858,6 +874,11 @@ fn matters_to_others(composites: &[Composite], locations: &[Location]) -> Vec<bo
         }
     }
     matters
+}
+
+/// Whether something counts when a child of a composite completes.
+fn is_rewarded(automaton: &Automaton, composite: CompositeId) -> bool {
+    automaton.choice(composite).is_some_and(|choice| choice.rewards().is_some())
 }
 
 /// Whether a composite starts its body again and again.

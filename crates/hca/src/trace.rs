@@ -26,7 +26,7 @@ pub struct TraceStep {
     pub preempted: Vec<CompositeId>,
     /// The transitions that fired at its end.
     pub fired: Vec<TransitionId>,
-    /// The rewards that the marked locations count.
+    /// The rewards that the marked locations count, and those of the alternatives that completed at its end.
     pub reward: Rational,
     /// The locks that are held at its start, by their names.
     pub locks: Vec<SmolStr>,
@@ -53,6 +53,10 @@ impl StepObserver for TraceStep {
 
     fn elapsed(&mut self, clock: ClockId) {
         self.elapsed.push(clock);
+    }
+
+    fn earned(&mut self, reward: Rational) {
+        self.reward = self.reward.checked_add(reward).unwrap_or(self.reward);
     }
 }
 

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use exact::{Bound, Overflow, Time};
 use executive::model_based::{
-    ClosedLoop, Estimator, LoopStep, ProgramExecution, StepInput, StepOutcome, System,
+    ClosedLoop, Estimator, LoopStep, ProgramExecution, RewardChoice, StepInput, StepOutcome, System,
 };
 use executive::{
     ActivityExecution, ActivityExecutor, Contact, Disturbance, Ends, Entry, Happening, PlantReading, Revision,
@@ -233,8 +233,8 @@ impl<'run> ProgramExecutor<'run> {
                     return Ok(false);
                 }
             };
-            for active in &moment.running {
-                let text = text(active, &step, &input);
+            for (active, chosen) in moment.running.iter().zip(&step.chosen) {
+                let text = text(active, &step, chosen, &input);
                 let happening = Happening::Progress { name: active.name.clone(), text };
                 self.told.entry(active.occurrence).or_default().entries.push(Entry { time, happening });
             }
@@ -409,7 +409,7 @@ fn faults(disturbances: &[Disturbance], running: &[Active]) -> StepInput {
 }
 
 /// What a step of a program did, in words: its commands, then what is found out.
-fn text(active: &Active, step: &LoopStep, input: &StepInput) -> String {
+fn text(active: &Active, step: &LoopStep, chosen: &[RewardChoice], input: &StepInput) -> String {
     let model: &Model = &active.program.system.model;
     let mut own = step.commands.clone();
     for (value, variable) in own.0.iter_mut().zip(&model.command_variables) {
@@ -424,6 +424,9 @@ fn text(active: &Active, step: &LoopStep, input: &StepInput) -> String {
     for (&component, &mode) in &input.injected {
         let name = model.component(component).map_or("?", |component| component.name.as_str());
         let _ = write!(text, "; {name} goes to {}", model.mode_name(component, mode));
+    }
+    for made in chosen {
+        let _ = write!(text, "; {}", made.describe());
     }
     let found: Vec<String> = step.conflicts.iter().map(|conflict| conflict.describe(model)).collect();
     if !found.is_empty() {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::Rational;
-use hca::{Automaton, Position, Stepper, TestId, Unobserved, Vocabulary};
+use hca::{Automaton, ChosenBy, Position, Stepper, TestId, Unobserved, Vocabulary};
 use rmpl::Span;
 use rmpl::control::{
     Class, Constraint, ConstraintKind, ControlFile, Definition, Expression, ExpressionKind, Field, FieldKind,
@@ -310,7 +310,8 @@ impl Exploration {
                 }
                 continue;
             };
-            let weights = choice.weights.clone();
+            // Of CHOOSE-REWARD there is none in a behavior.
+            let ChosenBy::Chance(weights) = choice.by.clone() else { continue };
             let total = weights.iter().map(|weight| i128::from(*weight)).sum();
             // The first alternative is looked at first.
             for (alternative, weight) in weights.iter().enumerate().rev() {

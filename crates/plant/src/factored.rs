@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 use std::sync::Arc;
 
 use num_bigint::BigUint;
-use num_traits::One as _;
+use num_traits::{One as _, ToPrimitive as _};
 use serde::{Deserialize, Serialize};
 
 use crate::belief::{Belief, State};
@@ -80,6 +80,17 @@ impl FactoredBelief {
     pub(crate) fn states_of(&self, groups: &[usize]) -> impl Iterator<Item = (State, BigUint)> + use<'_> {
         let mut ranking = Ranking::new(self, groups.to_vec());
         std::iter::from_fn(move || ranking.next().map(|next| (next.state, next.weight)))
+    }
+
+    /// The same states, at most so many, each with its share in what they weigh together, as a machine number.
+    pub fn shares_of(&self, groups: &[usize], most: usize) -> Vec<(State, f64)> {
+        let states: Vec<(State, BigUint)> = self.states_of(groups).take(most).collect();
+        let total: BigUint = states.iter().map(|(_, weight)| weight).sum();
+        // Long numbers are cut to what a machine number can hold.
+        let excess = total.bits().saturating_sub(900);
+        let number = |weight: &BigUint| (weight >> excess).to_f64().unwrap_or(0.0);
+        let whole = number(&total);
+        states.into_iter().map(|(state, weight)| (state, number(&weight) / whole)).collect()
     }
 
     /// The same beliefs, but for one group.

@@ -249,6 +249,7 @@ fn goals_json(goals: &[smol_str::SmolStr]) -> Value {
 
 fn counts_rewards(automaton: &Automaton) -> bool {
     automaton.locations.iter().any(|location| location.reward.is_some())
+        || automaton.choices.iter().any(|choice| choice.rewards().is_some())
 }
 
 /// The clocks that run before a step, each with the number of steps after which it is up.
@@ -319,6 +320,18 @@ fn step_json(system: &System, record: &StepRecord) -> Value {
         if !system.automaton.locks.is_empty() {
             step.insert("locks".to_owned(), json!(record.trace.locks));
         }
+        if !record.chosen.is_empty() {
+            let chosen = record.chosen.iter().map(|made| {
+                json!({
+                    "choice": made.label,
+                    "alternative": made.alternative + 1,
+                    "expected": made.expected,
+                    "horizon": made.horizon,
+                    "shortened": made.is_shortened,
+                })
+            });
+            step.insert("chosen".to_owned(), chosen.collect());
+        }
         if system.entailment.is_some() {
             let asked = record.asked.iter().map(|asked| {
                 json!({
@@ -380,6 +393,9 @@ fn run_text(system: &System, run: &Run) -> String {
     for record in run.records() {
         out.push_str(&format!("step {}\n", record.trace.step));
         record.trace.labels.iter().for_each(|label| out.push_str(&format!("  active    {label}\n")));
+        for made in &record.chosen {
+            out.push_str(&format!("  chose     {}\n", made.describe()));
+        }
         clocks_text(&system.automaton, &record.trace, &mut out);
         record.trace.locks.iter().for_each(|lock| out.push_str(&format!("  locked    {lock}\n")));
         out.push_str(&format!("  commands  {}\n", listed(model.command_names(&record.commands), ".")));

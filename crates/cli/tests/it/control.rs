@@ -679,6 +679,27 @@ fn a_choice_is_drawn_with_a_seed() {
 }
 
 #[test]
+fn a_choice_by_rewards_says_what_it_expects_and_the_reward_is_counted() {
+    let text = format!(
+        "{ENGINE}(DEFOPTION horizon 4) Main ():: (CHOOSE-REWARD (3 (EngineA = Standby)) (5 (EngineA = Failed)))"
+    );
+    let program = written("reward.rmpl", &text);
+    let document = enroute(&["run", &program, "--format", "json"]).json();
+    let made = &document["steps"][0]["chosen"][0];
+    let expected = (&json!(1), &json!("choose by reward 3, 5"), &json!(4), &json!(false));
+    assert_eq!((&made["alternative"], &made["choice"], &made["horizon"], &made["shortened"]), expected);
+    assert_eq!((&document["reward"], document["steps"][1].get("chosen")), (&json!(3), None), "{document}");
+    let answer = enroute(&["run", &program]);
+    assert!(
+        answer.output.contains(
+            "  chose     alternative 1 of choose by reward 3, 5: 2.97, 0.19702 expected within 4 steps\n"
+        ),
+        "{answer}"
+    );
+    assert!(answer.output.contains("Rewards: 3.\n"), "{answer}");
+}
+
+#[test]
 fn orbit_insertion_is_proven_to_end_with_one_fault_and_shown_to_wait_forever_with_two() {
     let (program, plant) = (case_path("h01_orbit_nominal.rmpl"), case_path("orbit_plant.rmpl"));
     let prove = |more: &[&str]| {

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use hca::{Choice, StepObserver, Stepper, TestId, TraceStep, locks};
+use hca::{ChosenBy, StepObserver, Stepper, TestId, TraceStep, locks};
 use plant::{
     Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Formula, Goal, Interval, Known,
     NextCommands, Observation, Random, SimulatedPlant, Situation, State, ValueSet, draw_initial, intended,
@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use smol_str::{SmolStr, ToSmolStr as _};
 
 use super::estimator::{BeliefUpdate, Believed, Estimator, StepOutcome, Threshold};
+use super::reward_choice::RewardChoice;
 use super::run::StepInput;
 use super::system::System;
 
@@ -28,12 +29,15 @@ pub struct ProgramExecution {
     pub stepper: Stepper,
     /// How many steps it has taken.
     pub steps: u32,
+    /// The choices by rewards that were made since the last step.
+    pub(super) chosen: Vec<RewardChoice>,
 }
 
 impl ProgramExecution {
     /// Starts a program.
     pub fn new(system: &Arc<System>) -> Self {
-        Self { system: Arc::clone(system), stepper: Stepper::undecided(&system.automaton), steps: 0 }
+        let stepper = Stepper::undecided(&system.automaton);
+        Self { system: Arc::clone(system), stepper, steps: 0, chosen: Vec::new() }
     }
 
     /// The marked locations, goals and labels of the next step.
@@ -42,14 +46,14 @@ impl ProgramExecution {
     }
 
     /// The conditions that the next step may ask for, in order, each with what the plant has to make true for it.
-    fn asked(&self) -> Vec<(TestId, Formula)> {
+    pub(super) fn asked(&self) -> Vec<(TestId, Formula)> {
         let settings: Vec<_> = self.stepper.settings().collect();
         let condition = |test| (test, self.system.condition(test, settings.clone()));
         self.stepper.asked().into_iter().map(condition).collect()
     }
 
     /// Moves on by what is entailed of what was `asked`.
-    fn step(
+    pub(super) fn step(
         &mut self,
         asked: &[(TestId, Formula)],
         known: Known<'_>,
@@ -143,6 +147,8 @@ pub struct LoopStep {
     pub observation: Observation,
     /// Whether the observation can be explained. If not, the programs stay where they were, and so does the belief.
     pub outcome: StepOutcome,
+    /// The choices by rewards of each program that led into the step.
+    pub chosen: Vec<Vec<RewardChoice>>,
     /// What each program asked for, if it names a probability from which on conditions are entailed.
     pub asked: Vec<Vec<AskedCondition>>,
     /// Whether limits kept the estimate's dropped measure from becoming small, or leave open whether something asked for is
@@ -212,14 +218,21 @@ impl ClosedLoop {
         self.deadlock.as_deref()
     }
 
-    /// Makes the choices of the programs that have been started, by chance if there is any, and sets aside the goals that
-    /// contradict what is locked.
-    pub fn settle(&mut self, programs: &mut [&mut ProgramExecution]) {
+    /// Makes the choices of the programs that have been started, by chance if there is any and by rewards, and sets aside the
+    /// goals that contradict what is locked.
+    pub fn settle(&mut self, programs: &mut [&mut ProgramExecution], estimator: &mut Estimator) {
         for program in programs.iter_mut() {
             while let Some(choice) = program.stepper.open_choice() {
-                let alternative = match &mut self.random {
-                    Some(random) => drawn(choice, random),
-                    None => choice.likeliest(),
+                let alternative = match (&choice.by, &mut self.random) {
+                    (ChosenBy::Chance(weights), Some(random)) => drawn(weights, random),
+                    (ChosenBy::Chance(_), None) => choice.first_best(),
+                    (ChosenBy::Reward(_), _) => {
+                        let standing = program.stepper.standing();
+                        let made = estimator.choose(&program.system, standing, &self.believed.belief);
+                        let alternative = made.alternative;
+                        program.chosen.push(made);
+                        alternative
+                    }
                 };
                 program.stepper.choose(alternative);
             }
@@ -280,7 +293,8 @@ impl ClosedLoop {
         estimator: &mut Estimator,
         input: &StepInput,
     ) -> Result<LoopStep, EstimateError> {
-        self.settle(programs);
+        self.settle(programs, estimator);
+        let chosen = programs.iter_mut().map(|program| std::mem::take(&mut program.chosen)).collect();
         let mut traces: Vec<TraceStep> = programs.iter().map(|program| program.upcoming()).collect();
         let commanded = self.command(system, programs, estimator);
         let failed = self.answer(system, &commanded.commands, input)?;
@@ -292,7 +306,7 @@ impl ClosedLoop {
         let learned =
             self.learn(system, programs, estimator, &commanded.commands, observation, &mut traces)?;
         if learned.is_explained {
-            self.settle(programs);
+            self.settle(programs, estimator);
             self.note_deadlock(programs);
         }
         Ok(LoopStep {
@@ -303,6 +317,7 @@ impl ClosedLoop {
             failed,
             observation: self.observation.clone(),
             outcome: self.outcome.clone(),
+            chosen,
             asked: learned.asked,
             is_uncertain: learned.is_uncertain,
             conflicts: learned.conflicts,
@@ -446,18 +461,18 @@ fn steppers<'programs>(programs: &'programs mut [&mut ProgramExecution]) -> Vec<
 }
 
 /// One of the alternatives, each with its probability.
-fn drawn(choice: &Choice, random: &mut Random) -> usize {
-    let mut left = random.below(choice.weights.iter().sum());
+fn drawn(weights: &[u64], random: &mut Random) -> usize {
+    let mut left = random.below(weights.iter().sum());
     let is_it = |weight: &u64| {
         let is_it = left < *weight;
         left = left.saturating_sub(*weight);
         is_it
     };
-    choice.weights.iter().position(is_it).unwrap_or(0)
+    weights.iter().position(is_it).unwrap_or(0)
 }
 
 /// The commands from a state toward the goals of the marked locations, and the goals that no mode makes true.
-fn command(
+pub(super) fn command(
     programs: &[&mut ProgramExecution],
     estimator: &mut Estimator,
     state: &State,

@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use hca::Standing;
 use plant::bounded::MAX_STATES;
 use plant::{
     Belief, BoundedUpdate, Commands, Conflict, Effort, EstimateError, FactoredBelief, Formula, Goal, Group,
@@ -14,6 +15,7 @@ use plant::{
 };
 use serde::{Deserialize, Serialize};
 
+use super::reward_choice::{Chooser, RewardChoice};
 use super::system::System;
 
 /// Remembered answers are thrown away when there are more than this many.
@@ -131,6 +133,8 @@ pub struct Estimator {
     updates: BTreeMap<GroupQuestion, BoundedUpdate>,
     diagnoses: BTreeMap<(State, Commands, Observation), Vec<Conflict>>,
     plans: BTreeMap<(State, Vec<Goal>), NextCommands>,
+    /// By program, what its choices by rewards were made with.
+    choosers: Vec<(Arc<System>, Chooser)>,
 }
 
 /// What becomes of a group in a step.
@@ -155,6 +159,7 @@ impl Estimator {
             updates: BTreeMap::new(),
             diagnoses: BTreeMap::new(),
             plans: BTreeMap::new(),
+            choosers: Vec::new(),
         }
     }
 
@@ -378,6 +383,21 @@ impl Estimator {
         }
         self.diagnoses.insert(key, found.clone());
         Ok(found)
+    }
+
+    /// Makes the first open choice of a program, which is one by rewards.
+    pub(super) fn choose(
+        &mut self,
+        system: &Arc<System>,
+        standing: Standing,
+        belief: &FactoredBelief,
+    ) -> RewardChoice {
+        let known = self.choosers.iter().position(|(known, _)| Arc::ptr_eq(known, system));
+        let (_, mut chooser) = known
+            .map_or_else(|| (Arc::clone(system), Chooser::default()), |at| self.choosers.swap_remove(at));
+        let made = chooser.choose(system, self, standing, belief);
+        self.choosers.push((Arc::clone(system), chooser));
+        made
     }
 
     pub(super) fn plan(&mut self, state: &State, goals: &[Goal]) -> NextCommands {

@@ -10,6 +10,7 @@ mod goal;
 mod liveness;
 mod monte_carlo;
 pub mod proof;
+mod reward_choice;
 mod run;
 mod system;
 
@@ -17,5 +18,6 @@ pub use closed_loop::{AskedCondition, ClosedLoop, Knowledge, LoopStep, ProgramEx
 pub use estimator::{Estimator, StepOutcome};
 pub use liveness::waits_forever;
 pub use monte_carlo::{FaultTally, ProgramTally, Trials, run_seed, sample, wilson_interval};
+pub use reward_choice::RewardChoice;
 pub use run::{Options, Run, RunStatus, StepInput, StepRecord};
 pub use system::{ControlledPlant, System, SystemCompilation};

@@ -13,6 +13,7 @@ use smol_str::SmolStr;
 
 use super::closed_loop::{AskedCondition, ClosedLoop, Knowledge, ProgramExecution};
 use super::estimator::{Estimator, StepOutcome};
+use super::reward_choice::RewardChoice;
 use super::system::System;
 
 /// How a run is made.
@@ -58,6 +59,8 @@ pub struct StepRecord {
     pub belief: FactoredBelief,
     /// Whether the observation can be explained.
     pub outcome: StepOutcome,
+    /// The choices by rewards that led into the step.
+    pub chosen: Vec<RewardChoice>,
     /// What the automaton asked for at the step's end, if the program names a probability from which on it is entailed.
     pub asked: Vec<AskedCondition>,
     /// Whether limits kept the estimate's dropped measure from becoming small, or leave open whether something asked for is
@@ -86,6 +89,7 @@ pub enum RunStatus {
 #[derive(Clone, Debug)]
 struct Before {
     program: Standing,
+    chosen: Vec<RewardChoice>,
     closed: ClosedLoop,
 }
 
@@ -111,7 +115,7 @@ impl Run {
         let closed = ClosedLoop::new(system, &mut estimator, options.seed.map(Random::new));
         let mut closed = closed.with_knowledge(system, options.knowledge);
         let mut program = ProgramExecution::new(system);
-        closed.settle(&mut [&mut program]);
+        closed.settle(&mut [&mut program], &mut estimator);
         Self { closed, estimator, program, records: Vec::new(), before: Vec::new() }
     }
 
@@ -192,6 +196,7 @@ impl Run {
         self.records.pop();
         self.program.stepper.return_to(&before.program);
         self.program.steps -= 1;
+        self.program.chosen = before.chosen;
         self.closed = before.closed;
         true
     }
@@ -207,7 +212,8 @@ impl Run {
 
     /// Takes one step. After an error the run stands where it stood.
     pub fn step(&mut self, input: &StepInput) -> Result<&StepRecord, EstimateError> {
-        let before = Before { program: self.program.stepper.standing(), closed: self.closed.clone() };
+        let (program, chosen) = (self.program.stepper.standing(), self.program.chosen.clone());
+        let before = Before { program, chosen, closed: self.closed.clone() };
         let step = self.closed.step(&mut [&mut self.program], &mut self.estimator, input)?;
         self.before.push(before);
         // There is one trace for the one program.
@@ -223,6 +229,8 @@ impl Run {
             observation: step.observation,
             belief: self.closed.belief().clone(),
             outcome: step.outcome,
+            // There is one entry for the one program.
+            chosen: step.chosen.into_iter().next().unwrap_or_default(),
             asked: step.asked.into_iter().next().unwrap_or_default(),
             is_uncertain: step.is_uncertain,
             conflicts: step.conflicts,

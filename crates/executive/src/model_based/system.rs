@@ -41,6 +41,8 @@ pub struct System {
     pub entailment: Option<Probability>,
     /// The seconds that a step takes.
     pub step_secs: Rational,
+    /// Over how many steps rewards are expected where the program chooses by them.
+    pub horizon: u32,
     bindings: Vec<Binding>,
     /// Per location, the configurations of the plant that satisfy what it asserts.
     goal_configurations: Vec<Option<GoalConfigurations>>,
@@ -250,9 +252,18 @@ fn bind(file: &ControlFile, plant: &ControlledPlant) -> (Option<Arc<System>>, Ve
     let (model, planner, groups) = (Arc::clone(model), Arc::clone(planner), Arc::clone(groups));
     let entailment =
         file.entailment().map(|given| Probability::new(given.numerator().into(), given.denominator().into()));
-    let step_secs = file.step_secs();
-    let system =
-        System { automaton, model, planner, groups, entailment, step_secs, bindings, goal_configurations };
+    let (step_secs, horizon) = (file.step_secs(), file.horizon());
+    let system = System {
+        automaton,
+        model,
+        planner,
+        groups,
+        entailment,
+        step_secs,
+        horizon,
+        bindings,
+        goal_configurations,
+    };
     (Some(Arc::new(system)), diagnostics)
 }
 

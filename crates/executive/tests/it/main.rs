@@ -6,6 +6,7 @@ mod model_based;
 mod pinned;
 mod progress;
 mod proof;
+mod rewards;
 mod runs;
 mod states;
 mod strategy;

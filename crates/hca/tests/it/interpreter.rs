@@ -26,6 +26,8 @@ struct Running<'tree> {
     waits: Vec<bool>,
     /// Of TIMEOUT and EVERY, the steps since the latest start.
     age: u64,
+    /// What completed alternatives count in the step that made it.
+    earned: i64,
     /// How long a step is, in thousandths of a second, and what durations are divided by.
     scale: (u64, Steps),
     parts: Vec<Running<'tree>>,
@@ -45,6 +47,7 @@ impl<'tree> Running<'tree> {
             marked: false,
             waits: Vec::new(),
             age: 0,
+            earned: 0,
             scale,
             parts: form.parts().into_iter().map(|part| Self::idle(part, inner)).collect(),
         };
@@ -76,6 +79,11 @@ impl<'tree> Running<'tree> {
                 self.parts.iter_mut().for_each(|part| part.start(seen));
             }
             ExpressionKind::Sequence(_) | ExpressionKind::Timeout { .. } => self.parts[0].start(seen),
+            ExpressionKind::ChooseReward(_) => {
+                let (rewards, best) = self.rewards();
+                let chosen = rewards.iter().position(|reward| *reward == best).expect("an alternative");
+                self.parts[chosen].start(seen);
+            }
             ExpressionKind::Always(_) | ExpressionKind::Every { .. } => {
                 self.marked = true;
                 self.parts[0].start(seen);
@@ -90,6 +98,29 @@ impl<'tree> Running<'tree> {
             }
             _ => self.marked = true,
         }
+    }
+
+    /// The rewards of alternatives, and the largest of them.
+    fn rewards(&self) -> (Vec<i64>, i64) {
+        let ExpressionKind::ChooseReward(alternatives) = &self.form.kind else { return (Vec::new(), 0) };
+        let rewards = alternatives.iter().map(|it| it.weight.text.parse().expect("a whole reward"));
+        let rewards: Vec<i64> = rewards.collect();
+        let best = rewards.iter().copied().max().expect("an alternative");
+        (rewards, best)
+    }
+
+    /// What all alternatives that completed count.
+    fn all_earned(&self) -> i64 {
+        self.earned + self.parts.iter().map(Self::all_earned).sum::<i64>()
+    }
+
+    /// What marked rewards count.
+    fn marked_rewards(&self) -> i64 {
+        let own = match &self.form.kind {
+            ExpressionKind::Reward(reward) if self.marked => reward.text.parse().expect("a whole reward"),
+            _ => 0,
+        };
+        own + self.parts.iter().map(Self::marked_rewards).sum::<i64>()
     }
 
     fn active(&self) -> bool {
@@ -118,6 +149,7 @@ impl<'tree> Running<'tree> {
                 ExpressionKind::WhenDoNext { guard, .. } => format!("when {guard}"),
                 ExpressionKind::WheneverDoNext { guard, .. } => format!("whenever {guard}"),
                 ExpressionKind::Wait(_) => "wait".into(),
+                ExpressionKind::Reward(reward) => format!("reward {}", reward.text),
                 ExpressionKind::At { .. } => "at".into(),
                 ExpressionKind::Every { .. } => "every".into(),
                 _ => unreachable!("only these have a location"),
@@ -147,6 +179,12 @@ impl<'tree> Running<'tree> {
             ExpressionKind::Assert(constraint) => {
                 next.marked |= !entailed(constraint, known);
                 return !next.marked;
+            }
+            ExpressionKind::Reward(_) => return true,
+            ExpressionKind::ChooseReward(_) => {
+                let (rewards, _) = self.rewards();
+                let completed = completed.iter().zip(rewards).filter(|(completed, _)| **completed);
+                next.earned = completed.map(|(_, reward)| reward).sum();
             }
             ExpressionKind::Parallel(_) => return !next.active(),
             ExpressionKind::Sequence(_) => {
@@ -284,6 +322,11 @@ fn without_within(expression: &mut Expression) {
         | ExpressionKind::At { body, .. }
         | ExpressionKind::Every { body, .. }
         | ExpressionKind::Warp { body, .. } => without_within(body),
+        ExpressionKind::ChooseReward(alternatives) => {
+            for alternative in alternatives {
+                without_within(&mut alternative.body);
+            }
+        }
         _ => {}
     }
     if let ExpressionKind::Within { least, most, body, otherwise } = &expression.kind {
@@ -383,7 +426,7 @@ impl Dice {
     fn timed(&mut self, depth: u64) -> String {
         let part = |dice: &mut Self| dice.timed(depth.saturating_sub(1));
         let (guard, duration) = (Self::held_guard, Self::duration);
-        match self.roll(if depth == 0 { 3 } else { 18 }) {
+        match self.roll(if depth == 0 { 3 } else { 21 }) {
             0 | 1 => self.constraint(1),
             2 => format!("(WAIT {})", self.duration()),
             3 => format!("(PARALLEL {} {})", part(self), part(self)),
@@ -399,6 +442,8 @@ impl Dice {
             14 => format!("(AT {} {})", duration(self), part(self)),
             15 => format!("(EVERY {} {})", duration(self), part(self)),
             16 => format!("(WARP {} {})", ["2", "0.5"][self.roll(2) as usize], part(self)),
+            17 => format!("(CHOOSE-REWARD ({} {}) (1 {}))", self.roll(3), part(self), part(self)),
+            18 => format!("(REWARD {})", self.roll(9) + 1),
             _ => format!("(WHENEVER-DONEXT {} (TIMEOUT {} {}))", guard(self), duration(self), part(self)),
         }
     }
@@ -457,11 +502,14 @@ fn compare(seeds: std::ops::Range<u64>, step_millis: u64, program: impl Fn(&mut 
                     known.insert(name.into(), (*value).into());
                 }
             }
-            stepper
-                .step(&automaton.estimate(known.iter().map(|(name, value)| (name.as_str(), value.as_str()))));
+            let mut trace = hca::TraceStep::at(&stepper, step + 1);
+            let pairs = known.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+            stepper.step_observed(&[automaton.estimate(pairs)], &mut trace);
             seen.push(known);
             let mut next = Running::idle(&tree, scale);
             running.step(&seen, &mut next);
+            let counted = (running.marked_rewards() + next.all_earned()).to_string();
+            assert_eq!(trace.reward.to_string(), counted, "seed {seed} step {step}: {text}");
             let (mut before, mut after) = (Vec::new(), Vec::new());
             running.flags(&mut before);
             next.flags(&mut after);

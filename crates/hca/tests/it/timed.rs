@@ -117,7 +117,13 @@ fn wrong_durations_locks_and_choices_are_found() {
         ("(LOCK ~(x = a) (y = a))", "E-CONSTRAINT"),
         ("(CHOOSE-PROB (0.5 (x = a)) (0.4 (x = b)))", "E-PROBABILITY"),
         ("(CHOOSE-PROB (0 (x = a)) (1 (x = b)))", "E-PROBABILITY"),
-        ("(CHOOSE-REWARD (1 (x = a)) (2 (x = b)))", "E-FORM"),
+        ("(CHOOSE-REWARD (much (x = a)) (2 (x = b)))", "E-SYNTAX"),
+        ("(CHOOSE-REWARD)", "E-ARITY"),
+        ("(DEFOPTION horizon 0) (x = a)", "E-BOUNDS"),
+        ("(DEFOPTION horizon 2.5) (x = a)", "E-BOUNDS"),
+        ("(DEFOPTION horizon 10001) (x = a)", "E-BOUNDS"),
+        ("(DEFOPTION horizon 5) (DEFOPTION horizon 6) (x = a)", "E-DUP"),
+        ("(DEFOPTION horizn 5) (x = a)", "W-OPTION"),
     ] {
         assert_eq!(codes(text), [expected], "{text}");
     }
@@ -175,6 +181,28 @@ fn a_choice_takes_no_step_and_without_chance_the_likeliest() {
         &["", "x=a", "x=b", ""],
     );
     assert_eq!(seen, ["", "x=b", "x=b", "y=a"].map(String::from).to_vec());
+}
+
+#[test]
+fn a_choice_by_rewards_counts_when_its_alternative_completes() {
+    let rewards = |text: &str, estimates: &[&str]| {
+        let automaton = automaton(text);
+        let estimates: Vec<_> =
+            estimates.iter().map(|known| automaton.estimate(known.split_once('='))).collect();
+        let run = hca::trace(&automaton, &estimates);
+        let rewards: Vec<String> = run.steps.iter().map(|step| step.reward.to_string()).collect();
+        rewards.join(" ")
+    };
+    // Without a plant, the largest reward is chosen.
+    let choice = "(CHOOSE-REWARD (3 (SEQUENCE (x = a) (REWARD 1))) (2.5 (y = a)))";
+    assert_eq!(rewards(choice, &["", "x=a", ""]), "0 0 4 0");
+    // An alternative that is dropped from outside does not complete, and one that ends by its own watch does.
+    assert_eq!(rewards(&format!("(DO-WATCHING (z = a) {choice})"), &["x=a", "z=a"]), "0 1 0");
+    assert_eq!(rewards("(CHOOSE-REWARD (-1 (DO-WATCHING (z = a) (ALWAYS true))))", &["", "z=a"]), "0 -1 0");
+    assert_eq!(rewards("(CHOOSE-REWARD (7 (ALWAYS true)))", &["", ""]), "0 0 0");
+    // Every completion counts.
+    let again = "(EVERY 2 (CHOOSE-REWARD (5 (WAIT 1))))";
+    assert_eq!(rewards(again, &["", "", "", ""]), "5 0 5 0 0");
 }
 
 #[test]

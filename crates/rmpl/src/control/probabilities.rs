@@ -3,18 +3,29 @@
 use exact::Rational;
 
 use crate::diagnostic::Diagnostic;
-use crate::diagnostics::{duplicate, option, probability};
+use crate::diagnostics::{bounds, duplicate, option, probability};
 
 use super::syntax::{ControlFile, FieldKind, Initial, Name};
 
-/// The one option that a control program has.
 const ENTAILMENT: &str = "entailment";
+const HORIZON: &str = "horizon";
+/// The options that a control program may have.
+const OPTIONS: [&str; 2] = [ENTAILMENT, HORIZON];
+
+const DEFAULT_HORIZON: u32 = 50;
+const MAX_HORIZON: u32 = 10_000;
 
 impl ControlFile {
     /// From which probability on a condition is entailed; `None` if it is entailed by holding in the most likely state.
     pub fn entailment(&self) -> Option<Rational> {
         let option = self.options.iter().find(|option| option.name.text == ENTAILMENT)?;
         threshold(&option.value.text)
+    }
+
+    /// Over how many steps CHOOSE-REWARD expects rewards.
+    pub fn horizon(&self) -> u32 {
+        let option = self.options.iter().find(|option| option.name.text == HORIZON);
+        option.and_then(|option| steps(&option.value.text)).unwrap_or(DEFAULT_HORIZON)
     }
 }
 
@@ -58,10 +69,15 @@ const fn greatest_common_divisor(left: u64, right: u64) -> u64 {
 pub(super) fn check(file: &ControlFile) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     for (at, option) in file.options.iter().enumerate() {
-        if option.name.text != ENTAILMENT {
-            diagnostics.push(option::unknown_of_program(&option.name.text, option.name.span, ENTAILMENT));
+        if !OPTIONS.contains(&option.name.text.as_str()) {
+            diagnostics.push(option::unknown_of_program(&option.name.text, option.name.span, &OPTIONS));
         } else if file.options.iter().take(at).any(|earlier| earlier.name.text == option.name.text) {
             diagnostics.push(duplicate::program_option(&option.name.text, option.name.span));
+        } else if option.name.text == HORIZON {
+            let is_wrong = steps(&option.value.text).is_none();
+            diagnostics.extend(
+                is_wrong.then(|| bounds::horizon(&option.value.text, MAX_HORIZON, option.value.span)),
+            );
         } else if threshold(&option.value.text).is_none() {
             diagnostics.push(probability::not_an_entailment(&option.value.text, option.value.span));
         }
@@ -107,6 +123,11 @@ pub(super) fn positive(text: &str) -> Option<Rational> {
     text.parse()
         .ok()
         .filter(|value| (Rational::ZERO..=Rational::ONE).contains(value) && *value != Rational::ZERO)
+}
+
+/// A number of steps that a horizon may have.
+fn steps(text: &str) -> Option<u32> {
+    text.parse().ok().filter(|steps| (1..=MAX_HORIZON).contains(steps))
 }
 
 /// A probability above one half: two contradicting conditions are never both entailed.

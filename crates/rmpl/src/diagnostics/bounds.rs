@@ -17,7 +17,7 @@ pub const EXPLANATION: Explanation = Explanation {
 `inf`. Only the bounds of `constrain` may be negative. The bounds of a call must overlap the declared bounds, because both apply. `contingent` bounds must be finite, and
 those of a call must lie within the declared ones. Bounds that contain names are checked with the values that the names have
 in the scenario. In a control program, durations and the length of a step are finite and above 0, and the minimum of `WITHIN`
-is at most its maximum.",
+is at most its maximum. The option `horizon` is a whole number of steps.",
     example: "primitive Drive()[30,20];
 scenario Day[0,60] = { Drive() }",
     fix: "Swap the two bounds, or correct one of them.",
@@ -66,6 +66,12 @@ pub fn too_long(span: Span) -> Diagnostic {
 /// WARP divides durations.
 pub(crate) fn factor(text: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("WARP needs a finite factor above 0, but this one is `{text}`"))
+}
+
+/// A horizon of a control program that is no number of steps.
+pub(crate) fn horizon(text: &str, most: u32, span: Span) -> Diagnostic {
+    let message = format!("the horizon must be a whole number of steps from 1 to {most}, not `{text}`");
+    Diagnostic::error(CODE, span, message)
 }
 
 /// WITHIN with a minimum above its maximum.

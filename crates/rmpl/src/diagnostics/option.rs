@@ -16,7 +16,7 @@ pub const EXPLANATION: Explanation = Explanation {
     title: "unknown option",
     meaning:
         "This option has no effect. The options are `threat_gap`, `strict`, `time_unit`, `control_step` and
-`controllability`, and `entailment` in a control program.",
+`controllability`, and `entailment` and `horizon` in a control program.",
     example: "option threat_gpa = 2;
 scenario Day[0,60] = { LIGHT [10,20] }",
     fix: "Correct its name, or remove it.",
@@ -39,12 +39,13 @@ pub(crate) fn unknown(name: &Name) -> Diagnostic {
     }
 }
 
-/// An option that no control program has; `known` is the one that it may have.
-pub(crate) fn unknown_of_program(name: &str, span: Span, known: &str) -> Diagnostic {
+/// An option that no control program has; `known` are those that it may have.
+pub(crate) fn unknown_of_program(name: &str, span: Span, known: &[&str]) -> Diagnostic {
     let diagnostic = Diagnostic::warning(CODE, span, format!("a control program has no option `{name}`"))
-        .with_hint(format!("the option of a control program is {known}"));
-    match edit_distance_at_most(name, known, 3) {
-        Some(_) => diagnostic.with_fix(replacement(format!("Change to `{known}`"), span, known)),
+        .with_hint(format!("the options of a control program are {}", known.join(", ")));
+    let nearest = known.iter().filter_map(|known| Some((edit_distance_at_most(name, known, 3)?, known)));
+    match nearest.min() {
+        Some((_, known)) => diagnostic.with_fix(replacement(format!("Change to `{known}`"), span, *known)),
         None => diagnostic,
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use executive::model_based::proof::Verdict;
-use executive::model_based::{AskedCondition, StepOutcome};
+use executive::model_based::{AskedCondition, RewardChoice, StepOutcome};
 use hca::Automaton;
 use plant::{Interval, Model};
 use serde::Serialize;
@@ -101,6 +101,8 @@ pub struct PlantState {
     pub commands: Option<BTreeMap<String, String>>,
     pub next_commands: Option<BTreeMap<String, String>>,
     pub unachievable: Vec<Unachievable>,
+    /// The choices by rewards that led into the last step.
+    pub chosen: Vec<Chosen>,
     /// The conditions that the program asked for in the last step; empty without the option `entailment`.
     pub asked: Vec<Asked>,
     /// Whether no state explains the observations, so that the run ends here.
@@ -139,6 +141,22 @@ pub struct Asked {
     pub probability: StateProbability,
     /// Whether it is as probable as the program demands.
     pub is_known: bool,
+}
+
+/// A choice by rewards.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Chosen {
+    pub choice: String,
+    /// Which alternative was chosen, from 1.
+    pub alternative: usize,
+    /// The expected sum of rewards of each alternative, as decimals or fractions.
+    pub expected: Vec<String>,
+    /// Over how many steps.
+    pub horizon: u32,
+    /// Whether the program asks for more steps than could be followed.
+    pub is_shortened: bool,
 }
 
 /// A goal that cannot be reached.
@@ -232,6 +250,16 @@ fn state_probability(probability: &Interval) -> StateProbability {
     StateProbability::Between([low, high])
 }
 
+fn chosen(made: &RewardChoice) -> Chosen {
+    Chosen {
+        choice: made.label.to_string(),
+        alternative: made.alternative + 1,
+        expected: made.expected.iter().map(ToString::to_string).collect(),
+        horizon: made.horizon,
+        is_shortened: made.is_shortened,
+    }
+}
+
 fn asked(asked: &AskedCondition) -> Asked {
     Asked {
         condition: asked.condition.to_string(),
@@ -261,6 +289,7 @@ fn plant_state(model: &Model, moment: &PlantMoment) -> PlantState {
             .iter()
             .map(|(goal, reason)| Unachievable { goal: goal.to_string(), reason: reason.clone() })
             .collect(),
+        chosen: record.map_or_else(Vec::new, |record| record.chosen.iter().map(chosen).collect()),
         asked: record.map_or_else(Vec::new, |record| record.asked.iter().map(asked).collect()),
         is_unexplained: record.is_some_and(|record| record.outcome != StepOutcome::Explained),
         is_uncertain: record.is_some_and(|record| record.is_uncertain),

@@ -235,6 +235,7 @@ fn interface() -> String {
     declare::<program::Believed>(&mut out);
     declare::<program::StateProbability>(&mut out);
     declare::<program::Unachievable>(&mut out);
+    declare::<program::Chosen>(&mut out);
     declare::<program::Asked>(&mut out);
     out.push_str(CALLS);
     out

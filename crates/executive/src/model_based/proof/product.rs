@@ -6,7 +6,7 @@
 use std::collections::{BTreeSet, HashMap, HashSet, VecDeque};
 use std::sync::Arc;
 
-use hca::{LocationId, Standing, StepObserver, TransitionId};
+use hca::{ChosenBy, LocationId, Standing, StepObserver, TransitionId};
 use num_traits::One as _;
 use plant::simulate::observation_of;
 use plant::{
@@ -360,13 +360,22 @@ impl Explorer {
         all
     }
 
-    /// Adds a way once for each combination of the alternatives that are open at its end.
+    /// Adds a way once for each combination of the alternatives at random that are open at its end.
     fn choose(&mut self, mut way: Way, into: &mut Vec<Way>) {
         self.program.stepper.return_to(&way.standing);
         if *way.closed.outcome() == StepOutcome::Explained
             && let Some(choice) = self.program.stepper.open_choice()
         {
-            let weights = choice.weights.clone();
+            let ChosenBy::Chance(weights) = choice.by.clone() else {
+                // The executive decides it by what it knows.
+                let standing = way.standing.clone();
+                let made = self.estimator.choose(&self.system, standing, way.closed.belief());
+                self.program.stepper.return_to(&way.standing);
+                self.program.stepper.choose(made.alternative);
+                way.standing = self.program.stepper.standing();
+                self.choose(way, into);
+                return;
+            };
             let total = weights.iter().sum();
             for (alternative, weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0) {
                 self.program.stepper.return_to(&way.standing);
