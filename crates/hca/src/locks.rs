@@ -100,9 +100,12 @@ impl Table<'_, '_> {
                 .is_some_and(|(automaton, lock)| automaton.locations_of(lock.body).contains(&location.0))
     }
 
-    /// The first minimal set of held locks that contradicts a waiting one.
+    /// The first minimal set of held locks that contradicts a waiting one; none if it is granted at the next chance.
     fn waits_for(&self, waiting: Which, held: &[Which]) -> Vec<Which> {
         let Some(wanted) = self.constraint(waiting) else { return Vec::new() };
+        if self.can_hold(held, wanted) {
+            return Vec::new();
+        }
         let mut left = held.to_vec();
         for one in held.iter().rev() {
             let without: Vec<Which> = left.iter().filter(|known| *known != one).copied().collect();

@@ -160,6 +160,8 @@ fn locks_that_wait_for_each_other_for_ever_are_a_deadlock() {
     for (text, expected) in [
         (ring.to_owned(), Some("LOCK x=a, LOCK y=a, LOCK y=b, LOCK x=b")),
         (format!("(TIMEOUT 9 {ring})"), None),
+        // The inner lock waits for one step only.
+        ("(LOCK (x = a) (LOCK (y = a) (LOCK (z = a) (s = on))))".to_owned(), None),
     ] {
         let automaton = automaton(&text);
         let mut stepper = Stepper::new(&automaton);
