@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use executive::model_based::{StepInput, StepRecord};
 use hca::{Automaton, Marking, TraceStep};
-use plant::{Commands, FactoredBelief, Model, State};
+use plant::{Commands, FactoredBelief, Model, State, StepBranches};
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
 use snapshot::ContentKey;
@@ -100,6 +100,8 @@ pub struct PlantMoment {
     pub true_state: State,
     /// The step that led here; nothing at the start.
     pub record: Option<StepRecord>,
+    /// How the belief came from the one before that step; nothing at the start.
+    pub branches: Option<StepBranches>,
     /// The commands of the next step; nothing after the end.
     pub next_commands: Option<Commands>,
     /// The goals that the next step does not pursue, with the reasons.

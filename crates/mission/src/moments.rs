@@ -31,6 +31,7 @@ pub(crate) fn moment_of_run(run: &Run) -> Moment {
             belief: run.belief().clone(),
             true_state: run.true_state().clone(),
             record,
+            branches: run.records().len().checked_sub(1).and_then(|step| run.branches(step)),
             next_commands: None,
             unachievable: Vec::new(),
         }),

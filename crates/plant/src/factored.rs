@@ -12,6 +12,7 @@ use crate::belief::{Belief, State};
 use crate::group::Group;
 use crate::interval::{Interval, product};
 use crate::model::{ComponentId, Model};
+use crate::probability::Probability;
 
 /// The product of the beliefs of groups that nothing ties together.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,6 +70,12 @@ impl FactoredBelief {
     /// Whether nothing was dropped, so that all probabilities are exact.
     pub fn is_exact(&self) -> bool {
         self.parts.iter().all(|part| part.belief.is_exact())
+    }
+
+    /// Which share of what explains all observations was dropped at most.
+    pub fn dropped(&self) -> Probability {
+        let kept = self.parts.iter().filter(|part| !part.belief.is_exact()).map(|part| part.belief.kept());
+        Probability::one() - kept.fold(Probability::one(), |all, kept| all * kept)
     }
 
     /// The probability of the most likely state.

@@ -153,6 +153,16 @@ impl Model {
             .collect()
     }
 
+    /// The modes in which a state differs from another one: `EngineA=Failed`.
+    pub fn differences(&self, from: &State, to: &State) -> String {
+        let name = |id: ComponentId| {
+            let mode = to.mode(id);
+            let component = self.component(id).filter(|_| mode != from.mode(id))?;
+            Some(format!("{}={}", component.name, self.mode_name(id, mode)))
+        };
+        self.component_ids().filter_map(name).collect::<Vec<_>>().join(", ")
+    }
+
     /// The sum of a state's names in one line.
     pub fn describe(&self, state: &State) -> String {
         let names: Vec<String> =

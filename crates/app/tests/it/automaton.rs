@@ -89,6 +89,37 @@ fn a_fault_is_injected_by_pressing_a_component() {
     assert!(tells_why, "the diagnosis says what contradicts what");
 }
 
+/// After the unseen failure of engine A in step 3, the missing thrust in step 4 leaves no trajectory in which it fires.
+#[test]
+fn trajectories_show_where_states_come_from_and_what_an_observation_ruled_out() {
+    let mut app = orbit_insertion();
+    assert!(
+        app.harness.query_by_label_contains("Trajectories over").is_none(),
+        "there is nothing before step 1"
+    );
+    press(&mut app, "Step");
+    press(&mut app, "Step");
+    press(&mut app, "EngineA");
+    press(&mut app, "Failed");
+    press(&mut app, "Step");
+    let items = |app: &support::App| -> Vec<String> {
+        let nodes = app.harness.query_all_by_role(Role::TreeItem);
+        nodes.filter_map(|node| node.accesskit_node().label()).collect()
+    };
+    let has = |app: &support::App, words: &[&str]| {
+        items(app).iter().any(|item| words.iter().all(|word| item.contains(word)))
+    };
+    assert!(has(&app, &["before step 4: EngineA=Failed, 0.25%"]), "{:?}", items(&app));
+    press(&mut app, "Step");
+    let ruled_out = ["before step 5: EngineA=Firing", "ruled out by EngineA.thrust=zero"];
+    assert!(has(&app, &ruled_out), "{:?}", items(&app));
+    let tree = app.harness.get_by_role_and_label(Role::Tree, "Trajectories over 4 steps");
+    assert!(tree.rect().width() > 250.0);
+    app.harness.get_by_label_contains("before step 2: most likely").click_accesskit();
+    app.settle();
+    assert_eq!(app.json()["hca"]["step"], 1, "an item goes to its step");
+}
+
 #[test]
 fn a_program_is_no_mission_with_errors() {
     let app = orbit_insertion();

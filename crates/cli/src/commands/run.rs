@@ -11,13 +11,16 @@ use executive::model_based::{
     run_seed, sample,
 };
 use hca::{Automaton, TraceStep};
-use plant::Interval;
+use plant::{Interval, State};
 use serde_json::{Map, Value, json};
 use snapshot::Problem;
 
 use crate::diagnostics::print_problems;
 use crate::input::read_control;
 use crate::output::{Format, LIMIT, NO, WRONG, YES, document, exit, print_json, print_text};
+
+/// So many states before a step may be named as those that states come from.
+const MAX_BEFORE: usize = 64;
 
 /// Run a control program in a closed loop with a simulated plant.
 #[derive(clap::Args)]
@@ -45,6 +48,9 @@ pub struct Args {
     /// What the program knows of its plant.
     #[arg(long, value_enum, default_value_t)]
     knowledge: KnowledgeArg,
+    /// Show where states come from, and what observations ruled out.
+    #[arg(long)]
+    trajectories: bool,
     /// Run N times with random faults and report the success rate.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     monte_carlo: Option<u64>,
@@ -123,8 +129,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         run.step(inputs.get(&step).unwrap_or(&StepInput::default()))?;
     }
     match args.format {
-        Format::Json => print_json(&document("run", &problems, run_json(system, &run)))?,
-        Format::Text => print_text(&run_text(system, &run))?,
+        Format::Json => print_json(&document("run", &problems, run_json(system, &run, args.trajectories)))?,
+        Format::Text => print_text(&run_text(system, &run, args.trajectories))?,
     }
     Ok(exit(match run.status() {
         RunStatus::Ended => YES,
@@ -266,6 +272,69 @@ pub(super) fn elapsed<'a>(automaton: &'a Automaton, trace: &TraceStep) -> Vec<&'
     trace.elapsed.iter().filter_map(|&id| Some(automaton.clock(id)?.label.as_str())).collect()
 }
 
+/// How the belief after a step came from the one before it, in words.
+struct Trajectories {
+    /// Each state with its probability and the state that it most likely comes from.
+    kept: Vec<(String, Interval, String)>,
+    /// Each with its probability before the observation, and what contradicts it.
+    ruled_out: Vec<(String, Option<Interval>, String)>,
+    dropped: Interval,
+}
+
+fn trajectories(system: &System, run: &Run, number: usize) -> Option<Trajectories> {
+    let model = &system.model;
+    let (record, branches) = (run.records().get(number)?, run.branches(number)?);
+    let before: Vec<State> =
+        run.belief_before(number)?.states().take(MAX_BEFORE).map(|(state, _)| state).collect();
+    let likeliest = before.first()?;
+    let named = |state: &State, known: &State| {
+        if state == known { "most likely".to_owned() } else { model.differences(known, state) }
+    };
+    let after = record.belief.most_likely();
+    let kept = record.belief.states().zip(&branches.kept).map(|((state, probability), branch)| {
+        let from = branch.from.and_then(|from| before.get(from));
+        (named(&state, after), probability, from.map_or_else(String::new, |from| named(from, likeliest)))
+    });
+    let ruled_out = branches.ruled_out.iter().map(|ended| {
+        let changes = ended.changes(model, before.get(ended.from).unwrap_or(likeliest));
+        (changes, ended.probability.clone(), ended.reasons(model, &record.observation))
+    });
+    Some(Trajectories {
+        kept: kept.collect(),
+        ruled_out: ruled_out.collect(),
+        dropped: branches.dropped.clone(),
+    })
+}
+
+impl Trajectories {
+    fn text(&self, out: &mut String) {
+        for (state, probability, from) in &self.kept {
+            out.push_str(&format!("  kept      {state} ({probability}), from {from}\n"));
+        }
+        for (changes, probability, by) in &self.ruled_out {
+            let probability = probability.as_ref().map_or_else(String::new, |it| format!(" ({it})"));
+            out.push_str(&format!("  ruled out {changes}{probability} by {by}\n"));
+        }
+        if self.dropped.exact().is_none() {
+            out.push_str(&format!("  dropped   at most {}\n", self.dropped.decimals().1));
+        }
+    }
+
+    fn json(&self) -> Value {
+        let kept = self.kept.iter().map(|(state, probability, from)| {
+            json!({ "state": state, "probability": probability_json(probability), "from": from })
+        });
+        let ruled_out = self.ruled_out.iter().map(|(changes, probability, by)| {
+            json!({ "changes": changes, "probability": probability.as_ref().map(probability_json), "by": by })
+        });
+        json!({
+            "kept": kept.collect::<Vec<_>>(),
+            "ruled_out": ruled_out.collect::<Vec<_>>(),
+            "dropped": self.dropped.decimals().1,
+        })
+    }
+}
+
 /// One line per running clock.
 pub(super) fn clocks_text(automaton: &Automaton, trace: &TraceStep, out: &mut String) {
     for &(id, left) in &trace.clocks {
@@ -365,8 +434,15 @@ const fn status_name(status: RunStatus) -> &'static str {
     }
 }
 
-fn run_json(system: &System, run: &Run) -> Value {
+fn run_json(system: &System, run: &Run, has_trajectories: bool) -> Value {
     let mut steps: Vec<Value> = run.records().iter().map(|record| step_json(system, record)).collect();
+    if has_trajectories {
+        for (number, step) in steps.iter_mut().enumerate() {
+            if let (Value::Object(step), Some(trajectories)) = (step, trajectories(system, run, number)) {
+                step.insert("trajectories".to_owned(), trajectories.json());
+            }
+        }
+    }
     let last = run.upcoming();
     steps.push(json!({ "step": last.step, "marked": last.labels }));
     let mut body =
@@ -382,7 +458,7 @@ fn run_json(system: &System, run: &Run) -> Value {
     body
 }
 
-fn run_text(system: &System, run: &Run) -> String {
+fn run_text(system: &System, run: &Run, has_trajectories: bool) -> String {
     let model = &system.model;
     let listed = |names: BTreeMap<String, String>, joint: &str| {
         let names: Vec<String> =
@@ -390,7 +466,7 @@ fn run_text(system: &System, run: &Run) -> String {
         if names.is_empty() { "–".to_owned() } else { names.join(", ") }
     };
     let mut out = String::new();
-    for record in run.records() {
+    for (number, record) in run.records().iter().enumerate() {
         out.push_str(&format!("step {}\n", record.trace.step));
         record.trace.labels.iter().for_each(|label| out.push_str(&format!("  active    {label}\n")));
         for made in &record.chosen {
@@ -422,6 +498,10 @@ fn run_text(system: &System, run: &Run) -> String {
             StepOutcome::LimitReached => {
                 out.push_str("  limit     no state that the estimator kept explains the observations\n");
             }
+        }
+        let shown = has_trajectories.then(|| trajectories(system, run, number)).flatten();
+        if let Some(trajectories) = shown {
+            trajectories.text(&mut out);
         }
         for asked in &record.asked {
             let word = if asked.is_entailed { "known    " } else { "not known" };

@@ -700,6 +700,21 @@ fn a_choice_by_rewards_says_what_it_expects_and_the_reward_is_counted() {
 }
 
 #[test]
+fn trajectories_say_what_the_missing_thrust_ruled_out() {
+    let (program, plant) = (case_path("h01_orbit_nominal.rmpl"), case_path("orbit_plant.rmpl"));
+    let call = ["run", &program, "--model", &plant, "--inject", "3:EngineA=Failed", "--trajectories"];
+    let answer = enroute(&call);
+    let step = answer.output.split("step ").nth(4).expect("a fourth step");
+    assert!(step.contains("  kept      most likely (9801/9832), from "), "{step}");
+    assert!(step.contains("  ruled out EngineA=Firing ("), "{step}");
+    assert!(step.contains(") by EngineA.thrust=zero\n") && !step.contains("dropped"), "{step}");
+    let document = enroute(&[&call[..], &["--format", "json"]].concat()).json();
+    let shown = &document["steps"][3]["trajectories"];
+    assert_eq!(shown["ruled_out"][0]["by"], "EngineA.thrust=zero", "{shown}");
+    assert_eq!(shown["dropped"], "0");
+}
+
+#[test]
 fn orbit_insertion_is_proven_to_end_with_one_fault_and_shown_to_wait_forever_with_two() {
     let (program, plant) = (case_path("h01_orbit_nominal.rmpl"), case_path("orbit_plant.rmpl"));
     let prove = |more: &[&str]| {

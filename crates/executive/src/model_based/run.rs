@@ -6,7 +6,8 @@ use std::sync::Arc;
 use exact::Rational;
 use hca::{Marking, Standing, TraceStep};
 use plant::{
-    Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Observation, Random, State, VariableId,
+    Commands, ComponentId, Conflict, EstimateError, FactoredBelief, Observation, Random, State, StepBranches,
+    VariableId, step_branches,
 };
 use serde::{Deserialize, Serialize};
 use smol_str::SmolStr;
@@ -146,6 +147,19 @@ impl Run {
     /// The current belief.
     pub const fn belief(&self) -> &FactoredBelief {
         self.closed.belief()
+    }
+
+    /// What was believed before a step, from 0.
+    pub fn belief_before(&self, step: usize) -> Option<&FactoredBelief> {
+        self.before.get(step).map(|before| before.closed.belief())
+    }
+
+    /// How what was believed before a step, from 0, became what is believed after it; `None` if there is no such step.
+    pub fn branches(&self, step: usize) -> Option<StepBranches> {
+        let record = self.records.get(step)?;
+        let after = (record.outcome == StepOutcome::Explained).then_some(&record.belief);
+        let model = self.estimator.planner().model();
+        step_branches(model, self.belief_before(step)?, &record.commands, &record.observation, after).ok()
     }
 
     /// The plant's true state.

@@ -9,7 +9,7 @@ use workbench::command::{Command, CommandSender};
 use workbench::state::automaton::{AutomatonCommand, PlantMoment};
 
 use super::components::{percent, percent_between};
-use super::{hitting_sets, title};
+use super::{hitting_sets, title, trajectories};
 use crate::{Context, counted};
 
 /// How wide the number of a step is at most, in points.
@@ -35,6 +35,8 @@ pub(super) fn show(
 ) {
     belief(ui, context, model, plant);
     history(ui, context, commands);
+    trajectories::show(ui, context, model, commands);
+    chosen(ui, context, plant);
     asked(ui, context, plant);
     observations(ui, context, model, plant, commands);
     let place = ui.scope(|ui| {
@@ -66,7 +68,7 @@ fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment
         } else if rank == 0 {
             "as estimated above".to_owned()
         } else {
-            difference(model, &listed[0].0, state)
+            model.differences(&listed[0].0, state)
         };
         bar(ui, context, probability, &text, *state == plant.true_state, &model.describe(state));
     }
@@ -80,18 +82,6 @@ fn belief(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMoment
         };
         ui.label(RichText::new(text).small().color(context.tokens.text_muted));
     }
-}
-
-/// How a state differs from the most likely one.
-fn difference(model: &Model, most_likely: &State, state: &State) -> String {
-    let parts: Vec<String> = model
-        .component_ids()
-        .filter(|&id| most_likely.mode(id) != state.mode(id))
-        .filter_map(|id| {
-            Some(format!("{}={}", model.component(id)?.name, model.mode_name(id, state.mode(id))))
-        })
-        .collect();
-    parts.join(", ")
 }
 
 fn bar(ui: &mut Ui, context: &Context<'_>, probability: &Interval, text: &str, is_true: bool, state: &str) {
@@ -154,6 +144,16 @@ fn history(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         }
     }
     response.on_hover_text("Most likely states before each step. Click a step to open it.");
+}
+
+/// The choices by rewards that led into the last step.
+fn chosen(ui: &mut Ui, context: &Context<'_>, plant: &PlantMoment) {
+    let Some(record) = plant.record.as_ref().filter(|record| !record.chosen.is_empty()) else { return };
+    title(ui, context, "Choices", "by the expected sum of rewards");
+    for made in &record.chosen {
+        let color = if made.is_shortened { context.tokens.warning } else { context.tokens.text };
+        ui.label(RichText::new(made.describe()).color(color));
+    }
 }
 
 /// What the program asked for in the last step, if it names a probability from which on conditions are known.
@@ -258,7 +258,7 @@ fn findings(ui: &mut Ui, context: &Context<'_>, model: &Model, plant: &PlantMome
     }
     if is_mistaken {
         let text =
-            format!("True state: {}", difference(model, plant.belief.most_likely(), &plant.true_state));
+            format!("True state: {}", model.differences(plant.belief.most_likely(), &plant.true_state));
         ui.label(RichText::new(text).small().color(tokens.text_muted));
     }
 }

@@ -14,6 +14,7 @@ mod log;
 mod machine;
 mod marks;
 mod proof;
+mod trajectories;
 
 use std::sync::Arc;
 

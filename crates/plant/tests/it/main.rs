@@ -2,6 +2,7 @@
 
 mod behavior;
 mod bounded;
+mod branches;
 mod checks;
 mod estimation;
 mod hitting_sets;
