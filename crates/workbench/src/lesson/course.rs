@@ -65,6 +65,7 @@ pub const COURSE: &[Chapter] = &[
     },
     Chapter { title: "A complete mission", lessons: lessons!["20" "whole-mission"] },
     Chapter { title: "Review", lessons: lessons!["21" "review", "22" "verified", "23" "proof"] },
+    Chapter { title: "Control in time", lessons: lessons!["24" "timeouts", "25" "locks"] },
 ];
 
 /// A tour of Enroute for new users: a lesson before the course.
