@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use executive::model_based::proof::{
-    Counterexample, DEFAULTS, End, Proof, Property, Scope, Verdict, chance_to_end, prove,
+    Counterexample, DEFAULTS, End, Proof, Property, Scope, Verdict, chance_to_end, idle_parts,
+    idle_parts_alone, prove,
 };
 use executive::model_based::{Knowledge, Options, Run, RunStatus, StepInput, System};
 use plant::{ComponentId, Interval, Probability};
@@ -448,4 +449,73 @@ fn at_least_one_state_is_explored() {
     let system = system("(A = On)", PLANT);
     let none = Scope { faults: 0, states: 0, ..Scope::default() };
     assert_eq!(proven(&system, &["never A = On"], none).verdicts[0].1, Verdict::Open);
+}
+
+#[test]
+fn parts_that_do_nothing_in_any_run_are_warned_of_once_and_where_they_are() {
+    const LAMPS: &str =
+        "(DEFCLASS Lamp () (COMMAND cmd {none on}) (MODE Off true) (MODE On true) (MODE Dead true)
+      (TRANSITION Off On (cmd = on)))
+      (DEFINSTANCE A Lamp) (DEFINSTANCE B Lamp)";
+    let (live, gone) = ("W-LIVENESS", "W-UNREACHABLE");
+    for (program, plant, expected) in [
+        ("(SEQUENCE (A = On) (B = On))", PLANT, vec![]),
+        ("(SEQUENCE (ALWAYS (A = On)) (B = On))", PLANT, vec![(gone, "(B = On)")]),
+        (
+            "(SEQUENCE (ALWAYS true) (PARALLEL (A = On) (B = On)))",
+            PLANT,
+            vec![(gone, "(PARALLEL (A = On) (B = On))")],
+        ),
+        ("(IF-THENNEXT-ELSENEXT (B = On) (A = On) (A = Off))", LAMPS, vec![(gone, "(A = On)")]),
+        ("(WHEN-DONEXT (B = On) (A = On))", LAMPS, vec![(live, "(WHEN-DONEXT (B = On) (A = On))")]),
+        ("(WHENEVER-DONEXT (B = On) (A = On))", LAMPS, vec![(live, "(WHENEVER-DONEXT (B = On) (A = On))")]),
+        ("(SEQUENCE (A = Dead) (B = On))", LAMPS, vec![(live, "(A = Dead)")]),
+        ("(TIMEOUT 3 (A = Dead) (B = On))", LAMPS, vec![]),
+        // What is known of the lamp is taken apart from the time: that it is on in time is not seen.
+        ("(TIMEOUT 3 (A = On) (B = On))", LAMPS, vec![]),
+        // Only a fault leads to what the handler waits for.
+        ("(DO-WATCHING (A = On) (PARALLEL (A = On) (WHEN-DONEXT (A = Broken) (B = On))))", PLANT, vec![]),
+        ("(CHOOSE-PROB (0.5 (A = On)) (0.5 (B = On)))", LAMPS, vec![]),
+        ("(CHOOSE-REWARD (2 (A = On)) (1 (B = On)))", LAMPS, vec![]),
+        (
+            "(PARALLEL (LOCK (A = Off) (ALWAYS true)) (LOCK (A = On) (WAIT 1)))",
+            LAMPS,
+            vec![(live, "(LOCK (A = On) (WAIT 1))")],
+        ),
+    ] {
+        let text = format!("P ():: {program}\n{plant}");
+        // That nothing leads to a mode is a warning of the plant's own.
+        let system = System::compile(&text, None).system.expect("it compiles");
+        let found = idle_parts(&system, &mut || true).expect("all is looked at");
+        let mut found: Vec<(&str, &str)> =
+            found.iter().map(|it| (it.code.0, text.get(it.span.range()).expect("a place"))).collect();
+        found.sort_by_key(|(code, _)| std::cmp::Reverse(*code));
+        assert_eq!(found, expected, "{program}");
+        assert_eq!(idle_parts(&system, &mut || false), None, "{program}: nothing is said without time");
+    }
+    // With very many outcomes of a step nothing is said.
+    let many: String = (0..9).map(|at| format!("(DEFINSTANCE L{at} Switch) ")).collect();
+    let goals: String = (0..9).map(|at| format!("(L{at} = On)")).collect();
+    let system = system(&format!("(SEQUENCE (ALWAYS true) {goals})"), &format!("{PLANT} {many}"));
+    assert_eq!(idle_parts(&system, &mut || true), None);
+}
+
+#[test]
+fn parts_of_a_program_without_a_plant_are_idle_only_if_nothing_that_is_known_could_start_them() {
+    for (program, expected) in [
+        ("(SEQUENCE (ALWAYS (x = a)) (y = b))", vec!["(y = b)"]),
+        ("(IF-THENNEXT-ELSENEXT (x = a) (y = a) (y = b))", vec![]),
+        ("(WHEN-DONEXT false (y = b))", vec!["(WHEN-DONEXT false (y = b))"]),
+        ("(SEQUENCE (CHOOSE-PROB (0.5 (ALWAYS true)) (0.5 (ALWAYS true))) (y = b))", vec!["(y = b)"]),
+        ("(DO-WATCHING (x = a) (SEQUENCE (ALWAYS true) (y = b)))", vec!["(y = b)"]),
+        ("(SEQUENCE (TIMEOUT 2 (ALWAYS true)) (y = b))", vec![]),
+        ("(PARALLEL (LOCK (x = a) (WAIT 2)) (LOCK (x = b) (WAIT 2)))", vec![]),
+    ] {
+        let text = format!("P ():: {program}");
+        let automaton = hca::compile_text(&text, &hca::Vocabulary::default()).automaton.expect("it compiles");
+        let found = idle_parts_alone(&automaton, &mut || true).expect("all is looked at");
+        let found: Vec<&str> = found.iter().map(|it| text.get(it.span.range()).expect("a place")).collect();
+        assert_eq!(found, expected, "{program}");
+        assert_eq!(idle_parts_alone(&automaton, &mut || false), None);
+    }
 }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use executive::model_based::proof::{idle_parts, idle_parts_alone};
 use executive::model_based::{Estimator, Options, Run, RunStatus, System};
 use hca::Automaton;
 use link::control_run::{Input, Moment};
@@ -35,6 +36,9 @@ struct RunOfSystem {
     moments: Vec<Moment>,
 }
 
+/// What does nothing in any run is told if it is found within this time.
+const WARNING_MILLIS: f64 = 50.0;
+
 /// A long run answers with the steps taken so far after about this long.
 const PROGRESS_MILLIS: f64 = 100.0;
 
@@ -42,7 +46,17 @@ impl Core {
     /// A control program has no network and nothing to plan; what is wrong with it is all there is to tell.
     pub(super) fn update_control(&mut self, update: &Update, host: &mut dyn CoreHost) {
         let begun = host.now_millis();
-        let problems = Problem::all(self.controls.diagnostics(update.source.text()), &update.source);
+        let text = update.source.text();
+        let mut found = self.controls.diagnostics(text).to_vec();
+        let mut is_time_left = || host.now_millis() - begun < WARNING_MILLIS;
+        let idle = match self.controls.read(text, None) {
+            Control::Bound(system) => idle_parts(system, &mut is_time_left),
+            Control::Unbound(automaton) => idle_parts_alone(automaton, &mut is_time_left),
+            Control::Plant(_) | Control::Nothing => None,
+        };
+        found.extend(idle.unwrap_or_default());
+        found.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+        let problems = Problem::all(&found, &update.source);
         let timings = Timings { parse_millis: host.now_millis() - begun, ..Timings::default() };
         let mut snapshot = Snapshot::empty(update.revision, Arc::clone(update.source.text()));
         snapshot.stage = Stage::Complete;

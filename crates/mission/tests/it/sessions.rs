@@ -493,3 +493,43 @@ fn the_plan_that_is_reviewed_is_the_one_that_was_answered_last() {
     let told = told.expect("its plan is answered as well");
     assert_eq!((told.stage, plan_hash(&told)), (Stage::Complete, reviewed.plan_hash.clone()));
 }
+
+/// A host whose clock goes on by so much at each look.
+struct Ticking {
+    millis: f64,
+    now_millis: std::cell::Cell<f64>,
+    codes: Vec<String>,
+}
+
+impl CoreHost for Ticking {
+    fn now_millis(&self) -> f64 {
+        self.now_millis.replace(self.now_millis.get() + self.millis)
+    }
+
+    fn is_superseded(&mut self) -> bool {
+        false
+    }
+
+    fn answer(&mut self, response: Response) {
+        if let Response::Snapshot(snapshot) = response {
+            self.codes.extend(snapshot.problems.iter().map(|problem| problem.code.to_string()));
+        }
+    }
+}
+
+#[test]
+fn parts_of_a_control_program_that_do_nothing_are_warned_of_if_there_is_time() {
+    let with_plant = LAMP.replace("Main ():: (PARALLEL", "Main ():: (SEQUENCE");
+    let alone = "Main ():: (SEQUENCE (ALWAYS (x = a)) (y = b))";
+    for (source, millis, expected) in [
+        (with_plant.as_str(), 0.001, vec!["W-UNREACHABLE"]),
+        (with_plant.as_str(), 60.0, vec![]),
+        (alone, 0.001, vec!["W-UNREACHABLE"]),
+        (alone, 60.0, vec![]),
+        (LAMP, 0.001, vec![]),
+    ] {
+        let mut host = Ticking { millis, now_millis: std::cell::Cell::default(), codes: Vec::new() };
+        Core::default().handle(Request::Update(update(1, source)), &mut host);
+        assert_eq!(host.codes, expected, "{millis} ms a look: {source}");
+    }
+}

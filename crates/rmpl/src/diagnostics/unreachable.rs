@@ -1,4 +1,5 @@
-//! `W-UNREACHABLE`: modes of a plant model that nothing leads to. Only plants find it.
+//! `W-UNREACHABLE`: modes of a plant model that nothing leads to, and parts of a program that no run comes to. Only plants and
+//! runs find it.
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;
@@ -10,9 +11,10 @@ pub const CODE: Code = Code("W-UNREACHABLE");
 pub const EXPLANATION: Explanation = Explanation {
     code: CODE,
     severity: Severity::Warning,
-    title: "unreachable mode",
+    title: "unreachable mode or part",
     meaning: "No component starts in this mode, and no transition or fault leads to it from where components start. Only a fault that is
-injected by hand can bring a component there.",
+injected by hand can bring a component there. While you type, Enroute also warns of parts of a control program that are active in
+no run.",
     example: "(DEFCLASS Valve () (COMMAND cmd {none open}) (MODE Closed true) (MODE Open true) (MODE Stuck true)
   (TRANSITION Closed Open (cmd = open)))
 (DEFINSTANCE V Valve INIT Closed)",
@@ -27,4 +29,10 @@ pub fn mode(class: &str, mode: &str, span: Span) -> Diagnostic {
     let message = format!("no transition or fault leads a `{class}` to the mode `{mode}`");
     Diagnostic::warning(CODE, span, message)
         .with_hint("add a transition or a fault, such as `(FAULT * Stuck 0.01)`, or remove the mode")
+}
+
+/// A part of a control program that no run comes to.
+pub fn part(span: Span) -> Diagnostic {
+    Diagnostic::warning(CODE, span, "this part of the program is active in no run, whatever components fail")
+        .with_hint("remove it, or correct what comes before it")
 }

@@ -5,6 +5,7 @@
 //! breaks is answered by such a run.
 
 mod chance;
+mod idle_parts;
 mod paths;
 mod product;
 mod property;
@@ -21,6 +22,7 @@ use paths::Found;
 use product::{Exploration, Explorer, Judged, Limits, NodeId, Product};
 
 pub use chance::chance_to_end;
+pub use idle_parts::{idle_parts, idle_parts_alone};
 pub use paths::Counterexample;
 pub use product::{End, Move};
 pub use property::{Condition, DEFAULTS, Property};
