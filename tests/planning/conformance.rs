@@ -116,7 +116,7 @@ fn every_compilation_case_has_its_distances_and_labels() {
             _ => Top::activity(activity),
         };
         let (network, diagnostics) = compile(&program(&case), &top);
-        // A file with activities only has no scenario to plan, which is no matter here.
+        // A file with activities only has no scenario to plan, which does not matter here.
         let network = network.unwrap_or_else(|| panic!("{name}: {diagnostics:#?}"));
         let expect = &case["expect"];
         assert_eq!(Some(network.decisions.len() as u64), expect["decisions"].as_u64(), "{name}");

@@ -144,7 +144,7 @@ fn a_bound_over_what_nature_chooses_is_a_requirement() {
     };
     // Digging begins the moment the talk is over.
     assert_eq!(status(&talk("end to Digging.start [0,0]")), Status::Plan);
-    // Nobody knows 2 before when that will be.
+    // No one knows 2 before when that will be.
     assert_eq!(
         status(&talk("start to Digging.start [2,9]; constrain Digging.start to Talking.end [2,2]")),
         Status::NoPlan

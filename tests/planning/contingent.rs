@@ -1,5 +1,5 @@
-//! Durations that nature chooses, in the network (SPEC 13.1): which arcs are nature's, what plain bounds require of them,
-//! and what a path makes of a drive. Known answers are worked out by hand.
+//! Durations that the environment chooses, in the network (SPEC 13.1): which arcs are the environment's, what plain
+//! bounds require of them, and what a path makes of a drive. Known answers are worked out by hand.
 
 use acceptance::mission::{compile, error_codes, network};
 use exact::{Bound, Rational, Time};
@@ -7,7 +7,7 @@ use rmpl::program::Controllability;
 use tpn::path::{PathLeg, TraversePath, insert_paths};
 use tpn::{ArcKind, BlockKind, Network, Top};
 
-/// Every arc that takes time or is nature's: the name of what it belongs to or its kind, and its bounds.
+/// Every arc that takes time or is the environment's: the name of what it belongs to or its kind, and its bounds.
 fn arcs(network: &Network) -> Vec<String> {
     let mut found = Vec::new();
     for arc in &network.arcs {
@@ -60,7 +60,7 @@ fn bounds_of_the_defined_activity_around_are_put_in() {
     );
 }
 
-/// Nature's range stays; the bounds span the same events.
+/// The environment's range stays; the bounds span the same events.
 #[test]
 fn plain_bounds_of_a_call_and_of_a_block_around_it_are_requirements() {
     for body in ["Drive()[30,35]", "{ Drive() }[30,35]"] {
@@ -78,7 +78,7 @@ fn plain_bounds_of_a_call_and_of_a_block_around_it_are_requirements() {
         &format!("{DRIVE} scenario S = {{ Drive()[1,2] }}"),
         &["- [1,2]", "Drive#1 contingent [20,40]"],
     );
-    // What is required while it goes on is a label of nature's arc.
+    // What is required while it continues is a label of the environment's arc.
     let network =
         network(&format!("{DRIVE} scenario S = {{ do Drive()[30,35] maintaining L=A, L=A[1,50] }}"));
     let labeled: Vec<_> = network.labels.iter().map(|label| &network.arcs[label.arc.index()]).collect();
@@ -114,7 +114,7 @@ fn what_nature_cannot_choose_is_refused() {
     assert_eq!(error_codes("A() = { delay } scenario S = { A() contingent [1,2] }"), ["E-CONTINGENT"]);
     assert_eq!(error_codes("A() contingent [1,2] = { delay } scenario S = { A() }"), ["E-CONTINGENT"]);
     assert_eq!(error_codes("scenario S contingent [1,2] = { delay }"), ["E-CONTINGENT"]);
-    // What a parameter stands for is known at the call.
+    // What a parameter represents is known at the call.
     let handed = "A() = { delay } B(x) = { x contingent [1,2] } scenario S = { B(A) }";
     assert_eq!(error_codes(handed), ["E-CONTINGENT"]);
 }
@@ -156,7 +156,7 @@ fn a_path_raises_what_a_drive_of_natures_takes_and_adds_no_event_of_its_own() {
         (arc.lower, arc.upper)
     };
     let minutes = |minutes: i64| Time::from(minutes);
-    // 120 m at 0.1 m/s take 20 minutes, less than nature's least: the range stays.
+    // 120 m at 0.1 m/s take 20 minutes, less than the environment's least: the range stays.
     assert_eq!(drive(" contingent [25,40]", 120.0), (minutes(25), Bound::Finite(minutes(40))));
     // 180 m take 30.
     assert_eq!(drive(" contingent [25,40]", 180.0), (minutes(30), Bound::Finite(minutes(40))));
@@ -200,7 +200,7 @@ fn world(branch: &str) -> String {
     )
 }
 
-/// The branch is warned of at `place`; its fix makes it `mended`, of which `left` is still open.
+/// The branch is warned of at `place`; its fix makes it `fixed`, of which `left` is still open.
 #[track_caller]
 fn warned(branch: &str, place: &str, mended: &str, left: &[&str]) {
     let text = world(branch);
@@ -231,7 +231,7 @@ fn a_branch_that_calls_nothing_and_leaves_a_choice_is_the_worlds() {
     mends("L=A and K=C[1,2]", "[1,2]", "L=A and K=C contingent [1,2]");
 }
 
-/// Nature chooses from finite bounds: what has none, the author has to say.
+/// The environment chooses from finite bounds: what has none, the author has to say.
 #[test]
 fn a_wait_without_an_end_leaves_a_choice_that_no_fix_can_take() {
     warned("{ delay; L=A [10,10] }", "delay", "{ delay; L=A [10,10] }", &["delay"]);
@@ -257,7 +257,7 @@ fn a_branch_that_leaves_no_choice_or_acts_for_the_mission_is_none_of_the_worlds(
     none("{ delay [5,20]; choose { L=A, { L=A; Dig() } } }");
 }
 
-/// The planner would take the weather that suits it. No word makes that nature's yet, so that there is no fix.
+/// The planner would take the weather that suits it. No word makes that the environment's yet, so that there is no fix.
 #[test]
 fn a_branch_that_chooses_what_the_world_does_is_the_worlds() {
     let warned_of = |branch: &str, places: &[&str]| {

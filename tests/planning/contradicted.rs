@@ -26,7 +26,7 @@ const EFFORT: Effort = Effort { schedules: 40, runs: 8, seed: 5 };
 #[derive(Default, Debug)]
 struct Count {
     plans: u64,
-    /// Plans in which nature chooses something.
+    /// Plans in which the environment chooses something.
     with_nature: u64,
     lines: u64,
     schedules: u64,
@@ -34,7 +34,7 @@ struct Count {
     contradicted: Vec<String>,
 }
 
-/// The mission with some of its bounds given to nature, by chance.
+/// The mission with some of its bounds given to the environment, by chance.
 fn with_nature(text: &str, seed: u64) -> String {
     let mut rng = Rng::new(seed ^ 0x6e61);
     let mut parts = text.split("()[");

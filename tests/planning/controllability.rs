@@ -1,4 +1,4 @@
-//! The checker and the solver of networks with uncertainty, which share no code, agree on what nature can break.
+//! The checker and the solver of networks with uncertainty, which share no code, agree on what the environment can break.
 
 use acceptance::mission::network;
 use controllability::{plan_network, scale};

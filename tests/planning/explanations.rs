@@ -1,6 +1,6 @@
-//! Every sentence that explains is about the mission at hand: of conditions, states, resources, vehicles and nature only
-//! those speak whose mission has them, and no name is in a sentence that is not in the text. Held against the examples,
-//! the conformance cases and many random missions, by both searches.
+//! Every sentence that explains is about the mission at hand: of conditions, states, resources, vehicles and the
+//! environment only those speak whose mission has them, and no name is in a sentence that is not in the text. Held
+//! against the examples, the conformance cases and many random missions, by both searches.
 
 use std::collections::BTreeSet;
 

@@ -9,7 +9,7 @@ use tpn::generate::Rng;
 /// Random missions.
 const MISSIONS: u64 = 200;
 
-/// Who does something: a vehicle by its index, or what stands for a member, by how many are around it.
+/// Who does something: a vehicle by its index, or what represents a member, by how many are around it.
 #[derive(Clone, Copy)]
 enum Who {
     Vehicle(usize),
@@ -35,7 +35,7 @@ const FORMS: [(&str, &str); 4] =
 struct Mission {
     /// How many vehicles the fleet has; one more is alone.
     fleet: usize,
-    /// Of each primitive what follows the parameters; `@` stands for the vehicle.
+    /// Of each primitive what follows the parameters; `@` represents the vehicle.
     clauses: Vec<String>,
     level: i64,
     horizon: i64,

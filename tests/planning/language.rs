@@ -386,7 +386,7 @@ fn names_of_intervals_are_unique() {
 
 #[test]
 fn an_if_asks_for_one_instant_before_its_body() {
-    // The condition holds from 3 to 5; the guard is at the start of A, which then goes on without it.
+    // The condition holds from 3 to 5; the guard is at the start of A, which then continues without it.
     let text = "scenario S = { { delay[0,inf]; if c thennext A()[10,10] }, { delay[3,3]; c [2,2] } }";
     assert_eq!(windows(text)["A#1.start"], json!([3, 5]));
 }
@@ -500,7 +500,7 @@ fn the_watched_activity_keeps_its_least_duration() {
 
 #[test]
 fn conflicts_that_touch_are_in_order_and_orderings_leave_a_gap() {
-    // In a sequence they touch, and that is no overlap.
+    // In a sequence they touch, and that is not an overlap.
     assert_eq!(windows("scenario S = { c [5,5]; not c [5,5] }")["Tell(not(c))#1.start"], json!([5, 5]));
     // Freely ordered, the second starts one unit later; with a gap of zero it may touch.
     let text = "scenario S = { { delay[0,inf]; c [5,5] }, not c [5,5] }";

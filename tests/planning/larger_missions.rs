@@ -1,4 +1,4 @@
-//! The abbreviations for larger missions (SPEC 14): each compiles to the network of what it stands for, written out.
+//! The abbreviations for larger missions (SPEC 14): each compiles to the network of what it represents, written out.
 
 use acceptance::mission::{compile, error_codes, network};
 use tpn::{LabelId, Network, Top};

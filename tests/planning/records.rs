@@ -24,9 +24,9 @@ const MISSIONS: u64 = 400;
 enum Addition {
     Nothing,
     Objective,
-    /// An objective, and a search that goes on with the best open state.
+    /// An objective, and a search that continues with the best open state.
     BestFirst,
-    /// Nature chooses some durations.
+    /// The environment chooses some durations.
     Nature,
 }
 
@@ -101,7 +101,7 @@ impl Addition {
     }
 }
 
-/// Lets nature choose some of the durations that have a range.
+/// Lets the environment choose some of the durations that have a range.
 fn give_to_nature(network: &mut Network, seed: u64) {
     for (id, arc) in (0_u64..).zip(&mut network.arcs) {
         let is_duration = matches!(arc.kind, ArcKind::Activity | ArcKind::Assertion | ArcKind::Delay);
@@ -139,7 +139,7 @@ fn check_agreement(network: &Network, search: Search, outcome: &Outcome, told: &
     }
 }
 
-/// What is in force where the search goes on fits together; everywhere there is a window for what is selected.
+/// What is in force where the search continues fits together; everywhere there is a window for what is selected.
 fn check_steps(network: &Network, trace: &Trace, told: &str) {
     let replay = Replay::new(network, None, trace).expect("small numbers");
     for (step, entry) in trace.events.iter().enumerate() {
@@ -218,7 +218,7 @@ fn check_learned(network: &Network, trace: &Trace, addition: Addition, told: &st
     learned
 }
 
-/// Whether some schedule of a plan makes these choices, or all of them where nature has a say.
+/// Whether some schedule of a plan makes these choices, or all of them where the environment has a say.
 fn contains(network: &Network, plan: &Plan, choices: &[TreeChoice], round: &SearchRound, all: bool) -> bool {
     let mut stn = Stn::new(network.nodes.len());
     let arcs = network.arcs.iter().zip(&plan.selected_arcs).filter(|(_, is_selected)| **is_selected);

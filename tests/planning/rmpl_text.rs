@@ -121,7 +121,7 @@ fn networks_of_other_tools_are_written_or_say_what_is_in_the_way() {
 
 #[test]
 fn what_does_not_nest_is_named() {
-    // N: b goes on to both ends of what a and c part into.
+    // N: b continues to both ends of what a and c part into.
     let arcs = [("ac", "a", "c"), ("ad", "a", "d"), ("bd", "b", "d")];
     let mut file = serde_json::json!({
         "network-id": "net", "net": { "tpn-type": "network", "begin-node": "s", "end-node": "e" },

@@ -15,7 +15,7 @@ use workbench::state::search::exclusions;
 const MISSIONS: u64 = 150;
 
 /// What is cheap takes long, and there is too little time for that everywhere: the search for the best plan opens states from
-/// which it need not go on.
+/// which it need not continue.
 const BARGAINS: &str = "objective minimize cost;
     primitive Fast()[1,1] costs 7; primitive Steady()[3,3] costs 4; primitive Slow()[5,5] costs 2;
     scenario S[0,19] = {

@@ -1,5 +1,5 @@
-//! Durations that nature chooses: the planner against all plans of the same mission without nature, of which only those
-//! with a controllable network are left; and the cases with known answers.
+//! Durations that the environment chooses: the planner against all plans of the same mission without the environment,
+//! of which only those with a controllable network are left; and the cases with known answers.
 
 use std::collections::BTreeSet;
 use std::sync::Mutex;
@@ -24,7 +24,7 @@ const MISSIONS: u64 = 2_000;
 /// Choices, links, and what else tells plans apart: the order of conflicts, or of producers.
 type Key = (Vec<(u32, u32)>, Vec<(u32, u32)>, Vec<(u32, u32)>);
 
-/// All plans of a network with nature's durations, which the reference says of the one without.
+/// All plans of a network with the environment's durations, which the reference says of the one without.
 type Reference = fn(&Network) -> Option<Vec<Key>>;
 
 #[test]
@@ -42,7 +42,7 @@ fn states_are_planned_exactly() {
     compare_all("states", |seed| lasting_mission(seed, Kind::STATES), sides, all_sides);
 }
 
-/// Compares [`MISSIONS`] missions; all must agree, and many must be decided by nature.
+/// Compares [`MISSIONS`] missions; all must agree, and many must be decided by the environment.
 #[expect(clippy::print_stdout, reason = "the count is part of the evidence")]
 fn compare_all(
     what: &str,
@@ -134,7 +134,7 @@ fn compare(
     Ok(Some((expected.len(), ordinary.len())))
 }
 
-/// Leaves half of the durations that can differ to nature. How many they are.
+/// Leaves half of the durations that can differ to the environment. How many they are.
 fn leave_to_nature(network: &mut Network, seed: u64) -> usize {
     let mut natures = 0;
     for (id, arc) in (0_u64..).zip(&mut network.arcs) {
@@ -194,7 +194,7 @@ fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
         .collect();
     let (_, selected_arcs) = closure(network, &choices);
     let mut uncertain = stnu::Network::new(network.nodes.len());
-    // What is tied to an event of nature's counts as nature's.
+    // What is tied to an event of the environment's counts as the environment's.
     let mut same: Vec<usize> = (0..network.nodes.len()).collect();
     for (arc, _) in network.arcs.iter().zip(&selected_arcs).filter(|(_, is_selected)| **is_selected) {
         if !arc.is_contingent && arc.lower == Time::ZERO && arc.upper == Bound::ZERO {
@@ -217,7 +217,7 @@ fn is_controllable(network: &Network, (choices, links, order): &Key) -> bool {
                 uncertain.add_edge(link.end, to, 0);
             }
             if uncertain.add_link(link).is_err() {
-                // It begins and ends at one time, and nature may choose another.
+                // It begins and ends at one time, and the environment may choose another.
                 return false;
             }
         } else {
@@ -298,7 +298,7 @@ fn a_drive_ends_when_nature_lets_it() {
     assert_eq!(failures(&drive(41, 50)), ["temporal"]);
 }
 
-/// From where it begins a drive takes at least 10 and 25: nature has less to choose, and is asked for nothing.
+/// From where it begins a drive takes at least 10 and 25: the environment has less to choose, and is asked for nothing.
 #[test]
 fn the_least_time_of_a_movement_raises_what_nature_chooses() {
     let text = "vehicle R : ATRV at A; location A (0,0); location B (10,0); location C (30,0);

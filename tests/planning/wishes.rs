@@ -114,8 +114,8 @@ fn the_most_is_made_of_every_day() {
     }
 }
 
-/// Of the states that a best-first search goes on with none may become better than the one after it, and none is worse than
-/// the best.
+/// Of the states that a best-first search continues with none may become better than the one after it, and none is
+/// worse than the best.
 #[test]
 fn the_best_open_state_goes_on() {
     for seed in 0..60 {

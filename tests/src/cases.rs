@@ -10,7 +10,7 @@ pub const NOT_BUILT: [(&str, &str); 0] = [];
 
 /// Cases of the suite that are not copied yet, by the stems of their files: they ask for what is not built.
 pub const NOT_COPIED: [&str; 10] = [
-    // Levels and what nature chooses, not tried yet.
+    // Levels and what the environment chooses, not tried yet.
     "l01_drain_tightened",
     "l03_overflow",
     "l04_overflow_saturating",

@@ -124,7 +124,7 @@ impl Background {
         let (outside, wake) = (self.outside.clone(), self.wake.clone());
         thread::spawn(move || {
             if let Some(event) = ask() {
-                // Nobody listens any more when the window was closed meanwhile.
+                // No one listens any more when the window was closed meanwhile.
                 let _ = outside.send(News::Happened(event));
                 wake.request_repaint();
             }
@@ -306,7 +306,7 @@ impl Transport for CoreThreads {
     }
 }
 
-/// Does jobs until nobody can ask for more, or one of them panics: what a panic leaves behind is not to be trusted.
+/// Does jobs until no one can ask for more, or one of them panics: what a panic leaves behind is not to be trusted.
 fn run_core(requests: &Receiver<Request>, mut host: ThreadHost) {
     let mut core = Core::default();
     host.tell(link::News::Ready);
@@ -318,7 +318,7 @@ fn run_core(requests: &Receiver<Request>, mut host: ThreadHost) {
     }
 }
 
-/// A core at work says at least so often that it goes on.
+/// A core at work says at least so often that it continues.
 const ALIVE: Duration = Duration::from_secs(5);
 
 struct ThreadHost {
@@ -333,7 +333,7 @@ struct ThreadHost {
 
 impl ThreadHost {
     fn tell(&self, news: link::News) {
-        // Nobody listens any more when the window was closed meanwhile.
+        // No one listens any more when the window was closed meanwhile.
         let _ = self.outside.send(News::Core(self.core, news));
         self.wake.request_repaint();
     }
@@ -403,7 +403,7 @@ fn file_name(key: &str) -> String {
         .collect()
 }
 
-/// The key that such a name stands for; `None` for other files.
+/// The key that such a name represents; `None` for other files.
 fn key_of(file_name: &str) -> Option<String> {
     let mut bytes = Vec::new();
     let mut rest = file_name;

@@ -67,7 +67,7 @@ impl Enroute {
         self
     }
 
-    /// Goes on in another window, drawn by `renderer`. What panels drew in the one before is forgotten with it.
+    /// Continues in another window, drawn by `renderer`. What panels drew in the one before is forgotten with it.
     pub fn move_to(&mut self, egui: &egui::Context, renderer: &str) {
         theme::install_fonts(egui);
         self.egui = egui.clone();
@@ -124,7 +124,7 @@ impl Enroute {
         if let Some(mirror) = self.egui.plugin_opt::<AccessibilityMirror>() {
             mirror.lock().announce(&workbench::host_io::announcement(self.app_state()));
         }
-        // What is kept is kept when nobody is dragging.
+        // What is kept is kept when no one is dragging.
         if !self.egui.input(|input| input.pointer.any_down()) {
             self.session.remember();
             self.layouts.remember(self.session.host_mut());

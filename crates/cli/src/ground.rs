@@ -21,7 +21,7 @@ pub fn map_file(mission: &Path, world: &World) -> anyhow::Result<Option<(String,
     if terrain::asset_names().any(|known| known == name) {
         return Ok(None);
     }
-    // What is elsewhere is no map of the mission, whatever it is.
+    // What is elsewhere is not a map of the mission, whatever it is.
     let found = inside(folder_of(mission), name);
     let Some(file) = found.filter(|file| file.is_file()) else { return Ok(None) };
     let bytes = read_bytes(&file, LARGEST_MAP_BYTES).with_context(|| cannot_read(name))?;

@@ -97,7 +97,7 @@ fn refuse(error: &clap::Error, arguments: &[OsString]) -> ExitCode {
     let is_json = words.any(|word| word == "--format=json")
         || arguments.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
     if !error.use_stderr() || !is_json {
-        // Where nobody reads any more, there is nobody to tell.
+        // Where no one reads any more, there is no one to tell.
         let _ = error.print();
         return output::exit(if error.use_stderr() { WRONG } else { YES });
     }

@@ -155,7 +155,7 @@ pub fn print_verbatim(text: &str) -> anyhow::Result<()> {
     }
 }
 
-/// Prints a line on standard error; where that is closed, there is nobody to tell.
+/// Prints a line on standard error; where that is closed, there is no one to tell.
 pub fn print_error(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{}", legible(line));
 }

@@ -1,5 +1,5 @@
-//! The run in which nature makes a plan fail, event by event: what a proof that it is not controllable looks like in the
-//! world.
+//! The run in which the environment makes a plan fail, event by event: what a proof that it is not controllable looks
+//! like in the world.
 
 use exact::Time;
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ pub struct RunEvent {
     /// One of the events there, with a name if one of them has one.
     pub event: NodeId,
     pub time: Time,
-    /// The duration that nature ends there; otherwise the executive acts.
+    /// The duration that the environment ends there; otherwise the executive acts.
     pub natures: Option<ArcId>,
 }
 
@@ -44,8 +44,8 @@ pub enum Broken {
     },
 }
 
-/// The run in which an executive fails that does everything as early as the constraints of a plan let it, against nature
-/// that chooses durations as the run goes; `None` if it need not fail, if that cannot be told, or if `stop` said so. The
+/// The run in which an executive fails that does everything as early as the constraints of a plan let it, against the
+/// environment that chooses durations as the run goes; `None` if it need not fail, if that cannot be told, or if `stop` said so. The
 /// plan is given by what it selects and what it adds.
 pub fn failing_run(
     network: &Network,

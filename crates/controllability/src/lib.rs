@@ -1,5 +1,5 @@
 //! Plans as simple temporal networks with uncertainty (SPEC 13.1): what a plan asks of the executive, and what it leaves
-//! to nature, with the way back from every constraint to the arc or precedence that it stands for.
+//! to the environment, with the way back from every constraint to the arc or precedence that it represents.
 //!
 //! Planner, executive and reviews share this one reading; whether a network is controllable is `stnu`'s to say. The
 //! checker of plans has a reading of its own.
@@ -22,7 +22,7 @@ pub enum Side {
     Upper,
 }
 
-/// What a constraint of the network stands for.
+/// What a constraint of the network represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Source {
     /// A bound of an arc; of one whose duration nature chooses, that nature may go as far as this bound.
@@ -34,7 +34,7 @@ pub enum Source {
     Tie(ArcId),
 }
 
-/// A plan's events as time points, with its constraints and contingent links in ticks. Ties are no constraints here.
+/// A plan's events as time points, with its constraints and contingent links in ticks. Ties are not constraints here.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanNetwork {
     pub network: stnu::Network,
@@ -49,7 +49,7 @@ pub struct PlanNetwork {
     links: Vec<ArcId>,
 }
 
-/// Why a plan does not withstand nature.
+/// Why a plan does not withstand the environment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refutation {
     /// What it depends on, in order and without repeats. A contingent arc is there with the sides that nature goes to.
@@ -60,10 +60,10 @@ pub struct Refutation {
 
 /// The network of the arcs in `selected_arcs` (indexed by arc) and of `precedences`, in ticks of `scale`, which must
 /// count all of their times. The events are those that these arcs and precedences connect, and the start; those that
-/// `[0,0]` ties to one instant are one point, and nature's if one of them is (SPEC 13.1). Time is nearly linear, but for
-/// chains of contingent durations, along which each one looks back.
+/// `[0,0]` ties to one instant are one point, and the environment's if one of them is (SPEC 13.1). Time is nearly
+/// linear, but for chains of contingent durations, along which each one looks back.
 ///
-/// Durations that nature chooses are contingent links unless the mission reads them as ordinary
+/// Durations that the environment chooses are contingent links unless the mission reads them as ordinary
 /// ([`Network::is_uncertain`]). A range that is none, and one without a greatest duration, are read as ordinary bounds.
 pub fn plan_network(
     network: &Network,
@@ -211,17 +211,17 @@ impl PlanNetwork {
         self.links[link.index()]
     }
 
-    /// The link of an arc whose duration nature chooses.
+    /// The link of an arc whose duration the environment chooses.
     pub fn link(&self, arc: ArcId) -> Option<LinkId> {
         self.links.iter().position(|&of| of == arc).map(|index| LinkId(index as u32))
     }
 
-    /// Whether nature chooses nothing.
+    /// Whether the environment chooses nothing.
     pub const fn is_certain(&self) -> bool {
         self.links.is_empty()
     }
 
-    /// What a part of a conflict stands for.
+    /// What a part of a conflict represents.
     pub fn source(&self, part: Part) -> Source {
         match part {
             Part::Edge(id) => self.edges[id.index()],
@@ -230,7 +230,7 @@ impl PlanNetwork {
         }
     }
 
-    /// What a cycle of constraints stands for, in order and without repeats.
+    /// What a cycle of constraints represents, in order and without repeats.
     pub fn sources(&self, parts: impl IntoIterator<Item = Part>) -> Vec<Source> {
         let mut sources: Vec<Source> = parts.into_iter().map(|part| self.source(part)).collect();
         sources.sort_unstable();
@@ -238,7 +238,7 @@ impl PlanNetwork {
         sources
     }
 
-    /// Why the plan does not withstand nature as far as the mission asks, if it does not; time as `stnu` takes it.
+    /// Why the plan does not withstand the environment as far as the mission asks, if it does not; time as `stnu` takes it.
     pub fn refute(
         &self,
         asked: Controllability,
@@ -273,7 +273,7 @@ impl PlanNetwork {
         std::iter::once(Part::Edge(edge)).chain(shortest).chain(longest).collect()
     }
 
-    /// The links whose durations lie before a point of nature's, the latest first.
+    /// The links whose durations lie before a point of the environment's, the latest first.
     fn links_before(&self, point: PointId) -> Vec<LinkId> {
         let ending = |point| self.network.link_ending_at(point);
         std::iter::successors(ending(point), |&link| ending(self.network.link(link).activation)).collect()

@@ -49,7 +49,7 @@ pub enum ColorRole {
     Ordering,
     /// Threats and negative cycles.
     Threat,
-    /// What nature chooses.
+    /// What the environment chooses.
     Nature,
     /// The flexible part of a window.
     Slack,

@@ -32,7 +32,7 @@ pub enum Piece {
     Cubic(Point, Point, Point),
 }
 
-/// How many straight lines stand for one Bézier piece in [`flatten`].
+/// How many straight lines represent one Bézier piece in [`flatten`].
 const LINES_PER_CUBIC: u32 = 16;
 
 impl Point {

@@ -18,7 +18,7 @@ pub struct DisplayList {
     items: Vec<Item>,
     pieces: Vec<Piece>,
     texts: Vec<Text>,
-    /// What some items stand for in words, by their place; ascending.
+    /// What some items represent in words, by their place; ascending.
     titles: Vec<(u32, SmolStr)>,
     index: Option<SpatialIndex<u32>>,
 }
@@ -47,7 +47,7 @@ pub struct Item {
     pub stroke: Option<Stroke>,
     /// At which zooms it is drawn.
     pub detail: Detail,
-    /// What it stands for, if that can be selected.
+    /// What it represents, if that can be selected.
     pub target: Option<Target>,
 }
 
@@ -127,7 +127,7 @@ pub struct Detail {
     pub to: f32,
 }
 
-/// What an item stands for.
+/// What an item represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Target {
     /// What kind of thing.
@@ -239,7 +239,7 @@ impl DisplayList {
         self.push(Shape::Text(place), None, None)
     }
 
-    /// Says in words what the item that was added last stands for.
+    /// Says in words what the item that was added last represents.
     pub fn entitle(&mut self, title: impl Into<SmolStr>) {
         if let Some(last) = self.items.len().checked_sub(1) {
             self.titles.push((last as u32, title.into()));
@@ -284,7 +284,7 @@ impl DisplayList {
         &self.texts
     }
 
-    /// What the item at `place` stands for, in words.
+    /// What the item at `place` represents, in words.
     pub fn title(&self, place: usize) -> Option<&str> {
         let found = self.titles.binary_search_by_key(&(place as u32), |(place, _)| *place).ok()?;
         self.titles.get(found).map(|(_, title)| title.as_str())
@@ -334,7 +334,7 @@ impl Item {
         self
     }
 
-    /// Says what it stands for.
+    /// Says what it represents.
     pub fn stands_for(&mut self, kind: TargetKind, id: u32) -> &mut Self {
         self.target = Some(Target { kind, id });
         self

@@ -29,7 +29,7 @@ pub use view::{
     Signature,
 };
 
-/// The widget: it keeps only what concerns nobody else, such as where the text is scrolled to.
+/// The widget: it keeps only what concerns no one else, such as where the text is scrolled to.
 #[derive(Debug, Default)]
 pub struct Editor {
     text_area: text_area::TextArea,

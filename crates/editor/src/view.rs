@@ -10,7 +10,7 @@ use theme::icon::Icon;
 /// Everything that the editor shows in one frame. Ranges are bytes of the document.
 #[derive(Clone, Copy)]
 pub struct EditorView<'a> {
-    /// The widget's id: who has the focus while somebody types.
+    /// The widget's id: who has the focus while someone types.
     pub id: Id,
     /// What assistive technologies call the text.
     pub name: &'a str,
@@ -67,7 +67,7 @@ pub struct Diagnostic<'a> {
     pub message: &'a str,
     /// What to do about it, in Markdown.
     pub hint: Option<&'a str>,
-    /// The keys that list what mends it, if something does.
+    /// The keys that list what fixes it, if something does.
     pub fix_keys: Option<&'a str>,
 }
 

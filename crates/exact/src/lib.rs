@@ -6,7 +6,7 @@
 //! one reader ([`std::str::FromStr`]), printed by one printer ([`std::fmt::Display`], and `readable` for people), and
 //! become floats by one conversion (`to_f64`). [`Scale`] turns times into whole ticks and back.
 //!
-//! This is no calendar, and knows no units: what a unit is stands in the mission.
+//! This is not a calendar, and knows no units: what a unit is stands in the mission.
 //!
 //! ```
 //! use exact::{Bound, Rational, Time};

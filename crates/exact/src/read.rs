@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use crate::Rational;
 
-/// Why a text is no exact number.
+/// Why a text is not an exact number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// It is none at all.

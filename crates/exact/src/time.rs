@@ -48,7 +48,7 @@ impl Time {
         self.0.denominator()
     }
 
-    /// Whether it is no time at all.
+    /// Whether it is zero.
     pub const fn is_zero(self) -> bool {
         self.0.is_zero()
     }
@@ -93,7 +93,7 @@ impl Time {
         self.0.checked_div(divisor.into()).map(Self)
     }
 
-    /// How many times `other` fits into it; `None` also if `other` is no time at all.
+    /// How many times `other` fits into it; `None` also if `other` is zero.
     pub fn checked_ratio(self, other: Self) -> Option<Rational> {
         self.0.checked_div(other.0)
     }

@@ -61,7 +61,7 @@ pub struct Revision {
 pub struct PlantReading {
     /// When that is found out.
     pub at: Time,
-    /// The variable that stands for the mode.
+    /// The variable that represents the mode.
     pub variable: SmolStr,
     /// Its value from then on.
     pub value: SmolStr,

@@ -17,7 +17,7 @@ pub(crate) struct Adversary {
 }
 
 impl Adversary {
-    /// The adversary of a stage in `world`, if there is one: plans that withstand nature have none.
+    /// The adversary of a stage in `world`, if there is one: plans that withstand the environment have none.
     pub(crate) fn of(world: &World, stage: &Stage) -> Result<Option<Self>, PlanError> {
         let is_lost = !stage.dispatch.withstands_nature() && !stage.natures.is_empty();
         if !world.is_adversary() || !is_lost {
@@ -31,8 +31,8 @@ impl Adversary {
         Ok((verdict != stnu::Verdict::Controllable).then_some(Self { read }))
     }
 
-    /// Which duration nature ends next, and when; `None` if it lets the executive do what that would do next, at an event
-    /// and a time.
+    /// Which duration the environment ends next, and when; `None` if it lets the executive do what that would do next,
+    /// at an event and a time.
     pub(crate) fn answer(
         &self,
         stage: &Stage,

@@ -1,10 +1,10 @@
 //! Dispatch of a plan (SPEC 6.2, 13.2): when its events may happen, and what those that happened leave possible.
 //!
 //! All plans are dispatched alike but for how the time of one event narrows the windows of the others. A plan that
-//! withstands nature goes through its dispatchable form with waits: nature's events are observed, never chosen, and what
-//! is tied to them comes with them. In every other plan windows are kept exact on the elimination tree of its network, each
-//! event in time logarithmic in their number where that is narrow. A dispatchable form would do there as well, but it has
-//! windows of enabled events only, and is cubic in the number of events at worst.
+//! withstands the environment goes through its dispatchable form with waits: the environment's events are observed,
+//! never chosen, and what is tied to them comes with them. In every other plan windows are kept exact on the
+//! elimination tree of its network, each event in time logarithmic in their number where that is narrow. A dispatchable
+//! form would do there as well, but it has windows of enabled events only, and is cubic in the number of events at worst.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ pub(crate) enum SettleError {
 /// The state of a dispatch.
 #[derive(Clone, Debug)]
 pub(crate) struct Dispatch {
-    /// The present, in ticks, where something waits for nature.
+    /// The present, in ticks, where something waits for the environment.
     now: i64,
     propagation: Propagation,
 }
@@ -83,7 +83,7 @@ impl Dispatch {
         Ok(Self { now: 0, propagation })
     }
 
-    /// Whether nature chooses durations, and the plan withstands that.
+    /// Whether the environment chooses durations, and the plan withstands that.
     pub(crate) const fn withstands_nature(&self) -> bool {
         matches!(self.propagation, Propagation::Waits(_))
     }
@@ -135,8 +135,8 @@ impl Dispatch {
         }
     }
 
-    /// Settles the time of a point: the executive's happens, or nature's is seen. Refused, with everything as before, where
-    /// another point must come first that has not.
+    /// Settles the time of a point: the executive's happens, or the environment's is seen. Refused, with everything as
+    /// before, where another point must come first that has not.
     pub(crate) fn settle(&mut self, point: PointId, ticks: i64) -> Result<(), SettleError> {
         let (earliest, latest) = self.window(point);
         if ticks < earliest || ticks > latest {
@@ -168,7 +168,7 @@ impl Dispatch {
         }
     }
 
-    /// When each of `points` may still happen: at the earliest if nature ends early what it waits for.
+    /// When each of `points` may still happen: at the earliest if the environment ends early what it waits for.
     pub(crate) fn windows(
         &self,
         points: impl Iterator<Item = PointId>,
@@ -181,7 +181,7 @@ impl Dispatch {
         Ok(points.map(window).map(|window| (window.earliest, window.latest.unwrap_or(NEVER))).collect())
     }
 
-    /// The duration of nature's that ends at a point, if one does and it has begun; when it began.
+    /// The duration of the environment's that ends at a point, if one does and it has started; when it began.
     pub(crate) fn under_way(&self, point: PointId) -> Option<(ArcId, i64)> {
         let Propagation::Waits(waits) = &self.propagation else { return None };
         let Status::Contingent { .. } = waits.status(point) else { return None };
@@ -191,7 +191,7 @@ impl Dispatch {
         Some((waits.arcs[link.index()], began))
     }
 
-    /// The ends of nature's that a point waits for, though all that must come before it has.
+    /// The ends of the environment's that a point waits for, though all that must come before it has.
     pub(crate) fn awaited(&self, point: PointId) -> Vec<Awaited> {
         let Propagation::Waits(waits) = &self.propagation else { return Vec::new() };
         let Status::Enabled { waits: links, .. } = waits.status(point) else { return Vec::new() };

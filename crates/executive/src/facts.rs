@@ -24,7 +24,7 @@ pub struct Facts {
     pub begins: Vec<(OccurrenceId, Time)>,
     /// Values that the world gave to variables that last, and when.
     pub states: Vec<(VariableId, ValueId, Time)>,
-    /// By how much levels changed that nobody planned to change, and when.
+    /// By how much levels changed that no one planned to change, and when.
     pub levels: Vec<(ResourceId, Rational, Time)>,
     /// Traverses whose driven distance is known: `levels` has how much less than the maximum they take, or how much more.
     pub driven: Vec<OccurrenceId>,
@@ -175,7 +175,7 @@ impl Facts {
 }
 
 impl Facts {
-    /// Of a duration that nature chooses what is over is known, and of one under way how long it takes at least.
+    /// Of a duration that the environment chooses what is over is known, and of one under way how long it takes at least.
     fn hold_natures(&self, network: &mut Network, times: &[Option<Time>]) {
         for arc in network.arcs.iter_mut().filter(|arc| arc.is_contingent) {
             let Some(began) = times[arc.from.index()] else { continue };
@@ -357,7 +357,7 @@ fn free_start(network: &mut Network, occurrence: OccurrenceId, times: &[Option<T
     }
 }
 
-/// Whether another alternative of a decision has begun: only what begins with its decision is still excluded then.
+/// Whether another alternative of a decision has started: only what begins with its decision is still excluded then.
 fn is_decided_otherwise(
     network: &Network,
     (decision, alternative): (DecisionId, u32),

@@ -1,8 +1,8 @@
 //! What is left of a plan's windows when some of its events are pinned to times: the live answer to dragging an event.
 //!
-//! Where nature chooses nothing, pins narrow the windows of everything else. Where it chooses durations, what is pinned is
-//! what nature does, or a later time for what the executive does, in a run of the plan's strategy. How events are grabbed,
-//! moved, put back and released is the same.
+//! Where the environment chooses nothing, pins narrow the windows of everything else. Where it chooses durations, what
+//! is pinned is what the environment does, or a later time for what the executive does, in a run of the plan's
+//! strategy. How events are grabbed, moved, put back and released is the same.
 
 mod constrained;
 mod run;
@@ -162,7 +162,7 @@ impl PinnedPlan {
         }
     }
 
-    /// How the run stands in which nature does what is pinned; `None` if it chooses nothing in this plan.
+    /// How the run stands in which the environment does what is pinned; `None` if it chooses nothing in this plan.
     pub fn course(&self) -> Option<&Course> {
         match &self.effect {
             Effect::Constrained(_) => None,

@@ -26,7 +26,7 @@ pub const ADDED: u32 = u32::MAX;
 /// Why a plan cannot be executed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
-    /// Its constraints contradict each other: it is no plan.
+    /// Its constraints contradict each other: it is not a plan.
     #[error("the constraints of the plan are inconsistent")]
     Inconsistent,
     /// Its times do not fit.
@@ -51,7 +51,7 @@ impl From<exact::Overflow> for PlanError {
 
 impl From<Undecided> for PlanError {
     fn from(_: Undecided) -> Self {
-        // Nobody stops it.
+        // No one stops it.
         Self::Overflow
     }
 }

@@ -1,5 +1,5 @@
-//! What remains possible of a plan once some of its events have happened (SPEC 6.2). Where nature chooses durations, the
-//! network of what is left is dispatched from the present on (SPEC 13.2).
+//! What remains possible of a plan once some of its events have happened (SPEC 6.2). Where the environment chooses
+//! durations, the network of what is left is dispatched from the present on (SPEC 13.2).
 
 use std::sync::Arc;
 
@@ -23,13 +23,13 @@ pub struct Observations {
 /// What remains possible.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
-    /// The windows of all selected events, by node, and what waits for nature, in the order of nodes.
+    /// The windows of all selected events, by node, and what waits for the environment, in the order of nodes.
     Consistent(Vec<Option<Window>>, Vec<Waiting>),
     /// The plan is violated; why, naming events and times.
     Violated(Vec<String>),
 }
 
-/// An event that could happen earlier if nature ended something earlier (SPEC 13.2).
+/// An event that could happen earlier if the environment ended something earlier (SPEC 13.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Waiting {
     pub event: NodeId,
@@ -39,8 +39,8 @@ pub struct Waiting {
     pub until: Time,
 }
 
-/// The windows of `plan` after `observed`. Where nature chooses durations they are those of its dispatch: at the earliest
-/// as if nature ended early what is waited for.
+/// The windows of `plan` after `observed`. Where the environment chooses durations they are those of its dispatch: at
+/// the earliest as if the environment ended early what is waited for.
 ///
 /// Events that are not reported have not happened, with two exceptions: an event whose time follows from what was
 /// reported (its window is a single moment that has come), and one that must have come before something reported.
@@ -136,8 +136,8 @@ fn explain<'a>(
     reasons
 }
 
-/// The progress of a plan, `read` with the durations that nature chooses. `windows` are those under which it chooses
-/// nothing.
+/// The progress of a plan, `read` with the durations that the environment chooses. `windows` are those under which it
+/// chooses nothing.
 fn uncertain(
     network: &Network,
     made: &PlanNetwork,
@@ -157,7 +157,7 @@ fn uncertain(
         let is_told = observed.executed.iter().any(|(node, _)| node.index() == index);
         let natures = read.network.link_ending_at(point).map(|link| read.network.link(link));
         let is_seen = is_told || natures.is_none_or(|link| link.spread() == 0);
-        // What must have come before something reported has come; nobody knows when, and so as early as it may have.
+        // What must have come before something reported has come; no one knows when, and so as early as it may have.
         if latest <= last || (earliest == latest && latest <= now && is_seen) {
             times[point.index()] = Some(earliest);
         }
@@ -227,7 +227,7 @@ fn enter(dispatcher: &mut Dispatcher<Arc<Dispatchable>>, past: &[(i64, PointId)]
     Ok(())
 }
 
-/// The arc of the plan that a part of a conflict in what is left of it stands for, with who chooses its duration.
+/// The arc of the plan that a part of a conflict in what is left of it represents, with who chooses its duration.
 fn broken(
     network: &Network,
     read: &Uncertain,

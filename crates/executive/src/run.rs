@@ -139,7 +139,7 @@ struct Run<'a> {
     readings: VecDeque<PlantReading>,
     /// What was read from it last; before, it is as it begins.
     estimated: BTreeMap<VariableId, ValueId>,
-    /// How far reservoirs have come off the present plan by what nobody planned.
+    /// How far reservoirs have come off the present plan by what no one planned.
     off_plan: BTreeMap<ResourceId, Rational>,
     /// What the world has made known against the plan, kept over all replans.
     news: Facts,
@@ -147,7 +147,7 @@ struct Run<'a> {
     plans: Vec<ExecutedPlan>,
     /// When each node is to happen at the earliest, by the schedule of the first plan; empty without one.
     scheduled: Vec<Option<Time>>,
-    /// Who makes the present plan fail, if somebody does.
+    /// Who makes the present plan fail, if someone does.
     adversary: Option<Adversary>,
     /// What may be next in a plan with many events.
     frontier: Option<Frontier>,
@@ -165,7 +165,7 @@ struct Violation {
     name: SmolStr,
     reason: String,
     news: News,
-    /// Whether no plan can mend it: an activity that was begun never ends.
+    /// Whether no plan can fix it: an activity that was started never ends.
     is_final: bool,
     /// Whether two vehicles touch.
     is_contact: bool,
@@ -188,7 +188,7 @@ enum News {
 /// What decides when a node happens.
 #[derive(Clone, Copy)]
 enum Decider {
-    /// Nature, which ends this duration there.
+    /// The environment, which ends this duration there.
     Nature(ArcId),
     /// What the world makes of this event.
     Event(EventRef),
@@ -243,7 +243,7 @@ impl Run<'_> {
             self.learn(news);
             let num_plans = self.plans.len();
             let Some(no_plan) = self.replan(replanner)? else { continue };
-            // A plan that does not keep the past is not mended by giving up more.
+            // A plan that does not keep the past is not fixed by giving up more.
             let has_new_plan = self.plans.len() > num_plans;
             let retreat = if has_new_plan { Retreat::Impossible(None) } else { self.take_back(replanner)? };
             let Retreat::Impossible(hindrance) = retreat else { continue };
@@ -265,7 +265,7 @@ impl Run<'_> {
         Some(Next { point: self.stage.made.origin(), time, violation })
     }
 
-    /// Time goes on; what is seen of the activities under way is written down.
+    /// Time continues; what is seen of the activities under way is written down.
     fn advance(&mut self, time: Time) {
         if time > self.now {
             self.state.advance();
@@ -339,8 +339,8 @@ impl Run<'_> {
         }
     }
 
-    /// What is first of that which may happen at one time. What nature does is seen before the executive goes on, unless
-    /// that is before it in the plan.
+    /// What is first of that which may happen at one time. What the environment does is seen before the executive
+    /// continues, unless that is before it in the plan.
     fn first_of(&self, mut at_once: Vec<Next>) -> Option<Next> {
         let node = |next: &Next| self.stage.made.node(next.point);
         at_once.sort_by_key(|next| self.stage.rank(next.point));
@@ -352,13 +352,13 @@ impl Run<'_> {
         (first < at_once.len()).then(|| at_once.swap_remove(first))
     }
 
-    /// Whether nature ends a duration at a node.
+    /// Whether the environment ends a duration at a node.
     fn is_natures(&self, node: NodeId) -> bool {
         let asked = self.stage.network.controllability != Controllability::None || self.adversary.is_some();
         asked && self.stage.natures.contains_key(&node)
     }
 
-    /// When nature ends a duration that it chooses, from all that is known of it.
+    /// When the environment ends a duration that it chooses, from all that is known of it.
     fn by_nature(&self, id: ArcId) -> Result<Option<ByWorld>, Overflow> {
         let arc = &self.stage.network.arcs[id.index()];
         let Some(started) = self.stage.times[arc.from.index()].filter(|_| self.adversary.is_none()) else {
@@ -376,7 +376,7 @@ impl Run<'_> {
         let duration = match self.executions.get(&occurrence) {
             Some(Ends::Never(reason)) => return Ok(Some(ByWorld::Never(reason.clone()))),
             Some(Ends::After(duration)) => *duration,
-            // An activity that is early waits until nature ends it.
+            // An activity that is early waits until the environment ends it.
             Some(Ends::NotBefore(duration)) => chosen.max(*duration),
             Some(Ends::AsPlanned) | None => chosen,
         };
@@ -389,7 +389,7 @@ impl Run<'_> {
         let arcs = self.stage.natures.get(&node).filter(|_| self.is_natures(node));
         let natures = arcs.into_iter().flatten().map(|&arc| Decider::Nature(arc));
         let own = self.stage.events(node).filter(|event| {
-            // When nature ends it was said above; what is asserted may still be withdrawn.
+            // When the environment ends it was said above; what is asserted may still be withdrawn.
             let occurrence = self.stage.occurrence(*event);
             let is_end = event.end == EventEnd::End && occurrence.kind != OccurrenceKind::Assertion;
             !(is_end && arcs.zip(occurrence.arc).is_some_and(|(arcs, arc)| arcs.contains(&arc)))
@@ -437,7 +437,7 @@ impl Run<'_> {
         let planned = self.stage.window(point).0.max(self.now);
         let node = self.stage.made.node(point);
         if self.is_natures(node) {
-            // Nobody waits for the end of what has not begun.
+            // No one waits for the end of what has not started.
             let began = |arc: &ArcId| {
                 let from = self.stage.network.arcs[arc.index()].from;
                 self.stage.times[from.index()].is_some()
@@ -493,13 +493,13 @@ impl Run<'_> {
             }
         }
         if let Some(latest) = latest.filter(|_| self.stage.guides.contains_key(&node)) {
-            // Vertices are no deadlines: whether the traverse is late shows at its end.
+            // Vertices are not deadlines: whether the traverse is late shows at its end.
             time = time.min(latest.max(self.now));
         }
         Ok(Some(self.at(point, time, known)))
     }
 
-    /// When a vertex of a path is passed of which nobody reports that, so that the whole traverse takes as long as it
+    /// When a vertex of a path is passed of which no one reports that, so that the whole traverse takes as long as it
     /// does: as early as its speeds allow.
     fn pace(&self, node: NodeId) -> Result<Option<Time>, Overflow> {
         let Some(guide) = self.stage.guides.get(&node) else { return Ok(None) };
@@ -537,7 +537,7 @@ impl Run<'_> {
         Next { point, time, violation: Some(Violation::new(name, reason, news)) }
     }
 
-    /// What nature does against the executive, given what that would do next.
+    /// What the environment does against the executive, given what that would do next.
     fn opposed(&self, adversary: &Adversary, best: Option<Next>) -> Result<Option<Next>, PlanError> {
         if best.as_ref().is_some_and(|best| best.violation.is_some()) {
             return Ok(best);
@@ -615,7 +615,7 @@ impl Run<'_> {
                     && at <= begins.unwrap_or(planned)
                     && !self.is_known_gone(event.occurrence)
                 {
-                    // It never begins: for planning it is over as soon as it would have begun.
+                    // It never begins: for planning it is over as soon as it would have started.
                     let gone = News::Duration(event.occurrence, Time::ZERO);
                     let reason =
                         format!("{} was withdrawn at {} before it started", occurrence.name, shown(at));
@@ -650,7 +650,7 @@ impl Run<'_> {
         let ticks = self.stage.made.scale().ticks(self.now).map_err(|_| self.too_large(node))?;
         match self.stage.dispatch.settle(point, ticks) {
             Ok(()) => {}
-            // What nature does waits for nobody.
+            // What the environment does waits for no one.
             Err(SettleError::NotYet(other)) if self.adversary.is_some() && self.is_natures(node) => {
                 let (name, other) = (self.stage.name(node), self.stage.name(self.stage.made.node(other)));
                 let reason =

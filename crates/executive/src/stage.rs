@@ -21,8 +21,8 @@ pub struct Stage {
     /// What its events do to states and levels.
     pub(crate) effects: Effects,
     pub(crate) dispatch: Dispatch,
-    /// The durations that nature chooses, whether or not the mission asks to withstand that, by the events where they
-    /// end.
+    /// The durations that the environment chooses, whether or not the mission asks to withstand that, by the events
+    /// where they end.
     pub(crate) natures: BTreeMap<NodeId, Vec<ArcId>>,
     /// The vertices of paths.
     pub(crate) guides: BTreeMap<NodeId, Guide>,
@@ -186,7 +186,7 @@ impl Stage {
     }
 }
 
-/// A vertex of a path: it guides the vehicle, and is no deadline.
+/// A vertex of a path: it guides the vehicle, and is not a deadline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Guide {
     pub(crate) traverse: OccurrenceId,

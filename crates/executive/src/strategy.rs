@@ -1,7 +1,7 @@
-//! Runs of a plan's execution strategy in which someone chooses what nature does, duration by duration (SPEC 13.2): what
-//! the executive does then, what it waits for, and what may still come.
+//! Runs of a plan's execution strategy in which someone chooses what the environment does, duration by duration (SPEC
+//! 13.2): what the executive does then, what it waits for, and what may still come.
 //!
-//! The executive does everything as early as it may, but for what was put to a later time. A duration that nobody has
+//! The executive does everything as early as it may, but for what was put to a later time. A duration that no one has
 //! chosen lasts as long as it can.
 
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ use crate::dispatch::{Dispatch, NEVER};
 use crate::plan_network::{PlanError, PlanNetwork};
 use crate::progress::Waiting;
 
-/// The strategy of a plan that withstands nature.
+/// The strategy of a plan that withstands the environment.
 #[derive(Clone, Debug)]
 pub struct Strategy {
     made: PlanNetwork,
@@ -30,11 +30,11 @@ pub struct Strategy {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Actor {
     Executive,
-    /// Nature, at the end of a duration that it chose.
+    /// The environment, at the end of a duration that it chose.
     Nature(ArcId),
 }
 
-/// What comes at one instant because somebody acts.
+/// What comes at one instant because someone acts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Act {
     pub time: Time,
@@ -45,7 +45,7 @@ pub struct Act {
     pub window: Window,
 }
 
-/// A duration that nature is choosing: it has begun and has not ended.
+/// A duration that the environment is choosing: it has started and has not ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnderWay {
     /// The uncontrolled duration.
@@ -62,11 +62,11 @@ pub struct Course {
     pub now: Time,
     /// What happened so far, in the order of time.
     pub acts: Vec<Act>,
-    /// What nature is choosing, in the order of the arcs.
+    /// What the environment is choosing, in the order of the arcs.
     pub under_way: Vec<UnderWay>,
-    /// What could happen earlier if nature ended something earlier.
+    /// What could happen earlier if the environment ended something earlier.
     pub waiting: Vec<Waiting>,
-    /// What happens next if nature lets everything last; nothing at the end of the run.
+    /// What happens next if the environment lets everything last; nothing at the end of the run.
     pub next: Option<Act>,
     /// When each event of the plan happened or may still happen, in the form of [`Plan::windows`].
     pub windows: Vec<Option<Window>>,
@@ -88,12 +88,12 @@ struct RawAct {
     window: (i64, i64),
 }
 
-/// Times that were chosen, in ticks: of the end of a duration of nature's, or of an event of the executive's.
+/// Times that were chosen, in ticks: of the end of a duration of the environment's, or of an event of the executive's.
 pub(crate) type Choices = BTreeMap<NodeId, i64>;
 
 impl Strategy {
-    /// The strategy of `plan`, with times as fine as `grid` asks; `None` if nature chooses nothing in it, or if it does
-    /// not withstand nature.
+    /// The strategy of `plan`, with times as fine as `grid` asks; `None` if the environment chooses nothing in it, or
+    /// if it does not withstand the environment.
     pub fn new(network: &Network, plan: &Plan, grid: &[Time]) -> Result<Option<Self>, PlanError> {
         if !plan.has_natures_choice(network) {
             return Ok(None);
@@ -135,12 +135,12 @@ impl Strategy {
         self.made.point(node).is_some()
     }
 
-    /// A run that has just begun.
+    /// A run that has just started.
     pub(crate) fn play(&self) -> Play {
         Play { dispatch: self.begin.clone(), acts: Vec::new() }
     }
 
-    /// Plays on: everything that comes up to `until`, and all that is chosen, if nature keeps to `choices`.
+    /// Plays on: everything that comes up to `until`, and all that is chosen, if the environment keeps to `choices`.
     pub(crate) fn play_on(&self, play: &mut Play, choices: &Choices, until: i64) -> Result<(), PlanError> {
         let mut chosen: BTreeMap<usize, i64> = BTreeMap::new();
         for (&node, &ticks) in choices {
@@ -163,7 +163,7 @@ impl Strategy {
         Ok(())
     }
 
-    /// What happens next, nature first.
+    /// What happens next, the environment first.
     fn next(&self, play: &Play, chosen: &BTreeMap<usize, i64>) -> Option<RawAct> {
         let act = |instant: usize| {
             let point = self.instants[instant][0];

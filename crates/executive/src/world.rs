@@ -14,9 +14,9 @@ use tpn::{Network, NodeId, Occurrence, OccurrenceKind, ValueId};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Disturbance {
-    /// An activity takes this long, or another duration that nature chooses, whatever its bounds say.
+    /// An activity takes this long, or another duration that the environment chooses, whatever its bounds say.
     Duration {
-        /// The occurrence, such as `Group-Transmit#1`; `delay#1` where nature chooses that.
+        /// The occurrence, such as `Group-Transmit#1`; `delay#1` where the environment chooses that.
         activity: SmolStr,
         duration: Time,
     },
@@ -27,7 +27,7 @@ pub enum Disturbance {
         /// The share, above 0 and at most 1.
         factor: Rational,
     },
-    /// A condition ends at this time, if it holds then; one that has not begun by then never does.
+    /// A condition ends at this time, if it holds then; one that has not started by then never does.
     Withdrawn {
         /// The assertion, such as `Tell(PATH1=OK)#1`.
         condition: SmolStr,
@@ -157,7 +157,7 @@ pub struct Script {
     /// What goes otherwise than planned, in any order; of two of a kind about one thing the later counts.
     #[serde(deserialize_with = "sound")]
     pub disturbances: Vec<Disturbance>,
-    /// Whether nature chooses durations so as to break the plan, and ends of ranges where it cannot.
+    /// Whether the environment chooses durations so as to break the plan, and ends of ranges where it cannot.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub adversary: bool,
     /// Seeds what is drawn in the run; otherwise the seed of the paths does. The paths stay those of their own seed.
@@ -207,7 +207,7 @@ pub struct World {
     late: BTreeMap<SmolStr, Time>,
     /// In order of time.
     changes: Vec<WorldChange>,
-    /// How long nature makes things take.
+    /// How long the environment makes things take.
     chosen: BTreeMap<SmolStr, Time>,
     is_adversary: bool,
     /// When the events of the first plan happen.
@@ -277,16 +277,16 @@ impl World {
         &self.changes
     }
 
-    /// The same world, in which nature chooses these durations where it may choose: those of other occurrences of which it
-    /// chooses are the least that they may be. What is outside a range is brought inside.
+    /// The same world, in which the environment chooses these durations where it may choose: those of other occurrences
+    /// of which it chooses are the least that they may be. What is outside a range is brought inside.
     #[must_use]
     pub fn with_chosen(mut self, chosen: BTreeMap<SmolStr, Time>) -> Self {
         self.chosen = chosen;
         self
     }
 
-    /// The same world, in which nature makes a plan fail that can be made to: one that is not controllable. Of others it
-    /// chooses the durations as it would otherwise.
+    /// The same world, in which the environment makes a plan fail that can be made to: one that is not controllable. Of
+    /// others it chooses the durations as it would otherwise.
     #[must_use]
     pub const fn with_adversary(mut self) -> Self {
         self.is_adversary = true;
@@ -331,12 +331,12 @@ impl World {
         end.checked_sub(start).ok_or(Overflow).map(Some)
     }
 
-    /// Whether nature is to make plans fail.
+    /// Whether the environment is to make plans fail.
     pub const fn is_adversary(&self) -> bool {
         self.is_adversary
     }
 
-    /// How long nature makes something take that takes from `lower` to `upper`.
+    /// How long the environment makes something take that takes from `lower` to `upper`.
     pub fn chosen(&self, occurrence: &Occurrence, [lower, upper]: [Time; 2]) -> Time {
         self.chosen.get(&occurrence.name).map_or(lower, |&chosen| chosen.min(upper).max(lower))
     }
@@ -420,13 +420,13 @@ impl World {
     }
 }
 
-/// The name under which nature's choice is kept of how long ending an activity early takes.
+/// The name under which the environment's choice is kept of how long ending an activity early takes.
 pub fn abort_name(occurrence: &Occurrence) -> SmolStr {
     smol_str::format_smolstr!("{}.abort", occurrence.name)
 }
 
-/// The durations that nature chooses in `network`, with their ranges: of activities, assertions and delays, in textual
-/// order. Those that the mission reads as ordinary are among them.
+/// The durations that the environment chooses in `network`, with their ranges: of activities, assertions and delays, in
+/// textual order. Those that the mission reads as ordinary are among them.
 pub fn natures_ranges(network: &Network) -> impl Iterator<Item = (&Occurrence, [Time; 2])> {
     network.occurrences.iter().filter_map(|occurrence| {
         let arc = &network.arcs[occurrence.arc?.index()];

@@ -140,7 +140,7 @@ pub(crate) struct WorldState {
     levels: Vec<Rational>,
     /// Requirements that lasted no time and are of the present instant.
     momentary: Vec<LabelId>,
-    /// By variable: the requirements that go on.
+    /// By variable: the requirements that continue.
     under_way: Vec<BTreeSet<LabelId>>,
     /// What may be otherwise, or be needed, since the present instant.
     touched: BTreeSet<VariableId>,
@@ -188,7 +188,7 @@ impl WorldState {
         }
     }
 
-    /// Another plan is followed from now on: orders that are no resources of the mission are its own, and it has its own
+    /// Another plan is followed from now on: orders that are not resources of the mission are its own, and it has its own
     /// requirements.
     pub(crate) fn follow(
         &mut self,
@@ -244,7 +244,7 @@ impl WorldState {
         self.levels.get(resource.index()).copied().unwrap_or_default()
     }
 
-    /// Time goes on: what held between two values at the last instant is forgotten.
+    /// Time continues: what held between two values at the last instant is forgotten.
     pub(crate) fn advance(&mut self) {
         self.momentary.clear();
         self.moved.clear();
@@ -376,7 +376,7 @@ impl WorldState {
     }
 
     /// Changes are broken off, and what was in use is free again. A variable that was changing keeps its value; where a
-    /// vehicle is that stopped on its way is no location.
+    /// vehicle is that stopped on its way is not a location.
     pub(crate) fn abandon(
         &mut self,
         network: &Network,

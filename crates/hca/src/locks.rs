@@ -220,7 +220,7 @@ pub(crate) fn can_hold_together(constraints: &[(&Automaton, &Constraint)]) -> bo
     search(constraints, &counts, &mut BTreeMap::new())
 }
 
-/// The values of a variable that constraints speak of; the empty one stands for all others of an open domain.
+/// The values of a variable that constraints speak of; the empty one represents all others of an open domain.
 type Domain<'data> = Vec<&'data str>;
 
 fn domains<'data>(

@@ -17,7 +17,7 @@ use interval::{minutes_of, moment_of};
 /// What an activity's `metadata` may say, and plans that are written for `PlanDev` do: how long it takes, as an interval.
 pub const DURATION: &str = "enroute_duration";
 
-/// Why a plan is no network.
+/// Why a plan is not a network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanDevError {
     /// A member is not there, or not what it has to be.

@@ -9,7 +9,7 @@ use crate::ptpn::{self, PtpnError, is_ptpn};
 use tpn::network::Network;
 use tpn::network_json::{NetworkError, network_from_json};
 
-/// Why a file is no network.
+/// Why a file is not a network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// It is an `enroute-tpn/1` document, but not a well-formed one.
@@ -24,7 +24,7 @@ pub enum ReadError {
     /// It is JSON of another kind.
     #[error("this is {0}")]
     Other(&'static str),
-    /// It is no plan-schema file either.
+    /// It is not a plan-schema file either.
     #[error(transparent)]
     PlanSchema(#[from] PlanSchemaError),
 }

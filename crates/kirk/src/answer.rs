@@ -67,7 +67,7 @@ fn is_by_solver(model: &Model, options: &Options, excluded: &[Vec<Choice>]) -> b
         || model.has_contexts && (options.search.learns() || options.best > 1 || !excluded.is_empty())
 }
 
-/// Gives the first of nature's reasons that the run belongs to the run in which it fails.
+/// Gives the first of the environment's reasons that the run belongs to the run in which it fails.
 fn add_failing_run(
     failure: &mut Failure,
     network: &Network,

@@ -183,7 +183,7 @@ impl<'m> ChronologicalSearch<'m> {
 
     /// Selects what every plan has. `false` if that is inconsistent.
     fn begin(&mut self) -> Result<bool, Unplannable> {
-        // Where nobody watches, all arcs are propagated at once.
+        // Where no one watches, all arcs are propagated at once.
         let is_bulk = self.recorder.is_none();
         self.select_node(self.model.start);
         let mut is_consistent = self.expand(vec![self.model.start], is_bulk)?;
@@ -194,7 +194,7 @@ impl<'m> ChronologicalSearch<'m> {
         Ok(is_consistent)
     }
 
-    /// Goes on from the present state to the next solution. `false` if there is none, or the search is stopped.
+    /// Continues from the present state to the next solution. `false` if there is none, or the search is stopped.
     fn next_solution(&mut self, termination: &mut dyn Termination) -> Result<bool, Unplannable> {
         loop {
             let is_record_full = self.recorder.as_ref().is_some_and(|recorder| recorder.trace.is_truncated);

@@ -149,7 +149,7 @@ impl Conditions {
         self.labels[change].value == Some(value)
     }
 
-    /// Whether requirement `ask` cannot go on during or after a change.
+    /// Whether requirement `ask` cannot continue during or after a change.
     pub(crate) fn breaks(&self, change: LabelId, ask: LabelId) -> bool {
         self.labels[change].is_changing || !self.gives(change, ask)
     }

@@ -206,7 +206,7 @@ fn add_outer_choices(model: &Model, choices: &mut Vec<Choice>) {
 }
 
 /// The places of a conflict: its conditions, then the bounds that take time; without a cycle those that it needs, what
-/// nature chooses last.
+/// the environment chooses last.
 pub(crate) fn spans(network: &Network, members: &[Member], cycle: &[CycleMember]) -> Vec<Span> {
     let conditions = members.iter().filter_map(|member| match member {
         Member::Condition(label) => {
@@ -270,7 +270,7 @@ pub(crate) struct Part<'m> {
     active_labels: TiVec<LabelId, bool>,
     active_uses: Vec<bool>,
     assumed: TiVec<DecisionId, Option<u32>>,
-    /// Whether durations that nature chooses are chosen like all others.
+    /// Whether durations that the environment chooses are chosen like all others.
     pub(crate) ignores_nature: bool,
 }
 
@@ -319,7 +319,7 @@ impl<'m> Part<'m> {
         dropped: &[Member],
         solution: &Choices,
     ) -> BTreeSet<Member> {
-        // What withstands nature is more than a solution.
+        // What withstands the environment is more than a solution.
         if self.mission.has_uncertainty && !self.ignores_nature {
             return BTreeSet::new();
         }

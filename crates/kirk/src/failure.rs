@@ -37,7 +37,7 @@ pub enum FailureKind {
     Threat,
     /// Activities need more of a resource than there is.
     Resource,
-    /// Nature can choose durations after which no times are left (SPEC 13.1).
+    /// The environment can choose durations after which no times are left (SPEC 13.1).
     Controllability,
 }
 
@@ -61,7 +61,7 @@ pub struct Reason {
     pub choices: Vec<Choice>,
     /// What kind of contradiction it is.
     pub kind: FailureKind,
-    /// A minimal conflict: with any one of these left out, what remains is no contradiction.
+    /// A minimal conflict: with any one of these left out, what remains is consistent.
     pub conflict: Vec<Member>,
     /// One contradiction among the bounds, where there is one to show.
     pub cycle: Vec<CycleMember>,
@@ -71,12 +71,12 @@ pub struct Reason {
     pub message: String,
     /// The places in the text that the reason is about, the most telling first.
     pub spans: Vec<Span>,
-    /// The run in which nature breaks the plan that there would be if the executive chose all durations.
+    /// The run in which the environment breaks the plan that there would be if the executive chose all durations.
     pub failing_run: Option<FailingRun>,
 }
 
 impl Reason {
-    /// The run in which nature makes the mission fail, a line for each thing that happens; none without one.
+    /// The run in which the environment makes the mission fail, a line for each thing that happens; none without one.
     pub fn failing_run_in_words(&self, network: &Network) -> Vec<String> {
         self.failing_run.as_ref().map_or_else(Vec::new, |run| wording::failing_run(network, run))
     }
@@ -99,8 +99,8 @@ pub enum Member {
 pub struct Relaxation {
     /// An arc that has the bound; all arcs made from the same text change with it.
     pub arc: ArcId,
-    /// Whether the least duration changes; otherwise the greatest one. What nature chooses becomes narrower by it, all
-    /// else wider.
+    /// Whether the least duration changes; otherwise the greatest one. What the environment chooses becomes narrower by
+    /// it, all else wider.
     pub is_lower: bool,
     pub old: Bound,
     /// The bound that gives a plan: the closest one in whole units of the mission's common denominator.
@@ -113,7 +113,7 @@ pub struct Relaxation {
     pub label: String,
 }
 
-/// What the lines of a failing run say of an end that nature chooses.
+/// What the lines of a failing run say of an end that the environment chooses.
 pub const NATURE_ENDS: &str = "the environment ends";
 
 /// What [`Failure::is_of_gap`] offers, as an imperative.

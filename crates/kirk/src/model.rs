@@ -50,11 +50,11 @@ pub(crate) struct Model {
     /// How far the end of each labeled interval must be from the start of another to count as before it (SPEC 5.3):
     /// the threat gap for instants, otherwise nothing.
     pub(crate) gap_after: TiVec<LabelId, i64>,
-    /// Whether nature chooses the duration of some arc (SPEC 13.1).
+    /// Whether the environment chooses the duration of some arc (SPEC 13.1).
     pub(crate) has_uncertainty: bool,
-    /// Whether plans have to withstand nature without looking (SPEC 13.1).
+    /// Whether plans have to withstand the environment without looking (SPEC 13.1).
     pub(crate) is_strong: bool,
-    /// Which events nature executes in some plan.
+    /// Which events the environment executes in some plan.
     pub(crate) natures_events: TiVec<NodeId, bool>,
     /// For each node one that the rules of the language keep at the same time, in the same context.
     pub(crate) representatives: TiVec<NodeId, NodeId>,
@@ -78,7 +78,7 @@ pub(crate) struct ModelArc {
     pub(crate) context: Context,
     /// Of a bound between threads: what must be chosen for its other event, besides.
     pub(crate) other_context: Context,
-    /// Whether nature chooses the duration.
+    /// Whether the environment chooses the duration.
     pub(crate) is_uncertain: bool,
     /// Whether it keeps both events at one time, and what is nature's at one is nature's at the other (SPEC 13.1).
     pub(crate) is_tie: bool,
@@ -272,7 +272,7 @@ impl Model {
         point(self.representatives[node])
     }
 
-    /// The gap that the rules ask for between the end of an interval and the start of another, which is `gap` unless nature
+    /// The gap that the rules ask for between the end of an interval and the start of another, which is `gap` unless the environment
     /// executes that start (SPEC 13.1).
     pub(crate) fn gap_before(&self, then: LabelId, gap: i64) -> i64 {
         let start = self.arcs[self.conditions.labels[then].arc].from;
@@ -448,7 +448,7 @@ pub(crate) const fn point(node: NodeId) -> PointId {
     PointId(node.0)
 }
 
-/// The node that a point stands for.
+/// The node that a point represents.
 pub(crate) const fn node(point: PointId) -> NodeId {
     NodeId(point.0)
 }
@@ -472,7 +472,7 @@ fn find(representatives: &TiSlice<NodeId, NodeId>, node: NodeId) -> NodeId {
     at
 }
 
-/// Lets the earlier of two nodes stand for both.
+/// Lets the earlier of two nodes represent both.
 fn join(representatives: &mut TiSlice<NodeId, NodeId>, earlier: NodeId, later: NodeId) {
     let (earlier, later) = (find(representatives, earlier), find(representatives, later));
     representatives[later] = earlier;

@@ -1,5 +1,5 @@
-//! For a mission that nature can break: the plan that there would be if the executive chose all durations, and the run in
-//! which nature breaks it.
+//! For a mission that the environment can break: the plan that there would be if the executive chose all durations, and
+//! the run in which the environment breaks it.
 
 use controllability::{FailingRun, failing_run};
 use exact::Time;

@@ -19,9 +19,9 @@ pub enum Search {
     /// a solver that learns about links, orderings and times as well finds a valid plan, the same one each time.
     #[default]
     ConflictDirected,
-    /// Of all states that are open the one goes on whose goals may still become best (A*, SPEC 12), so that the first plan is an
-    /// optimal one. Keeps all open states: for missions small enough to look on. Without an objective, or where there
-    /// are too many states, and for lists of plans, as [`Search::ConflictDirected`].
+    /// Of all states that are open the one continues whose goals may still become best (A*, SPEC 12), so that the first
+    /// plan is an optimal one. Keeps all open states: for missions small enough to look on. Without an objective, or
+    /// where there are too many states, and for lists of plans, as [`Search::ConflictDirected`].
     BestFirst,
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn plan(
 ) -> Result<Option<Plan>, Unplannable> {
     let mut choices = choices(&solution.alternatives);
     let (selected_nodes, selected_arcs) = closure(network, &choices);
-    // What is decided inside an alternative that is not taken is no part of the plan.
+    // What is decided inside an alternative that is not taken is not part of the plan.
     choices.retain(|choice| selected_nodes[network.decisions[choice.decision.index()].node.index()]);
     let mut making = Making {
         network,
@@ -70,7 +70,7 @@ pub(crate) fn plan(
             making.share(resource, &mut uses_ordered)?;
         }
     } else {
-        // Times that fit say nothing of those that nature will choose: what was decided suffices.
+        // Times that fit say nothing of those that the environment will choose: what was decided suffices.
         making.keep_uses_ordered(&mut uses_ordered)?;
     }
     making.keep_in_order(&mut orderings_added, &mut uses_ordered)?;
@@ -111,7 +111,7 @@ struct Making<'a> {
     model: &'a Model,
     solution: &'a Solution,
     is_selected: TiVec<ArcId, bool>,
-    /// Empty if nature executes none.
+    /// Empty if the environment executes none.
     natures_events: Vec<bool>,
     stn: Stn,
     /// Distances from and to the start with all links and no order yet: still bounds with orders.
@@ -502,7 +502,7 @@ impl Making<'_> {
         (end, start, self.gap_before(then, self.model.gap))
     }
 
-    /// No gap comes before what begins when nature says (SPEC 13.1).
+    /// No gap comes before what begins when the environment says (SPEC 13.1).
     fn gap_before(&self, then: LabelId, gap: i64) -> i64 {
         let start = self.network.interval(then).0;
         if self.natures_events.get(start.index()).copied().unwrap_or(false) { 0 } else { gap }
@@ -539,7 +539,7 @@ impl Making<'_> {
         }
     }
 
-    /// Each use takes what it needs from what nobody has, or from uses that are over: these end before it starts.
+    /// Each use takes what it needs from what no one has, or from uses that are over: these end before it starts.
     fn hand_on(
         &mut self,
         mut uses: Vec<ModelUse>,

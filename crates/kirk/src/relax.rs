@@ -89,7 +89,7 @@ fn candidates(network: &Network, failure: &Failure) -> Vec<(Vec<ArcId>, bool)> {
                 _ => continue,
             };
             let bounds = &network.arcs[arc.index()];
-            // Of what nature chooses the range becomes narrower, of all else wider.
+            // Of what the environment chooses the range becomes narrower, of all else wider.
             let is_at_end = is_lower && bounds.lower == Time::ZERO && !network.is_uncertain(arc);
             if wording::is_structural(bounds.kind) || is_at_end {
                 continue;
@@ -220,7 +220,7 @@ impl Trial<'_> {
 
     /// The value closest to the old one that a solution for another value keeps, too: what its arcs really take.
     fn closest_within(&self, arcs: &[ArcId], is_lower: bool, value: i64, solution: &Choices) -> i64 {
-        // Nature takes what it likes.
+        // The environment takes what it likes.
         if self.model.has_uncertainty {
             return value;
         }

@@ -14,7 +14,7 @@ use crate::model::{Context, INFINITE, Model, node};
 use crate::trace::{Constraint, CycleMember, TreeChoice};
 use crate::{precedence, wording};
 
-/// A reason that stays larger than this tells nobody anything.
+/// A reason that stays larger than this tells no one anything.
 const MAX_MEMBERS: usize = 400;
 
 /// The reason why no plan makes `choices`, if the solver proves it within the effort.
@@ -135,7 +135,7 @@ impl Shrinking<'_, '_> {
         self.members = members.to_vec();
     }
 
-    /// Whether the members are a contradiction; if so, only those stay that the proof needs. `None` if nobody knows.
+    /// Whether the members are a contradiction; if so, only those stay that the proof needs. `None` if no one knows.
     fn is_refuted(&mut self) -> Option<bool> {
         Some(matches!(self.refute()?, Refuted::By(_)))
     }
@@ -153,7 +153,7 @@ impl Shrinking<'_, '_> {
         Some(refuted)
     }
 
-    /// Leaves members out if what remains is a contradiction still. Whether it did; `None` if nobody knows.
+    /// Leaves members out if what remains is a contradiction still. Whether it did; `None` if no one knows.
     fn leave_out(&mut self, chunk: &[Member]) -> Option<bool> {
         let before = self.members.clone();
         let dropped: BTreeSet<Member> = chunk.iter().copied().collect();

@@ -123,7 +123,7 @@ pub enum Event {
         /// The choices; none if there is a contradiction whatever is chosen.
         choices: Vec<TreeChoice>,
     },
-    /// Whatever is done, nature can choose durations for which these choices leave no times (SPEC 13.1).
+    /// Whatever is done, the environment can choose durations for which these choices leave no times (SPEC 13.1).
     Uncontrollable { choices: Vec<TreeChoice> },
     /// Changes without length that are each before the next one, in a circle (SPEC 10.2).
     Circle {
@@ -158,13 +158,13 @@ pub enum Event {
         /// Orders of uses, as in [`tpn::Plan::uses_ordered`].
         uses: Vec<UseOrdering>,
     },
-    /// A best-first search opens the state, to go on with it if none is better: what no plan with its choices is better
-    /// than, by goal.
+    /// A best-first search opens the state, to continue with it if none is better: what no plan with its choices is
+    /// better than, by goal.
     Bound {
         /// The values, in the order of the goals.
         values: Vec<Rational>,
     },
-    /// A best-first search goes on with the state, for of those that are open none can become better.
+    /// A best-first search continues with the state, for of those that are open none can become better.
     Visit {
         /// What no plan with its choices is better than, in the order of the goals.
         values: Vec<Rational>,
@@ -183,7 +183,7 @@ pub enum Event {
 pub struct SearchRound {
     /// Whether choices are made in the order of the text; otherwise what has to do with conflicts comes first.
     pub is_in_textual_order: bool,
-    /// Whether the state that may lead to the best plan goes on, and not what was decided last.
+    /// Whether the state that may lead to the best plan continues, and not what was decided last.
     pub is_best_first: bool,
     /// The values of the first goals in the best plan so far: the last one of these is to be better, the others as good.
     pub values: Vec<Rational>,
@@ -376,7 +376,7 @@ impl Trace {
         })
     }
 
-    /// The states that stand for alternatives of the same choice point as `node`, in order, `node` included.
+    /// The states that represent alternatives of the same choice point as `node`, in order, `node` included.
     pub fn children(&self, node: TreeNodeId) -> impl Iterator<Item = TreeNodeId> + '_ {
         (0..).zip(&self.tree).filter(move |(_, child)| child.parent == Some(node)).map(|(id, _)| id)
     }

@@ -51,7 +51,7 @@ struct Counted<K> {
 }
 
 impl<K> Counted<K> {
-    /// The name, in the plural if it stands for several: `the delay`, `2 delays`, `MODE=A (2 times)`.
+    /// The name, in the plural if it represents several: `the delay`, `2 delays`, `MODE=A (2 times)`.
     fn text(&self) -> String {
         let Self { name, count, .. } = self;
         if *count == 1 {
@@ -232,7 +232,7 @@ impl Told<'_> {
         })
     }
 
-    /// What nature chooses, and what that leaves no times for.
+    /// What the environment chooses, and what that leaves no times for.
     fn controllability(&self) -> String {
         let (mut natures, mut rest) = (Vec::new(), Vec::new());
         let push = |names: &mut Vec<String>, name: String| {
@@ -492,7 +492,7 @@ pub(crate) fn is_telling(network: &Network, member: &CycleMember) -> bool {
 /// Of a longer run only the last events are told.
 const MAX_RUN_LINES: usize = 20;
 
-/// A run in which nature makes a mission fail, a line for each thing that happens.
+/// A run in which the environment makes a mission fail, a line for each thing that happens.
 pub(crate) fn failing_run(network: &Network, run: &FailingRun) -> Vec<String> {
     let event = |event: &RunEvent| {
         let time = event.time.readable();

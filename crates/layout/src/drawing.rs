@@ -50,9 +50,9 @@ pub struct NodeShape {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArcShape {
     pub id: ArcId,
-    /// What it stands for.
+    /// What it represents.
     pub kind: ArcKind,
-    /// Whether nature chooses the duration.
+    /// Whether the environment chooses the duration.
     pub is_contingent: bool,
     /// How it is routed.
     pub route: Route,
@@ -147,7 +147,7 @@ pub enum BlockForm {
     Collapsed,
 }
 
-/// A line from a node to another place that stands for the same node.
+/// A line from a node to another place that represents the same node.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Connector {
     pub node: NodeId,

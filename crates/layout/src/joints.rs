@@ -35,7 +35,7 @@ impl<'a> Joints<'a> {
         Self { drawing, network, of }
     }
 
-    /// The curve of an arc with the lines before and behind it that stand for its events.
+    /// The curve of an arc with the lines before and behind it that represent its events.
     pub(crate) fn way(&self, shape: &ArcShape) -> (Point, Vec<Piece>) {
         let mut start = shape.start;
         let mut pieces = self.drawing.pieces(shape).to_vec();

@@ -64,7 +64,7 @@ pub enum TextRole {
     Muted,
     /// Bounds of a duration.
     Bounds,
-    /// The range of a duration that nature chooses.
+    /// The range of a duration that the environment chooses.
     Nature,
     /// Bounds that say nothing but "at once": `[0,0]`.
     ZeroBounds,

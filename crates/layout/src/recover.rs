@@ -9,7 +9,7 @@ use tpn::{Arc, ArcId, ArcKind, Network, NodeId, Role};
 
 use crate::tree::{Branch, Core, PartId, PartKind, Tree};
 
-/// What an edge of the shrinking graph stands for. Items are made after the items they are made of.
+/// What an edge of the shrinking graph represents. Items are made after the items they are made of.
 #[derive(Clone, Copy, Debug)]
 struct Item {
     from: u32,

@@ -147,7 +147,7 @@ pub fn bounds_label(lower: Time, upper: Bound) -> SmolStr {
     }
 }
 
-/// The bounds of an arc, and that nature chooses within them: `[20,40] contingent`.
+/// The bounds of an arc, and that the environment chooses within them: `[20,40] contingent`.
 pub fn arc_bounds_label(arc: &Arc) -> SmolStr {
     let bounds = bounds_label(arc.lower, arc.upper);
     if arc.is_contingent { format_smolstr!("{bounds} contingent") } else { bounds }

@@ -80,7 +80,7 @@ pub const RULES: [Rule; 13] = {
     [
         Rule {
             kind: Update,
-            // A newer text ends what was asked of the older one; a text to compare with stands for itself.
+            // A newer text ends what was asked of the older one; a text to compare with represents itself.
             supersedes: &[
                 Update,
                 Review,

@@ -40,7 +40,7 @@ pub trait Transport {
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
     Ready,
-    /// It goes on with the job under way.
+    /// It continues with the job under way.
     Alive,
     /// It does not have the text that the job under way edits: it gives the job up, and needs all of the text.
     TextLost,
@@ -77,7 +77,7 @@ pub enum LinkEvent {
 /// A core at work that says nothing for so long has died without a word.
 pub const SILENCE_SECS: f64 = 60.0;
 
-/// A job is tried on a fresh core once more after a core stopped over it.
+/// A job is tried on a fresh core again after a core stopped over it.
 const MAX_FAILURES: u32 = 2;
 
 /// The way to a core.
@@ -195,7 +195,7 @@ impl<T: Transport> Link<T> {
         if let Some(since) = self.interrupted_secs
             && now_secs - since >= self.transport.patience_secs()
         {
-            // It was not wanted any more, so that nobody is told.
+            // It was not wanted any more, so that no one is told.
             self.end_core();
             self.queue.core_ended();
             self.push_on();

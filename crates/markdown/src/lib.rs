@@ -58,7 +58,7 @@ pub enum Content {
         first: Option<u64>,
         items: Vec<Vec<Block>>,
     },
-    /// What somebody else says, or what is set apart.
+    /// What someone else says, or what is set apart.
     Quote(Vec<Block>),
     /// A table; each row has as many cells as the first one.
     Table {

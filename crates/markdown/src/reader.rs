@@ -53,7 +53,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The block that has just begun.
+    /// The block that has just started.
     fn block(&mut self, tag: Tag<'_>, line: u32) -> Option<Content> {
         match tag {
             Tag::Heading { level, .. } => Some(Content::Heading { level: level as u8, text: self.runs() }),

@@ -1,4 +1,4 @@
-//! Texts inside documents of other notations, so that each stands for itself: in XML, HTML and SVG, and in Graphviz.
+//! Texts inside documents of other notations, so that each represents itself: in XML, HTML and SVG, and in Graphviz.
 //!
 //! Not a library's: those that escape XML (`quick-xml`, `html-escape`, `askama_escape`) leave control characters, which no
 //! document may have, not even escaped.

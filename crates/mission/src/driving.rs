@@ -1,7 +1,7 @@
 //! Where vehicles are over time: the paths of a plan's traverses laid along the times of a schedule.
 //!
 //! The leader of a traverse drives its path at constant speed from the traverse's start to its end; the others keep
-//! formation behind it. When the same vehicles drive on, their formation goes on along the path before.
+//! formation behind it. When the same vehicles drive on, their formation continues along the path before.
 
 use std::sync::Arc;
 
@@ -116,7 +116,7 @@ fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
 }
 
 /// The path with what the same vehicles drove directly before it, and how long that was in meters: the formation
-/// goes on from where it stopped.
+/// continues from where it stopped.
 fn prolonged_back(drive: &Drive, before: &[Drive]) -> (Path, f64) {
     let mut points: Vec<Point2<f64>> = drive.path.points_m.clone();
     let mut driven_m = 0.0;

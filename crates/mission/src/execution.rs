@@ -39,8 +39,8 @@ pub struct Ran {
 }
 
 /// Executes the plan of `planned`, which `problem` gave; `None` if it has no plan. Vehicles drive their traverses in
-/// simulation, as late as that makes them; what nature chooses and the script does not say is drawn by the seed of the
-/// script, or of `problem`.
+/// simulation, as late as that makes them; what the environment chooses and the script does not say is drawn by the
+/// seed of the script, or of `problem`.
 pub fn execute(
     problem: &Problem<'_>,
     planned: &Planned,

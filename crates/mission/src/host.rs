@@ -1,4 +1,4 @@
-//! Where a core runs: its clock, whether it should go on, and where its answers go.
+//! Where a core runs: its clock, whether it should continue, and where its answers go.
 
 use std::sync::Arc;
 

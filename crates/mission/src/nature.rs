@@ -1,4 +1,4 @@
-//! What nature chooses in a run (SPEC 13.2): durations drawn from their ranges by the run's seed.
+//! What the environment chooses in a run (SPEC 13.2): durations drawn from their ranges by the run's seed.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use tpn::{Network, Occurrence};
 
 use crate::draws::draw;
 
-/// How nature chooses durations.
+/// How the environment chooses durations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Nature {
     Chance,
@@ -24,8 +24,8 @@ const NATURE: u64 = 0x006e_6174_7572_6521;
 /// And how long ending activities early takes, by this.
 const ABORTS: u64 = 0x0061_626f_7274_7321;
 
-/// How long each duration of nature's is in the run of `seed`, by occurrence. `named` are distributions that are given;
-/// all others are uniform.
+/// How long each duration of the environment's is in the run of `seed`, by occurrence. `named` are distributions that
+/// are given; all others are uniform.
 pub(crate) fn choose(
     network: &Network,
     seed: u64,

@@ -793,7 +793,7 @@ pub(crate) fn with_paths(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId
         .filter_map(|traverse| traverse_path(&traverse.route, traverse.legs.as_ref().ok()?, map?))
         .collect();
     let unit_seconds = problem.program.options.time_unit.seconds();
-    // A path that has no exact duration is no reason to give up the plan: the traverse keeps its own bounds.
+    // A path that has no exact duration is not a reason to give up the plan: the traverse keeps its own bounds.
     let mut network = tpn::path::insert_paths(problem.network, &paths, unit_seconds)
         .unwrap_or_else(|_| problem.network.as_ref().clone());
     for (&occurrence, traverse) in inserted {

@@ -66,7 +66,7 @@ struct Active {
 }
 
 impl Moment {
-    /// Lets those begin that wait for nobody any more.
+    /// Lets those begin that wait for no one any more.
     fn let_begin(&mut self) {
         let mut waiting = Vec::new();
         for active in std::mem::take(&mut self.waiting) {
@@ -200,7 +200,7 @@ impl<'run> ProgramExecutor<'run> {
         Ok(())
     }
 
-    /// Takes one step. `false` if there is nobody left to wait for.
+    /// Takes one step. `false` if there is no one left to wait for.
     fn step(&mut self) -> Result<bool, Overflow> {
         let Some(last) = self.moments.last_mut() else { return Ok(false) };
         last.let_begin();
@@ -275,7 +275,7 @@ impl<'run> ProgramExecutor<'run> {
         Ok(())
     }
 
-    /// Says of those whose time is over that they do not end in time. They go on commanding.
+    /// Says of those whose time is over that they do not end in time. They continue commanding.
     fn give_up(&mut self, moment: &Moment) {
         for active in moment.active().filter(|active| active.given_up <= moment.time) {
             let told = self.told.entry(active.occurrence).or_default();
@@ -377,7 +377,7 @@ impl ActivityExecutor for ProgramExecutor<'_> {
     }
 }
 
-/// Why no program goes on after a step, if nothing explains what was observed in it.
+/// Why no program continues after a step, if nothing explains what was observed in it.
 fn unexplained(model: &Model, outcome: &StepOutcome) -> Option<String> {
     match outcome {
         StepOutcome::Explained => None,

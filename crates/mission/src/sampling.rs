@@ -28,7 +28,7 @@ use crate::traverse::Paths;
 
 /// A plan made ready for many runs with chance.
 pub struct Sampler {
-    /// The plan's, in which nature also chooses what the plan assumes.
+    /// The plan's, in which the environment also chooses what the plan assumes.
     network: Arc<Network>,
     stage: Stage,
     windows: Vec<(SmolStr, NodeId, Time, Time)>,
@@ -43,7 +43,7 @@ pub struct Sampler {
     planned: Option<Planned>,
     rocks: Rocks,
     nature: Nature,
-    /// What is said of the durations that nature chooses.
+    /// What is said of the durations that the environment chooses.
     natures: Vec<(SmolStr, Distribution)>,
 }
 
@@ -137,7 +137,7 @@ impl Sampler {
         self.count(&ran, contact, number, tally)
     }
 
-    /// What nature chooses in the run of a seed.
+    /// What the environment chooses in the run of a seed.
     fn chosen(&self, seed: u64) -> Result<BTreeMap<SmolStr, Time>, PlanError> {
         let named = |occurrence: &Occurrence| {
             self.natures
@@ -279,8 +279,8 @@ fn windows(network: &Network, plan: &Plan) -> Vec<(SmolStr, NodeId, Time, Time)>
     found
 }
 
-/// The network in which nature chooses when the world acts, instead of the plan that assumes it (SPEC 13.3): from the
-/// bounds that the mission gives it, or up to the mission's end where they have none. What the mission reads as
+/// The network in which the environment chooses when the world acts, instead of the plan that assumes it (SPEC 13.3):
+/// from the bounds that the mission gives it, or up to the mission's end where they have none. What the mission reads as
 /// ordinary, and what is to be as planned, stays as it is.
 fn with_assumed(program: &Program, network: &Arc<Network>, uncertainty: &Uncertainty) -> Arc<Network> {
     let assumed = tpn::assumed(program);
@@ -320,7 +320,7 @@ fn durations(
         };
         occurrence.arc.is_some_and(is_chosen)
     };
-    // Whoever says what nature chooses leaves the rest to the plan.
+    // Whoever says what the environment chooses leaves the rest to the plan.
     let is_told = network.occurrences.iter().any(is_natures);
     let primitives = network.occurrences.iter().enumerate();
     primitives
@@ -341,7 +341,7 @@ fn durations(
         .collect()
 }
 
-/// What is said of durations that nature chooses: by the name of the occurrence, or without its count.
+/// What is said of durations that the environment chooses: by the name of the occurrence, or without its count.
 fn natures(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distribution)> {
     natures_ranges(network)
         .map(|(occurrence, [lower, upper])| {
@@ -351,7 +351,7 @@ fn natures(network: &Network, uncertainty: &Uncertainty) -> Vec<(SmolStr, Distri
         .collect()
 }
 
-/// What is said of the duration of an occurrence that nature chooses.
+/// What is said of the duration of an occurrence that the environment chooses.
 fn said_of(occurrence: &Occurrence, uncertainty: &Uncertainty) -> Option<Distribution> {
     let said = &uncertainty.durations;
     let named = said.get(&occurrence.name).or_else(|| said.get(&occurrence.activity));

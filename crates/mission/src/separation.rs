@@ -74,8 +74,8 @@ impl Part {
 }
 
 /// All pairs of vehicles that do not drive together and can come nearer than the sum of their radii and [`GAP_M`] in some
-/// schedule of the plan, once for each pair of what they drive. A vehicle that has not begun to move or has stopped stands
-/// where it is. `tracks` are those of [`driving::all_tracks`].
+/// schedule of the plan, once for each pair of what they drive. A vehicle that has not started to move or has stopped
+/// stands where it is. `tracks` are those of [`driving::all_tracks`].
 pub(crate) fn meetings(
     (drives, tracks): (&[Drive], Vec<Vec<Vec<Place>>>),
     motions: &[VehicleMotion],

@@ -112,7 +112,7 @@ pub(crate) struct Driving<'run> {
     drives: Vec<SimulatedDrive>,
     /// What range finders have seen that is not on the map: the map that all vehicles share.
     seen: SeenMap,
-    /// How long traverses take whose durations nature chooses, by name.
+    /// How long traverses take whose durations the environment chooses, by name.
     chosen: BTreeMap<SmolStr, Time>,
 }
 
@@ -200,7 +200,7 @@ impl<'run> Driving<'run> {
         Some(format!("{} stops {short_m:.2} m short of {}{why}", name(leader), location.name.text))
     }
 
-    /// Drives at the speed that durations need which nature chose, by the names of their occurrences.
+    /// Drives at the speed that durations need which the environment chose, by the names of their occurrences.
     pub(crate) fn hurry(&mut self, chosen: BTreeMap<SmolStr, Time>) {
         self.chosen = chosen;
     }

@@ -268,7 +268,7 @@ pub enum Preference {
     Shortest,
 }
 
-/// A leg's inputs. The free space stands for map, obstacles and vehicle: it is shared while they stay the same.
+/// A leg's inputs. The free space represents map, obstacles and vehicle: it is shared while they stay the same.
 struct LegKey {
     space: Arc<ConfigurationSpace>,
     from_m: Point2<f64>,

@@ -267,7 +267,7 @@ impl Convoy {
         lag_m > WAITING_SPACINGS * self.spacing_m
     }
 
-    /// Of vehicles that wait for each other in a ring, the first of the convoy goes on, around the others.
+    /// Of vehicles that wait for each other in a ring, the first of the convoy continues, around the others.
     fn give_way(&mut self, lags_m: &[f64]) {
         let count = self.members.len();
         let waits_for = |vehicle: usize| -> Vec<usize> {

@@ -282,7 +282,7 @@ impl Driver {
         self.seen.set_vehicles(vehicles);
     }
 
-    /// Goes on along another path from where it is, at its speed: after a report.
+    /// Continues along another path from where it is, at its speed: after a report.
     pub fn follow(&mut self, path: Path) {
         self.length_m = path.length_m();
         self.path = path;

@@ -14,7 +14,7 @@ pub enum PlannerKind {
     Rrt,
     /// A tree from each end, each reaching for the other (Kuffner and `LaValle` 2000).
     RrtConnect,
-    /// RRT* with informed sampling: goes on to shorten its path.
+    /// RRT* with informed sampling: continues to shorten its path.
     RrtStar,
     /// An RRT of motions within the limits of a skid-steer vehicle, at rest at both ends.
     Kinodynamic,

@@ -71,7 +71,7 @@ impl Blocks {
         (column < self.columns && row < self.rows).then_some((row * self.columns + column) as usize)
     }
 
-    /// The free place that stands for a block: its middle, or else the middle of its most open cell.
+    /// The free place that represents a block: its middle, or else the middle of its most open cell.
     fn place(&self, space: &ConfigurationSpace, block: usize) -> Option<Point2<f64>> {
         let at = [block as u32 % self.columns, block as u32 / self.columns];
         let low = [0, 1].map(|axis| self.low[axis] + at[axis] * self.side);

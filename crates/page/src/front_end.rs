@@ -22,7 +22,7 @@ use crate::{
     refusal::{from_remote, refusal, words},
 };
 
-/// Starts the front end on a canvas, as [`FrontEnd::draw_on`] goes on on another one.
+/// Starts the front end on a canvas, as [`FrontEnd::draw_on`] continues on another one.
 #[wasm_bindgen]
 pub async fn start(
     canvas: HtmlCanvasElement,
@@ -35,7 +35,7 @@ pub async fn start(
     Ok(front_end)
 }
 
-/// What goes on when the canvas is another one.
+/// What continues when the canvas is another one.
 struct Page {
     app: Enroute,
     core: CoreLink,
@@ -78,7 +78,7 @@ impl eframe::App for PageApp {
 }
 
 /// Whether a key press is one of Enroute's commands, so that the browser should leave it alone. `key` and `code` are what
-/// JavaScript calls it and its place on the keyboard. Keys that type are nobody's business here.
+/// JavaScript calls it and its place on the keyboard. Keys that type are no one's business here.
 #[wasm_bindgen(js_name = usesKey)]
 pub fn uses_key(key: &str, code: &str, control: bool, alt: bool, shift: bool) -> bool {
     let is_function_key = key.len() > 1 && key.starts_with('F');
@@ -120,7 +120,7 @@ pub struct FrontEnd {
 
 #[wasm_bindgen]
 impl FrontEnd {
-    /// Goes on on another canvas, when the browser has taken the graphics of the one before away. Rejects with the code
+    /// Continues on another canvas, when the browser has taken the graphics of the one before away. Rejects with the code
     /// `no-graphics` when it cannot draw there; the state stays, and another try may do. `globalThis.graphicsLost` is told
     /// this `turn` when a WebGPU device is lost; `avoids_webgpu` asks for WebGL2.
     #[wasm_bindgen(js_name = drawOn)]
@@ -212,7 +212,7 @@ impl FrontEnd {
             if !typed.is_empty() {
                 let events = typed.into_iter().filter_map(Typed::event).collect();
                 let input = egui::RawInput { events, focused: true, ..egui::RawInput::default() };
-                // Nobody sees this frame; it takes in what was typed.
+                // No one sees this frame; it takes in what was typed.
                 let _ = page.egui.clone().run_ui(input, |ui| page.app.show(ui, None));
             }
             page.app.keep_now();

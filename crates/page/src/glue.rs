@@ -86,7 +86,7 @@ extern "C" {
     /// A planning core in a web worker.
     pub(crate) type CoreWorker;
 
-    /// How long it may go on after [`CoreWorker::supersede`], in milliseconds.
+    /// How long it may continue after [`CoreWorker::supersede`], in milliseconds.
     #[wasm_bindgen(method, getter, js_name = patienceMillis)]
     pub(crate) fn patience_millis(this: &CoreWorker) -> f64;
 

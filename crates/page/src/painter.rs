@@ -23,7 +23,7 @@ extern "C" {
 /// The side of the largest texture that is asked for where the graphics card has it: enough for a window on a large screen.
 const LARGEST_TEXTURE: u32 = 8192;
 
-/// Lets the page go on when something cannot be drawn, and hear when nothing can be any more.
+/// Lets the page continue when something cannot be drawn, and hear when nothing can be any more.
 pub(crate) fn survive_errors(render_state: Option<&RenderState>, turn: u32) {
     let Some(state) = render_state else { return };
     state.device.on_uncaptured_error(Arc::new(|error| {

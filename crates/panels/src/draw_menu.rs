@@ -74,7 +74,7 @@ pub(crate) fn terrain(
     });
 }
 
-/// Cut, copy and paste while network or timeline is the panel in use and nobody types.
+/// Cut, copy and paste while network or timeline is the panel in use and no one types.
 pub(crate) fn clipboard(ui: &Ui, context: &Context<'_>, commands: &mut CommandSender) {
     if !matches!(context.state.window.active_panel, PanelKind::Network | PanelKind::Timeline) {
         return;

@@ -44,7 +44,7 @@ pub(crate) fn is_pressed(response: &egui::Response) -> bool {
     response.is_pointer_button_down_on() || response.clicked()
 }
 
-/// The widget id of a panel as a whole: who has the keyboard while somebody has turned to it and to nothing in it.
+/// The widget id of a panel as a whole: who has the keyboard while someone has turned to it and to nothing in it.
 pub fn region_id(panel: workbench::PanelKind) -> egui::Id {
     egui::Id::unique(("panel", panel.name()))
 }

@@ -77,7 +77,7 @@ impl Context<'_> {
 
 /// A part of the window that shows one aspect of the state.
 ///
-/// Its own fields hold only what concerns nobody else: scroll positions, caches, cameras. Everything it wants changed
+/// Its own fields hold only what concerns no one else: scroll positions, caches, cameras. Everything it wants changed
 /// goes through `commands`, which are applied before the next frame.
 pub trait Panel {
     /// Shows the panel, filling `ui`.

@@ -34,7 +34,7 @@ pub(crate) fn check(
     checker.check_components(components);
 }
 
-/// What a name in a constraint of a class stands for.
+/// What a name in a constraint of a class represents.
 struct Meaning {
     values: Vec<SmolStr>,
     is_command: bool,

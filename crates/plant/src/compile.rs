@@ -501,7 +501,7 @@ impl Compiler<'_, '_> {
         Some(Formula::Any(each.collect()).given(&|_| None))
     }
 
-    /// What a name stands for in the constraints of a component.
+    /// What a name represents in the constraints of a component.
     fn named(&self, id: ComponentId, name: &str) -> Option<Named<'_>> {
         self.field(id, name).or_else(|| {
             if let Some(other) = self.reached(id, name) {

@@ -73,7 +73,7 @@ impl Domains {
         domains
     }
 
-    /// Where domains that were `settled` stand, to go on from there.
+    /// Where domains that were `settled` stand, to continue from there.
     pub(crate) fn resume(&mut self, settled: &Settled) -> Point {
         self.standing.clone_from(&settled.standing);
         self.point()

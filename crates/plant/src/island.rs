@@ -31,7 +31,7 @@ pub(crate) struct Saying {
     pub(crate) table: Option<Table>,
 }
 
-/// A set of components of an island, of which bit `b` stands for all places that are `b` modulo 128.
+/// A set of components of an island, of which bit `b` represents all places that are `b` modulo 128.
 ///
 /// In islands of more than 128 components it may therefore name more components than are meant, never fewer.
 pub(crate) type Places = u128;

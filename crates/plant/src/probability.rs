@@ -6,7 +6,7 @@ use num_rational::BigRational;
 /// An exact fraction.
 pub type Probability = BigRational;
 
-/// Reads `0.01`, `1/100` or `1`; `None` if it is no such number, negative, or longer than 18 digits.
+/// Reads `0.01`, `1/100` or `1`; `None` if it is not such a number, negative, or longer than 18 digits.
 pub fn parse(text: &str) -> Option<(u64, u64)> {
     let digits = |text: &str| {
         (!text.is_empty() && text.len() <= 18 && text.bytes().all(|byte| byte.is_ascii_digit()))

@@ -81,7 +81,7 @@ fn open_comments(standing: &Standing<'_>) -> String {
     format!("<h3>Open comments</h3>\n{}", table(&["", "Who", "When", "Words"], rows))
 }
 
-/// Who acknowledged a line and why, if somebody has.
+/// Who acknowledged a line and why, if someone has.
 pub(crate) fn acknowledgment(acknowledged: &BTreeMap<&LineKey, &Entry>, key: &LineKey) -> String {
     let Some(entry) = acknowledged.get(key) else { return String::new() };
     let until = match &entry.act {
@@ -114,7 +114,7 @@ pub(crate) fn waivers(record: &Record) -> String {
     format!("<h2>Waivers</h2>\n{}", table(&["", "Item", "Reason", "Who", "Lapses on"], rows))
 }
 
-/// What differs since the last approval; nothing where nobody has approved.
+/// What differs since the last approval; nothing where no one has approved.
 pub(crate) fn changes(document: &Document<'_>, record: &Record) -> String {
     let Some((entry, approved)) = record.last_approval() else { return String::new() };
     let since = since(approved, document.snapshot, document.review, document.robustness);

@@ -1,6 +1,6 @@
 //! A plan's schedule for other tools: tables, JSON, Open MCT and calendars. All times are those of the earliest schedule,
 //! which every plan's constraints allow; windows are given where the format has room for them. Each says which content it
-//! is of, how that stands with its board, and which events somebody has pinned.
+//! is of, how that stands with its board, and which events someone has pinned.
 
 use exact::{Bound, Time};
 use review::PlanStatus;
@@ -320,7 +320,7 @@ fn calendar_text(text: &str) -> String {
     out
 }
 
-/// Lines are at most 75 bytes; what is longer goes on after a line end and a space, between characters.
+/// Lines are at most 75 bytes; what is longer continues after a line end and a space, between characters.
 const LONGEST_LINE_BYTES: usize = 75;
 
 fn write_folded(line: &str, out: &mut String) {

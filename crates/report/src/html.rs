@@ -99,7 +99,7 @@ fn sheet_rules(sheets: usize) -> String {
     (1..=sheets).map(|sheet| format!(".sheets :nth-child({sheet}) {{ --sheet: {sheet}; }}\n")).collect()
 }
 
-/// The hash and the numbers of pages for these browsers. They are no part of what is read aloud.
+/// The hash and the numbers of pages for these browsers. They are not part of what is read aloud.
 fn in_content(hash: &str, sheets: usize) -> String {
     let numbers: String = (1..=sheets).map(|sheet| format!("<i>Page {sheet}</i>")).collect();
     format!(

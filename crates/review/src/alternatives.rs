@@ -1,4 +1,4 @@
-//! Why the alternatives of a choice were not taken: each is planned once more with that alternative, and the answer is
+//! Why the alternatives of a choice were not taken: each is planned again with that alternative, and the answer is
 //! the reason.
 
 use exact::{Bound, Time};
@@ -77,7 +77,7 @@ const MAX_REASONS: usize = 3;
 /// Characters of an alternative that are shown.
 const LONGEST_BEGINNING: usize = 60;
 
-/// Plans once more with each alternative that `plan` does not take.
+/// Plans again with each alternative that `plan` does not take.
 pub(super) struct Examiner<'input> {
     pub(super) network: &'input Network,
     pub(super) plan: &'input Plan,

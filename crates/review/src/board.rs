@@ -13,7 +13,7 @@ use super::{FlightRules, Line, Review, Section, Status, Waiver};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlanStatus {
-    /// Nobody has said anything of it.
+    /// No one has said anything of it.
     Draft,
     /// The board is at work.
     InReview,
@@ -110,7 +110,7 @@ impl<'a> Accepted<'a> {
     }
 
     /// Whether an approval has signed an acknowledgment or a waiver that still holds for each line for attention that
-    /// somebody has accepted. Without a review the lines are not known: all that the approval has signed has to hold.
+    /// someone has accepted. Without a review the lines are not known: all that the approval has signed has to hold.
     fn hold_for(&self, approval: &Entry, review: Option<&Review>) -> bool {
         let signed: BTreeSet<&str> = approval.acknowledged.iter().map(String::as_str).collect();
         let Some(review) = review else {
@@ -141,7 +141,7 @@ pub struct Standing<'a> {
     pub lapsed: Option<(&'a Entry, &'static str)>,
     /// Comments that are not resolved, oldest first.
     pub open_comments: Vec<&'a Entry>,
-    /// Lines for attention that nobody has acknowledged, and that no waiver in force is about.
+    /// Lines for attention that no one has acknowledged, and that no waiver in force is about.
     pub unacknowledged: Vec<(Section, &'a Line)>,
     /// The digests of the acknowledgments and waivers that an approval of the present plan relies on, and signs.
     pub relied_on: Vec<String>,

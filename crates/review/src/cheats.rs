@@ -1,4 +1,4 @@
-//! Each way to cheat a board, tried: what is forged, moved, dropped, replayed or said by somebody else counts for nothing.
+//! Each way to cheat a board, tried: what is forged, moved, dropped, replayed or said by someone else counts for nothing.
 
 use serde_json::{Value, json};
 use snapshot::{Goal, Robustness, RobustnessSettings, Tally, Uncertainty};
@@ -49,7 +49,7 @@ impl Board {
         }
     }
 
-    /// Somebody says something, signed by a key. Returns the entry's digest.
+    /// Someone says something, signed by a key. Returns the entry's digest.
     fn say_with(&mut self, by: &str, act: Act, secret: &SecretKey) -> String {
         let who = self.who(by);
         self.record.add(who, act, secret)
@@ -85,7 +85,7 @@ impl Board {
         standing(&self.record, &Present::of_review(&self.review)).seats_in_words()
     }
 
-    /// The history as somebody reads it who was handed the document with something done to it.
+    /// The history as someone reads it who was handed the document with something done to it.
     fn read(&self, change: impl FnOnce(&mut Value)) -> Result<Record, RecordError> {
         let mut document: Value = serde_json::from_str(&self.record.to_json()).expect("JSON");
         change(&mut document);
@@ -130,7 +130,7 @@ fn one_person_with_three_spellings_is_one_person() {
     }
     board.approve("Ada");
     assert_eq!((board.seats(), board.status()), ("Reviewer 1 of 2".to_owned(), PlanStatus::InReview));
-    // With keys that nobody trusts, none of them is anybody.
+    // With keys that no one trusts, none of them is anybody.
     for (spelled, secret) in [("Àda", key("b")), ("\u{410}da", key("c")), ("Grace", key("d"))] {
         board.approve_with(spelled, &secret);
         let (signature, problem) = last_check(&board.record);
@@ -167,7 +167,7 @@ fn rules_that_change_lapse_approvals_and_rules_of_nobody_are_none() {
     let rules = board.record.rules().clone();
     let one = FlightRules { board: vec![Seat::new("Reviewer", 1)], ..rules.clone() };
     let flat = FlightRules { slope_deg: Some(1.0), ..rules.clone() };
-    // An outsider asks for less: nobody heeds it.
+    // An outsider asks for less: no one heeds it.
     board.say_with("Eve", Act::Rules { rules: one.clone() }, &key("Eve"));
     assert_eq!((board.record.rules(), board.status()), (&rules, PlanStatus::Approved));
     for changed in [one, flat] {
@@ -188,7 +188,7 @@ fn rules_that_change_lapse_approvals_and_rules_of_nobody_are_none() {
     assert!(last_check(&forged).1.contains("other flight rules"), "{:?}", last_check(&forged));
 }
 
-/// What somebody says, without an act of its own.
+/// What someone says, without an act of its own.
 fn said(who: Who) -> Said {
     let Who { by, role, time, content_hash, plan_hash } = who;
     let act = Act::Comment { about: None, to: None, text: "Fine.".to_owned() };
@@ -197,7 +197,7 @@ fn said(who: Who) -> Said {
     Said { by, mission, key: None, role, time, content_hash, plan_hash, rules, acknowledged, former, act }
 }
 
-/// A record to which somebody has written an entry by other means than this program.
+/// A record to which someone has written an entry by other means than this program.
 fn with_entry(record: &Record, entry: &Entry) -> Record {
     let mut document: Value = serde_json::from_str(&record.to_json()).expect("JSON");
     let written = json!({ "digest": entry.digest(), "said": entry.raw(), "signature": entry.signature() });
@@ -225,7 +225,7 @@ fn nobody_approves_in_the_role_of_somebody_else() {
         board.record.approve(who, subject, String::new(), Vec::new(), &key(by));
         assert_eq!(board.status().is_approved(), by == "Grace", "{by}");
     }
-    // A role cannot name fewer people than have to approve, or somebody twice.
+    // A role cannot name fewer people than have to approve, or someone twice.
     for people in [vec![key("Ada")], vec![key("Ada"), key("Ada")]] {
         let people = people.iter().map(SecretKey::public).collect();
         assert!(board_of(Seat { people, ..Seat::new("Safety", 2) }).problem().is_some());
@@ -321,7 +321,7 @@ fn a_forged_history_counts_for_nothing_from_the_forged_entry_on() {
         assert!(!board.status_of(&forged).is_approved());
         assert_eq!(forged.counted().count(), 1, "{member}");
     }
-    // A forger with a key of his own signs, and nobody knows the key.
+    // A forger with a key of his own signs, and no one knows the key.
     let mut forger = Board::new(LASTING);
     forger.approve_with("Ada", &key("Eve"));
     forger.approve_with("Grace", &key("Mallory"));
@@ -534,7 +534,7 @@ fn acknowledgments_and_rules_of_another_mission_count_for_nothing() {
     assert_eq!((unacknowledged(&mine), mine.record.rules()), (open, &rules));
 }
 
-/// The lines for attention that nobody has acknowledged.
+/// The lines for attention that no one has acknowledged.
 fn unacknowledged(board: &Board) -> Vec<LineKey> {
     let mut review = board.review.clone();
     review.judge(board.record.rules(), None);
@@ -600,7 +600,7 @@ fn runs_with_chance_count_only_as_an_approval_has_signed_them() {
     let content = board.review.content_hash.clone();
     let found = tallied(90);
     board.record.keep_runs(Runs::new(&content, &found));
-    // Nobody has signed them: they are left out when the document is read.
+    // No one has signed them: they are left out when the document is read.
     let mut read = board.read(|_| ()).expect("it is whole");
     assert_eq!((read.drop_unsigned_runs(), read.runs_of(&content)), (1, None));
     let subject = Subject::new(&board.review, &board.source, Goal::Default, 0, Value::Null, Some(&found));
@@ -618,7 +618,7 @@ fn runs_with_chance_count_only_as_an_approval_has_signed_them() {
         assert_eq!(read.drop_unsigned_runs(), 1);
         assert_eq!(read.runs_of(&content), None);
     }
-    // An approval of somebody unknown signs nothing.
+    // An approval of someone unknown signs nothing.
     let mut read = Record::from_json(&board.record.to_json()).expect("it is whole");
     read.judge(&trust(&["Chair"]), NOW);
     assert_eq!(read.drop_unsigned_runs(), 1);
@@ -682,7 +682,7 @@ fn a_waiver_lapses_on_its_date() {
         board.say("Chair", waive);
         assert!(last_check(&board.record).1.starts_with("a waiver needs"), "{:?}", last_check(&board.record));
     }
-    // Nobody waives for a day that has passed, or that ends with the present one.
+    // No one waives for a day that has passed, or that ends with the present one.
     for until in ["2025-12-31", "2026-01-01"] {
         let text = "Fine.".to_owned();
         board.say("Chair", Act::Waive { line: line.clone(), text, until: until.to_owned() });
@@ -737,7 +737,7 @@ fn a_key_that_is_trusted_later_counts_from_then_on_and_one_that_no_one_trusts_no
     for (people, expected) in [
         (&["Chair", "Ada"][..], PlanStatus::InReview),
         (&PEOPLE[..], PlanStatus::Approved),
-        // Without the rules of the chair, the usual board decides, and nobody approved under its rules.
+        // Without the rules of the chair, the usual board decides, and no one approved under its rules.
         (&["Ada", "Grace"][..], PlanStatus::Lapsed),
         (&["Chair"][..], PlanStatus::Draft),
     ] {

@@ -129,7 +129,7 @@ fn problem_of_act(record: &Record, entry: &Entry) -> Option<String> {
     }
 }
 
-/// Why nobody, or not the owner of a key, may do something.
+/// Why no one, or not the owner of a key, may do something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Objection {
     /// It takes a reason.
@@ -196,7 +196,7 @@ pub fn objection(
     }
 }
 
-/// Whether nobody can withdraw this. Flight rules are replaced, and comments are reopened.
+/// Whether no one can withdraw this. Flight rules are replaced, and comments are reopened.
 const fn is_permanent(act: &Act) -> bool {
     matches!(act, Act::Rules { .. } | Act::Resolve { .. } | Act::Reopen { .. } | Act::Withdraw { .. })
 }

@@ -64,7 +64,7 @@ pub enum Status {
     Information,
     /// As it should be.
     Passed,
-    /// Somebody should look at it.
+    /// Someone should look at it.
     Attention,
     /// Not as it should be.
     Failed,

@@ -212,7 +212,7 @@ impl DemandLines<'_> {
             [first, rest @ ..] => format!("{name} is {first}, then {}", rest.join(", then ")),
         };
         let text = if is_from_plant { format!("{text}, as long as no component fails") } else { text };
-        // What nobody changes is about the variable.
+        // What no one changes is about the variable.
         let is_changed = changes.iter().any(|&label| self.owner(label).is_some());
         let names = if is_changed { Vec::new() } else { vec![name.to_owned()] };
         Some(self.line_of(text, changes, names))

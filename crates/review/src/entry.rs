@@ -25,7 +25,7 @@ pub struct Entry {
 const DOMAIN: &str = "enroute-signature/1\n";
 
 impl Entry {
-    /// What somebody said, signed.
+    /// What someone said, signed.
     pub fn signed(said: Said, secret: &SecretKey) -> Self {
         let said = Sealed::new(Said { key: Some(secret.public()), ..said });
         let signature = secret.sign(signed_bytes(said.digest()).as_bytes());
@@ -114,7 +114,7 @@ impl Said {
     }
 }
 
-/// What somebody did. `of` is the digest of the entry that it is about.
+/// What someone did. `of` is the digest of the entry that it is about.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Act {
@@ -122,7 +122,7 @@ pub enum Act {
     Comment {
         /// What it is about, by the names of all output; the whole mission if nothing is named.
         about: Option<String>,
-        /// Who is to answer it, if somebody is named.
+        /// Who is to answer it, if someone is named.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         to: Option<PublicKey>,
         text: String,

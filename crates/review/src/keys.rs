@@ -110,7 +110,7 @@ pub struct Person {
 }
 
 impl Person {
-    /// Somebody with a new key.
+    /// Someone with a new key.
     pub fn new(name: &str, secret: SecretKey) -> Self {
         Self { name: names::tidy(name), key: secret.public(), secret: Some(secret) }
     }
@@ -142,12 +142,12 @@ pub enum KeyError {
     /// The name misleads, or is empty.
     #[error("{0}")]
     Name(String),
-    /// Somebody else has a name that looks like this one.
+    /// Someone else has a name that looks like this one.
     #[error(
         "“{name}” can be taken for “{known}”, whose key is trusted: choose a name that can't be confused with it"
     )]
     Alike { name: String, known: String },
-    /// The key belongs to somebody.
+    /// The key belongs to someone.
     #[error("the key {fingerprint} is trusted already, as that of “{known}”")]
     Known { fingerprint: String, known: String },
     /// The text is not a document of keys, or a key in it is invalid.
@@ -179,7 +179,7 @@ impl KeyRing {
         Trust(self.people.iter().map(|person| (person.key.clone(), person.name.clone())).collect())
     }
 
-    /// Trusts a person. A secret key of somebody who is trusted already is added.
+    /// Trusts a person. A secret key of someone who is trusted already is added.
     pub fn add(&mut self, person: Person) -> Result<(), KeyError> {
         let person = Person { name: names::tidy(&person.name), ..person };
         if let Some(known) = self.people.iter_mut().find(|known| known.key == person.key) {

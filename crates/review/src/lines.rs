@@ -16,7 +16,7 @@ use super::{FlightRules, Line, Review, Status, content_hash, plan_hash};
 /// Reviews a snapshot, by the usual flight rules; `goal` and `seed` are those it was planned with. When `stop` returns `true`,
 /// the alternatives that have not been looked at yet are left as [`super::Fate::NotExamined`].
 ///
-/// Alternatives that the plan does not take are planned once more each, so this takes as long as planning does, times
+/// Alternatives that the plan does not take are planned again each, so this takes as long as planning does, times
 /// the number of alternatives; it is meant to be asked for, not to follow every edit.
 pub fn review(snapshot: &Snapshot, goal: &Goal, seed: u64, stop: &mut dyn FnMut() -> bool) -> Review {
     let places = Places::new(&snapshot.source);
@@ -143,7 +143,7 @@ fn plan_section(snapshot: &Snapshot, places: &Places<'_>) -> Vec<Line> {
     lines
 }
 
-/// That the plan does nothing, which somebody who approves it should know.
+/// That the plan does nothing, which someone who approves it should know.
 fn emptiness(planning: &Planning, network: &Network, places: &Places<'_>) -> Option<Line> {
     let plan = planning.outcome.plans.first()?;
     let does_something = network.arcs.iter().zip(&plan.selected_arcs).any(|(arc, &is_selected)| {
@@ -233,7 +233,7 @@ fn late_drives<'network>(
     late.collect()
 }
 
-/// Each duration that nature chooses.
+/// Each duration that the environment chooses.
 fn natures(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<Line> {
     let Some(plan) = planning.outcome.plans.first() else { return Vec::new() };
     let line = |occurrence: &tpn::Occurrence| {
@@ -252,7 +252,7 @@ fn natures(planning: &Planning, network: &Network, places: &Places<'_>) -> Vec<L
     network.occurrences.iter().filter_map(line).collect()
 }
 
-/// How many of nature's ranges are listed.
+/// How many of the environment's ranges are listed.
 const MAX_RANGES: usize = 6;
 
 /// What the world would have to do as it suits the plan (SPEC 13.3).

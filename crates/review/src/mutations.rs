@@ -291,7 +291,7 @@ fn runs_that_say_little_have_not_passed() {
     let (status, text) = judged(settings(100, Others::Planned), tally.clone());
     assert_eq!(status, Status::Attention, "{text}");
     assert!(text.ends_with("; nothing in the runs was random"), "{text}");
-    // A run that went on by another plan says nothing for this one.
+    // A run that continued by another plan says nothing for this one.
     let tally = Tally { succeeded_by_replanning: 12, ..tally };
     let (_, text) = judged(settings(100, Others::Uniform), tally);
     assert!(text.ends_with(", 12 of them after replanning"), "{text}");

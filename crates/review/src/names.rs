@@ -1,4 +1,4 @@
-//! Names of people: which ones cannot be told apart, and which ones nobody should have.
+//! Names of people: which ones cannot be told apart, and which ones no one should have.
 
 use std::collections::BTreeSet;
 

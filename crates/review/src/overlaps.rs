@@ -113,7 +113,7 @@ pub(super) fn owners(
 pub(super) fn occupied(network: &Network) -> BTreeSet<OccurrenceId> {
     let whole = network.uses.iter().filter(|used| {
         let resource = &network.resources[used.resource.index()];
-        // Orders, such as that of the parts of `unordered`, are no resources of the mission.
+        // Orders, such as that of the parts of `unordered`, are not resources of the mission.
         let takes_all = matches!(resource.supply, Supply::Reusable { capacity } if used.amount == capacity);
         used.change == Change::Uses && takes_all && !resource.name.contains('#')
     });

@@ -15,7 +15,7 @@ use super::{Line, Review};
 /// Longer places are known by their digest.
 const MAX_PLACE_BYTES: usize = 400;
 
-/// Finds the place of each line that somebody may have to acknowledge: of all but the windows of events.
+/// Finds the place of each line that someone may have to acknowledge: of all but the windows of events.
 pub(super) fn find_places(review: &mut Review, snapshot: &Snapshot) {
     let Some(network) = snapshot.network.as_deref() else { return };
     let mut surroundings = Surroundings::new(network);

@@ -106,7 +106,7 @@ impl<'input> PlanLines<'input> {
         links.iter().zip(ranges.chunks(2)).filter_map(review).collect()
     }
 
-    /// Who makes a state what somebody needs, how long before, and who changes it after.
+    /// Who makes a state what someone needs, how long before, and who changes it after.
     fn lasting_link_text(&self, link: tpn::CausalLink, lead: TimeRange, margin: TimeRange) -> String {
         let owner_of = |label: LabelId| {
             let owner = self.network.labels[label.index()].owner?;
@@ -493,7 +493,7 @@ impl<'input> PlanLines<'input> {
         let models =
             traverse.vehicles.iter().filter_map(|&vehicle| model_of(&program.world, vehicle as usize));
         let mut limits = models.map(|model| DriveLimits::of(&model)).reduce(DriveLimits::of_both)?;
-        // How fast a traverse may be is no limit of its wheels in a turn.
+        // How fast a traverse may be does not limit its wheels in a turn.
         (limits.turn_rate_rps, limits.half_track_m) = (limits.turn_rate_in_place_rps(), 0.0);
         if let Some((_, greatest)) = moving.moves.speed_mps {
             limits.speed_mps = limits.speed_mps.min(greatest.to_f64());
@@ -560,8 +560,8 @@ fn interval_text(name: &str) -> String {
     format!("{} during {owner}", inside.unwrap_or(condition))
 }
 
-/// The activities that a plan selects and whose durations nature does not choose, each with its declared bounds. A plan has to
-/// leave nature the whole range.
+/// The activities that a plan selects and whose durations the environment does not choose, each with its declared
+/// bounds. A plan has to leave the environment the whole range.
 pub(super) fn declared_durations<'network>(
     network: &'network Network,
     plan: &Plan,

@@ -44,7 +44,7 @@ pub struct Record {
 /// Contents of which runs are kept.
 pub const MAX_RUNS_KEPT: usize = 8;
 
-/// The rules of a mission of which nobody has set any.
+/// The rules of a mission of which no one has set any.
 static USUAL_RULES: LazyLock<FlightRules> = LazyLock::new(FlightRules::default);
 
 /// The format of the document.
@@ -56,7 +56,7 @@ const UNSIGNED_FORMAT: &str = "enroute-review/2";
 /// How the formats of all versions begin.
 const FORMATS: &str = "enroute-review/";
 
-/// Why a text is no record of a review.
+/// Why a text is not a record of a review.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RecordError {
     /// It is another kind of document.
@@ -97,12 +97,12 @@ impl PartialEq for Record {
 }
 
 impl Record {
-    /// The record of a mission of which nobody has said anything.
+    /// The record of a mission of which no one has said anything.
     pub fn new(mission: &str) -> Self {
         Self { mission: mission.to_owned(), ..Self::default() }
     }
 
-    /// Whether nobody has said anything yet, and no runs are kept.
+    /// Whether no one has said anything yet, and no runs are kept.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty() && self.runs.is_empty()
     }
@@ -369,7 +369,7 @@ impl Record {
         let Value::Array(entries) = value["entries"].take() else { return Err(lacks("entries")) };
         let mut known = BTreeSet::new();
         for (index, mut entry) in entries.into_iter().enumerate() {
-            // An index would make a member of what is no object, or panic.
+            // An index would make a member of what is not an object, or panic.
             let said = entry.get_mut("said").map(Value::take).unwrap_or_default();
             let said = Sealed::<Said>::read(said).map_err(damaged)?;
             if !said.is_visible() {

@@ -27,7 +27,7 @@ pub(super) fn trust(names: &[&str]) -> Trust {
 /// A time after everything in these tests.
 pub(super) const NOW: &str = "2026-02-01T00:00:00Z";
 
-/// A record for somebody who trusts the usual people.
+/// A record for someone who trusts the usual people.
 pub(super) fn judged(mut record: Record) -> Record {
     record.judge(&trust(&["Chair", "Ada", "Grace", "Katherine"]), NOW);
     record
@@ -194,7 +194,7 @@ fn what_the_version_before_kept_becomes_a_history_the_same_everywhere() {
     let told: Vec<(&str, &str)> =
         record.entries().iter().map(|entry| (entry.by.as_str(), entry.act.name())).collect();
     assert_eq!(told, [("Grace", "approved"), ("Ada", "commented"), ("Chair", "set the flight rules")]);
-    // Nobody has signed any of it: it is told, and counts for nothing.
+    // No one has signed any of it: it is told, and counts for nothing.
     let record = judged(record);
     assert!(record.checked().all(|(_, check)| check.signature == Signature::Unsigned && !check.counts()));
     assert_eq!((record.last_approval(), record.rules()), (None, &FlightRules::default()));

@@ -104,7 +104,7 @@ impl FlightRules {
         self.rules.iter().any(|it| it.rule.trim().is_empty()).then_some("a mission rule must not be empty")
     }
 
-    /// Reads a document `{"format": "enroute-rules/1", …}`; what it does not name is as by default, and `null` is no rule.
+    /// Reads a document `{"format": "enroute-rules/1", …}`; what it does not name is as by default, and `null` is not a rule.
     pub fn from_json(text: &str) -> Result<Self, String> {
         let mut value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
         match value.as_object_mut().and_then(|members| members.remove("format")) {

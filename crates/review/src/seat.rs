@@ -32,7 +32,7 @@ impl Seat {
     }
 }
 
-/// The role of a board that nobody has set up.
+/// The role of a board that no one has set up.
 pub const DEFAULT_ROLE: &str = "Reviewer";
 
 /// Roles that a board has, at most.
@@ -41,7 +41,7 @@ pub const MAX_SEATS: usize = 12;
 /// Approvals that a role needs, at most.
 pub const MAX_APPROVALS: u32 = 9;
 
-/// The board that nobody has set up: one reviewer.
+/// The board that no one has set up: one reviewer.
 pub(super) fn default_board() -> Vec<Seat> {
     vec![Seat::new(DEFAULT_ROLE, 1)]
 }

@@ -430,10 +430,10 @@ fn what_nature_chooses_has_the_first_line_of_its_own() {
     assert!(text.ends_with("Drive#1 [20, 40]"), "{text}");
     // A schedule that does not look is harder to find, and here the drive's end is what the delay waits for.
     assert!(line(&drive("option controllability = strong;", 60), "strongly controllable").is_some());
-    // What is planned as if nature did not choose is never passed.
+    // What is planned as if the environment did not choose is never passed.
     let none = line(&drive("option controllability = none;", 44), "the plan chooses contingent durations");
     assert_eq!(none.expect("it is said").0, Status::Attention);
-    // And what nature can break has no plan.
+    // And what the environment can break has no plan.
     assert!(line(&drive("", 44), "whatever").is_none());
     assert!(line(&drive("", 44), "there is no plan").is_some());
     assert!(line(SCENARIO, "whatever").is_none(), "the paper's mission leaves nothing to nature");

@@ -38,7 +38,7 @@ pub struct Edit {
     pub text: String,
 }
 
-/// A change that mends a diagnostic, offered to the author as a quick fix.
+/// A change that fixes a diagnostic, offered to the author as a quick fix.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fix {
     /// What the change does, as an imperative.
@@ -59,9 +59,9 @@ pub struct Diagnostic {
     pub message: String,
     /// What would help, if something is known to.
     pub hint: Option<String>,
-    /// Changes that mend it.
+    /// Changes that fix it.
     pub fixes: Vec<Fix>,
-    /// How many more of its severity there are behind it, which nobody lists.
+    /// How many more of its severity there are behind it, which no one lists.
     pub more: u32,
 }
 

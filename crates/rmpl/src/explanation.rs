@@ -16,7 +16,7 @@ pub struct Explanation {
     pub example: &'static str,
     /// What to do about it.
     pub fix: &'static str,
-    /// The example, mended.
+    /// The example, fixed.
     pub mended: &'static str,
 }
 

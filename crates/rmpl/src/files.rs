@@ -23,7 +23,7 @@ const MAX_FILES: usize = 1_000;
 /// One file of a mission.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// Its name, from the mission's folder on, with `/` between folders; empty if nobody said it.
+    /// Its name, from the mission's folder on, with `/` between folders; empty if no one said it.
     pub name: String,
     /// Where its text begins in the whole.
     pub start: u32,
@@ -310,7 +310,7 @@ mod tests {
             let text = mission(&[("a.rmpl", &format!("import \"{file}\"; scenario S[0,60] = {{ delay }}"))]);
             assert_eq!(codes(&text), [("E-UNDEF", "a.rmpl".to_owned())], "{file}");
         }
-        // Two ways to one file are no circle, and the file counts once.
+        // Two ways to one file are not a circle, and the file counts once.
         let twice = mission(&[
             ("a.rmpl", "import \"b.rmpl\"; import \"c.rmpl\"; scenario S[0,60] = { Drive() }"),
             ("b.rmpl", "import \"c.rmpl\";"),

@@ -162,7 +162,7 @@ impl Measure {
     pub const ALL: [(&'static str, Self); 4] =
         [("cost", Self::Cost), ("reward", Self::Reward), ("end", Self::End), ("length", Self::Length)];
 
-    /// The measure that this word stands for.
+    /// The measure that this word represents.
     pub fn by_name(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, measure)| measure)
     }
@@ -175,7 +175,7 @@ pub struct PrimitiveDecl {
     pub name: Name,
     /// Its formal parameters.
     pub formals: Vec<Name>,
-    /// What each parameter stands for, where that is written (SPEC 17).
+    /// What each parameter represents, where that is written (SPEC 17).
     pub kinds: Vec<Option<Name>>,
     /// Its default duration; `[0,inf]` when absent.
     pub bounds: Option<Bounds>,
@@ -204,7 +204,7 @@ pub struct PrimitiveDecl {
 pub struct Runs {
     /// The control program.
     pub program: Name,
-    /// What it is handed: names of its plant, or parameters of the primitive that stand for them.
+    /// What it is handed: names of its plant, or parameters of the primitive that represent them.
     pub arguments: Vec<Name>,
 }
 
@@ -318,7 +318,7 @@ pub struct Requirement {
 pub struct Effect {
     /// The state variable, perhaps `V.at`.
     pub variable: Name,
-    /// The value, or a parameter that stands for one.
+    /// The value, or a parameter that represents one.
     pub value: Name,
     /// Variable and value together.
     pub span: Span,
@@ -454,7 +454,7 @@ impl Per {
         ("metre", Self::Meter),
     ];
 
-    /// The unit that this word stands for.
+    /// The unit that this word represents.
     pub fn by_name(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, per)| per)
     }
@@ -488,7 +488,7 @@ pub struct ActivityDecl {
     pub name: Name,
     /// Its formal parameters.
     pub formals: Vec<Name>,
-    /// What each parameter stands for, where that is written (SPEC 17).
+    /// What each parameter represents, where that is written (SPEC 17).
     pub kinds: Vec<Option<Name>>,
     pub bounds: HeaderBounds,
     pub body: Statement,
@@ -538,7 +538,7 @@ pub struct ConstrainDecl {
     pub from: EventName,
     /// The event that comes so much later.
     pub to: EventName,
-    /// How much later; nature does not choose it.
+    /// How much later; the environment does not choose it.
     pub bounds: Bounds,
     /// The whole declaration.
     pub span: Span,
@@ -573,7 +573,7 @@ pub struct Bounds {
     pub lower: Expr,
     /// The upper bound.
     pub upper: Expr,
-    /// Whether nature chooses the duration within them (SPEC 13.1).
+    /// Whether the environment chooses the duration within them (SPEC 13.1).
     pub is_contingent: bool,
     /// With the brackets, and with `contingent`.
     pub span: Span,
@@ -595,7 +595,7 @@ pub enum ExprKind {
     Duration(Rational, DurationUnit),
     /// `inf` or `∞`.
     Infinity,
-    /// A bound parameter, a parameter that stands for a number, or a constant.
+    /// A bound parameter, a parameter that represents a number, or a constant.
     Name(SmolStr),
     /// `e%`: a hundredth of `e`.
     Percent(Box<Expr>),
@@ -623,7 +623,7 @@ impl DurationUnit {
     pub const ALL: [(&'static str, Self); 5] =
         [("s", Self::Second), ("min", Self::Minute), ("h", Self::Hour), ("d", Self::Day), ("sol", Self::Sol)];
 
-    /// The unit that this word stands for.
+    /// The unit that this word represents.
     pub fn by_name(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|(name, _)| *name == word).map(|(_, unit)| unit)
     }
@@ -735,7 +735,7 @@ pub enum StatementKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Members {
     pub form: MembersForm,
-    /// What stands for the member in the body.
+    /// What represents the member in the body.
     pub variable: Name,
     /// A group or a fleet.
     pub group: Name,
@@ -791,11 +791,11 @@ pub enum ArgumentValue {
 /// (SPEC 1.3) and on substitution of formals; [`crate::program::Program`]'s users resolve it after substitution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
-    /// The variable, the atom, or a formal that stands for one; of a vehicle's place `V.at`, of its state `V.arm`.
+    /// The variable, the atom, or a formal that represents one; of a vehicle's place `V.at`, of its state `V.arm`.
     pub variable: Name,
     /// The value, or several of which the variable has one; an atom has none, and neither has what is to see a location.
     pub values: Vec<Name>,
-    /// The location that is in sight from where the vehicle is, or a formal that stands for one (SPEC 10.5).
+    /// The location that is in sight from where the vehicle is, or a formal that represents one (SPEC 10.5).
     pub sees: Option<Name>,
     /// What the level of a reservoir is compared with; the variable is the reservoir then (SPEC 17).
     pub level: Option<Level>,
@@ -827,15 +827,15 @@ pub struct Options {
     pub control_step: Time,
     /// Whether an option says so.
     pub has_control_step: bool,
-    /// What plans have to withstand of durations that nature chooses.
+    /// What plans have to withstand of durations that the environment chooses.
     pub controllability: Controllability,
 }
 
-/// What a plan has to withstand of durations that nature chooses (SPEC 13.1).
+/// What a plan has to withstand of durations that the environment chooses (SPEC 13.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Controllability {
-    /// There are times that satisfy all constraints whatever nature chooses.
+    /// There are times that satisfy all constraints whatever the environment chooses.
     Strong,
     /// Times can be chosen as it goes, each after what was observed before it.
     #[default]

@@ -304,7 +304,7 @@ impl Reader<'_> {
             .filter(|child| child.kind() == SyntaxKind::Argument)
             .map(|argument| SmolStr::new(argument.text().trim()))
             .collect();
-        // Empty parentheses stand for any arguments, too.
+        // Empty parentheses represent any arguments, too.
         if !given.is_empty() && given.len() != formals {
             let words = if formals == 1 { "argument" } else { "arguments" };
             let message = format!("`{name}` has {formals} {words}");

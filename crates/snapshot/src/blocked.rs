@@ -5,7 +5,7 @@ use tpn::{ArcKind, Network};
 
 use crate::Undrivable;
 
-/// Tells of a blocked traverse what blocks it, instead of the contradiction that stands for it.
+/// Tells of a blocked traverse what blocks it, instead of the contradiction that represents it.
 pub fn name_blocked(outcome: &mut Outcome, network: &Network, undrivable: &[Undrivable]) {
     let Some(failure) = &mut outcome.failure else { return };
     for reason in &mut failure.reasons {

@@ -28,14 +28,14 @@ pub struct Problem {
     pub column: u32,
     /// What would help.
     pub hint: Option<String>,
-    /// Changes of the text that mend it.
+    /// Changes of the text that fix it.
     pub fixes: Vec<TextFix>,
     /// How many more of its severity there are, which are not listed.
     #[serde(default)]
     pub more: u32,
 }
 
-/// A change that mends a problem.
+/// A change that fixes a problem.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextFix {
     /// What it does, as an imperative.

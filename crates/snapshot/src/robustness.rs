@@ -17,7 +17,7 @@ use tpn::{Network, OccurrenceKind};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Uncertainty {
-    /// How long activities take, and other durations that nature chooses: those are brought into their ranges.
+    /// How long activities take, and other durations that the environment chooses: those are brought into their ranges.
     pub durations: BTreeMap<SmolStr, Distribution>,
     /// Conditions that may come late.
     pub late: BTreeMap<SmolStr, Incident>,
@@ -31,7 +31,7 @@ pub struct Uncertainty {
     pub traverses: Traverses,
     /// What vehicles that drive meet and the map does not show.
     pub rocks: Rocks,
-    /// Whether nature chooses its durations so as to break the plan, and ends of ranges where it cannot.
+    /// Whether the environment chooses its durations so as to break the plan, and ends of ranges where it cannot.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub adversary: bool,
 }
@@ -42,7 +42,7 @@ impl Uncertainty {
     pub fn leaves_something_to_chance(&self, runs_programs: bool) -> bool {
         let is_named = !self.durations.is_empty() || !self.late.is_empty() || !self.withdrawn.is_empty();
         let is_driven = self.traverses == Traverses::Driven;
-        // What nature chooses it chooses against the plan.
+        // What the environment chooses it chooses against the plan.
         let fails = runs_programs && self.faults == Faults::ByChance;
         is_named || is_driven || fails || self.adversary || self.others == Others::Uniform
     }
@@ -91,7 +91,7 @@ impl Rocks {
 #[serde(rename_all = "kebab-case")]
 pub enum Others {
     /// Anything between their bounds, all equally likely, if both are finite and the plan does not end them itself. In a
-    /// mission that says which durations nature chooses, these alone; all others are as the plan wants.
+    /// mission that says which durations the environment chooses, these alone; all others are as the plan wants.
     #[default]
     Uniform,
     /// As long as the plan wants.
@@ -260,7 +260,7 @@ impl Robustness {
 }
 
 impl Uncertainty {
-    /// A name of whose times it says something that is no distribution.
+    /// A name of whose times it says something that is not a distribution.
     pub fn unsound(&self) -> Option<&SmolStr> {
         let durations = self.durations.iter();
         let incidents = self.late.iter().chain(&self.withdrawn).map(|(name, incident)| (name, &incident.at));

@@ -1,5 +1,5 @@
-//! Nature as an adversary: for a network that is not controllable, durations that make any executive fail, chosen as
-//! the run goes.
+//! The environment as an adversary: for a network that is not controllable, durations that make any executive fail,
+//! chosen as the run goes.
 //!
 //! What is left of a network at a moment is a network again. As long as that is not controllable, nature has a next
 //! move after which it still is not: to end something at some time, or to let the executive do what it is about to do.
@@ -10,7 +10,7 @@ use crate::checker::{Stop, Undecided, Verdict, check};
 use crate::network::{EdgeId, Link, LinkId, Network, PointId};
 
 /// What is left of a network at `now`, when some points have happened and nothing else has before: a network with one
-/// more point, the last, whose time is 0. Links that have begun are as long as they can still be.
+/// more point, the last, whose time is 0. Links that have started are as long as they can still be.
 pub fn residual(network: &Network, times: &[Option<i64>], now: i64) -> Result<Network, Undecided> {
     let mut left = Network::new(network.num_points());
     for edge in network.edges() {
@@ -56,9 +56,9 @@ pub struct Intention {
 /// How many times between the ends of a range are tried.
 const MAX_TIMES: i64 = 1_000;
 
-/// Nature's move at `now`: the link that it ends, and when; `None` is to let the executive do what it intends, or, if
-/// it intends nothing, that there is nothing to end. If what is left is not controllable, it is not afterwards, as far
-/// as a move at an integer time does it.
+/// The environment's move at `now`: the link that it ends, and when; `None` is to let the executive do what it intends,
+/// or, if it intends nothing, that there is nothing to end. If what is left is not controllable, it is not afterwards,
+/// as far as a move at an integer time does it.
 pub fn respond(
     network: &Network,
     times: &[Option<i64>],
@@ -118,7 +118,7 @@ fn is_lost(network: &Network, times: &[Option<i64>], now: i64, stop: Stop<'_>) -
 /// A run that broke a constraint.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FailingRun {
-    /// What happened, in the order of time: nature's points are the ends of links.
+    /// What happened, in the order of time: the environment's points are the ends of links.
     pub events: Vec<(PointId, i64)>,
     /// The constraint that does not hold, or can no longer.
     pub broken: EdgeId,
@@ -144,7 +144,7 @@ pub fn failing_run(network: &Network, stop: Stop<'_>) -> Result<Option<FailingRu
             .filter(|&point| times[point.index()].is_none() && network.link_ending_at(point).is_none());
         let is_pending =
             |link: &Link| times[link.activation.index()].is_some() && times[link.end.index()].is_none();
-        // What waits for nature waits; constraints that wait for each other have to be broken somewhere.
+        // What waits for the environment waits; constraints that wait for each other have to be broken somewhere.
         let is_blocked = blocked(network, &waits, &times);
         let at = |point: PointId| (earliest[point.index()], point);
         let next = match free.clone().filter(|point| !is_blocked[point.index()]).map(at).min() {
@@ -187,7 +187,7 @@ pub fn broken(network: &Network, times: &[Option<i64>], now: i64) -> Option<Edge
     })
 }
 
-/// The earliest time of each point, if what nature ends is as early as it may be.
+/// The earliest time of each point, if what the environment ends is as early as it may be.
 fn earliest(network: &Network, times: &[Option<i64>], now: i64) -> Result<Vec<i64>, Undecided> {
     let mut earliest: Vec<i64> = times.iter().map(|time| time.unwrap_or(now)).collect();
     for _ in 0..=times.len() {

@@ -58,7 +58,7 @@ impl From<Undecided> for Refusal {
 /// The answer to [`check`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Whatever nature chooses, execution can go on to the end.
+    /// Whatever the environment chooses, execution can continue to the end.
     Controllable,
     /// It cannot, for this reason.
     Uncontrollable(Conflict),

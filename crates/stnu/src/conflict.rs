@@ -1,6 +1,6 @@
 //! Why a network is not controllable: a semi-reducible negative cycle in terms of the original constraints.
 //!
-//! Every derived edge keeps the path that it stands for, so that a cycle unfolds into what it depends on (Bhargava,
+//! Every derived edge keeps the path that it represents, so that a cycle unfolds into what it depends on (Bhargava,
 //! Vaquero and Williams, 2017). Such cycles can be exponentially long; multiplicities are counted without unfolding
 //! them.
 
@@ -16,7 +16,7 @@ use crate::reduction::Node;
 pub enum Part {
     /// An ordinary constraint.
     Edge(EdgeId),
-    /// That nature may be as quick as a link's lower bound: an edge from activation to end of that weight.
+    /// That the environment may be as quick as a link's lower bound: an edge from activation to end of that weight.
     Lower(LinkId),
     /// That nature may take as long as a link's upper bound: an edge from end to activation of that weight, negated.
     Upper(LinkId),
@@ -39,7 +39,7 @@ pub struct Step {
     pub to: PointId,
     /// What it adds to the cycle's weight.
     pub weight: i64,
-    /// What it stands for.
+    /// What it represents.
     pub part: Part,
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn unfold(network: &Network, graph: &Graph, nodes: &[Node], cycle: &[
     Conflict { members, cycle: steps(network, graph, nodes, cycle), deficit }
 }
 
-/// Derived arcs stand for earlier ones only, so that counting goes from the latest to the earliest.
+/// Derived arcs represent earlier ones only, so that counting goes from the latest to the earliest.
 fn count(graph: &Graph, nodes: &[Node], cycle: &[CyclePart]) -> Vec<Member> {
     let mut arcs: BTreeMap<u32, u64> = BTreeMap::new();
     let mut parts: BTreeMap<Part, u64> = BTreeMap::new();

@@ -1,8 +1,8 @@
 //! The dispatcher: what may happen when, what must, and what waits for what. A pure state machine, without a clock.
 //!
 //! Whoever runs it lets time pass ([`Dispatcher::advance`]), executes what is enabled ([`Dispatcher::execute`]) and
-//! tells it what nature ended ([`Dispatcher::observe`]). As long as nature keeps to its ranges, every choice that it
-//! allows can be followed to the end.
+//! tells it what the environment ended ([`Dispatcher::observe`]). As long as the environment keeps to its ranges, every
+//! choice that it allows can be followed to the end.
 
 use std::fmt;
 use std::ops::Deref;
@@ -26,21 +26,21 @@ pub enum Status {
     },
     /// These must come first.
     Blocked(Vec<PointId>),
-    /// Nature executes it, and does so between these times.
+    /// The environment executes it, and does so between these times.
     Contingent {
         /// At the earliest.
         from: i64,
         /// At the latest.
         until: i64,
     },
-    /// Nature will execute it, but its link's activation has not happened.
+    /// The environment will execute it, but its link's activation has not happened.
     Inactive,
 }
 
 /// When a time point may still happen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
-    /// At the earliest, if nature ends early what it waits for.
+    /// At the earliest, if the environment ends early what it waits for.
     pub earliest: i64,
     /// At the latest; `None` if not bounded.
     pub latest: Option<i64>,
@@ -51,7 +51,7 @@ pub struct Window {
 pub enum DispatchError {
     /// It has happened.
     Executed,
-    /// It is nature's, or not nature's.
+    /// It is the environment's, or not the environment's.
     Owner,
     /// Something else must come first.
     Blocked,
@@ -198,7 +198,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
             .collect()
     }
 
-    /// The next time at which something may be executed if nature does nothing before.
+    /// The next time at which something may be executed if the environment does nothing before.
     pub fn next_time(&self) -> Option<i64> {
         let times = self.points().filter_map(|point| match self.status(point) {
             Status::Enabled { from, .. } => Some(from.max(self.now)),
@@ -207,7 +207,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
         times.min()
     }
 
-    /// The time by which something must have happened: the executive's or nature's.
+    /// The time by which something must have happened: the executive's or the environment's.
     pub fn deadline(&self) -> Option<i64> {
         let times = self.points().filter_map(|point| match self.status(point) {
             Status::Contingent { until, .. } => Some(until),
@@ -243,7 +243,7 @@ impl<F: Deref<Target = Dispatchable>> Dispatcher<F> {
         }
     }
 
-    /// Nature ends a link now.
+    /// The environment ends a link now.
     pub fn observe(&mut self, link: LinkId) -> Result<(), DispatchError> {
         let end = self.form.network.link(link).end;
         match self.status(end) {

@@ -1,10 +1,10 @@
-//! The graph of ordinary and lower-case edges: a simple temporal network, each edge with what it stands for.
+//! The graph of ordinary and lower-case edges: a simple temporal network, each edge with what it represents.
 //!
 //! Its schedule is a potential, which makes Dijkstra searches possible in spite of negative weights (Johnson, 1977).
 
 use stn::{Checkpoint, CycleEdge, Inconsistency, PointId, Stn};
 
-/// What an arc stands for.
+/// What an arc represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// An ordinary constraint of the network.

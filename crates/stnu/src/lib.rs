@@ -1,11 +1,11 @@
 //! Simple temporal networks with uncertainty (STNUs) over exact integer time: dynamic and strong controllability,
 //! incrementally and with undo; conflicts and relaxations as explanations; the dispatchable form with waits and its
-//! dispatcher; nature as an adversary; files; generators.
+//! dispatcher; the environment as an adversary; files; generators.
 //!
-//! Some durations are *contingent*: nature chooses them within their ranges, and the executive sees when they end. A
-//! network is *dynamically controllable* if the executive can choose the other times as it goes, reacting at once, so
-//! that every constraint holds whatever nature chooses (Morris, Muscettola and Vidal, 2001; Morris, 2014). Nothing here
-//! knows about plans. Arithmetic is checked: what does not fit into 64 bits is [`Undecided::Overflow`], never wrapped.
+//! Some durations are *contingent*: the environment chooses them within their ranges, and the executive sees when they
+//! end. A network is *dynamically controllable* if the executive can choose the other times as it goes, reacting at
+//! once, so that every constraint holds whatever the environment chooses (Morris, Muscettola and Vidal, 2001; Morris,
+//! 2014). Nothing here knows about plans. Arithmetic is checked: what does not fit into 64 bits is [`Undecided::Overflow`], never wrapped.
 
 pub mod adversary;
 mod checker;

@@ -1,5 +1,5 @@
-//! The network as data: time points, constraints, and links whose ends nature chooses. It grows and is taken back by
-//! trail; nothing is derived here.
+//! The network as data: time points, constraints, and links whose ends the environment chooses. It grows and is taken
+//! back by trail; nothing is derived here.
 
 use std::fmt;
 
@@ -40,7 +40,7 @@ pub struct Edge {
 pub struct Link {
     /// What starts the duration.
     pub activation: PointId,
-    /// What ends it; nature's.
+    /// What ends it; the environment's.
     pub end: PointId,
     /// The shortest duration, at least 0.
     pub lower: i64,
@@ -171,7 +171,7 @@ impl Network {
         &self.links[id.index()]
     }
 
-    /// The contingent link that ends at `point`: then nature executes it.
+    /// The contingent link that ends at `point`: then the environment executes it.
     pub fn link_ending_at(&self, point: PointId) -> Option<LinkId> {
         self.ending[point.index()]
     }

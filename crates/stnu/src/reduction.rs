@@ -3,7 +3,7 @@
 //! A point that is `d` before the end must wait for the end or until `upper − d` after the activation. Where `d` is at
 //! least the link's spread, the second comes first for certain, and the wait is an ordinary constraint: an edge to the
 //! activation that bypasses the link's upper case. Where it is not, the point at least waits for the shortest duration;
-//! only from there the search goes on (rules *relax*, *upper* and *lower* of RUL⁻).
+//! only from there the search continues (rules *relax*, *upper* and *lower* of RUL⁻).
 
 use stn::Heap;
 
@@ -52,7 +52,7 @@ pub(crate) struct Search {
     settled: Vec<u32>,
     awaited: Vec<(u32, u32)>,
     /// Constraints to the link's activation: from which point, their weight, and where the path to the link's end
-    /// starts that they stand for together with the link's upper case.
+    /// starts that they represent together with the link's upper case.
     pub(crate) bypasses: Vec<(u32, i64, u32)>,
 }
 
@@ -160,7 +160,7 @@ impl Search {
             self.reach[point as usize].is_done = false;
         }
         for arc in graph.arcs_into(link.activation.0) {
-            // A lower case is no constraint.
+            // A lower case is not a constraint.
             let reach = &mut self.reach[arc.from.index()];
             reach.is_done |=
                 reach.distance >= arc.weight && !matches!(graph.origin(arc.tag), Origin::Lower(_));

@@ -1,5 +1,5 @@
-//! Strong controllability (Vidal and Fargier, 1999): one schedule of the executive's points that suits whatever nature
-//! chooses, without looking.
+//! Strong controllability (Vidal and Fargier, 1999): one schedule of the executive's points that suits whatever the
+//! environment chooses, without looking.
 //!
 //! Every end is its link's root, a point of the executive's, after a sum of durations. A constraint must hold for the
 //! worst durations, which makes it one between roots: what is left is a simple temporal network.
@@ -12,13 +12,13 @@ use crate::network::{EdgeId, LinkId, Network, PointId};
 /// The answer to [`check_strong`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StrongVerdict {
-    /// A time for each point, of no particular origin; for nature's points the earliest.
+    /// A time for each point, of no particular origin; for the environment's points the earliest.
     Controllable(Vec<i64>),
     /// Constraints that no schedule keeps for all durations, in the order of a cycle of roots.
     Uncontrollable(Vec<EdgeId>),
 }
 
-/// Whether one schedule suits all that nature may choose. `O(points · edges)` at worst.
+/// Whether one schedule suits all that the environment may choose. `O(points · edges)` at worst.
 pub fn check_strong(network: &Network) -> Result<StrongVerdict, Undecided> {
     let mut roots = Stn::new(network.num_points());
     for (id, edge) in (0..).zip(network.edges()) {
@@ -58,7 +58,7 @@ pub fn check_strong(network: &Network) -> Result<StrongVerdict, Undecided> {
     }
 }
 
-/// The links before a point of nature's, the latest first.
+/// The links before a point of the environment's, the latest first.
 fn chain(network: &Network, point: PointId) -> Vec<LinkId> {
     let mut chain = Vec::new();
     let mut at = point;

@@ -29,7 +29,7 @@ pub enum Collision {
 /// Where a vehicle of some radius can be on a map.
 ///
 /// A point is free when it lies on the map, not in an occupied cell, and no nearer to one than the radius. The border
-/// of the map is no obstacle: the vehicle's center has to stay on the map. A cell holds its west and south border, as
+/// of the map is not an obstacle: the vehicle's center has to stay on the map. A cell holds its west and south border, as
 /// in [`GridFrame::cell_at`]; a vehicle of radius 0 can't slip between two occupied cells that share a corner.
 #[derive(Clone, Debug)]
 pub struct ConfigurationSpace {

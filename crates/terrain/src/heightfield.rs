@@ -181,7 +181,7 @@ impl Terrain {
     }
 
     /// Points of the ground (east, north, up) under a straight segment, no farther apart than half a cell, with both
-    /// ends. Where the map has no height, the last known one goes on.
+    /// ends. Where the map has no height, the last known one continues.
     pub fn drape(&self, from_m: Point2<f64>, to_m: Point2<f64>) -> Vec<Point3<f64>> {
         let length = nalgebra::distance(&from_m, &to_m);
         let pieces = (length / (0.5 * self.frame.cell_size_m)).ceil().clamp(1.0, 1e6) as u32;

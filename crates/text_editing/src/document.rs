@@ -99,7 +99,7 @@ impl Document {
         }
     }
 
-    /// Replaces everything, history included: another mission was opened. The revision goes on counting.
+    /// Replaces everything, history included: another mission was opened. The revision continues counting.
     pub fn open(&mut self, text: &str) {
         let revision = self.revision() + 1;
         let journal = Journal::starting_at(revision);
@@ -107,7 +107,7 @@ impl Document {
         self.saved_revision = revision;
     }
 
-    /// Takes this document up again where another one was: its revisions go on from that one's.
+    /// Takes this document up again where another one was: its revisions continue from that one's.
     pub fn count_on_from(&mut self, revision: u64) {
         let is_saved = !self.is_modified();
         self.journal = Journal::starting_at(self.revision().max(revision) + 1);

@@ -72,7 +72,7 @@ pub struct Tokens {
     pub link: Color32,
     /// Orderings that resolve threats.
     pub ordering: Color32,
-    /// What nature chooses.
+    /// What the environment chooses.
     pub nature: Color32,
     /// Threats and negative cycles.
     pub threat: Color32,

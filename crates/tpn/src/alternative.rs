@@ -4,7 +4,7 @@ use smol_str::SmolStr;
 
 use crate::network::{ArcId, DecisionId, Network, NodeId, Occurrence, OccurrenceKind};
 
-/// The longest call that stands for an alternative; longer ones are named by their occurrence.
+/// The longest call that represents an alternative; longer ones are named by their occurrence.
 const LONGEST_CALL: usize = 40;
 /// So many parts of an alternative are named.
 const MAX_NAMED: usize = 2;

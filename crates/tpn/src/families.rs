@@ -1,4 +1,4 @@
-//! Missions that nobody made up for a planner: scheduling problems of the literature, and simple shapes that are hard for
+//! Missions that no one made up for a planner: scheduling problems of the literature, and simple shapes that are hard for
 //! searches that do not learn, as RMPL text for tests and benchmarks.
 //!
 //! Machines of a shop are variables: each operation asserts its job on its machine, so that operations of different jobs

@@ -109,7 +109,7 @@ pub struct Network {
     pub end: NodeId,
     /// The least gap between conflicting intervals that planning orders (SPEC 5.3).
     pub threat_gap: Time,
-    /// What plans have to withstand of durations that nature chooses.
+    /// What plans have to withstand of durations that the environment chooses.
     #[serde(default)]
     pub controllability: Controllability,
 }
@@ -175,10 +175,10 @@ pub struct Arc {
     pub lower: Time,
     /// Greatest duration.
     pub upper: Bound,
-    /// Whether nature chooses the duration within its bounds (SPEC 13.1).
+    /// Whether the environment chooses the duration within its bounds (SPEC 13.1).
     #[serde(default)]
     pub is_contingent: bool,
-    /// What it stands for.
+    /// What it represents.
     pub kind: ArcKind,
     pub labels: Vec<LabelId>,
     /// The occurrence it is the duration of.
@@ -189,7 +189,7 @@ pub struct Arc {
     pub span: Option<Span>,
 }
 
-/// What an arc stands for (SPEC 3.1).
+/// What an arc represents (SPEC 3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ArcKind {
@@ -508,7 +508,7 @@ pub enum OccurrenceKind {
     Delay,
     /// The scenario itself, or the activity planned for.
     Scenario,
-    /// A `do` or an `if` whose condition is no activity's own: `do#1`, `if#1`. It names the labeled interval and has
+    /// A `do` or an `if` whose condition is not an activity's own: `do#1`, `if#1`. It names the labeled interval and has
     /// no events of its own, so it appears in no windows.
     Scope,
 }
@@ -628,7 +628,7 @@ impl Label {
         }
     }
 
-    /// Whether a variable that keeps its value has none while this goes on.
+    /// Whether a variable that keeps its value has none while this continues.
     pub fn is_changing(&self) -> bool {
         self.extent == Extent::Effect
     }
@@ -699,13 +699,13 @@ impl Network {
         arcs.filter(|(_, arc)| arc.kind == ArcKind::Constraint).map(|(id, _)| ArcId::from_index(id))
     }
 
-    /// Whether nature chooses a duration, and the mission does not say to plan as if it did not (SPEC 13.1).
+    /// Whether the environment chooses a duration, and the mission does not say to plan as if it did not (SPEC 13.1).
     pub fn is_uncertain(&self, arc: ArcId) -> bool {
         self.controllability != Controllability::None && self.arcs[arc.index()].is_contingent
     }
 
-    /// Which events nature executes where these arcs are selected: the ends of durations that it chooses, and what is
-    /// tied to them by `[0,0]` (SPEC 13.1). Indexed by node; empty if there are none.
+    /// Which events the environment executes where these arcs are selected: the ends of durations that it chooses, and
+    /// what is tied to them by `[0,0]` (SPEC 13.1). Indexed by node; empty if there are none.
     pub fn natures_events(&self, selected_arcs: &[bool]) -> Vec<bool> {
         let is_selected = |arc: ArcId| selected_arcs.get(arc.index()).copied().unwrap_or(false);
         let mut open: Vec<NodeId> = (0..self.arcs.len())

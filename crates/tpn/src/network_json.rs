@@ -16,7 +16,7 @@ use crate::sight::Sight;
 use crate::text::kind_name;
 use crate::vocabulary::Vocabulary;
 
-/// Why a JSON document is no network.
+/// Why a JSON document is not a network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {problem}")]
 pub struct NetworkError {

@@ -1,6 +1,6 @@
 //! Insertion of a traverse's path into the network (SPEC 7.3): its vertices become events, its segments arcs.
 //!
-//! Where the path comes from is no concern of this module: lengths and speeds are plain numbers.
+//! Where the path comes from does not concern this module: lengths and speeds are plain numbers.
 
 use exact::{Bound, Rational, Time};
 
@@ -56,9 +56,9 @@ pub enum PathError {
 /// The arc of the traverse keeps its bounds and labels and spans the path. The new events are named
 /// `X#1.leg1.vertex1`; the last vertex is the traverse's end. Time is linear in the result.
 ///
-/// Of a traverse whose duration nature chooses, the path only raises the least duration to what it takes at the greatest
-/// speed (SPEC 13.1): when its vertices are passed is nature's as well, and no event of the plan's. Where that is more
-/// than the greatest duration, the arc says that it cannot be driven.
+/// Of a traverse whose duration the environment chooses, the path only raises the least duration to what it takes at
+/// the greatest speed (SPEC 13.1): when its vertices are passed is the environment's as well, and no event of the
+/// plan's. Where that is more than the greatest duration, the arc says that it cannot be driven.
 pub fn insert_paths(
     network: &Network,
     paths: &[TraversePath],
@@ -153,7 +153,7 @@ fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) ->
 }
 
 /// The time for `length_m` at `speed_mps` in units of `unit_seconds`, exact and then rounded up to the millisecond.
-/// `None` if the length is no finite non-negative number or the result does not fit.
+/// `None` if the length is not a finite non-negative number or the result does not fit.
 pub fn duration(length_m: f64, speed_mps: Rational, unit_seconds: i64) -> Option<Time> {
     if !length_m.is_finite() || length_m < 0.0 || unit_seconds <= 0 {
         return None;

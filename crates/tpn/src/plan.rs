@@ -109,7 +109,7 @@ impl Plan {
         occurrence.is_some_and(|occurrence| is_selected(occurrence.start) && is_selected(occurrence.end))
     }
 
-    /// Whether nature chooses some duration of the plan, and the mission asks to withstand that.
+    /// Whether the environment chooses some duration of the plan, and the mission asks to withstand that.
     pub fn has_natures_choice(&self, network: &Network) -> bool {
         let arcs = (0..network.arcs.len()).map(ArcId::from_index);
         arcs.zip(&self.selected_arcs).any(|(arc, &is_selected)| is_selected && network.is_uncertain(arc))
@@ -153,8 +153,8 @@ impl Plan {
 
     /// One interval ends before the other starts: with the gap that SPEC 5.3 asks for, of a variable that keeps its value
     /// without. A change that comes before a requirement is over when what carries that one is ready (SPEC 10.2).
-    /// `natures` are the events that nature executes ([`Network::natures_events`]): before what begins at one there is no
-    /// gap (SPEC 13.1).
+    /// `natures` are the events that the environment executes ([`Network::natures_events`]): before what begins at one
+    /// there is no gap (SPEC 13.1).
     pub fn ordering_precedence(
         &self,
         network: &Network,

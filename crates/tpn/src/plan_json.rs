@@ -12,7 +12,7 @@ use crate::network::{
 use crate::plan::{CausalLink, Choice, Levels, Ordering, Plan, Quality, StateOrder, UseOrdering, Window};
 use crate::selection::closure;
 
-/// Why a JSON document is no plan of a network.
+/// Why a JSON document is not a plan of a network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The document does not have the shape of DESIGN 4.2.

@@ -161,7 +161,7 @@ fn labels(network: &Network, arc: &Arc) -> Vec<String> {
     arc.labels.iter().map(one).collect()
 }
 
-/// The bounds of an arc, and that nature chooses within them.
+/// The bounds of an arc, and that the environment chooses within them.
 fn bounds_text(arc: &Arc) -> String {
     let word = if arc.is_contingent { " contingent" } else { "" };
     format!("[{},{}]{word}", Bound::Finite(arc.lower), arc.upper)

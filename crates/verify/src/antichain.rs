@@ -49,8 +49,8 @@ fn heaviest_of(
     if let [only] = elements {
         return (weights[*only], vec![*only]);
     }
-    // Each element stands once on either side. Flow from left to right is a step of a chain; what goes on from the right
-    // side to the left steps over the element.
+    // Each element stands once on either side. Flow from left to right is a step of a chain; what continues from the
+    // right side to the left steps over the element.
     let count = elements.len();
     let (left, right) = (|index: usize| index, |index: usize| count + index);
     let mut flow = Flow { edges: Vec::new(), leaving: vec![Vec::new(); 2 * count + 2] };

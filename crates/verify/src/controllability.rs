@@ -1,18 +1,18 @@
-//! Whether constraints can be kept whatever durations nature chooses: dynamic controllability with instantaneous
+//! Whether constraints can be kept whatever durations the environment chooses: dynamic controllability with instantaneous
 //! reaction by Morris's characterization (2006), strong controllability by its definition (Vidal and Fargier 1999).
 //!
-//! A duration that nature chooses is told by three kinds of edges: its bounds as ordinary ones; the upper case, from
-//! its end to its beginning, which counts until the end is seen; and the lower case, which says that the end may come
-//! at once after the shortest time. What must happen before the end is seen must happen that soon after the beginning:
-//! a path from the end to a point that comes before it, with the lower case in front, is a constraint of its own. There
-//! is a strategy exactly if, with all of these, the longest durations leave no negative cycle.
+//! A duration that the environment chooses is told by three kinds of edges: its bounds as ordinary ones; the upper
+//! case, from its end to its beginning, which counts until the end is seen; and the lower case, which says that the end
+//! may come at once after the shortest time. What must happen before the end is seen must happen that soon after the
+//! beginning: a path from the end to a point that comes before it, with the lower case in front, is a constraint of its
+//! own. There is a strategy exactly if, with all of these, the longest durations leave no negative cycle.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 use crate::distance::{Distances, Edge};
 
-/// A duration that nature chooses. No two end at one point.
+/// A duration that the environment chooses. No two end at one point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link {
     pub(crate) start: u32,
@@ -24,7 +24,7 @@ pub(crate) struct Link {
 /// What a contradiction depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Part {
-    /// That nature chooses this duration, by its place.
+    /// That the environment chooses this duration, by its place.
     Link(usize),
     /// The constraint of an edge with this reason.
     Reason(u32),

@@ -46,7 +46,7 @@ pub struct Violation {
 }
 
 /// The rules of SPEC 5.5, and those of state that lasts (SPEC 10.2), resources (SPEC 11), objectives (SPEC 12) and
-/// durations that nature chooses (SPEC 13.1).
+/// durations that the environment chooses (SPEC 13.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
@@ -72,7 +72,7 @@ pub enum Rule {
     Resource,
     /// Cost, reward and end of a plan are what its selection and its times make them.
     Quality,
-    /// Whatever durations nature chooses, as they are seen, execution can go on to the end.
+    /// Whatever durations the environment chooses, as they are seen, execution can continue to the end.
     Controllability,
 }
 

@@ -11,7 +11,7 @@ use crate::limits::{MAX_FILE_BYTES, MAX_TEXT_BYTES};
 
 /// What the app needs from where it runs.
 ///
-/// Nothing here blocks. What takes time is begun by one call and answered by a later [`Host::poll`]; the host asks for
+/// Nothing here blocks. What takes time is started by one call and answered by a later [`Host::poll`]; the host asks for
 /// a repaint when it has something to tell.
 pub trait Host {
     /// Sends a request to the planning core.
@@ -71,7 +71,7 @@ pub trait Host {
     /// A number that no other run has drawn.
     fn random(&mut self) -> u64;
 
-    /// 32 bytes that nobody can guess, for secret keys; `None` where there is no source of such.
+    /// 32 bytes that no one can guess, for secret keys; `None` where there is no source of such.
     fn secret_bytes(&mut self) -> Option<[u8; 32]>;
 
     /// Lets the user choose one file; [`HostEvent::FileOpened`] brings it. Must be called while handling a click or a

@@ -124,7 +124,7 @@ fn page(group: &'static str, name: &'static str, text: &str) -> Page {
     Page { group, name, title: title.unwrap_or_else(|| name.to_owned()), document }
 }
 
-/// Signs that the page's fonts lack, with what stands for them on screen.
+/// Signs that the page's fonts lack, with what represents them on screen.
 const SIGNS: [(&str, &str); 13] = [
     ("θ̇", "θ'"),
     ("v̇", "v'"),

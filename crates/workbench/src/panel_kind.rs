@@ -69,7 +69,7 @@ panel_kinds! {
     Search: "search", "Search", "search-panel", Zoomable, MarkedWhenStale;
     /// The distances between the events of the plan, or of the step that is looked at.
     Distances: "distances", "Distances", "distances-panel", Zoomable, MarkedWhenStale;
-    /// A run against nature, whose durations are chosen one by one.
+    /// A run against the environment, whose durations are chosen one by one.
     Strategy: "strategy", "Controllability", "controllability-panel", MarkedWhenStale;
     /// The run of a control program.
     Automaton: "automaton", "Automaton", "automaton-panel", Zoomable;

@@ -49,7 +49,7 @@ struct Posted {
     settings: PlanSettings,
 }
 
-/// Longest time that goes by at once, in seconds: a page that was hidden goes on where it was.
+/// Longest time that goes by at once, in seconds: a page that was hidden continues where it was.
 const LONGEST_STEP_SECS: f64 = 0.25;
 
 impl Session {

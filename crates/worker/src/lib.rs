@@ -28,7 +28,7 @@ extern "C" {
     #[wasm_bindgen(method, js_name = textLost)]
     fn text_lost(this: &WorkerHost);
 
-    /// Hears that the core goes on with a long job.
+    /// Hears that the core continues with a long job.
     #[wasm_bindgen(method)]
     fn alive(this: &WorkerHost);
 
@@ -44,7 +44,7 @@ extern "C" {
     fn core_panicked(message: &str);
 }
 
-/// How often a long job says that it goes on.
+/// How often a long job says that it continues.
 const ALIVE_MILLIS: f64 = 5000.0;
 
 /// One planning core, fed by messages.

@@ -63,7 +63,7 @@ pub(crate) fn run_all(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Builds and runs `bench/peers`, a workspace of its own so that nobody else has to build the peers.
+/// Builds and runs `bench/peers`, a workspace of its own so that no one else has to build the peers.
 fn run_peers(options: &Options) -> Result<()> {
     let folder = target_dir().join("peers");
     let mut command = cargo();

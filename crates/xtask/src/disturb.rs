@@ -23,7 +23,7 @@ enum Disturbance {
     CloseTab,
     /// The workers that plan are ended; later the page is loaded again.
     KillWorkers,
-    /// The storage takes nothing more while somebody types; then it does again, and the page is loaded again.
+    /// The storage takes nothing more while someone types; then it does again, and the page is loaded again.
     FillStorage,
 }
 

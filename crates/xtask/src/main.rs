@@ -41,7 +41,7 @@ enum Task {
     Size(size::Options),
     /// Prints the benchmark tables.
     Bench(bench::Options),
-    /// Reloads, closes and starves the page while somebody types, and counts the key presses that are lost.
+    /// Reloads, closes and starves the page while someone types, and counts the key presses that are lost.
     Disturb(Disturbances),
     /// Gives mutated inputs to every reader of other people's data, and prints the results of each reader.
     Fuzz(Fuzzing),

@@ -28,7 +28,7 @@ const LONGEST_HEAD: usize = 64 * 1024;
 /// How long a connection may say nothing; browsers open some in advance that they never use.
 const PATIENCE: Duration = Duration::from_mins(1);
 
-/// How long the head of a request may take once it has begun, and each piece of the answer.
+/// How long the head of a request may take once it has started, and each piece of the answer.
 const LONGEST_TRANSFER: Duration = Duration::from_secs(20);
 
 /// How often the page was rebuilt: a page that asks for this loads itself again when the number changes.
@@ -82,7 +82,7 @@ impl SiteServer {
                     break;
                 }
                 let site = Arc::clone(&listening);
-                // A browser that goes away while it is answered is no trouble of ours.
+                // A browser that goes away while it is answered is not our concern.
                 thread::spawn(move || site.serve(connection).ok());
             }
         });

@@ -189,7 +189,7 @@ fn check_dependencies() -> Result<()> {
 }
 
 /// Has cargo compile our crates by clippy, which is the compiler with more lints: one build gives the lints and what is
-/// run. Nobody edits between these builds, so nothing is kept for the next edit, or for a debugger.
+/// run. No one edits between these builds, so nothing is kept for the next edit, or for a debugger.
 fn linting(command: &mut Command) -> &mut Command {
     command
         .env("RUSTC_WORKSPACE_WRAPPER", "clippy-driver")

@@ -173,7 +173,7 @@ fn crate_of(name: &str) -> &str {
         let word_on = &rest[from..];
         let length = word_on.find(|letter| !is_letter(letter)).unwrap_or(word_on.len());
         let (word, after) = word_on.split_at(length);
-        // The first word of a path: `a::b` has one, and what follows `<T>::` goes on with another one.
+        // The first word of a path: `a::b` has one, and what follows `<T>::` continues with another one.
         if after.starts_with("::") && !goes_on && !STANDARD.contains(&word) {
             return word;
         }

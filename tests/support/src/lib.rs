@@ -72,7 +72,7 @@ impl App {
         assert_eq!(self.json()["robustness"]["runs"], runs);
     }
 
-    /// Creates a key of this name, where there is none, and signs with it from now on where nobody is named.
+    /// Creates a key of this name, where there is none, and signs with it from now on where no one is named.
     pub fn sign_as(&mut self, name: &str) {
         if self.session.state().keys.ring().own_named(name).is_none() {
             self.dispatch("review.createKey", &serde_json::json!({ "name": name }));

@@ -14,7 +14,7 @@ pub struct Document {
     elements: BTreeMap<u64, Element>,
     top: Vec<u64>,
     focus: Option<u64>,
-    /// What is to be said now, to somebody who does not see it.
+    /// What is to be said now, to someone who does not see it.
     pub(super) announcement: String,
 }
 
@@ -64,7 +64,7 @@ pub struct Element {
 pub enum Flag {
     False,
     True,
-    /// Some of what it stands for is.
+    /// Some of what it represents is.
     Mixed,
 }
 
@@ -82,7 +82,7 @@ pub struct Change {
     /// The element that has the keyboard.
     #[serde(serialize_with = "maybe_as_text")]
     pub focus: Option<u64>,
-    /// What is to be said now, to somebody who does not see it.
+    /// What is to be said now, to someone who does not see it.
     pub announcement: String,
 }
 

@@ -67,7 +67,7 @@ fn problems(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
 /// What a private window does with missions.
 const PRIVATE: &str = "The browser deletes the missions when this window closes";
 
-/// Says when something is not kept; that everything is, nobody needs to be told.
+/// Says when something is not kept; that everything is, no one needs to be told.
 fn keeping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let (text, reason, color) = match &context.state.library.keeping {

@@ -1,4 +1,4 @@
-//! What a kind of problem means, with an example and its mending: the language's manual page.
+//! What a kind of problem means, with an example and its fix: the language's manual page.
 
 use egui::{Frame, Margin, RichText, ScrollArea, Ui};
 use panels::Context;

@@ -9,7 +9,7 @@ use workbench::state::window::WindowCommand;
 
 use crate::chord;
 
-/// What the editor does with keys that are no commands.
+/// What the editor does with keys that are not commands.
 const EDITOR_KEYS: [(&str, &str); 12] = [
     ("Arrows, Home, End, Page Up, Page Down", "Move the cursor (with Shift: select)"),
     ("Ctrl+Left, Ctrl+Right", "Move by word"),

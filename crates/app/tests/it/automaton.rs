@@ -29,7 +29,7 @@ fn press(app: &mut support::App, name: &str) {
     app.settle();
 }
 
-/// The names of the buttons that stand for marked locations.
+/// The names of the buttons that represent marked locations.
 fn marked(app: &support::App) -> Vec<String> {
     let buttons = app.harness.query_all_by_role(Role::Button);
     let mut names: Vec<String> = buttons

@@ -16,7 +16,7 @@ fn executing(mission: &str) -> support::App {
     app
 }
 
-/// A mission without a world, in which nobody drives: its runs are worked out at once.
+/// A mission without a world, in which no one drives: its runs are worked out at once.
 fn executing_text(source: &str) -> support::App {
     let mut app = support::start();
     app.settle();

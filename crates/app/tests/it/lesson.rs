@@ -278,7 +278,7 @@ fn cut_off(app: &App) -> Vec<(String, egui::Rect)> {
     let mut found = Vec::new();
     app.each_text(&mut |text, clip| {
         let (area, clip) = (text.visual_bounding_rect(), clip.intersect(screen));
-        // A point more or less of what is around letters is no loss.
+        // A point more or less of what is around letters is not lost.
         let is_complete = clip.x_range().expand(1.5).contains(area.left())
             && clip.x_range().expand(1.5).contains(area.right());
         if clip.shrink(1.0).intersects(area) && !is_complete {

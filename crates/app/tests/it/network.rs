@@ -228,7 +228,7 @@ fn long(app: &mut support::App, steps: usize) {
     }
 }
 
-/// The names of the boxes that stand for several activities.
+/// The names of the boxes that represent several activities.
 fn folded(app: &support::App) -> Vec<String> {
     let buttons = app.harness.query_all_by_role(egui::Role::Button);
     let labels = buttons.filter_map(|node| node.accesskit_node().label());

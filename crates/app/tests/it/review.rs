@@ -428,7 +428,7 @@ fn what_was_said_goes_into_a_file_and_comes_back_from_it() {
     }
     assert_eq!(review(&other)["signed"], review(&app)["signed"]);
     assert_eq!(review(&other)["comments"], review(&app)["comments"]);
-    // Once more adds nothing.
+    // A second time adds nothing.
     other.world.open_file(FileKind::Json, &name, &bytes);
     other.settle();
     assert_eq!(review(&other)["comments"].as_array().map(Vec::len), Some(1));

@@ -1,5 +1,5 @@
-//! A run against nature, chosen by the user: in its panel, on the timeline, and in the page's state; and the run in which
-//! a mission fails that does not withstand nature.
+//! A run against the environment, chosen by the user: in its panel, on the timeline, and in the page's state; and the
+//! run in which a mission fails that does not withstand the environment.
 
 use crate::support;
 use egui::Role;

@@ -49,7 +49,7 @@ struct Believed {
     probability: Value,
 }
 
-/// The names of a JSON object of strings; `null` stands for nothing.
+/// The names of a JSON object of strings; `null` represents nothing.
 fn names(given: &BTreeMap<String, Option<String>>) -> impl Iterator<Item = (&str, &str)> {
     given.iter().filter_map(|(name, value)| Some((name.as_str(), value.as_deref()?)))
 }

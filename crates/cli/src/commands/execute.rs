@@ -100,7 +100,7 @@ fn named_windows(network: &Network, windows: &[Option<Window>]) -> BTreeMap<Stri
     named
 }
 
-/// The event that waits, and the event of nature's that it waits for.
+/// The event that waits, and the event of the environment's that it waits for.
 fn names(network: &Network, wait: &Waiting) -> (String, String) {
     let natures = network.arcs[wait.natures.index()].to;
     let name = |node| tpn::plan_json::node_name(network, node);

@@ -38,7 +38,7 @@ impl HeldRules {
         Self { plans }
     }
 
-    /// Whether nobody has to look at any of them in any plan.
+    /// Whether no one has to look at any of them in any plan.
     pub fn are_kept(&self) -> bool {
         self.plans.iter().flatten().all(|held| held.line.status <= Status::Passed)
     }

@@ -153,7 +153,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let is_refused = planned.planning.verdict.as_ref().is_some_and(|verdict| !verdict.valid);
     Ok(exit(match outcome.status {
-        // What the independent checker does not accept is no plan to rely on.
+        // What the independent checker does not accept is not a plan to rely on.
         Status::Plan if is_refused || !rules.are_kept() => NO,
         Status::Plan => YES,
         Status::NoPlan => NO,

@@ -1,5 +1,5 @@
-//! `enroute stn`: consistency and windows of a simple temporal network, and, where nature ends some of its durations,
-//! whether it is controllable.
+//! `enroute stn`: consistency and windows of a simple temporal network, and, where the environment ends some of its
+//! durations, whether it is controllable.
 
 mod controllability;
 
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(exit(if is_kept { YES } else { NO }))
 }
 
-/// The answer where nature's help is not enough.
+/// The answer where the environment's help is not enough.
 fn inconsistent(
     args: &Args,
     network: &Document,

@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// What is wrong with one plan. What it says of things that the network does not have is wrong with it; a document
-/// that is no plan at all is an error of the call.
+/// that is not a plan at all is an error of the call.
 fn check(
     args: &Args,
     mission: &mut Opened,

@@ -240,7 +240,7 @@ fn a_history_is_checked_and_says_how_the_plan_stands() {
     assert_eq!((status, &answer["approved"]), (Some(1), &json!(false)));
     assert!(answer["blockers"].to_string().contains("--trust"), "{answer}");
     assert!(answer["entries"].as_array().expect("a list").iter().all(|it| it["signature"] == "unknown"));
-    // What was altered is said, and is no approval.
+    // What was altered is said, and is not an approval.
     let altered = written_file("altered.review.json", &text.replace("\"by\": \"Ada\"", "\"by\": \"Eve\""));
     let found = enroute(&["review", "verify", &altered, "--trust", &keys]);
     assert_eq!(found.status.code(), Some(1), "{found:?}");

@@ -196,7 +196,7 @@ fn a_map_of_ros_is_read_with_its_image_from_the_folder_of_the_mission() {
     ]);
     assert_eq!(path.status.code(), Some(0), "{path:?}");
 
-    // An image that is elsewhere is no image of the mission.
+    // An image that is elsewhere is not an image of the mission.
     std::fs::write(folder.join("maps/yard.yaml"), yaml.replace("yard.pgm", "../../../etc/passwd"))
         .expect("written");
     let outside = plan("14, 16");

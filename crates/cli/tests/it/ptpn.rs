@@ -93,7 +93,7 @@ fn what_is_written_is_read_with_the_same_plans() {
     plans(&file);
     plans(&again);
     assert_eq!(span(&file), span(&again));
-    // And once more, by other names.
+    // And again, by other names.
     let out = enroute(&["tpn", &fixture("survey.tpn"), "--as", "ptpn"]);
     let survey = written("survey-again.tpn", &String::from_utf8(out.stdout).expect("text"));
     assert_eq!(span(&fixture("survey.tpn")), span(&survey));

@@ -16,7 +16,7 @@ fn compiled(source: &str) -> Network {
     network.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// The arc of an occurrence's duration, which nature chooses from now on.
+/// The arc of an occurrence's duration, which the environment chooses from now on.
 fn contingent(network: &mut Network, name: &str) -> ArcId {
     let occurrence = named(network, name);
     let arc = network.occurrences[occurrence.index()].arc.expect("a duration");

@@ -10,7 +10,7 @@ use super::system::Binding;
 /// not entailed.
 const MAX_COMBINATIONS: usize = 4096;
 
-/// What a program's variables stand for, and what it sets of its own ones in a step.
+/// What a program's variables represent, and what it sets of its own ones in a step.
 pub(super) struct Asker<'program> {
     pub(super) automaton: &'program Automaton,
     pub(super) model: &'program Model,

@@ -78,7 +78,7 @@ enum Outcome {
         span: Span,
         labels: Vec<String>,
     },
-    /// It goes on, or nothing can be said.
+    /// It continues, or nothing can be said.
     Open,
 }
 

@@ -18,7 +18,7 @@ use smol_str::SmolStr;
 use super::conditions::Asker;
 use super::goal::{GoalConfigurations, goal_configurations};
 
-/// What a variable of the program stands for.
+/// What a variable of the program represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Binding {
     Mode(ComponentId),
@@ -136,7 +136,7 @@ impl System {
         SystemCompilation { system, program_diagnostics, model_diagnostics }
     }
 
-    /// Compiles the definition called `main` of a file to control `plant`, with what its parameters stand for. Spans are
+    /// Compiles the definition called `main` of a file to control `plant`, with what its parameters represent. Spans are
     /// those of the file, and of what is wrong with a name that is handed over, that name's own.
     pub fn compile_definition(
         file: &ControlFile,

@@ -1,4 +1,4 @@
-//! Pins in a plan in which nature chooses nothing.
+//! Pins in a plan in which the environment chooses nothing.
 //!
 //! A pin of event `e` at `t` adds `e − origin = t`. With the distances of the other constraints, the windows that
 //! remain are a minimum each (a shortest path from the origin uses the new constraint at most once):

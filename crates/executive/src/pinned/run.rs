@@ -1,5 +1,5 @@
-//! Pins in a plan some of whose durations nature chooses: choices in a run of its strategy, which goes as far as the last
-//! of them or as time was let pass.
+//! Pins in a plan some of whose durations the environment chooses: choices in a run of its strategy, which goes as far
+//! as the last of them or as time was let pass.
 
 use exact::Scale;
 use tpn::NodeId;
@@ -111,7 +111,7 @@ impl Run {
             Some(until) => self.strategy.play_on(&mut play, choices, until),
             None => Ok(()),
         };
-        // The strategy withstands every choice inside nature's ranges: a run cannot end otherwise.
+        // The strategy withstands every choice inside the environment's ranges: a run cannot end otherwise.
         if played.is_ok()
             && let Ok(course) = self.strategy.course(&play, self.num_nodes)
         {

@@ -1,5 +1,5 @@
 //! Alternatives that are taken back while they run (SPEC 15): what is under way in one is ended early, if all of it can be,
-//! and the mission goes on by another alternative. What was executed stays executed.
+//! and the mission continues by another alternative. What was executed stays executed.
 
 use exact::{Overflow, Rational, Time};
 use rmpl::program::{Change, LabelMode};
@@ -18,10 +18,10 @@ pub(super) enum Retreat {
     Impossible(Option<String>),
 }
 
-/// What a begun alternative holds.
+/// What a started alternative holds.
 struct Begun {
     choice: Choice,
-    /// Its primitives that have started, and of them those that go on.
+    /// Its primitives that have started, and of them those that continue.
     started: Vec<OccurrenceId>,
     running: Vec<OccurrenceId>,
     /// By node: whether it belongs to it alone.
@@ -29,7 +29,7 @@ struct Begun {
 }
 
 impl Run<'_> {
-    /// Gives up the innermost begun alternative without which there is a plan.
+    /// Gives up the innermost started alternative without which there is a plan.
     pub(super) fn take_back(&mut self, replanner: &mut dyn Replanner) -> Result<Retreat, PlanError> {
         let mut hindrance = None;
         for begun in self.begun_alternatives() {
@@ -97,7 +97,7 @@ impl Run<'_> {
         occurrence.aborts.map(|range| self.world.abort_time(occurrence, range))
     }
 
-    /// The alternatives that have begun and are not over, the innermost first.
+    /// The alternatives that have started and are not over, the innermost first.
     fn begun_alternatives(&self) -> Vec<Begun> {
         let (network, plan) = (&self.stage.network, &self.stage.plan);
         let has_come = |node: NodeId| self.stage.times[node.index()].is_some();
@@ -115,7 +115,7 @@ impl Run<'_> {
                     .map(|(index, _)| NodeId::from_index(index))
             };
             let size = selected().count();
-            // It goes on until what all alternatives lead to has come.
+            // It continues until what all alternatives lead to has come.
             let goes_on = network.arcs.iter().zip(&plan.selected_arcs).any(|(arc, selected)| {
                 *selected && arc.to != network.start && is_own[arc.from.index()] && !has_come(arc.to)
             });

@@ -93,8 +93,8 @@ impl Run<'_> {
         let Some(next) = self.waiting_point(point)? else {
             let node = self.stage.made.node(point);
             if self.stage.times[node.index()].is_none() && self.is_driven(point)? {
-                // Nothing else happens before: only the adversary knows when nature ends a duration, and an event that waits for
-                // its turn comes at its own time.
+                // Nothing else happens before: only the adversary knows when the environment ends a duration, and an
+                // event that waits for its turn comes at its own time.
                 let next = if self.is_natures(node) { None } else { self.candidate(point, node)? };
                 let ticks = next.and_then(|next| self.stage.made.scale().ticks(next.time).ok());
                 self.stage.dispatch.expect(point, ticks.unwrap_or(i64::MAX));

@@ -27,7 +27,7 @@ pub(super) struct Odometer {
 }
 
 impl Run<'_> {
-    /// Lets the world go on until `until`, or until it breaks the plan.
+    /// Lets the world continue until `until`, or until it breaks the plan.
     pub(super) fn let_world_act(&mut self, until: Time) -> Result<Option<Violation>, PlanError> {
         loop {
             let driven = self.odometers.front().map(|odometer| odometer.at);
@@ -141,7 +141,7 @@ impl Run<'_> {
         self.take_value(&network, variable, value)
     }
 
-    /// A variable has another value, which nobody planned.
+    /// A variable has another value, which no one planned.
     fn take_value(
         &mut self,
         network: &Network,
@@ -306,8 +306,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// What relied on the value that a variable had, if something did: the first such requirement that still goes on, or is
-    /// to come.
+    /// What relied on the value that a variable had, if something did: the first such requirement that still continues,
+    /// or is to come.
     fn lost_requirement(&self, variable: VariableId, value: ValueId) -> Option<Violation> {
         let (network, effects) = (&self.stage.network, &self.stage.effects);
         let has_come = |node: NodeId| self.stage.times[node.index()].is_some();

@@ -85,7 +85,7 @@ fn what_durations_put_first_happens_first_where_both_come_at_one_time() {
     }
 }
 
-/// Nature ends A, and what it produces would be too much before something is consumed.
+/// The environment ends A, and what it produces would be too much before something is consumed.
 #[test]
 fn what_comes_before_an_event_of_natures_happens_before_it() {
     for threads in ["{ delay[10,10]; B() }, A()", "A(), { delay[10,10]; B() }"] {

@@ -127,7 +127,7 @@ fn time_that_passes_again_and_again_is_a_finite_number_of_states() {
     assert_eq!(proof.stopped, None);
     assert!(proof.states < 200, "{}", proof.states);
     assert_eq!(proof.verdicts[0].1, Verdict::Holds);
-    // ALWAYS goes on after everything else.
+    // ALWAYS continues after everything else.
     assert!(matches!(proof.verdicts[1].1, Verdict::Broken(_)));
 }
 

@@ -235,7 +235,7 @@ fn what_a_late_condition_starts_together_with_does_not_wait_for_it() {
     }
 }
 
-/// An alternative that was not taken stays excluded once another one has begun, however late its condition may come.
+/// An alternative that was not taken stays excluded once another one has started, however late its condition may come.
 #[test]
 fn a_late_condition_does_not_open_a_choice_again() {
     let network = compiled(

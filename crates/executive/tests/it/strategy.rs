@@ -1,4 +1,4 @@
-//! Runs of a plan's strategy in which nature's durations are chosen one by one (SPEC 13.2).
+//! Runs of a plan's strategy in which the environment's durations are chosen one by one (SPEC 13.2).
 
 use exact::{Bound, Time};
 use executive::{Actor, Course, PinnedPlan};
@@ -28,7 +28,7 @@ fn window(from: i64, to: i64) -> Window {
 }
 
 /// The rover calls when it has arrived, and no later than 25 after it left; it may call while it drives, but not
-/// sooner than 5 before it arrives. Nature chooses between 10 and 20.
+/// sooner than 5 before it arrives. The environment chooses between 10 and 20.
 const CALL: &str = "primitive Drive() contingent [10,20]; primitive Call()[1,1]; primitive Rest()[0,100];
 scenario S = { Drive(), { { delay[0,100]; Call() }[0,26] } }";
 
@@ -49,7 +49,7 @@ fn dragging_the_end_of_a_duration_chooses_it_for_nature() {
     pinned.drop_grabbed();
     assert_eq!(course(&pinned).now, Time::from(12));
     assert_eq!(course(&pinned).windows[meet.index()].unwrap().earliest, Time::from(20));
-    // What nobody has chosen lasts as long as it can, until somebody chooses.
+    // What no one has chosen lasts as long as it can, until someone chooses.
     assert_eq!(pinned.grab(meet), Some(Window { earliest: Time::from(25), latest: Bound::Infinite }));
     assert_eq!(pinned.grab(there), Some(window(20, 25)));
     assert_eq!(pinned.move_to(Time::from(400)), Some(Time::from(25)));

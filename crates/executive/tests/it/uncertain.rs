@@ -1,5 +1,5 @@
-//! Plans whose durations nature chooses (SPEC 13.2): controllable ones never fail for a duration inside its range, and
-//! those that are not fail against the adversary.
+//! Plans whose durations the environment chooses (SPEC 13.2): controllable ones never fail for a duration inside its
+//! range, and those that are not fail against the adversary.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use smol_str::SmolStr;
 use tpn::generate::{Recipe, Rng, Tightness};
 use tpn::{Network, OccurrenceKind, Plan, Top};
 
-/// Nobody plans again.
+/// No one plans again.
 struct Nobody;
 
 impl Replanner for Nobody {
@@ -45,7 +45,7 @@ fn first_plan(network: &Network) -> Option<Plan> {
     kirk::plan(network, &options, &mut kirk::Unlimited).plans.into_iter().next()
 }
 
-/// Leaves some durations to nature, as chance likes.
+/// Leaves some durations to the environment, as chance likes.
 fn leave_to_nature(network: &mut Network, rng: &mut Rng) {
     for occurrence in network.occurrences.clone() {
         let is_duration = matches!(
@@ -59,7 +59,7 @@ fn leave_to_nature(network: &mut Network, rng: &mut Rng) {
     }
 }
 
-/// Whether the plan takes a duration that nature really chooses.
+/// Whether the plan takes a duration that the environment really chooses.
 fn is_uncertain(network: &Network, plan: &Plan) -> bool {
     network
         .arcs
@@ -74,7 +74,7 @@ fn half() -> Time {
     Time::ONE.checked_div(HALF).expect("a half")
 }
 
-/// What nature chooses: anything by halves, or an end of each range.
+/// What the environment chooses: anything by halves, or an end of each range.
 fn choose(network: &Network, rng: &mut Rng, only_ends: bool) -> BTreeMap<SmolStr, Time> {
     let mut chosen = BTreeMap::new();
     for (occurrence, [lower, upper]) in natures_ranges(network) {
@@ -148,7 +148,7 @@ fn plans_that_are_not_controllable_fail_against_the_adversary_and_only_they_do()
     for seed in 0..300 {
         let source = tpn::generate::mission(Recipe { nodes: 30, tightness: Tightness::Feasible, seed });
         let mut network = compiled(&source);
-        // Planned as if nature chose nothing.
+        // Planned as if the environment chose nothing.
         let Some(plan) = first_plan(&network) else { continue };
         leave_to_nature(&mut network, &mut Rng::new(seed));
         if !is_uncertain(&network, &plan) {
@@ -295,7 +295,7 @@ fn what_waits_for_nature_is_told_with_its_time() {
     };
     assert_eq!(waits, []);
     assert_eq!(windows[dig.index()], window(9, 17));
-    // Outside its range, and too early a dig, which nature may still break.
+    // Outside its range, and too early a dig, which the environment may still break.
     assert!(matches!(at(&[(drive[0], 0), (drive[1], 21)], 21), executive::Progress::Violated(_)));
     let executive::Progress::Violated(reasons) = at(&[(drive[0], 0), (dig, 10)], 10) else {
         panic!("violated")

@@ -35,7 +35,7 @@ pub const MAX_HOLED_POSITIONS: usize = 5_000;
 /// Why a file gives no declarations.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GeoJsonError {
-    /// It is no JSON, or no `GeoJSON` object.
+    /// It is not JSON, or no `GeoJSON` object.
     #[error("this is not GeoJSON: {0}")]
     Shape(String),
     /// A table that cannot be read, or lacks a column.

@@ -12,7 +12,7 @@ pub(super) const BETWEEN_WORDS: &str = "__";
 /// Before the name of a part of an action, such as `start`.
 pub(super) const BEFORE_PART: &str = "___";
 
-/// The part that stands for an action that takes no time.
+/// The part that represents an action that takes no time.
 pub(super) const INSTANT: &str = "instant";
 
 /// The part with the conditions that the start of the same action makes true.

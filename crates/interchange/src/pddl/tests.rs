@@ -59,7 +59,7 @@ fn places_of_one_thing_are_the_values_of_one_state() {
         text.contains(start) && text.contains("drive__v__a__b___end()[0.02,0.02] sets v___is=at__v__b;"),
         "{text}"
     );
-    // With somebody who can be put anywhere, the places exclude each other no longer.
+    // With someone who can be put anywhere, the places exclude each other no longer.
     let beside =
         "(:action put :parameters (?v - van ?a - place) :precondition (road ?a ?a) :effect (at ?v ?a))";
     let domain = format!("{} {beside})", domain.strip_suffix(')').expect("its last parenthesis"));

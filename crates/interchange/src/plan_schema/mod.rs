@@ -13,7 +13,7 @@ pub use write::write;
 
 use tpn::network::Network;
 
-/// Why a file is no network.
+/// Why a file is not a network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanSchemaError {
     /// It is neither JSON nor EDN.

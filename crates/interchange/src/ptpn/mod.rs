@@ -14,7 +14,7 @@ pub use write::write;
 /// The namespace of the elements.
 pub const NAMESPACE: &str = "http://mers.csail.mit.edu/tpn";
 
-/// Why a file is no network.
+/// Why a file is not a network.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PtpnError {
     #[error("this is not XML: {0}")]

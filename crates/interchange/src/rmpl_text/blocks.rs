@@ -109,7 +109,7 @@ struct Shaping<'network> {
     /// The block that a sequence is in, and whether it is an alternative there.
     parents: Vec<Option<(usize, bool)>>,
     homes: Vec<Option<Place>>,
-    /// Branches whose block goes on only when all have ended.
+    /// Branches whose block continues only when all have ended.
     is_open_ended: Vec<bool>,
     blocks: Blocks,
 }
@@ -270,7 +270,7 @@ impl Shaping<'_> {
             let what = if has_name { "is an activity" } else { "has a condition" };
             return Err(Obstacle::at_arc(id, &format!("{what} that covers no whole block")));
         }
-        // A bound that is no constraint selects its last event.
+        // A bound that is not a constraint selects its last event.
         if arc.kind != ArcKind::Constraint {
             let around = self.alternatives_around(from.0);
             if !self.alternatives_around(to.0).is_subset(&around) {

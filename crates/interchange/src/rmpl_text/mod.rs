@@ -78,7 +78,7 @@ pub fn write(network: &Network, remarks: &[String]) -> Result<String, Obstacle> 
     Ok(rmpl::format(&text))
 }
 
-/// States, resources, worth and paths: a network has them from a mission's text, and that text is what to go on with.
+/// States, resources, worth and paths: a network has them from a mission's text, and that text is what to continue with.
 fn refuse_what_has_no_words(network: &Network) -> Result<(), Obstacle> {
     if let Some(state) = network.variables.iter().find(|variable| variable.is_lasting) {
         return Err(Obstacle::of_network(format!(

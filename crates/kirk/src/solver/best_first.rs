@@ -1,4 +1,4 @@
-//! Best-first search: of all states that are open the one goes on whose goals may still become best (A*: Hart, Nilsson
+//! Best-first search: of all states that are open the one continues whose goals may still become best (A*: Hart, Nilsson
 //! and Raphael 1968), so that the first solution is one that no other is better than. Conflicts are learned, and
 //! exclude states before they are visited (conflict-directed A*: Williams and Ragno 2007).
 //!
@@ -35,7 +35,7 @@ struct State {
     tree_node: Option<TreeNodeId>,
 }
 
-/// A state that may lead to solutions. Of equally good ones the deepest goes on, and of these the first.
+/// A state that may lead to solutions. Of equally good ones the deepest continues, and of these the first.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Open {
     least: Reverse<LeastSums>,
@@ -95,7 +95,7 @@ impl Frontier {
 }
 
 impl Solver {
-    /// Goes on with the best open states until one of them is a solution that is better than `than`, if that is given.
+    /// Continues with the best open states until one of them is a solution that is better than `than`, if that is given.
     /// `stop` is asked once a state.
     pub(crate) fn visit_best(
         &mut self,
@@ -204,7 +204,7 @@ impl Solver {
         if !self.learn(&conflict) {
             self.is_contradictory = true;
         }
-        // It goes on in the best state, wherever that is: none is returned to.
+        // It continues in the best state, wherever that is: none is returned to.
         self.stats = Stats { backtracks, jumped_over, ..self.stats };
         false
     }

@@ -1,8 +1,8 @@
 //! What nature chooses (SPEC 13.1): where everything is decided, whatever it chooses must leave the executive times.
 //!
-//! The constraints in force and the durations that nature chooses are a simple temporal network with uncertainty. A
-//! semi-reducible negative cycle of it rests on literals, one of which must not hold. Resources must suffice for all
-//! times: uses that nothing orders count together.
+//! The constraints in force and the durations that the environment chooses are a simple temporal network with
+//! uncertainty. A semi-reducible negative cycle of it rests on literals, one of which must not hold. Resources must
+//! suffice for all times: uses that nothing orders count together.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -31,8 +31,8 @@ struct InForce {
     points: TiVec<Variable, Option<u32>>,
     count: usize,
     edges: Vec<(Edge, Vec<Literal>)>,
-    /// How long movements take at least from where they begin, by their first and last events: that raises nature's
-    /// least duration, and asks nothing of nature (SPEC 13.1).
+    /// How long movements take at least from where they begin, by their first and last events: that raises the
+    /// environment's least duration, and asks nothing of the environment (SPEC 13.1).
     movements: BTreeMap<(Variable, Variable), (i64, Literal)>,
 }
 
@@ -45,7 +45,7 @@ struct Edge {
 }
 
 impl Problem<'_> {
-    /// Excludes the present solution if nature can make it fail. `Some(false)` if it cannot, `None` if nobody knows.
+    /// Excludes the present solution if the environment can make it fail. `Some(false)` if it cannot, `None` if no one knows.
     pub(super) fn withstand(&mut self, solver: &mut Solver, stop: &mut dyn FnMut() -> bool) -> Option<bool> {
         if !self.faces_nature {
             return Some(false);
@@ -74,7 +74,7 @@ impl Problem<'_> {
             movements: BTreeMap::new(),
         };
         if self.model.is_strong {
-            // What is tied to an event of nature's is one with it.
+            // What is tied to an event of the environment's is one with it.
             for arc in self.ties(solver) {
                 let (from, to) = (self.times[arc.from], self.times[arc.to]);
                 let [one, other] = [from, to].map(|variable| in_force.point_of(variable));
@@ -110,7 +110,7 @@ impl Problem<'_> {
         in_force
     }
 
-    /// The gaps before what nature executes only with other choices than the present ones.
+    /// The gaps before what the environment executes only with other choices than the present ones.
     fn add_strict_gaps(&self, solver: &Solver, in_force: &mut InForce) {
         let natures = self.natures_variables(solver);
         let chosen: Vec<Literal> = self.chosen(solver).collect();
@@ -130,7 +130,7 @@ impl Problem<'_> {
         self.alternatives.iter().flatten().copied().filter(|&taken| solver.trail.holds(taken))
     }
 
-    /// Which times nature chooses in the present solution: ends of its durations, and what is tied to them.
+    /// Which times the environment chooses in the present solution: ends of its durations, and what is tied to them.
     fn natures_variables(&self, solver: &Solver) -> TiVec<Variable, bool> {
         let mut natures: TiVec<Variable, bool> = vec![false; solver.trail.num_variables()].into();
         for arc in &self.model.arcs {
@@ -177,7 +177,7 @@ impl Problem<'_> {
         })
     }
 
-    /// The literals that make the present solution fail, if nature can. `None` if nobody knows.
+    /// The literals that make the present solution fail, if the environment can. `None` if no one knows.
     #[expect(clippy::option_option, reason = "what is not known is not what there is none of")]
     fn failure(
         &self,
@@ -196,7 +196,7 @@ impl Problem<'_> {
             let (Some(activation), Some(end)) = (in_force.point(from), in_force.point(to)) else { continue };
             let (least, begins) =
                 in_force.movements.get(&(from, to)).copied().unwrap_or((arc.lower, Literal::TRUE));
-            // One that takes longer than it may is no solution.
+            // One that takes longer than it may is not a solution.
             let lower = arc.lower.max(least).min(arc.upper);
             let mut link = Link { activation, end, lower, upper: arc.upper };
             let mut added = network.add_link(link);
@@ -209,7 +209,7 @@ impl Problem<'_> {
             }
             match added {
                 Ok(_) => presences.push([presence, begins]),
-                // Nature may choose more than no time between events that are at one time.
+                // The environment may choose more than no time between events that are at one time.
                 Err(_) if arc.upper > 0 => {
                     return Some(Some(self.chosen(solver).chain([presence]).collect()));
                 }
@@ -304,7 +304,7 @@ impl Problem<'_> {
                     }
                     solver.retract(0);
                     if is_known {
-                        // An order that would mend it holds, and events at one time undo it.
+                        // An order that would fix it holds, and events at one time undo it.
                         solver.tell_from_premises([Premise::Unknown]);
                         solver.at_least_one(held.into_iter().map(|literal| !literal));
                     } else {

@@ -85,12 +85,12 @@ impl Task {
         }
     }
 
-    /// Whether it goes on at a time, whenever it starts and ends.
+    /// Whether it continues at a time, whenever it starts and ends.
     const fn is_on(&self, time: i64) -> bool {
         self.latest_start <= time && time < self.earliest_end
     }
 
-    /// That it goes on at a time.
+    /// That it continues at a time.
     fn reason_on(&self, time: i64) -> [Literal; 3] {
         let ends = Literal::new(self.ends_after, -(time + 1));
         [Literal::new(self.starts_by, time), ends, self.presence]
@@ -140,7 +140,7 @@ impl Cumulatives {
     }
 }
 
-/// What tasks that go on for sure take, over time.
+/// What tasks that continue for sure take, over time.
 fn find_profile(tasks: &[Task], profile: &mut Vec<Segment>) {
     let sure = tasks.iter().filter(|task| task.latest_start < task.earliest_end);
     let mut changes: Vec<(i64, i64)> =
@@ -197,7 +197,7 @@ impl<'a> Sure<'a> {
         Self { tasks, at: BTreeMap::new() }
     }
 
-    /// That tasks go on at a time which together take more than `room`: as few as suffice.
+    /// That tasks continue at a time which together take more than `room`: as few as suffice.
     fn reason(&mut self, time: i64, room: i64, besides: Option<&Task>) -> Conflict {
         let on = self.at.entry(time).or_insert_with(|| {
             let mut on: Vec<&Task> = self.tasks.iter().copied().filter(|task| task.is_on(time)).collect();

@@ -34,7 +34,7 @@ pub(crate) struct Part<'a> {
     pub(crate) alternatives: Option<&'a Alternatives>,
     /// The uses of resources that count; all if `None`.
     pub(crate) active_uses: Option<&'a [bool]>,
-    /// Whether durations that nature chooses are chosen like all others.
+    /// Whether durations that the environment chooses are chosen like all others.
     pub(crate) ignores_nature: bool,
     /// Whether it is to be known what a refutation rests on.
     pub(crate) wants_core: bool,
@@ -92,7 +92,7 @@ pub(crate) struct Problem<'m> {
     /// Requirements with the assertions that may carry them.
     pub(super) carriers: Vec<(LabelId, Vec<(LabelId, Literal)>)>,
     contexts: TiVec<NodeId, Context>,
-    /// Whether solutions have to withstand what nature chooses.
+    /// Whether solutions have to withstand what the environment chooses.
     pub(super) faces_nature: bool,
 }
 
@@ -152,7 +152,7 @@ impl<'m> Problem<'m> {
             problem.add_lasting(&mut solver, part, &mut growth)?;
             problem.add_resources(&mut solver, part);
             if problem.faces_nature {
-                // What the least times keep apart nature's times may not.
+                // What the least times keep apart the environment's times may not.
                 problem.order_all_pairs(&mut solver, &mut growth)?;
             }
         }

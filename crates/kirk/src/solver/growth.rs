@@ -1,4 +1,4 @@
-//! How much memory a problem may take, and whether to go on telling it to the solver.
+//! How much memory a problem may take, and whether to continue telling it to the solver.
 
 /// Why a problem is not told to the solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -117,7 +117,7 @@ enum ChoicePointKind {
     Orders { left: LabelId, right: LabelId },
     /// Two orders of changes that exclude each other.
     Sides,
-    /// Orders of uses, one of which mends what takes too much of a resource.
+    /// Orders of uses, one of which fixes what takes too much of a resource.
     Resolvers,
 }
 

@@ -3,8 +3,8 @@
 //!
 //! Reasons are told as choices alone. What the solver knows of single times is traced back to the choices that it follows
 //! from, and so is what is ruled out; what a conflict teaches stays true by that, though it may say less than the clause.
-//! Recording decides nothing: the same plan is found with and without it. Only what nobody watches makes many decisions before
-//! it looks at their times.
+//! Recording decides nothing: the same plan is found with and without it. Only what no one watches makes many decisions
+//! before it looks at their times.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
@@ -173,7 +173,7 @@ impl Solver {
         }
     }
 
-    /// Goes on with a record in a new search, at its root.
+    /// Continues with a record in a new search, at its root.
     pub(crate) fn begin_record(
         &mut self,
         problem: &Problem<'_>,
@@ -418,7 +418,7 @@ impl Solver {
         let because = levels.into_iter().map(state).collect();
         let to = state(level);
         record.tell(Event::Learn { choices });
-        // A best-first search goes on where it is best.
+        // A best-first search continues where it is best.
         if record.told.is_none() {
             record.tell(Event::Backjump { to, because });
         }
@@ -455,7 +455,7 @@ impl Solver {
         }
     }
 
-    /// Tells that the search goes on with the present state, what the goals may become in it, and how many others wait.
+    /// Tells that the search continues with the present state, what the goals may become in it, and how many others wait.
     pub(super) fn record_visit(&mut self, problem: &Problem<'_>, least: &[i64], waiting: usize) {
         if let Some(record) = self.recording() {
             record.set_status(TreeStatus::Decision);

@@ -1,4 +1,4 @@
-//! Resources (SPEC 11): where a solution takes more than there is, one of the orders that would mend it must hold.
+//! Resources (SPEC 11): where a solution takes more than there is, one of the orders that would fix it must hold.
 //!
 //! Uses that together take more than a resource has are a minimal critical set, and one of them must end before another
 //! one starts (Laborie and Ghallab 1995). Of a reservoir that would run low, one of the productions that come too late
@@ -214,7 +214,7 @@ impl Problem<'_> {
         if found.is_empty() {
             return Sharing::Fits;
         }
-        // Times that suit nobody but the executive say nothing where nature chooses.
+        // Times that suit no one but the executive say nothing where the environment chooses.
         if !self.faces_nature
             && excluding.is_empty()
             && let Some(first) = found.iter().find_map(|critical| first_to_start(solver, critical))

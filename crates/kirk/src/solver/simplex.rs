@@ -24,7 +24,7 @@ pub(super) fn maximize(gains: &[f64], rows: &[(Vec<f64>, f64)]) -> Optimum {
     tableau.optimum()
 }
 
-/// Columns are the variables, then the slack of each row. A column that is turned stands for 1 minus its variable.
+/// Columns are the variables, then the slack of each row. A column that is turned represents 1 minus its variable.
 struct Tableau {
     num_variables: usize,
     columns: usize,

@@ -6,7 +6,7 @@ use super::literal::{Literal, Side, Variable};
 use super::premise::Premise;
 use crate::ids::{ClauseId, CommonBoundId, DifferenceId, EventId, NoteId};
 
-/// Why a bound holds. What else it rests on is found out only if somebody asks.
+/// Why a bound holds. What else it rests on is found out only if someone asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cause {
     /// It was decided, or holds whatever is decided.

@@ -201,7 +201,7 @@ impl<'a> Searching<'a> {
         }
     }
 
-    /// A problem and its solver, which goes on with the record. `None` if it was stopped meanwhile.
+    /// A problem and its solver, which continues with the record. `None` if it was stopped meanwhile.
     fn recorded_problem(
         &mut self,
         limits: &Limits,
@@ -226,7 +226,7 @@ impl<'a> Searching<'a> {
         }
     }
 
-    /// Goes on with the record in a solver that begins to search within these limits.
+    /// Continues with the record in a solver that begins to search within these limits.
     fn begin_record(&mut self, attempt: &mut Attempt<'a>, limits: &Limits) {
         let Some(record) = self.record.take() else { return };
         let goals = self.model.demands.goals.iter().zip(limits);
@@ -516,7 +516,7 @@ impl<'a> Searching<'a> {
     }
 
     /// A plan within the limits, the same one each time. The last of them is no greater than in the attempts before, with
-    /// whose solver the search goes on.
+    /// whose solver the search continues.
     fn better(
         &mut self,
         improving: &mut Improving<'a>,
@@ -615,7 +615,7 @@ mod tests {
         }
     }
 
-    /// Better schedules in which intervals touch are no plans where nothing forces them to: that ends, too.
+    /// Better schedules in which intervals touch are not plans where nothing forces them to: that ends, too.
     #[test]
     fn what_would_be_sooner_only_by_touching_is_not_looked_for_for_ever() {
         let text = "objective minimize end;

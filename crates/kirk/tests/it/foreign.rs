@@ -61,7 +61,7 @@ fn read(text: &str) -> Network {
     Source::read(text).expect("is a network").into_network()
 }
 
-/// A choice after the first delay whose second alternative goes on at `second`.
+/// A choice after the first delay whose second alternative continues at `second`.
 fn choice(second: &str) -> String {
     threads(&format!(
         r#""s1": {{ "tpn-type": "c-begin", "end-node": "e1", "constraints": ["apart"], "activities": ["one", "other"] }},
@@ -94,7 +94,7 @@ fn constraints_between_threads_are_planned_beside_open_delays_and_choices() {
 
 #[test]
 fn choices_that_do_not_nest_are_refused_for_what_they_are() {
-    // The second alternative goes on where the other thread waits.
+    // The second alternative continues where the other thread waits.
     let network = read(&choice("s2"));
     let outcome = kirk::plan(&network, &options(Search::ConflictDirected, false), &mut Unlimited);
     assert_eq!((outcome.status, outcome.unplannable), (Status::Error, Some(Unplannable::Entangled)));

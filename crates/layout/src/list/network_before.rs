@@ -190,7 +190,7 @@ fn level_parts(drawing: &NetworkDrawing) -> Vec<(ArcId, Rect)> {
 const MAX_OFF: f64 = 72.0;
 const STEP_OFF: f64 = 2.0;
 
-/// When what an arc stands for can start in the plan.
+/// When what an arc represents can start in the plan.
 fn starts_of(network: &Network, plan: &Plan, arc: ArcId) -> Option<[f64; 2]> {
     let window = plan.windows.get(network.arcs[arc.index()].from.index()).copied().flatten()?;
     Some([window.earliest.to_f64(), window.latest.to_f64()])
@@ -205,7 +205,7 @@ fn moved([starts, ends]: [[f64; 2]; 2], now: Option<[f64; 2]>) -> (String, &'sta
     }
 }
 
-/// The arcs that stand for what has changed.
+/// The arcs that represent what has changed.
 fn arcs_of(network: &Network, changes: &[(OccurrenceId, BarChange)]) -> Vec<(ArcId, BarChange)> {
     let change_of = |id: OccurrenceId| {
         let at = changes.binary_search_by_key(&id, |(id, _)| *id).ok()?;

@@ -54,7 +54,7 @@ pub struct Past {
 /// A line between two bars.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// What it stands for.
+    /// What it represents.
     pub kind: LinkKind,
     /// The row and the bar that it comes from.
     pub from: (usize, usize),
@@ -62,7 +62,7 @@ pub struct Link {
     pub to: (usize, usize),
 }
 
-/// What a line between bars stands for.
+/// What a line between bars represents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkKind {
     /// An assertion carries a requirement.
@@ -162,8 +162,8 @@ impl Chart {
     }
 
     fn links_of(&self, network: &Network, plan: &Plan) -> Vec<Link> {
-        // Where the bar of a condition is, and, failing that, the bar of its owner. A change has two: while it goes on, and
-        // with what has come of it, which carries requirements.
+        // Where the bar of a condition is, and, failing that, the bar of its owner. A change has two: while it
+        // continues, and with what has come of it, which carries requirements.
         let mut of_label = vec![None; network.labels.len()];
         let mut of_change = vec![None; network.labels.len()];
         let mut of_owner = vec![None; network.occurrences.len()];

@@ -11,7 +11,7 @@ use super::profile::is_named;
 /// Who has a lane, in the order of lanes.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Owner {
-    /// What belongs to nobody else.
+    /// What belongs to no one else.
     Mission,
     /// Vehicles, ascending by their declarations; several where one activity moves them together.
     Vehicles(Vec<usize>),

@@ -72,7 +72,7 @@ pub struct Bar {
     pub end: [f64; 2],
     /// The same without pinned events.
     pub free: [[f64; 2]; 2],
-    /// The least and the greatest duration, where nature chooses it.
+    /// The least and the greatest duration, where the environment chooses it.
     pub natures: Option<[f64; 2]>,
     /// What it requires and asserts.
     pub labels: Vec<LabelId>,
@@ -151,7 +151,7 @@ impl Bar {
         self.free != [self.start, self.end]
     }
 
-    /// Whether it stands for all of its occurrence, and not for a condition of an activity that has its own bar.
+    /// Whether it represents all of its occurrence, and not for a condition of an activity that has its own bar.
     pub fn is_complete(&self, network: &Network) -> bool {
         let occurrence = self.occurrence.and_then(|id| network.occurrences.get(id.index()));
         self.label.is_none() || occurrence.is_some_and(|it| it.kind == OccurrenceKind::Assertion)
@@ -163,7 +163,7 @@ impl Bar {
     }
 }
 
-/// The range of an arc's duration, in mission units, if nature chooses it.
+/// The range of an arc's duration, in mission units, if the environment chooses it.
 pub(super) fn natures(network: &Network, arc: Option<ArcId>) -> Option<[f64; 2]> {
     let id = arc.filter(|&id| network.is_uncertain(id))?;
     let arc = &network.arcs[id.index()];

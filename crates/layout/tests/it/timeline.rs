@@ -71,7 +71,7 @@ fn an_activity_is_in_the_lane_of_its_vehicle_then_of_its_resource_then_of_its_st
     let lanes = lanes(&chart);
     let of = |lane: &str| lanes[lane].iter().map(String::as_str).collect::<Vec<_>>();
     assert_eq!(of("Mission"), ["All", "Wait"]);
-    // What is called with a vehicle is the vehicle's, with what uses nobody's resource in it.
+    // What is called with a vehicle is the vehicle's, with what uses no one's resource in it.
     assert_eq!(
         of("Scout"),
         ["= Radio", "= Scout.at", "Drive(Scout, RIDGE)", "Look(Scout, RIDGE)", "Survey(Scout)", "Talk"]

@@ -102,7 +102,7 @@ impl Queue {
         }
     }
 
-    /// Whether nobody wants the job under way any more.
+    /// Whether no one wants the job under way any more.
     pub(super) fn is_in_vain(&self) -> bool {
         self.under_way.as_ref().is_some_and(|it| {
             it.is_canceled || self.waiting.iter().any(|newer| newer.job.request.supersedes(&it.job.request))

@@ -139,7 +139,7 @@ fn a_newer_text_ends_what_was_asked_of_the_older_one_and_not_the_other_way_round
     link.post(update(2));
     assert_eq!(told(&mut link), ["interrupt"]);
     link.hear(1, News::Finished);
-    // The text to compare with stands for itself, and has waited longer.
+    // The text to compare with represents itself, and has waited longer.
     assert_eq!(told(&mut link), ["send Evaluate 0"]);
     link.hear(1, News::Finished);
     assert_eq!(told(&mut link), ["send Update 2"]);

@@ -170,7 +170,7 @@ impl RunOfSystem {
                 trouble = Some(error.to_string());
                 break;
             }
-            // What was done stays done: a later request goes on from here.
+            // What was done stays done: a later request continues from here.
             if host.is_superseded() {
                 return;
             }

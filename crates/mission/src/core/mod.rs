@@ -1,7 +1,7 @@
 //! The chain from text to plan to paths, with each stage's last result kept.
 //!
 //! A request redoes only what its text changed: an edit that leaves the network as it was keeps the plan, and paths are
-//! kept by their inputs. The caller gives the clock, is asked whether to go on, and gets answers as stages complete.
+//! kept by their inputs. The caller gives the clock, is asked whether to continue, and gets answers as stages complete.
 
 mod control_run;
 mod evaluating;

@@ -1,4 +1,4 @@
-//! Searches for a leg's path as sessions: each is kept with its trees, and goes on from where it is.
+//! Searches for a leg's path as sessions: each is kept with its trees, and continues from where it is.
 
 use std::sync::Arc;
 
@@ -154,7 +154,7 @@ impl Session {
         is_wanted
     }
 
-    /// The search as it stands, for somebody who holds its first samples.
+    /// The search as it stands, for someone who holds its first samples.
     fn standing(&self, wanted: &PathGrowth, held: usize) -> GrowthStanding {
         let trace = self.search.as_ref().ok().map(TracedSearch::trace);
         let steps = trace.map_or(&[][..], |trace| trace.steps.as_slice());

@@ -165,8 +165,8 @@ fn is_short(uses: &[&Use], mut lowest: Rational, level: Rational) -> Option<bool
 }
 
 /// The least number of steps, from 1 to `most`, with which there is a plan, where there is one with more; and whether it is known
-/// that there is none with one step less. There is none without a step. `None` if there is no plan with the most, or nobody
-/// knows.
+/// that there is none with one step less. There is none without a step. `None` if there is no plan with the most, or no
+/// one knows.
 fn least(most: i64, verdict: &mut dyn FnMut(i64) -> Verdict) -> Option<(i64, bool)> {
     if most < 1 || verdict(most) != Verdict::Plan {
         return None;

@@ -25,8 +25,8 @@ use crate::traverse::Paths;
 const MAX_TRIED: usize = 12;
 /// Changes that are offered at most.
 const MAX_OFFERED: usize = 6;
-/// How often planning one change may ask whether to go on: a few times as often as it took to find out that there is no plan,
-/// and so often at least and at most. What takes longer is not offered.
+/// How often planning one change may ask whether to continue: a few times as often as it took to find out that there is
+/// no plan, and so often at least and at most. What takes longer is not offered.
 const EFFORTS: (u64, u64) = (2_000, 20_000);
 const TIMES_THE_PROOF: u64 = 4;
 /// Plannings with different amounts of resources, at most.

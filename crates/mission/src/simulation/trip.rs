@@ -1,4 +1,4 @@
-//! One traverse as it is driven, from its start until its last vehicle is there or none can go on.
+//! One traverse as it is driven, from its start until its last vehicle is there or none can continue.
 
 use snapshot::ground::closed_to;
 use snapshot::vehicle;
@@ -38,9 +38,9 @@ const NEAR_M: f64 = 40.0;
 /// Vehicles give up after so many other ways, and after so many times the time that they were to take.
 const MAX_REROUTES: u32 = 12;
 const MAX_TIMES: f64 = 4.0;
-/// Steps of simulation that one drive takes at most, so that none goes on without end.
+/// Steps of simulation that one drive takes at most, so that none continues without end.
 const MAX_STEPS: u32 = 500_000;
-/// A follower that cannot go on looks for a way to its own path so many meters ahead, or else to its end.
+/// A follower that cannot continue looks for a way to its own path so many meters ahead, or else to its end.
 const REJOINING_M: [f64; 3] = [8.0, 15.0, 30.0];
 /// It stays where it is, when it is this near to the end of its way, in meters, and something stands no farther beside that
 /// than it needs itself and so much more.
@@ -48,7 +48,7 @@ const STAYS_WITHIN_M: f64 = 4.0;
 const BESIDE_M: f64 = 0.3;
 /// What is seen this near to what the map shows, in meters, is taken for that.
 const KNOWN_M: f64 = 0.9;
-/// What sonars hear goes on the map from this near on, in meters.
+/// What sonars hear continues the map from this near on, in meters.
 const HEARD_M: f64 = 1.5;
 /// Meters beyond the path are counted by so many.
 const COUNTED_M: f64 = 5.0;
@@ -340,7 +340,7 @@ impl<'a> Trip<'a> {
         (share * self.speeds_mps[1]).min(model.speed_on_grade_mps(grade)) * factor
     }
 
-    /// Looks for another way for a vehicle that can't go on: around what it has seen, to the end of its leg.
+    /// Looks for another way for a vehicle that can't continue: around what it has seen, to the end of its leg.
     fn reroute(&mut self, vehicle: usize) -> Result<(), String> {
         self.reroutes += 1;
         let stuck = self.stuck(vehicle);
@@ -469,7 +469,7 @@ impl<'a> Trip<'a> {
         self.send(0, way);
     }
 
-    /// What range finders see and sonars hear that the map does not show goes on the map that all share.
+    /// What range finders see and sonars hear that the map does not show continues the map that all share.
     fn put_on_map(&mut self, steps: &[(DriveEvent, RangeScan)], now: f64) {
         let space = &self.course.drive.space;
         for (_, scan) in steps {
@@ -599,8 +599,8 @@ fn way_between<const COUNT: usize>(
     })
 }
 
-/// The time that a traverse is to take, in mission units: what nature chose of its range, or otherwise that of its plan's
-/// earliest schedule, as far as its own bounds say.
+/// The time that a traverse is to take, in mission units: what the environment chose of its range, or otherwise that of
+/// its plan's earliest schedule, as far as its own bounds say.
 fn wanted_units(network: &Network, occurrence: OccurrenceId, chosen: &BTreeMap<SmolStr, Time>) -> f64 {
     let described = &network.occurrences[occurrence.index()];
     let own = described.arc.map(|arc| {

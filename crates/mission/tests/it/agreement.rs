@@ -214,7 +214,7 @@ fn who_is_there_early_waits_for_what_its_next_step_follows() {
         primitive Drive(r, to)[0,200] moves r speed (0.02, 0.5) requires Arm=IN;
         primitive Stretch()[1,3] sets Arm=OUT; primitive Look() contingent [2,6];
         scenario S[0,300] = { Drive(V0, B), { Drive(V1, D); Stretch() }, LOOK }";
-    // With and without a duration that nature chooses, plans are dispatched in different ways.
+    // With and without a duration that the environment chooses, plans are dispatched in different ways.
     for look in ["delay", "{ Look(); delay }"] {
         for seed in 0..4 {
             let execution = executed(&source.replace("LOOK", look), seed);

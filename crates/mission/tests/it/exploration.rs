@@ -143,7 +143,7 @@ fn what_one_rover_has_met_another_one_drives_around() {
     );
 }
 
-/// What lies below the plane of range finders only sonars hear: it is driven around, and goes on the shared map.
+/// What lies below the plane of range finders only sonars hear: it is driven around, and continues the shared map.
 #[test]
 fn what_only_sonars_hear_is_driven_around_and_shared() {
     let source = "option time_unit = second;

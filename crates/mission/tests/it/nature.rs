@@ -11,7 +11,7 @@ use crate::support::Mission;
 
 /// What the tests do with a mission.
 trait Runs {
-    /// Executes it, with what nature chooses drawn by the seed.
+    /// Executes it, with what the environment chooses drawn by the seed.
     fn execute(&self, seed: u64, script: &Script) -> Ran;
     /// Executes it so many times.
     fn sample(&self, runs: u64, uncertainty: &Uncertainty) -> Tally;

@@ -97,7 +97,7 @@ fn what_cannot_be_read_says_where_and_is_no_list_of_mistakes_in_rmpl() {
 
 #[test]
 fn what_alternatives_that_were_not_taken_would_have_brought_holds_up_no_run() {
-    // Both activities end at one node; nature may draw a duration for either.
+    // Both activities end at one node; the environment may draw a duration for either.
     let both = CHOICE.replace(r#""delay-activity", "end-node""#, r#""activity", "name": "Rest", "end-node""#);
     let settings =
         snapshot::RobustnessSettings { runs: 20, seed: 3, uncertainty: snapshot::Uncertainty::default() };

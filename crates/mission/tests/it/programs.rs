@@ -349,7 +349,7 @@ fn an_effect_that_the_estimate_denies_is_none_and_the_mission_plans_again() {
     assert!(said.iter().any(|(_, text)| text.contains(word)), "{said:?}");
 }
 
-/// An engine that fires already, though nobody is sure of it.
+/// An engine that fires already, though no one is sure of it.
 #[test]
 fn priors_and_thresholds_of_the_control_block_count_for_the_programs_of_a_mission() {
     let mission = "state EngineA.mode from plant;

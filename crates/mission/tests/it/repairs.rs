@@ -117,7 +117,7 @@ fn of_a_resource_one_waits_or_there_is_more() {
             "have 2 of Antenna at a time: resource Antenna capacity 2;"
         ]
     );
-    // Nobody has time to wait.
+    // No one has time to wait.
     let short = offered(&source.replace("[0,100]", "[0,9]"));
     assert_eq!(labels(&short), ["have 2 of Antenna at a time: resource Antenna capacity 2;"]);
 }

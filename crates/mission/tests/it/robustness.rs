@@ -245,7 +245,7 @@ fn vehicles_that_drive_take_as_long_as_the_way_and_its_rocks_make_them() {
     assert_eq!(shards, among);
 }
 
-/// Two rovers whose paths cross; nature chooses how long each takes.
+/// Two rovers whose paths cross; the environment chooses how long each takes.
 const CROSSING: &str = "
 terrain \"tai-plain\" cell 0.6 origin (0, 0);
 location A (24, 52); location B (60, 56); location C (44, 40); location D (44, 70);

@@ -79,7 +79,7 @@ fn wanted(source: &str, inputs: Vec<Input>) -> ControlRun {
     }
 }
 
-/// The same, by somebody who holds what was answered.
+/// The same, by someone who holds what was answered.
 fn holding(mut wanted: ControlRun, standing: &ControlStanding, held: u32) -> ControlRun {
     wanted.held_program = standing.program;
     wanted.held_run = standing.run;
@@ -366,7 +366,7 @@ fn planners_that_race_draw_the_samples_that_they_draw_alone_and_by_turns() {
         let last = race.growths.iter().rfind(|it| it.planner == planner).expect("it is answered");
         assert!(last.is_complete && last.elapsed_millis > 0.0, "{planner:?}");
     }
-    // Nobody waits until somebody else is done: RRT* is the longest, and is under way before the others end.
+    // No one waits until someone else is done: RRT* is the longest, and is under way before the others end.
     let first = |planner| race.growths.iter().position(|it| it.planner == planner);
     let last = |planner| race.growths.iter().rposition(|it| it.planner == planner);
     assert!(first(motion::PlannerKind::RrtStar) < last(motion::PlannerKind::Kinodynamic));

@@ -17,7 +17,7 @@ use crate::Context;
 /// From a node to its children, in points.
 const INDENT: f32 = 16.0;
 
-/// Lists the conflicts, and shows the tree if it was begun.
+/// Lists the conflicts, and shows the tree if it was started.
 pub(super) fn show(
     ui: &mut Ui,
     context: &Context<'_>,

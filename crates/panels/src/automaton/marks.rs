@@ -19,7 +19,7 @@ pub(super) fn span_of(automaton: &Automaton, item: AutomatonItem) -> Option<Span
 }
 
 /// What is marked on the drawing: what was pressed last, as long as its text is selected; otherwise all that the smallest
-/// expression around the caret, or around the selected text, stands for.
+/// expression around the caret, or around the selected text, represents.
 pub(super) fn marked(
     automaton: &Automaton,
     caret: Caret,
@@ -46,7 +46,7 @@ pub(super) fn marked(
     found
 }
 
-/// Everything that the parts of the text stand for, but for the program as a whole.
+/// Everything that the parts of the text represent, but for the program as a whole.
 fn written(automaton: &Automaton) -> impl Iterator<Item = (Span, AutomatonItem)> {
     let locations = (0..).map(LocationId).zip(&automaton.locations);
     let locations = locations.map(|(id, location)| (location.span, AutomatonItem::Location(id)));

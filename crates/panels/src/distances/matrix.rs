@@ -15,7 +15,7 @@ use workbench::state::selection::node_name;
 use super::graph::{Selected, bounds};
 use crate::Context;
 
-/// Larger networks are not shown as a matrix: nobody could read it.
+/// Larger networks are not shown as a matrix: no one could read it.
 const MAX_EVENTS: usize = 32;
 
 /// Shows the matrix.

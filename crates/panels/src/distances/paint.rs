@@ -263,7 +263,7 @@ impl Scene<'_> {
     }
 
     /// The weight of an edge on its curve, where it covers nothing else; `degrees` says of how many edges each vertex is an
-    /// end.
+    /// where they end.
     fn weight(&self, edge: usize, has_cycle: bool, degrees: &[usize], taken: &mut Vec<Rect>) {
         let font_size = ((size::SMALL + 1.0) * self.view.zoom() as f32).min(14.0);
         if font_size < MIN_TEXT {

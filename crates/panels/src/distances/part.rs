@@ -1,5 +1,5 @@
-//! Which part of a distance graph is drawn where nobody could read the whole: the contradiction with what lies next to it,
-//! or what lies around what is selected. A contradiction of too many bounds is drawn in stretches.
+//! Which part of a distance graph is drawn where no one could read the whole: the contradiction with what lies next to
+//! it, or what lies around what is selected. A contradiction of too many bounds is drawn in stretches.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -21,7 +21,7 @@ pub struct Shown {
     pub graph: DistanceGraph,
     /// How many events it leaves out.
     pub left_out: usize,
-    /// How many bounds each edge of a contradiction stands for at most.
+    /// How many bounds each edge of a contradiction represents at most.
     pub stretch: usize,
 }
 
@@ -76,7 +76,7 @@ fn around(all: &Selected<'_>, seeds: &[NodeId], most: usize) -> Vec<NodeId> {
     all.nodes.iter().copied().filter(|node| found.contains(node)).collect()
 }
 
-/// The contradiction alone: each edge stands for so many bounds after each other that all of it can be read.
+/// The contradiction alone: each edge represents so many bounds after each other that all of it can be read.
 fn in_stretches(all: &Selected<'_>) -> Shown {
     let cycle = all.cycle;
     let stretch = cycle.len().div_ceil(MAX_VERTICES / 2);

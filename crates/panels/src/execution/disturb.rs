@@ -120,7 +120,7 @@ impl Disturb {
     }
 }
 
-/// Whether nature chooses its durations against the plan, where it chooses some.
+/// Whether the environment chooses its durations against the plan, where it chooses some.
 fn natures(ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
     if shown.network.arcs.iter().all(|arc| !arc.is_contingent) {
         return;

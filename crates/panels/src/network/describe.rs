@@ -65,7 +65,7 @@ pub(super) fn describe_box(
     (title.to_owned(), lines)
 }
 
-/// With more choices than this, nobody wants to hear them one by one.
+/// With more choices than this, no one wants to hear them one by one.
 const MAX_CHOICES: usize = 30;
 
 /// The drawing in a sentence.

@@ -63,7 +63,7 @@ impl Detail {
         Self { is_expanded: true, ..self.clone() }
     }
 
-    /// Opens the box that stands for blocks from `first` to `last`.
+    /// Opens the box that represents blocks from `first` to `last`.
     pub(super) fn open(&mut self, network: &Network, first: BlockId, last: BlockId) {
         let (Some(first), Some(last)) = (block_key(network, first), block_key(network, last)) else { return };
         if first != last || !self.collapsed.remove(&first) {

@@ -12,18 +12,18 @@ use super::highlight::selection_of;
 use super::view::View;
 use crate::{Context, draw_menu};
 
-/// With more in view, a list helps nobody.
+/// With more in view, a list helps no one.
 const MAX_LANDMARKS: usize = 150;
 /// Smaller than this, they cannot be told apart.
 const MIN_HEIGHT: f32 = 5.0;
 
 /// What was done with a landmark.
 pub(super) struct Act {
-    /// What it stands for.
+    /// What it represents.
     pub(super) selection: Selection,
     /// Whether it was double clicked.
     pub(super) is_double: bool,
-    /// The blocks whose box it opens, if a key pressed a box that stands for no single activity.
+    /// The blocks whose box it opens, if a key pressed a box that represents no single activity.
     pub(super) opens: Option<(BlockId, BlockId)>,
 }
 
@@ -77,7 +77,7 @@ pub(super) fn show(
 struct Landmark {
     rect: Rect,
     selection: Selection,
-    /// The blocks and the title of a box that stands for no single activity.
+    /// The blocks and the title of a box that represents no single activity.
     opens: Option<(BlockId, BlockId, SmolStr)>,
 }
 

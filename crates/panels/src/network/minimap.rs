@@ -65,7 +65,7 @@ pub(super) fn paint(
     );
 }
 
-/// The point of the drawing that a place of the overview stands for.
+/// The point of the drawing that a place of the overview represents.
 pub(super) fn point_at(place: Rect, drawn: &Drawn, position: Pos2) -> Point {
     let (bounds, inner) = (drawn.drawing.bounds, place.shrink(4.0));
     let part = (position - inner.min) / inner.size();

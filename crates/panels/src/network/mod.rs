@@ -594,7 +594,7 @@ fn overlay_selection(curve: &OverlayCurve, network: &Network, plan: &Plan) -> Op
             if let Some(&ordering) = plan.orderings_added.get(number) {
                 return Some(Selection::Ordering(ordering));
             }
-            // Those of the uses of resources follow; each stands for the one that has to wait.
+            // Those of the uses of resources follow; each represents the one that has to wait.
             let ordering = plan.uses_ordered.get(number - plan.orderings_added.len())?;
             network.uses.get(ordering.then.index())?.owner.map(Selection::Occurrence)
         }

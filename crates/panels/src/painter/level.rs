@@ -10,7 +10,7 @@ pub(super) struct LevelLines(Mesh);
 impl LevelLines {
     /// Adds a line if it is level or upright; returns whether it is.
     pub(super) fn add(&mut self, from: Pos2, to: Pos2, stroke: Stroke) -> bool {
-        /// Less than this is no slope that can be seen, in points.
+        /// Less than this is not a slope that can be seen, in points.
         const LEVEL: f32 = 0.5;
         let is_level = (from.y - to.y).abs() < LEVEL;
         if !is_level && (from.x - to.x).abs() >= LEVEL {

@@ -179,7 +179,7 @@ fn show_reason(
     });
 }
 
-/// The run in which nature makes it fail, event by event.
+/// The run in which the environment makes it fail, event by event.
 fn show_run(ui: &mut Ui, context: &Context<'_>, network: &Network, reason: &Reason) {
     let lines = reason.failing_run_in_words(network);
     let Some((end, lines)) = lines.split_last() else { return };

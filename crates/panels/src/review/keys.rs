@@ -1,4 +1,4 @@
-//! The keys of people: one's own, those whose signatures count, and those that the history names and nobody trusts yet.
+//! The keys of people: one's own, those whose signatures count, and those that the history names and no one trusts yet.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -108,7 +108,7 @@ impl Keys {
     }
 }
 
-/// The keys that have signed entries of the history and that nobody trusts here, with the names that the entries give.
+/// The keys that have signed entries of the history and that no one trusts here, with the names that the entries give.
 fn strangers(context: &Context<'_>) -> BTreeMap<PublicKey, String> {
     let unknown =
         context.state.review.record().checked().filter(|(_, check)| check.signature == Signature::Unknown);

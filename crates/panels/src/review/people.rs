@@ -27,7 +27,7 @@ pub(super) struct People {
     new_name: String,
     role: String,
     comment: String,
-    /// Who is to answer the comment, if somebody is.
+    /// Who is to answer the comment, if someone is.
     addressee: Option<(String, PublicKey)>,
     /// Whether the comment is about the whole mission even though something is selected.
     is_about_mission: bool,

@@ -143,7 +143,7 @@ pub(super) fn muted_word(ui: &mut Ui, text: &str) {
     ui.label(egui::RichText::new(text).weak());
 }
 
-/// A sentence that is no line of the checklist.
+/// A sentence that is not a line of the checklist.
 pub(super) fn muted(ui: &mut Ui, context: &Context<'_>, text: &str) {
     ui.horizontal(|ui| {
         ui.add_space(INDENT);

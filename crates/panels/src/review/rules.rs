@@ -142,7 +142,7 @@ fn mission_rules(ui: &mut Ui, context: &Context<'_>, rules: &mut Vec<MissionRule
                 .font(egui::TextStyle::Monospace)
                 .desired_width(width);
             ui.add(text).accessible_name(format!("Text of rule {number}"));
-            // Always a line, so that nothing below moves while somebody writes.
+            // Always a line, so that nothing below moves while someone writes.
             match problem_of(context, &rule.rule) {
                 Some(problem) => {
                     ui.label(RichText::new(problem).color(context.tokens.error));

@@ -79,7 +79,7 @@ fn ask(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
-/// Whether nature chooses by chance, or against the plan.
+/// Whether the environment chooses by chance, or against the plan.
 fn natures(ui: &mut Ui, context: &Context<'_>, uncertainty: &mut snapshot::Uncertainty) {
     let network = context.state.shown().and_then(|shown| shown.network.as_deref());
     if network.is_none_or(|network| network.arcs.iter().all(|arc| !arc.is_contingent)) {

@@ -147,7 +147,7 @@ impl MergedSide {
         Some((side, state))
     }
 
-    /// The state of the other search that stands for the same choices as `state` of `side`, while the two are merged.
+    /// The state of the other search that represents the same choices as `state` of `side`, while the two are merged.
     pub fn counterpart(&self, side: usize, state: TreeNodeId) -> Option<TreeNodeId> {
         let tree = &self.drawn.as_ref()?.tree;
         let here = *tree.here.get(side)?.get(state as usize)?;

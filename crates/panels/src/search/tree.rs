@@ -28,7 +28,7 @@ pub struct TreeIndex {
     pub last_step: Vec<Option<usize>>,
     /// The first step in which each state fails.
     failure_step: Vec<Option<usize>>,
-    /// The steps in which a best-first search opens each state or goes on with it.
+    /// The steps in which a best-first search opens each state or continues with it.
     pub bounded: Vec<Vec<u32>>,
     /// The step from which on each state is known: when it or another alternative of its choice point is entered.
     known_from: Vec<usize>,
@@ -82,7 +82,7 @@ impl TreeIndex {
         index.find_children(trace);
         // Parents come before their children, so one pass from the end sees children first.
         for (id, node) in trace.tree.iter().enumerate().rev() {
-            // A state that failed because all below it failed is no failure of its own.
+            // A state that failed because all below it failed is not a failure of its own.
             if index.failures[id] == 0 && node.status == TreeStatus::Failed {
                 index.failures[id] = 1;
             }

@@ -1,5 +1,5 @@
-//! A run against nature: whoever looks chooses nature's durations one by one, as the run goes, and sees the executive act
-//! and wait. Timeline and network show the same run.
+//! A run against the environment: whoever looks chooses the environment's durations one by one, as the run goes, and
+//! sees the executive act and wait. Timeline and network show the same run.
 
 use std::collections::BTreeMap;
 
@@ -60,7 +60,7 @@ impl Panel for StrategyPanel {
 }
 
 impl StrategyPanel {
-    /// What nature is choosing.
+    /// What the environment is choosing.
     fn natures(
         &mut self,
         ui: &mut Ui,
@@ -196,7 +196,7 @@ fn happened(
     }
 }
 
-/// Joints of the network that bear no name are nobody's news.
+/// Joints of the network that bear no name are no one's news.
 fn is_told(network: &Network, act: &Act) -> bool {
     act.actor != Actor::Executive || !network.nodes[act.events[0].index()].events.is_empty()
 }

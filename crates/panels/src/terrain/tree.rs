@@ -70,7 +70,7 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
         if ui.add(slider).accessible_name("Samples").changed() {
             send(GrowthCommand::GoTo(samples));
         }
-        // Before the words, which may have no room in this row: alone in the next one nobody would know what it closes.
+        // Before the words, which may have no room in this row: alone in the next one no one would know what it closes.
         if icon::button(ui, tokens, Icon::Close, "Hide search tree").clicked() {
             send(GrowthCommand::Close);
         }

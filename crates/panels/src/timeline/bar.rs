@@ -1,4 +1,4 @@
-//! What a bar stands for: what a click on it selects, and its windows in words.
+//! What a bar represents: what a click on it selects, and its windows in words.
 
 use layout::timeline::{Bar, BarKind};
 use tpn::{Network, NodeId, Plan};

@@ -136,7 +136,7 @@ fn compare(seed: u64, most: usize, steps: u32, comparisons: &mut [Comparison; 3]
         for (at, part) in parts.iter().enumerate() {
             let about = format!("seed {seed}, {most} states, step {step}, group {at}");
             let (commands, seen) = (part.commands(&commands), part.observation(&observation));
-            // Groups that exact inference cannot follow are no test.
+            // Groups that exact inference cannot follow are not tested.
             let Ok(next) = update_exact(&part.model, &exact[at], &commands, &seen) else { return };
             exact[at] = next;
             let update =

@@ -14,7 +14,7 @@ pub fn compare(before: &Side, after: &Side) -> Comparison {
     differences.extend(orderings(before, after));
     differences.extend(figures(before, after));
     let paths = paths(before, after);
-    // Ways that one side does not know are no difference.
+    // Ways that one side does not know are not a difference.
     if before.ways.is_some() && after.ways.is_some() {
         differences.extend(paths.iter().filter_map(path_difference));
     }

@@ -64,7 +64,7 @@ pub struct Way {
     pub length_m: f64,
 }
 
-/// Why a JSON document is no plan.
+/// Why a JSON document is not a plan.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SideError {
     /// It does not have the shape of a plan.

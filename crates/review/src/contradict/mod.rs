@@ -64,7 +64,7 @@ pub enum Verdict {
 pub struct Effort {
     /// Schedules of the plan: the earliest, the latest, and others by chance.
     pub schedules: u64,
-    /// Undisturbed runs: nature's durations at their least, at their greatest, and otherwise.
+    /// Undisturbed runs: the environment's durations at their least, at their greatest, and otherwise.
     pub runs: u64,
     /// Chooses which.
     pub seed: u64,

@@ -402,7 +402,7 @@ fn out_of_order(log: &[Entry], variable: &SmolStr, order: &[(usize, String)]) ->
         if of != variable {
             continue;
         }
-        // What holds from the start on, or is read from the plant, is changed by nobody.
+        // What holds from the start on, or is read from the plant, is changed by no one.
         let Some(by) = by else { continue };
         match order.iter().find(|(_, name)| name == by.as_str()) {
             Some(&(rank, _)) if rank >= next => next = rank,

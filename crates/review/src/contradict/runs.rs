@@ -1,4 +1,4 @@
-//! Undisturbed runs of a plan: nature chooses all its durations within their ranges, and vehicles drive.
+//! Undisturbed runs of a plan: the environment chooses all its durations within their ranges, and vehicles drive.
 
 use exact::Time;
 use executive::Script;
@@ -10,9 +10,9 @@ use tpn::{Network, Plan};
 
 /// Makes the script of one run after the other.
 pub(super) struct Runs {
-    /// What nature chooses in the plan, with the ranges.
+    /// What the environment chooses in the plan, with the ranges.
     natures: Vec<(SmolStr, [Time; 2])>,
-    /// Whether runs of other seeds differ although nature chooses nothing.
+    /// Whether runs of other seeds differ although the environment chooses nothing.
     has_drives: bool,
     chance: Random,
     seed: u64,

@@ -237,7 +237,7 @@ fn no_schedule_contradicts_what_the_reviews_of_examples_have_passed() {
     }
 }
 
-/// Nature chooses how long Drill takes, and the battery is charged meanwhile.
+/// The environment chooses how long Drill takes, and the battery is charged meanwhile.
 const NATURE: &str = "resource Battery 0..100 = 50; state Arm : {IN, OUT} = IN;
 primitive Drill() contingent [3,8] consumes Battery 20; primitive Extend()[1,2] sets Arm=OUT;
 primitive Charge()[2,4] produces Battery 30; location A (0, 0); vehicle Rover : ATRV at A;
@@ -311,7 +311,7 @@ fn nature_is_tried_at_both_ends_of_its_ranges_and_against_the_plan() {
             "{tried:?}"
         );
     }
-    // A duration that nature has beyond the range of a line.
+    // A duration that the environment has beyond the range of a line.
     let mut core = Core::default();
     let evaluated = evaluated(&mut core, NATURE);
     let script = |drill: i64| Script {

@@ -15,7 +15,7 @@ pub struct MissionRule {
     /// Where it comes from, such as a paragraph of the flight rules; may be empty.
     #[serde(default)]
     pub source: String,
-    /// Whether somebody may acknowledge that a plan breaks it; otherwise such a plan has failed.
+    /// Whether someone may acknowledge that a plan breaks it; otherwise such a plan has failed.
     #[serde(default)]
     pub waivable: bool,
 }

@@ -99,7 +99,7 @@ pub(crate) fn edit_distance_at_most(left: &str, right: &str, limit: usize) -> Op
     (distance <= limit).then_some(distance)
 }
 
-/// `PATH1` and `PATH2` are no misspellings of each other.
+/// `PATH1` and `PATH2` are not misspellings of each other.
 fn differ_in_digits_only(left: &[u8], right: &[u8]) -> bool {
     let has_digit = left.iter().chain(right).any(u8::is_ascii_digit);
     let is_letter = |byte: &&u8| !byte.is_ascii_digit();

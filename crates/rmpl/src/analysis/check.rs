@@ -195,7 +195,7 @@ impl<'a> Checker<'a> {
             return;
         }
         let facts = self.index.facts(definition.name);
-        // A parameter may stand for its component.
+        // A parameter may represent its component.
         if definition.is_from_plant && self.index.literals_of_formals > 0 {
             return;
         }

@@ -209,7 +209,7 @@ impl Collector<'_> {
         }
     }
 
-    /// A use of a resource; what a parameter stands for, or whose vehicle it does, is known at the call.
+    /// A use of a resource; what a parameter represents, or whose vehicle it does, is known at the call.
     fn resource(&mut self, kind: UseKind, name: &Name) {
         let owner = name.text.split_once('.').map(|(owner, _)| SmolStr::new(owner));
         let is_formal = |name: &SmolStr| self.formals.contains(name);
@@ -301,7 +301,7 @@ impl Collector<'_> {
         self.summary.uses.push(Use { kind, name, span });
     }
 
-    /// The names of a header's bounds stand for numbers in the body, unless they are constants: which they are is
+    /// The names of a header's bounds represent numbers in the body, unless they are constants: which they are is
     /// known once the whole file is.
     fn header(&mut self, bounds: &HeaderBounds) {
         let HeaderBounds::Sides { lower, upper, .. } = bounds else { return };
@@ -378,7 +378,7 @@ impl Collector<'_> {
                 if !self.formals.contains(&members.group.text) {
                     self.name_use(UseKind::Group, &members.group.text, members.group.span);
                 }
-                // What stands for a member is like a parameter.
+                // What represents a member is like a parameter.
                 self.formals.push(members.variable.text.clone());
                 self.summary.numbers.push(members.variable.clone());
                 self.statement(&members.body);
@@ -459,7 +459,7 @@ impl Collector<'_> {
             return;
         }
         let vehicle = text.strip_suffix(".at").map(|owner| {
-            // What is written may be longer than what is meant, where a dash stands for a hyphen.
+            // What is written may be longer than what is meant, where a dash represents a hyphen.
             let Span { start, end } = condition.variable.span;
             let owner = SmolStr::new(owner);
             Vehicle {

@@ -108,7 +108,7 @@ impl Constants {
         value
     }
 
-    /// The value of an expression: of its names, `lookup` knows those that are no constants.
+    /// The value of an expression: of its names, `lookup` knows those that are not constants.
     pub(crate) fn evaluate(&self, expr: &Expr, lookup: &dyn Fn(&str) -> Option<Bound>) -> Option<Bound> {
         let lookup = |name: &str| lookup(name).or_else(|| self.value(name));
         evaluate_with(expr, Some(self.unit), &lookup).ok()

@@ -60,7 +60,7 @@ pub(crate) struct Told {
     pub(crate) negated: bool,
     /// It is written `X_V`, and is about `X` only if the file makes it so.
     pub(crate) is_split: bool,
-    /// A parameter stands for the value.
+    /// A parameter represents the value.
     pub(crate) is_any: bool,
     /// It keeps a watched condition away, which asserts nothing of a state variable.
     pub(crate) is_watched: bool,
@@ -137,11 +137,11 @@ pub(crate) struct Index {
     strict: u32,
     /// Assertions whose variable is a parameter: they may be about anything.
     pub(crate) told_of_formals: u32,
-    /// How many literals are about what a parameter stands for.
+    /// How many literals are about what a parameter represents.
     pub(crate) literals_of_formals: u32,
-    /// Movements of vehicles that parameters stand for: they may take any vehicle anywhere.
+    /// Movements of vehicles that parameters represent: they may take any vehicle anywhere.
     pub(crate) moves_of_formals: u32,
-    /// Declarations in which nature chooses some duration.
+    /// Declarations in which the environment chooses some duration.
     contingents: u32,
     global_changed_at: u32,
     /// The names defined in each namespace, in no order.
@@ -201,7 +201,7 @@ impl Index {
         self.strict > 0
     }
 
-    /// Whether nature chooses some duration of the file.
+    /// Whether the environment chooses some duration of the file.
     pub(crate) const fn has_contingents(&self) -> bool {
         self.contingents > 0
     }

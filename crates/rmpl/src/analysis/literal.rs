@@ -103,7 +103,7 @@ impl Checker<'_> {
         true
     }
 
-    /// An effect on what is no state variable.
+    /// An effect on what is not a state variable.
     fn no_state(&mut self, literal: &Literal) {
         let name = self.text(literal.variable);
         if self.is_told(Namespace::Variable, literal.variable) {

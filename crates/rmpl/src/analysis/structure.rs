@@ -134,7 +134,7 @@ impl Structure<'_> {
         if reports {
             self.compare(statement, own, written, bounds.span, true);
         }
-        // Of what nature chooses, bounds require something and choose nothing.
+        // Of what the environment chooses, bounds require something and choose nothing.
         if is_leaf && self.is_contingent(statement) {
             return own;
         }
@@ -166,7 +166,7 @@ impl Structure<'_> {
         definition.and_then(|definition| definition.bounds).unwrap_or(ANY)
     }
 
-    /// Whether a call or a name that stands for one is of a primitive whose duration nature chooses.
+    /// Whether a call or a name that represents one is of a primitive whose duration the environment chooses.
     fn is_contingent(&self, statement: &Statement) -> bool {
         let name = match &statement.kind {
             StatementKind::Call(name, _) => name,

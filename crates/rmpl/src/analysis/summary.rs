@@ -18,15 +18,15 @@ pub(crate) struct Summary {
     pub(crate) uses: Vec<Use>,
     /// The names that `as` gives to occurrences; one that `or` copies more than once.
     pub(crate) occurrences: Vec<Symbol>,
-    /// Names that stand for numbers in the declaration's expressions: its header's bounds and its parameters.
+    /// Names that represent numbers in the declaration's expressions: its header's bounds and its parameters.
     pub(crate) numbers: Vec<Name>,
     /// Changes when the calls change: who calls whom decides about recursion.
     pub(crate) call_fingerprint: u64,
     /// `Some` when this is `option strict`.
     pub(crate) strict: Option<bool>,
-    /// Nature chooses some duration in it (SPEC 13.1).
+    /// The environment chooses some duration in it (SPEC 13.1).
     pub(crate) has_contingents: bool,
-    /// A parameter stands for a vehicle that is moved.
+    /// A parameter represents a vehicle that is moved.
     pub(crate) moves_a_parameter: bool,
     /// The components of the plant that it models.
     pub(crate) components: Vec<ComponentState>,
@@ -52,7 +52,7 @@ pub(crate) struct Definition {
     pub(crate) arity: u32,
     /// Constant bounds of its header.
     pub(crate) bounds: Option<(Time, Bound)>,
-    /// Nature chooses within them (SPEC 13.1).
+    /// The environment chooses within them (SPEC 13.1).
     pub(crate) is_contingent: bool,
     /// The domain of a variable.
     pub(crate) values: Vec<Symbol>,
@@ -92,7 +92,7 @@ pub(crate) struct Call {
     /// A parameter of the surrounding activity is handed on.
     pub(crate) has_formal_argument: bool,
     pub(crate) bounds: Option<((Time, Bound), Span)>,
-    /// The bounds, if nature is to choose within them.
+    /// The bounds, if the environment is to choose within them.
     pub(crate) contingent: Option<Span>,
     pub(crate) is_bare: bool,
 }
@@ -109,9 +109,9 @@ pub(crate) struct Literal {
     pub(crate) split: Option<(Symbol, Symbol)>,
     pub(crate) negated: bool,
     pub(crate) span: Span,
-    /// A parameter stands for the variable, or for the component whose mode it is.
+    /// A parameter represents the variable, or for the component whose mode it is.
     pub(crate) variable_is_formal: bool,
-    /// A parameter stands for the value.
+    /// A parameter represents the value.
     pub(crate) value_is_formal: bool,
     /// What decides about it is which places see a location, which only the ground tells.
     pub(crate) is_sight: bool,
@@ -175,7 +175,7 @@ pub(crate) enum UseKind {
     Level,
     /// An occurrence that a bound between events names.
     Occurrence,
-    /// A number in an expression: a constant, for parameters are no uses.
+    /// A number in an expression: a constant, for parameters are not uses.
     Number,
     /// A name in a header's bounds: a constant if there is one of this name, otherwise it declares a parameter.
     HeaderBound,

@@ -102,7 +102,7 @@ impl Duration {
         }
     }
 
-    /// The number of steps that it takes: at least 1, since steps that are begun count.
+    /// The number of steps that it takes: at least 1, since steps that are started count.
     pub fn steps(self, step_secs: Rational) -> Option<u64> {
         let steps = self.in_steps(step_secs)?;
         let (numerator, denominator) = (i128::from(steps.numerator()), i128::from(steps.denominator()));

@@ -166,7 +166,7 @@ impl Expander<'_> {
         }
     }
 
-    /// A constraint that is asserted; a parameter there may also stand for a whole expression.
+    /// A constraint that is asserted; a parameter there may also represent a whole expression.
     fn assertion(&mut self, constraint: &Constraint, scope: &Scope) -> ExpressionKind {
         if let ConstraintKind::Parameter(name) = &constraint.kind
             && let Some(Argument::Expression(expression)) = scope.get(&name.text)

@@ -7,7 +7,7 @@ use super::lexer::{Token, TokenKind, lex};
 /// Lines are broken when they would be longer than this many characters.
 const LINE_WIDTH: usize = 100;
 
-/// Lays out `text` again; comments stay, torn keywords are mended, and the meaning does not change.
+/// Lays out `text` again; comments stay, torn keywords are fixed, and the meaning does not change.
 ///
 /// A text whose parentheses do not match is given back as it is.
 pub fn format(text: &str) -> String {

@@ -52,7 +52,7 @@ pub const MODEL_KEYWORDS: [&str; 17] = [
     "INIT",
 ];
 
-/// A list's first word, with torn hyphens mended.
+/// A list's first word, with torn hyphens fixed.
 pub(super) struct Head {
     /// The word in upper case with plain hyphens, to compare with keywords.
     pub(super) upper: String,

@@ -29,7 +29,7 @@ pub enum TokenKind {
     DoubleColon,
     /// `,`, which separates nothing here but is often written between arguments.
     Comma,
-    /// `*`, which stands for all modes.
+    /// `*`, which represents all modes.
     Star,
     /// Characters that mean nothing in this notation.
     Unknown,

@@ -141,7 +141,7 @@ impl Qualifier<'_, '_> {
         is_method.then(|| format_smolstr!("{}.{method}", owner.name))
     }
 
-    /// The values of what a name stands for: of a component its modes.
+    /// The values of what a name represents: of a component its modes.
     fn values(&self, name: &str) -> Option<Vec<SmolStr>> {
         if let Some(other) = self.components.reached(self.component, name) {
             let class = self.classes.get(&other.class.text)?;

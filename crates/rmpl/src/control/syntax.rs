@@ -323,7 +323,7 @@ pub enum ConstraintKind {
     And(Vec<Constraint>),
     /// At least one holds.
     Or(Vec<Constraint>),
-    /// A parameter that stands for a constraint.
+    /// A parameter that represents a constraint.
     Parameter(Name),
     /// Something unreadable, for which a diagnostic was given.
     Unreadable,

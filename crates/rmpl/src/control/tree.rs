@@ -13,7 +13,7 @@ const DEEPEST_NESTING: usize = 200;
 /// A token or a parenthesized list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Node {
-    /// A token that is no parenthesis, blank or comment.
+    /// A token that is not a parenthesis, blank or comment.
     Leaf(Token),
     /// What stands between parentheses or braces.
     List(List),

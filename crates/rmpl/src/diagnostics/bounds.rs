@@ -80,7 +80,7 @@ pub fn within(least: &str, most: &str, span: Span) -> Diagnostic {
         .with_hint("WITHIN takes the minimum duration first, then the maximum")
 }
 
-/// Nature chooses from finite times.
+/// The environment chooses from finite times.
 pub fn unlimited(span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, "a contingent duration needs a finite maximum, but this one is infinite")
         .with_hint("give the longest time it can take")

@@ -1,4 +1,4 @@
-//! `E-CONTINGENT`: nature is to choose how long something composite takes (SPEC 13.1).
+//! `E-CONTINGENT`: the environment is to choose how long something composite takes (SPEC 13.1).
 
 use crate::diagnostic::{Code, Diagnostic, Fix, Severity};
 use crate::explanation::Explanation;
@@ -25,7 +25,7 @@ scenario Day[0,60] = { { Drive(); Dig() } [15,35] }",
 };
 
 /// Contingent bounds at `span` of `what`, which is composite. `word` is their word with the blanks behind it, `moved` a
-/// change that puts them where nature can choose.
+/// change that puts them where the environment can choose.
 pub(crate) fn composite(what: &str, word: Span, span: Span, moved: Option<Fix>) -> Diagnostic {
     let message = format!("only an activity, an assertion or a delay can be contingent, not {what}");
     let diagnostic = Diagnostic::error(CODE, span, message).with_hint(

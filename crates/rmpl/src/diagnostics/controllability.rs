@@ -1,4 +1,4 @@
-//! `W-CONTROLLABILITY`: plans that withstand nothing of what nature chooses (SPEC 13.1).
+//! `W-CONTROLLABILITY`: plans that withstand nothing of what the environment chooses (SPEC 13.1).
 
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::explanation::Explanation;

@@ -36,7 +36,7 @@ pub struct Choice {
     pub name: String,
     /// The bounds as they are evaluated, `[5,20]`, and where they stand, if they are written.
     pub bounds: (String, Option<Span>),
-    /// Whether the upper one is finite, so that nature can choose.
+    /// Whether the upper one is finite, so that the environment can choose.
     pub is_finite: bool,
     /// Whether the word needs a blank before it where the bounds stand.
     pub needs_blank: bool,

@@ -22,14 +22,14 @@ outcomes of a guard, sum to at most 1.",
 (WHEN-DONEXT (EngineA = Standby) (Camera = Off))",
 };
 
-/// An option `entailment` that is no probability above one half.
+/// An option `entailment` that is not a probability above one half.
 pub(crate) fn not_an_entailment(text: &str, span: Span) -> Diagnostic {
     let message = format!("`entailment` must be a probability above 0.5 and at most 1, not `{text}`");
     Diagnostic::error(CODE, span, message)
         .with_hint("write a decimal or a fraction, such as `0.95` or `19/20`")
 }
 
-/// A part of a prior that is no probability above zero.
+/// A part of a prior that is not a probability above zero.
 pub(crate) fn outside(text: &str, span: Span) -> Diagnostic {
     let message = format!("the probability of a mode must be above 0 and at most 1, not `{text}`");
     Diagnostic::error(CODE, span, message).with_hint("write a decimal or a fraction, such as `0.1` or `1/3`")

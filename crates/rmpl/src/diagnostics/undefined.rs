@@ -101,7 +101,7 @@ pub(crate) fn declare_location(name: &str, start: u32) -> Fix {
     insertion(format!("Declare location `{name}`"), start, format!("location {name} (0, 0);\n"))
 }
 
-/// The place of something that is no vehicle.
+/// The place of something that is not a vehicle.
 pub(crate) fn place(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("unknown vehicle `{name}`"));
     change_to(diagnostic, nearest, span)
@@ -193,7 +193,7 @@ pub(crate) fn file_not_imported(name: &str, span: Span) -> Diagnostic {
         .with_hint(format!("add `import \"{name}\";` to the main file to make it part of the mission"))
 }
 
-/// An import of what is no file of the mission's folder.
+/// An import of what is not a file of the mission's folder.
 pub(crate) fn file_outside(name: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, format!("`{name}` is not in the mission's folder")).with_hint(
         "import only files from the mission's folder and its subfolders, such as `world/rocks.rmpl`",

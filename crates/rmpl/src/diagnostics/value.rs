@@ -54,7 +54,7 @@ pub fn different_domains(left: &str, right: &str, right_span: Span) -> Diagnosti
         .with_hint("two variables can be equal if they have the same values")
 }
 
-/// The place of a vehicle that is no location.
+/// The place of a vehicle that is not a location.
 pub(crate) fn no_location(name: &str, span: Span, nearest: Option<&str>) -> Diagnostic {
     let diagnostic = Diagnostic::error(CODE, span, format!("unknown location `{name}`"))
         .with_hint("declare it with `location NAME (east, north);`");

@@ -3,7 +3,7 @@
 use crate::parse::Parse;
 use crate::syntax::SyntaxNode;
 
-/// The declaration that typing at `offset` goes on with: the one around it, or, where only blanks and comments of the
+/// The declaration that typing at `offset` continues with: the one around it, or, where only blanks and comments of the
 /// next one come before the cursor, the one before.
 pub(super) fn declaration_at_cursor(parse: &Parse, offset: u32) -> Option<SyntaxNode<'_>> {
     let here = parse.declaration_at(offset.checked_sub(1)?)?;

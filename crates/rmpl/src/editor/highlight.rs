@@ -138,7 +138,7 @@ fn of_token(kind: SyntaxKind) -> HighlightKind {
         SyntaxKind::Unknown => HighlightKind::Unknown,
         SyntaxKind::Number | SyntaxKind::Infinity => HighlightKind::Number,
         SyntaxKind::String => HighlightKind::String,
-        // A name that stands for nothing is a word of the language in its place: `moves`, `at`, `circle`.
+        // A name that represents nothing is a word of the language in its place: `moves`, `at`, `circle`.
         SyntaxKind::Name => HighlightKind::Keyword,
         SyntaxKind::Equals
         | SyntaxKind::NotEquals

@@ -77,7 +77,7 @@ pub fn hover(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Hove
     Some(Hover { span: token.span, topic: Topic::of_word(token.kind, token.text), markdown })
 }
 
-/// What nature may do within the bounds whose word `token` is, and what is left to the executive.
+/// What the environment may do within the bounds whose word `token` is, and what is left to the executive.
 fn contingent(
     parse: &Parse,
     root: SyntaxNode<'_>,

@@ -1,4 +1,4 @@
-//! What the names in a text stand for: the base of highlighting, navigation and renaming.
+//! What the names in a text represent: the base of highlighting, navigation and renaming.
 
 use smol_str::SmolStr;
 
@@ -8,7 +8,7 @@ use crate::program::VEHICLE_MODELS;
 use crate::span::Span;
 use crate::syntax::{Element, SyntaxKind, SyntaxNode, SyntaxToken};
 
-/// What a name stands for.
+/// What a name represents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NameKind {
     /// An activity or a primitive.
@@ -49,13 +49,13 @@ impl NameKind {
     }
 }
 
-/// A name in the text. `X_V` that stands for `X=V` is two of them.
+/// A name in the text. `X_V` that represents `X=V` is two of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameUse {
     /// Where it stands.
     pub span: Span,
     pub text: SmolStr,
-    /// What it stands for.
+    /// What it represents.
     pub kind: NameKind,
     /// Whether it is declared here.
     pub is_definition: bool,
@@ -312,7 +312,7 @@ impl<'a> Collector<'a> {
         self.refer(Some(name), declared.map_or(NameKind::Symbol, |(_, kind)| kind));
     }
 
-    /// What a parameter stands for, if it is the name of something.
+    /// What a parameter represents, if it is the name of something.
     fn kind(&mut self, name: Option<SyntaxToken<'_>>) {
         let Some(name) = name else { return };
         if self.is_declared(Namespace::Model, name.text) || VEHICLE_MODELS.contains(&name.text) {

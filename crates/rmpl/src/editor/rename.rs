@@ -17,7 +17,7 @@ pub enum RenameProblem {
     NothingHere,
     /// The name belongs to the language: an option, a vehicle model, or a value of an option.
     Fixed,
-    /// The new name is no name: it needs letters, digits, `_` and single hyphens, and begins with a letter or `_`.
+    /// The new name is not a name: it needs letters, digits, `_` and single hyphens, and begins with a letter or `_`.
     NoName,
     /// The new name is a word of the language.
     Keyword,

@@ -30,7 +30,7 @@ pub enum Topic {
     ThreadBounds,
     /// Missions of several files.
     Files,
-    /// Durations that nature chooses.
+    /// Durations that the environment chooses.
     Nature,
     /// Parameters and arguments.
     Parameters,

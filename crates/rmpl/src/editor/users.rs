@@ -7,7 +7,7 @@ use crate::program::{Change, LabelMode};
 /// How many names a line lists.
 const MAX_NAMES: usize = 8;
 
-/// Who sets a state variable, and who needs it; empty where nobody does.
+/// Who sets a state variable, and who needs it; empty where no one does.
 pub(super) fn users_of_state(parse: &Parse, variable: &str) -> Vec<String> {
     let Some(symbol) = parse.meaning().names.find(variable) else { return Vec::new() };
     let (mut setters, mut users) = (Vec::new(), Vec::new());

@@ -110,7 +110,7 @@ impl<'program> Reader<'program> {
         self.groups.members.insert(group.name.text.clone(), (kind, members));
     }
 
-    /// What one member is, and the names that it stands for.
+    /// What one member is, and the names that it represents.
     fn member(&mut self, written: &'program Name) -> Option<(GroupKind, Vec<SmolStr>)> {
         let name = written.text.as_str();
         if let Some(at) = self.open.iter().position(|open| *open == name) {

@@ -1,4 +1,4 @@
-//! What parameters stand for (SPEC 17): what is written, otherwise what their uses require; and whether uses and
+//! What parameters represent (SPEC 17): what is written, otherwise what their uses require; and whether uses and
 //! arguments agree with it.
 //!
 //! Only vehicles, locations, numbers and resources are inferred. A name may well be a value and a location, or an atom
@@ -17,7 +17,7 @@ use crate::program::{
 };
 use crate::span::Span;
 
-/// What a parameter stands for.
+/// What a parameter represents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Kind {
     /// A vehicle, whatever its model.
@@ -176,7 +176,7 @@ struct Call<'program> {
     arguments: &'program [crate::program::Argument],
     /// The activity around it.
     here: Option<usize>,
-    /// What stands for members there, each with the group.
+    /// What represents members there, each with the group.
     variables: Vec<(&'program str, &'program str)>,
 }
 
@@ -195,7 +195,7 @@ struct Kinds<'program> {
     calls: Vec<Call<'program>>,
     /// The declaration being read.
     here: Option<usize>,
-    /// What stands for members there, each with the group.
+    /// What represents members there, each with the group.
     variables: Vec<(&'program str, &'program str)>,
     found: Vec<Diagnostic>,
 }
@@ -388,7 +388,7 @@ impl<'program> Kinds<'program> {
         statement.parts().iter().for_each(|part| self.statement(part));
     }
 
-    /// Finds out what parameters stand for from their first use, or from that of the parameter that they are handed to.
+    /// Finds out what parameters represent from their first use, or from that of the parameter that they are handed to.
     fn infer(&mut self) {
         for call in &self.calls {
             for (index, argument) in call.arguments.iter().enumerate() {
@@ -442,7 +442,7 @@ impl<'program> Kinds<'program> {
         }
     }
 
-    /// Arguments that are not what their parameters stand for.
+    /// Arguments that are not what their parameters represent.
     fn check_arguments(&mut self) {
         for call in &self.calls {
             let header = &self.headers[call.callee];

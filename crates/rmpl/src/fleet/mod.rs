@@ -1,5 +1,5 @@
 //! Vehicles with their own equipment, written once (SPEC 17): what models give to each of their vehicles, what groups
-//! hold, and what parameters stand for.
+//! hold, and what parameters represent.
 //!
 //! A vehicle's own resources and states become ordinary ones with the vehicle's name before a dot, so that nothing
 //! behind the front end knows of models.
@@ -25,7 +25,7 @@ pub use groups::{GroupKind, Groups};
 const ROVER: &str = VEHICLE_MODELS[0];
 const BLIMP: &str = VEHICLE_MODELS[2];
 
-/// Everything that is wrong with models, fleets, groups and what parameters stand for, whatever is compiled.
+/// Everything that is wrong with models, fleets, groups and what parameters represent, whatever is compiled.
 pub fn check(program: &Program) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for model in &program.world.models {

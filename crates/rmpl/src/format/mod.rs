@@ -165,7 +165,7 @@ impl Printer {
         self.must_end_line = token.kind == SyntaxKind::LineComment;
     }
 
-    /// Ends the line, if one has begun, and begins another.
+    /// Ends the line, if one has started, and begins another.
     fn new_line(&mut self, indent: usize, wants_blank: bool) {
         if !self.out.is_empty() {
             self.out.push('\n');

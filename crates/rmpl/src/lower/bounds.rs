@@ -14,7 +14,7 @@ pub(super) fn bounds_in(node: SyntaxNode<'_>) -> Option<Bounds> {
     Some(Bounds { lower, upper, is_contingent: contingent_in(bounds).is_some(), span: bounds.span() })
 }
 
-/// The word before bounds within which nature chooses (SPEC 13.1).
+/// The word before bounds within which the environment chooses (SPEC 13.1).
 pub(crate) fn contingent_in(bounds: SyntaxNode<'_>) -> Option<SyntaxToken<'_>> {
     bounds.own_tokens().next().filter(|token| token.kind == SyntaxKind::Name && token.text == CONTINGENT)
 }

@@ -1,7 +1,7 @@
-//! Conditions joined by `and` and `or`, and the statements that they stand for (SPEC 14).
+//! Conditions joined by `and` and `or`, and the statements that they represent (SPEC 14).
 //!
 //! The language below knows single literals only. What is required of several is required of each, nested; a choice
-//! stands for "one of several". Of what is asserted there is no choice.
+//! represents "one of several". Of what is asserted there is no choice.
 
 use crate::diagnostics::{limit, syntax};
 use crate::program::{Bounds, Condition, LabelMode, Level, Name, Order, Statement, StatementKind};

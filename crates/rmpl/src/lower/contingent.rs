@@ -1,4 +1,4 @@
-//! What nature cannot choose: how long something composite takes (SPEC 13.1).
+//! What the environment cannot choose: how long something composite takes (SPEC 13.1).
 
 use super::Lowering;
 use super::bounds::{bounds_in, contingent_in};

@@ -40,7 +40,7 @@ impl Lowering<'_> {
 }
 
 impl Lowering<'_> {
-    /// A bound between two events; the word by which nature would choose it is reported.
+    /// A bound between two events; the word by which the environment would choose it is reported.
     pub(super) fn constrain(&mut self, node: SyntaxNode<'_>) -> Option<ConstrainDecl> {
         self.no_contingent(node, "the time between two events");
         let bounds = bounds_in(node).map(|bounds| Bounds { is_contingent: false, ..bounds })?;

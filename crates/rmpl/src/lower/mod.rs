@@ -114,7 +114,7 @@ impl Lowering<'_> {
     }
 }
 
-/// A name as it was meant: dashes that stand for a hyphen have been reported.
+/// A name as it was meant: dashes that represent a hyphen have been reported.
 fn name_of(token: SyntaxToken<'_>) -> Name {
     let text = if token.text.is_ascii() {
         SmolStr::new(token.text)

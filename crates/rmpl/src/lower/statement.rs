@@ -171,7 +171,7 @@ impl Lowering<'_> {
     }
 }
 
-/// One statement stands for itself unless it has bounds, which must not meet those of the block.
+/// One statement represents itself unless it has bounds, which must not meet those of the block.
 fn collapse(steps: Vec<Statement>, span: Span) -> Statement {
     match <[Statement; 1]>::try_from(steps) {
         Ok([only]) if only.bounds.is_none() => only,

@@ -6,7 +6,7 @@ use crate::program::DurationUnit;
 use crate::span::Span;
 use crate::syntax::SyntaxKind;
 
-/// The word before the bounds of what nature chooses (SPEC 13.1).
+/// The word before the bounds of what the environment chooses (SPEC 13.1).
 pub(crate) const CONTINGENT: &str = "contingent";
 
 impl Parser<'_> {
@@ -23,7 +23,7 @@ impl Parser<'_> {
     }
 
     /// Whether bounds begin with their word, which is a name like any other elsewhere. Where its brackets are still to
-    /// be written, nothing else could go on here.
+    /// be written, nothing else could continue here.
     pub(super) fn at_contingent(&mut self) -> bool {
         self.at_word(CONTINGENT)
             && matches!(

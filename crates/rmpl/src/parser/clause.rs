@@ -1,7 +1,7 @@
 //! What stands behind a primitive's parameters and bounds: what it moves, runs, requires, sets, takes, gives, costs and
 //! is worth, and how it is aborted (SPEC 1.8, 10.1, 11, 12, 15).
 //!
-//! The words of clauses are words of the language only where a clause can begin; a comma goes on with a clause.
+//! The words of clauses are words of the language only where a clause can begin; a comma continues with a clause.
 
 use super::Parser;
 use crate::diagnostics::syntax;
@@ -37,7 +37,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A comma, and behind it what no list goes on with.
+    /// A comma, and behind it what no list continues with.
     fn comma_before_clause(&mut self) {
         let next = self.index_after(self.current);
         if self.at_start_of_activity(next) {
@@ -138,7 +138,7 @@ impl Parser<'_> {
         }
     }
 
-    /// After a mistake in a clause, skips what cannot go on with it.
+    /// After a mistake in a clause, skips what cannot continue with it.
     fn skip_in_clause(&mut self) {
         if self.reported_at != Some(self.current) {
             return;
@@ -207,7 +207,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Amount);
     }
 
-    /// An expression that stands for how much.
+    /// An expression that represents how much.
     fn number(&mut self) {
         if self.at_number() {
             self.sum();

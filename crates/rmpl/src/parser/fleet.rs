@@ -160,7 +160,7 @@ impl Parser<'_> {
         let node = self.open();
         self.eat(SyntaxKind::Minus);
         if self.eat(SyntaxKind::Number) {
-            // `x` of a body and the words of properties are no units.
+            // `x` of a body and the words of properties are not units.
             if self.at(SyntaxKind::Name) && !self.at_word("x") {
                 self.unit(units);
             }

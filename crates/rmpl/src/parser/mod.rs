@@ -1,8 +1,8 @@
 //! The error-tolerant parser of the infix notation (SPEC 1.2, 1.3): one declaration at a time, one function per
 //! production.
 //!
-//! It always gives a tree that holds every byte. After a mistake it goes on at the next sensible place, and a mistake is
-//! reported once: nothing more is said before a token has been accepted again. A declaration is parsed from its own
+//! It always gives a tree that holds every byte. After a mistake it continues at the next sensible place, and a mistake
+//! is reported once: nothing more is said before a token has been accepted again. A declaration is parsed from its own
 //! first byte without memory of what came before, which is what makes parsing after an edit local.
 
 mod bounds;
@@ -56,7 +56,7 @@ pub(crate) fn parse_declaration(text: &str, scratch: &mut Scratch) -> ParsedDecl
     parser.finish(scratch)
 }
 
-/// Parses a flight rule, which is no declaration of a mission.
+/// Parses a flight rule, which is not a declaration of a mission.
 pub(crate) fn parse_rule(text: &str) -> ParsedDeclaration {
     let mut parser = Parser::new(text, Scratch::default());
     parser.flight_rule();
@@ -266,7 +266,7 @@ impl<'t> Parser<'t> {
         self.report(diagnostic);
     }
 
-    /// Reports that `wanted` is missing behind the token accepted last; `insertion` would mend it.
+    /// Reports that `wanted` is missing behind the token accepted last; `insertion` would fix it.
     fn report_missing(&mut self, wanted: &str, insertion: &str) {
         let place = self.previous_end();
         let span = Span::new(self.last_character_start(place), place);

@@ -1,4 +1,4 @@
-//! Where the parser goes on after a mistake.
+//! Where the parser continues after a mistake.
 
 use super::{CONTINGENT, Parser};
 use crate::syntax::{KEEPOUT, SyntaxKind};
@@ -146,7 +146,7 @@ impl Parser<'_> {
             && !self.at_joint()
     }
 
-    /// Whether a word that goes on with the statement stands behind the name at the cursor.
+    /// Whether a word that continues with the statement stands behind the name at the cursor.
     pub(super) fn at_joint(&mut self) -> bool {
         let next = self.index_after(self.current);
         if self.kind_at(next) != SyntaxKind::Name {

@@ -63,7 +63,7 @@ impl Parser<'_> {
         }
     }
 
-    /// After a statement that no separator follows: reports, and goes on where the next one can begin.
+    /// After a statement that no separator follows: reports, and continues where the next one can begin.
     fn between_statements(&mut self, wanted: &str, insertion: &str) {
         if self.at_statement_start() {
             self.report_missing(wanted, insertion);

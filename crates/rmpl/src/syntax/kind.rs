@@ -18,7 +18,7 @@ pub enum SyntaxKind {
     /// The end of the text; it has no width.
     End,
 
-    /// A name that is no keyword.
+    /// A name that is not a keyword.
     Name,
     /// An unsigned number.
     Number,
@@ -137,7 +137,7 @@ pub enum SyntaxKind {
     GroupDecl,
     /// `vehicle NAME : … ;`
     VehicleDecl,
-    /// Text that is no declaration; it has been reported.
+    /// Text that is not a declaration; it has been reported.
     Garbage,
     /// `extends NAME` of a model.
     Extends,

@@ -90,7 +90,7 @@ impl<'t> Lexer<'t> {
         } else if is(first, DIGIT) {
             self.number(start)
         } else if first == MARK as u8 {
-            // The heading of a file is no part of any text.
+            // The heading of a file is not part of any text.
             let line = self.text.get(start..).and_then(|rest| rest.find('\n'));
             self.position = line.map_or(self.text.len(), |length| start + length);
             SyntaxKind::LineComment

@@ -1,5 +1,5 @@
-//! Durations that nature chooses: where they are written, what the program says of them, and that their word is not taken
-//! from a mission that uses it as a name (SPEC 13.1).
+//! Durations that the environment chooses: where they are written, what the program says of them, and that their word
+//! is not taken from a mission that uses it as a name (SPEC 13.1).
 
 use crate::fixture::fixture;
 use rmpl::editor::{self, Evaluation, EventWindow, HighlightKind};
@@ -20,7 +20,7 @@ fn steps(program: &Program) -> &[Statement] {
     steps
 }
 
-/// The bounds as they are written, with `~` before those that are nature's.
+/// The bounds as they are written, with `~` before those that are the environment's.
 fn shown(text: &str, bounds: Option<&Bounds>) -> String {
     bounds.map_or(String::new(), |bounds| {
         let word = if bounds.is_contingent { "~" } else { "" };
@@ -123,7 +123,7 @@ fn bounds_that_require_something_of_nature_are_no_contradiction_and_no_slack_tha
     assert_eq!(codes(&scenario("Drive()[20,50]")), ["W-SLACK"]);
     assert_eq!(codes(&scenario("Drive()[50,60]")), ["W-WINDOW"]);
     assert_eq!(codes(&scenario("Drive()[30,35]")), [""; 0]);
-    // Nature is not narrowed: around the call, its whole range still counts.
+    // The environment is not narrowed: around the call, its whole range still counts.
     assert_eq!(codes(&scenario("{ Drive()[30,35]; Drive() }[30,90]")), ["W-SLACK"]);
     assert_eq!(codes(&scenario("{ Drive()[30,35]; Drive() }[50,90]")), [""; 0]);
     // Contingent bounds say who chooses, whatever they exclude.

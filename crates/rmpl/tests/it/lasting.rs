@@ -19,7 +19,7 @@ fn program(text: &str) -> rmpl::program::Program {
     parsed.program()
 }
 
-/// The codes and places of what is no text of the language, with the messages.
+/// The codes and places of what is not text of the language, with the messages.
 fn errors(text: &str) -> Vec<(String, String, String)> {
     let errors = parse(text).diagnostics().into_iter();
     errors

@@ -151,7 +151,7 @@ fn random_networks_agree_with_the_game() {
     for seed in 0..3_000 {
         let network = within(&small(seed, 3 + (seed % 3) as usize, 2), 5);
         let expected = is_controllable(&network);
-        // Twice as fine a grid: nature may act between two integers.
+        // Twice as fine a grid: the environment may act between two integers.
         assert_eq!(Game::is_won(&scaled(&network, 2), 10), expected, "seed {seed}: {network:?}");
         verdicts[usize::from(expected)] += 1;
     }

@@ -1,5 +1,5 @@
-//! Dispatch with waits never fails while nature keeps to its ranges; where a network is not controllable, the adversary
-//! makes every executive fail.
+//! Dispatch with waits never fails while the environment keeps to its ranges; where a network is not controllable, the
+//! adversary makes every executive fail.
 
 use crate::oracle::{scaled, small, within};
 use stnu::adversary::{Intention, broken, failing_run, residual, respond};
@@ -16,7 +16,7 @@ fn dispatchable(network: &Network) -> Option<Dispatchable> {
     Dispatchable::new(network, &mut || false).expect("small numbers")
 }
 
-/// How nature chooses a duration.
+/// How the environment chooses a duration.
 #[derive(Clone, Copy)]
 enum Nature {
     Random,
@@ -46,7 +46,7 @@ fn run(form: &Dispatchable, nature: Nature, is_eager: bool, random: &mut Random)
     while !dispatcher.is_done() {
         steps += 1;
         assert!(steps < 100_000, "the run comes to an end");
-        // Nature first.
+        // The environment first.
         let due = (0..).map(LinkId).zip(network.links()).find(|(id, link)| {
             let start = dispatcher.times()[link.activation.index()];
             dispatcher.times()[link.end.index()].is_none()

@@ -75,7 +75,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Raster, FormatError> {
     })
 }
 
-/// Whether a word stands for a height that is not there, as programs write it: in place of a value, and as `NODATA_value`.
+/// Whether a word represents a height that is not there, as programs write it: in place of a value, and as `NODATA_value`.
 fn is_absent(word: &str) -> bool {
     ["nan", "-nan", "null", "none", "na"].iter().any(|absent| word.eq_ignore_ascii_case(absent))
 }

@@ -120,7 +120,7 @@ pub struct Raster {
 /// What the samples of a raster are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Meaning {
-    /// Heights, or gray levels that stand for them; the greatest value that the format can hold, if it has one.
+    /// Heights, or gray levels that represent them; the greatest value that the format can hold, if it has one.
     Levels {
         /// The greatest gray level.
         greatest: Option<u32>,

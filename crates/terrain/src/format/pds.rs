@@ -172,7 +172,7 @@ fn read_samples(bytes: &[u8], layout: &RawLayout, holes: &[f64]) -> Result<Raste
             bytes.len()
         )));
     };
-    // What stands for no data in single precision is often written with other digits than it has.
+    // What represents no data in single precision is often written with other digits than it has.
     let is_single = matches!(layout.sample_type, SampleType::F32BigEndian | SampleType::F32LittleEndian);
     let stored = |hole: f64| if is_single { f64::from(hole as f32) } else { hole };
     let holes: Vec<f64> = layout.no_data.iter().chain(holes).map(|&hole| stored(hole)).collect();
@@ -242,8 +242,8 @@ fn read_label(bytes: &[u8], attached: bool) -> Result<(RawLayout, Vec<f64>), For
     Ok((layout, holes))
 }
 
-/// Further values that are no heights: those of the data dictionary, and the special pixels of ISIS, which stand far below (or
-/// above) all ground.
+/// Further values that are not heights: those of the data dictionary, and the special pixels of ISIS, which stand far
+/// below (or above) all ground.
 const HOLES: [&str; 12] = [
     "CORE_NULL",
     "INVALID_CONSTANT",

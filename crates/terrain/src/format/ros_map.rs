@@ -16,7 +16,7 @@ const MAX_YAML_BYTES: usize = 16 << 10;
 enum Mode {
     /// Gray levels against both thresholds: occupied, free, and unknown between them.
     Trinary,
-    /// Gray levels between the thresholds stand for a degree. Only what is surely free is free here.
+    /// Gray levels between the thresholds represent a degree. Only what is surely free is free here.
     Scale,
     /// Samples are the degree itself in percent; above 100 it is unknown.
     Raw,

@@ -136,7 +136,7 @@ fn a_map_in_meters_lies_where_its_tie_point_says() {
     assert_eq!(origin(plain().with(TIE_POINTS, tie(1.0, 2.0)).with(KEYS, keys(1, 1))), Some([490.0, 900.0]));
     // The middle of the north-western cell.
     assert_eq!(origin(plain().with(TIE_POINTS, tie(0.0, 0.0)).with(KEYS, keys(1, 2))), Some([495.0, 885.0]));
-    // Degrees are no place on a plane.
+    // Degrees are not places on a plane.
     assert_eq!(origin(plain().with(TIE_POINTS, tie(0.0, 0.0)).with(KEYS, keys(2, 1))), None);
     assert_eq!(origin(plain()), None);
     let mut matrix = vec![0.0; 16];
@@ -161,7 +161,7 @@ fn scale_and_offset_of_gdal_make_heights_of_stored_values() {
         <Item role='scale' sample='0' name='SCALE'> 0.5 </Item>\n</GDALMetadata>\n";
     let raster = read(Image::plain().with(METADATA, Value::Text(metadata)).with(NO_DATA, Value::Text("4")));
     assert_eq!(raster.samples[..3], [-99.5, -99.0, -98.5]);
-    // What stands for no data is a stored value.
+    // What represents no data is a stored value.
     assert!(raster.samples[3].is_nan());
     assert_eq!(raster.samples[4], -97.5);
     let without_band = "<GDALMetadata><Item name=\"SCALE\" role=\"scale\">3</Item></GDALMetadata>";

@@ -10,7 +10,7 @@ pub(super) const E_BOUNDS: Code = Code("E-BOUNDS");
 /// An expression names no bound parameter.
 pub(super) const E_NAME: Code = Code("E-NAME");
 
-/// What the names and units of an expression stand for.
+/// What the names and units of an expression represent.
 pub(super) trait Values {
     /// The value of a name.
     fn number(&self, name: &str) -> Option<Bound>;

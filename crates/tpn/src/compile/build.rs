@@ -85,7 +85,7 @@ impl Builder {
         ArcId::from_index(self.arcs.len() - 1)
     }
 
-    /// Lets nature choose how long `arc` takes (SPEC 13.1).
+    /// Lets the environment choose how long `arc` takes (SPEC 13.1).
     pub(super) fn leave_to_nature(&mut self, arc: ArcId) {
         self.arcs[arc.index()].is_contingent = true;
     }

@@ -36,11 +36,11 @@ struct Duration {
     is_contingent: bool,
     /// Where it is written.
     span: Span,
-    /// What the call requires of what nature chooses.
+    /// What the call requires of what the environment chooses.
     required: Option<Interval>,
 }
 
-/// Formals of a top activity stand for themselves.
+/// Formals of a top activity represent themselves.
 pub(super) fn themselves(formals: &[Name]) -> Vec<ArgumentValue> {
     formals.iter().map(|formal| ArgumentValue::Name(formal.text.clone())).collect()
 }
@@ -269,7 +269,7 @@ impl<'program> Expander<'program> {
                 Diagnostic::error(bounds::E_BOUNDS, expr.span, "a numeric argument must be finite")
             })
         });
-        // What has no value is reported, and stands for some number until then.
+        // What has no value is reported, and represents some number until then.
         value.unwrap_or_else(|error| {
             self.diagnostics.push(error);
             Rational::default()

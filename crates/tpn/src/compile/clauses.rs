@@ -21,7 +21,7 @@ const E_DUP: Code = Code("E-DUP");
 pub(super) struct Activity<'a> {
     pub(super) declared: &'a PrimitiveDecl,
     pub(super) arguments: &'a [ArgumentValue],
-    /// What the primitive's parameters stand for.
+    /// What the primitive's parameters represent.
     pub(super) scope: &'a Scope,
     pub(super) occurrence: OccurrenceId,
     pub(super) arc: ArcId,
@@ -114,7 +114,7 @@ impl Expander<'_> {
     }
 
     /// Reports vehicles whose declared models do not reach the speed that the traverse is to have (SPEC 17). What the built-in
-    /// models reach is no limit: their speeds are measured on flat ground.
+    /// models reach is not a limit: their speeds are measured on flat ground.
     fn check_speed(&mut self, activity: &Activity<'_>) {
         let Some(moves) = &activity.declared.moves else { return };
         let Some((_, wanted_mps)) = moves.speed_mps else { return };

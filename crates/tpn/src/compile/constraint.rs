@@ -1,7 +1,7 @@
-//! Bounds between events of different threads (SPEC 14): which occurrences a name stands for, and which pairs of them a
+//! Bounds between events of different threads (SPEC 14): which occurrences a name represents, and which pairs of them a
 //! bound relates.
 //!
-//! A name may stand for several occurrences: in alternatives, in the instances of an activity, in the copies of a
+//! A name may represent several occurrences: in alternatives, in the instances of an activity, in the copies of a
 //! `repeat`. A bound relates each of them to those of the other name that are nearest to it: in the same instance or
 //! copy, where there are any, so that an activity and a bound between its own events mean the same wherever it is called.
 

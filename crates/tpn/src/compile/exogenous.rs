@@ -77,7 +77,7 @@ fn decisions(program: &Program, statements: &[&Statement]) -> Option<Diagnostic>
         let start = statement.span.start;
         let at = |word: &str| Span::new(start, start + word.len() as u32);
         match &statement.kind {
-            // What stands for a choice has alternatives that begin with the whole statement.
+            // What represents a choice has alternatives that begin with the whole statement.
             StatementKind::Choose(parts)
                 if parts.len() > 1 && parts.iter().all(|it| it.span.start > start) =>
             {

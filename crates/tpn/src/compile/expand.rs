@@ -185,7 +185,7 @@ impl<'program> Expander<'program> {
         match (members.form, branches.as_slice()) {
             (MembersForm::Any, branches) => self.choose(branches, span, entry),
             (MembersForm::Unordered, branches) => self.unordered(branches, span, entry),
-            // One member has nobody beside it.
+            // One member has no one beside it.
             (MembersForm::Parallel, [only]) => self.branch(only, entry),
             (MembersForm::Parallel, branches) => self.parallel(branches, span, entry),
             (MembersForm::Sequence, branches) => self.sequence(branches.iter().copied(), span, entry),
@@ -344,7 +344,7 @@ impl<'program> Expander<'program> {
         Piece { start, end, end_kind: End::Structural, block, arc: None, occurrence: None }
     }
 
-    /// `statement` with `arc` from its start to its end; without its own bounds if `arc` is what stands for them. If it
+    /// `statement` with `arc` from its start to its end; without its own bounds if `arc` is what represents them. If it
     /// starts with a decision it gets a node around each end, because only alternatives may leave a decision (SPEC 3.1).
     pub(super) fn spanned(
         &mut self,

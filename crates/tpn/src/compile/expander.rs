@@ -22,7 +22,7 @@ pub(super) enum End {
     Event,
     /// A fork, join, merge, decision or wrapper: shares its node with other structure.
     Structural,
-    /// The start or end of a delay: waiting is no event of its own, so it shares its neighbor's node.
+    /// The start or end of a delay: waiting does not have an event, so it shares its neighbor's node.
     Delay,
 }
 

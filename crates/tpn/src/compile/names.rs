@@ -1,4 +1,4 @@
-//! What the names in conditions stand for: substitution of formals, the `X_V` rule (SPEC 1.3), domains and value sets.
+//! What the names in conditions represent: substitution of formals, the `X_V` rule (SPEC 1.3), domains and value sets.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -70,7 +70,7 @@ impl Fact {
     }
 }
 
-/// A name with the argument that it stands for; of `v.at` the vehicle before the dot may be one.
+/// A name with the argument that it represents; of `v.at` the vehicle before the dot may be one.
 pub(super) fn substituted(name: &SmolStr, substitute: &dyn Fn(&str) -> Option<ArgumentValue>) -> SmolStr {
     if let Some(value) = substitute(name) {
         return argument_text(&value);
@@ -181,7 +181,7 @@ impl<'program> Vocabulary<'program> {
         let text = |name: &SmolStr| substituted(name, substitute);
         let negated = condition.negated;
         let written = match substitute(&condition.variable.text) {
-            // A parameter that stands for a whole condition, whose own names mean something at the call.
+            // A parameter that represents a whole condition, whose own names mean something at the call.
             Some(ArgumentValue::Condition(handed))
                 if condition.values.is_empty() && condition.sees.is_none() =>
             {
@@ -265,7 +265,7 @@ impl<'program> Vocabulary<'program> {
             return match fact.variable.split_once('.') {
                 None => Ok(()),
                 Some((_, "mode")) if self.without_component.contains(fact.variable.as_str()) => Ok(()),
-                // What is written is looked up by the language, what a parameter stands for is known here.
+                // What is written is looked up by the language, what a parameter represents is known here.
                 Some((_, "mode")) if fact.variable == condition.variable.text => Ok(()),
                 Some((_, "mode")) => {
                     let message = format!("unknown state variable `{}`", fact.variable);

@@ -19,7 +19,7 @@ pub(super) struct Scope {
 }
 
 impl Scope {
-    /// Of an instance whose formals stand for `arguments`; formals without an argument stand for themselves.
+    /// Of an instance whose formals represent `arguments`; formals without an argument represent themselves.
     pub(super) fn new(
         occurrence: Option<OccurrenceId>,
         formals: &[Name],
@@ -29,7 +29,7 @@ impl Scope {
         Self { occurrence, arguments: pairs.collect(), bounds: Vec::new() }
     }
 
-    /// The same where `variable` stands for a member of a group.
+    /// The same where `variable` represents a member of a group.
     pub(super) fn with_member(&self, variable: &SmolStr, member: &SmolStr) -> Self {
         let mut inner = self.clone();
         inner.bounds.retain(|(parameter, _)| parameter != variable);
@@ -42,7 +42,7 @@ impl Scope {
         self.bounds.push((parameter.clone(), bound));
     }
 
-    /// The argument that a name stands for, if it is a formal.
+    /// The argument that a name represents, if it is a formal.
     pub(super) fn argument(&self, name: &str) -> Option<ArgumentValue> {
         self.arguments.iter().find(|(formal, _)| formal == name).map(|(_, value)| value.clone())
     }
@@ -72,7 +72,7 @@ impl Scope {
         }
     }
 
-    /// The number that a name stands for: a bound parameter, or a formal whose argument is a number.
+    /// The number that a name represents: a bound parameter, or a formal whose argument is a number.
     fn number(&self, name: &str) -> Option<Bound> {
         if let Some((_, bound)) = self.bounds.iter().find(|(parameter, _)| parameter == name) {
             return Some(*bound);

@@ -48,7 +48,7 @@ impl Expander<'_> {
         }
     }
 
-    /// A bare name that is a formal and stands for an activity is a call of it (SPEC 1.3, 1.4).
+    /// A bare name that is a formal and represents an activity is a call of it (SPEC 1.3, 1.4).
     pub(super) fn called_formal(
         &self,
         mode: LabelMode,

@@ -1,5 +1,5 @@
-//! Vehicles with their own equipment, groups, and what parameters stand for (SPEC 17): each compiles to the network of the
-//! mission that is written out, and each mistake is told at its place.
+//! Vehicles with their own equipment, groups, and what parameters represent (SPEC 17): each compiles to the network of
+//! the mission that is written out, and each mistake is told at its place.
 
 use rmpl::Severity;
 use tpn::{LabelId, Network, Top};
@@ -38,7 +38,7 @@ fn meaning(network: &Network) -> Vec<String> {
     arcs.chain(occurrences).chain(resources).chain(uses).collect()
 }
 
-/// `short` means what `long` says. In `long`, `R1-battery` stands for `R1.battery` and `S-1` for `S[1]`.
+/// `short` means what `long` says. In `long`, `R1-battery` represents `R1.battery` and `S-1` for `S[1]`.
 #[track_caller]
 fn same(short: &str, long: &str) {
     let mut short_meaning = meaning(&network(short));

@@ -81,7 +81,7 @@ impl Constraints {
         }
         for &ordering in &plan.orderings_added {
             let (earlier, later, gap) = ordered_events(network, plan, ordering);
-            // Before what begins at nature's event there is no gap (SPEC 13.1).
+            // Before what begins at the environment's event there is no gap (SPEC 13.1).
             let gap = if gap && !natures[later.index()] { made.gap } else { 0 };
             made.add(earlier, later, gap, None, Reason::Order(ordering));
             if labels::is_lasting(network, ordering.first) {

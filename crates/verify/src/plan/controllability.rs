@@ -1,4 +1,4 @@
-//! The check that a plan can be kept whatever durations nature chooses (SPEC 13.1), in the author's terms.
+//! The check that a plan can be kept whatever durations the environment chooses (SPEC 13.1), in the author's terms.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::distance::Edge;
 use crate::uncertainty::is_uncertain;
 use crate::{Rule, Violation, node_name};
 
-/// The constraints of a plan, parted into what the executive must keep and what nature chooses.
+/// The constraints of a plan, parted into what the executive must keep and what the environment chooses.
 struct Parted {
     points: usize,
     edges: Vec<Edge>,
@@ -22,8 +22,8 @@ struct Parted {
 }
 
 impl Parted {
-    /// Makes one point of events that `[0,0]` ties to one instant: they are nature's if one of them is, and what nature
-    /// ends has no time beforehand.
+    /// Makes one point of events that `[0,0]` ties to one instant: they are the environment's if one of them is, and
+    /// what the environment ends has no time beforehand.
     fn merge(&mut self, network: &Network, plan: &Plan) {
         let mut first: Vec<u32> = (0..network.nodes.len() as u32).collect();
         let is_tie = |arc: &Arc| arc.lower.is_zero() && arc.upper == Bound::ZERO && !arc.is_contingent;
@@ -66,7 +66,7 @@ impl Parted {
 /// What the reason of an edge is that says that a link ends where its arc does.
 const TIE: u32 = u32::MAX;
 
-/// Whether the plan withstands nature as far as the mission asks.
+/// Whether the plan withstands the environment as far as the mission asks.
 pub(super) fn check_controllability(
     network: &Network,
     plan: &Plan,

@@ -1,5 +1,5 @@
 //! The check of a plan (SPEC 5.5, 10 to 13): its selection, its constraints, its links, its orders, those within an instant
-//! too, its windows, the resources it uses, what it is worth, and that it withstands nature.
+//! too, its windows, the resources it uses, what it is worth, and that it withstands the environment.
 
 mod constraints;
 mod controllability;
@@ -30,8 +30,8 @@ use orders::Stated;
 /// uses of resources that the plan puts in sequence cost a short search each.
 ///
 /// Amounts of resources and costs are the network's: what is counted per metre is part of them once paths are inserted.
-/// That an optimal plan is optimal is not checked. Windows are those of the network that reads durations that nature
-/// chooses as ordinary ones.
+/// That an optimal plan is optimal is not checked. Windows are those of the network that reads durations that the
+/// environment chooses as ordinary ones.
 ///
 /// ```
 /// let parsed = rmpl::parse("scenario Day[0,60] = { Drive()[20,30] }");

@@ -21,7 +21,7 @@ pub fn earliest_schedule(plan: &Plan) -> Vec<Option<Time>> {
 ///
 /// A `[0,0]` interval holds at one instant, which must lie outside conflicting intervals, their start included. With a
 /// threat gap of zero the rule is that of planning (SPEC 5.3): of two conflicting intervals one ends no later than the
-/// other starts, instants and intervals without length included. An interval that begins at an event that nature
+/// other starts, instants and intervals without length included. An interval that begins at an event that the environment
 /// executes may begin at such an instant: there is no gap before it (SPEC 13.1).
 ///
 /// What happens at one instant may happen in any order that follows the text and keeps the rules of state that lasts and of
@@ -66,7 +66,7 @@ struct Schedule<'schedule> {
     network: &'schedule Network,
     plan: &'schedule Plan,
     times: &'schedule [Option<Time>],
-    /// By node, whether nature executes it.
+    /// By node, whether the environment executes it.
     natures: Vec<bool>,
 }
 

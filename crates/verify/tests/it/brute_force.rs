@@ -214,7 +214,7 @@ fn same_variable(one: &Label, other: &Label) -> bool {
     one.literal.variable == other.literal.variable
 }
 
-/// The values that a label allows, by name; of an open domain `…` stands for all that no label names.
+/// The values that a label allows, by name; of an open domain `…` represents all that no label names.
 fn values(network: &Network, label: &Label) -> BTreeSet<String> {
     let variable = &network.variables[label.literal.variable.index()];
     let named = |ids: &[tpn::ValueId]| -> BTreeSet<String> {

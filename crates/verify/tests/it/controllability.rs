@@ -1,5 +1,5 @@
-//! Plans that nature may break (SPEC 13.1): the storm and the drive, what is said of them, and every verdict on tiny
-//! networks against the game itself.
+//! Plans that the environment may break (SPEC 13.1): the storm and the drive, what is said of them, and every verdict
+//! on tiny networks against the game itself.
 
 use exact::{Bound, Time};
 use rmpl::program::Controllability;
@@ -10,7 +10,7 @@ use verify::{Rule, Verdict, Violation, check_plan, check_schedule};
 use crate::game::Game;
 use crate::missions::{Sketch, event, network, plan, time};
 
-/// Nature chooses how long this occurrence takes.
+/// The environment chooses how long this occurrence takes.
 fn leave_to_nature(network: &mut Network, name: &str) {
     let occurrence = network.occurrences.iter().find(|occurrence| occurrence.name == name);
     let arc = occurrence.unwrap_or_else(|| panic!("{name}")).arc.expect("a duration");
@@ -55,7 +55,7 @@ fn what_must_be_over_before_a_storm_is_over_before_its_earliest() {
     let ordered = [("Tell(V=X)@Tell(V=X)#1", "Tell(V=Y)@Tell(V=Y)#1")];
     let sketch = Sketch { order: &ordered, added: &ordered, ..Sketch::default() };
     let text = |survey: &str| format!("scenario S = {{ V=X {survey}, {{ delay[5,100]; V=Y [1,1] }} }}");
-    // With a gap of one the last moment would be 4; before nature's event there is none.
+    // With a gap of one the last moment would be 4; before the environment's event there is none.
     for (survey, is_over_in_time) in
         [("[10,20]", false), ("[6,20]", false), ("[5,20]", true), ("[0,5]", true)]
     {
@@ -303,7 +303,7 @@ fn one_schedule_suits_all_durations_exactly_where_the_check_says_so() {
     for seed in 0..400 {
         let mut rng = Rng::new(seed + 10_000);
         let mut network = tiny(&mut rng, 4, HORIZON);
-        // What is tied to nature's events has no time beforehand, and the brute force gives it one.
+        // What is tied to the environment's events has no time beforehand, and the brute force gives it one.
         network.arcs.retain(|arc| !(arc.lower.is_zero() && arc.upper == Bound::ZERO));
         join(&mut network);
         network.controllability = Controllability::Strong;
@@ -315,7 +315,7 @@ fn one_schedule_suits_all_durations_exactly_where_the_check_says_so() {
     assert!(suited > 40 && not_suited > 40, "{suited} suited, {not_suited} not");
 }
 
-/// Tries all times of the executive's events against all durations of nature's. Ranges lead to higher numbers.
+/// Tries all times of the executive's events against all durations of the environment's. Ranges lead to higher numbers.
 fn has_schedule_for_all(network: &Network, horizon: i64) -> bool {
     let events = network.nodes.len();
     let range_of =

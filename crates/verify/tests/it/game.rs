@@ -1,4 +1,4 @@
-//! What a controllable plan is, played out: a game between the executive and nature on whole numbers of ticks.
+//! What a controllable plan is, played out: a game between the executive and the environment on whole numbers of ticks.
 //!
 //! At every instant nature ends what it likes and the executive executes what it likes, one after the other, until both
 //! let time pass. The executive wins if every event has happened and every bound is kept. Nothing of the checker is here.
@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use exact::Bound;
 use tpn::Network;
 
-/// A bound between two events, in ticks; `is_natures` says that nature chooses within it.
+/// A bound between two events, in ticks; `is_natures` says that the environment chooses within it.
 #[derive(Clone, Copy, Debug)]
 struct Range {
     from: usize,
@@ -26,7 +26,7 @@ type State = (Vec<Option<i32>>, i32);
 pub struct Game {
     ranges: Vec<Range>,
     horizon: i32,
-    /// By state at nature's turn, and whether the executive has let time pass.
+    /// By state at the environment's turn, and whether the executive has let time pass.
     nature: HashMap<(State, bool), bool>,
 }
 
@@ -77,7 +77,7 @@ impl Game {
         after
     }
 
-    /// Nature's turn.
+    /// The environment's turn.
     fn is_won_by_the_executive(&mut self, state: State, has_passed: bool) -> bool {
         if self.is_broken(&state) {
             return false;

@@ -173,7 +173,7 @@ fn twelve_events_at_one_instant_are_decided() {
     only(&found, Rule::Form, &[], "the search stopped");
 }
 
-/// What is about different things goes on beside each other, however much there is of it.
+/// What is about different things continues beside each other, however much there is of it.
 #[test]
 fn many_independent_events_at_one_instant_are_decided() {
     let declared: String = (0..40)

@@ -152,7 +152,7 @@ fn conflicting_intervals_do_not_overlap() {
     let at = |start: i64| {
         violations(&[("delay#5.end", start), ("Tell(V=Y)#1.start", start), ("Tell(V=Y)#1.end", start + 2)])
     };
-    // V=X holds during [0,4]; touching is no overlap.
+    // V=X holds during [0,4]; touching is not an overlap.
     assert_eq!(at(4), []);
     assert_eq!(at(5), []);
     for start in 0..4 {

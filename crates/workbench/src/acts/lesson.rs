@@ -52,7 +52,7 @@ impl AppState {
         Glossary::get().marked(&filled(&stop.prose, &mut |text| self.lesson_value(text)))
     }
 
-    /// What stands for `{{text}}` in prose now.
+    /// What represents `{{text}}` in prose now.
     pub fn lesson_value(&self, text: &str) -> String {
         let value =
             Expression::read(text).ok().and_then(|expression| expression.value(&Description::of(self)));
@@ -167,7 +167,7 @@ impl AppState {
         self.search.apply(SearchCommand::Compare(search == LessonSearch::Both), shown.as_ref());
     }
 
-    /// Goes on with a lesson of the course whose mission was edited, and is open.
+    /// Continues with a lesson of the course whose mission was edited, and is open.
     pub(crate) fn resume_lesson(&mut self, name: &str, stop: usize) {
         let Some(found) = course_lesson(name) else { return };
         let (lesson, errors) = read_lesson(found.name, found.text);

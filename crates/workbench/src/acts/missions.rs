@@ -161,7 +161,7 @@ impl AppState {
         self.window.ask(Effect::ShowAddress);
     }
 
-    /// Opens a text that is no mission of the library until it is edited.
+    /// Opens a text that is not a mission of the library until it is edited.
     pub(super) fn open_original(&mut self, name: SmolStr, kind: MissionKind, source: &str) {
         self.note_text();
         self.set_document_aside();
@@ -176,7 +176,7 @@ impl AppState {
     fn set_document_aside(&mut self) {
         if let Some(id) = self.library.open_id().cloned() {
             let document = std::mem::take(&mut *self.document);
-            // The count goes on with the next text.
+            // The count continues with the next text.
             self.document.count_on_from(document.revision());
             self.library.set_aside.insert(id, document);
         }

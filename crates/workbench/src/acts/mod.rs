@@ -282,7 +282,7 @@ impl AppState {
     fn show_workspace(&mut self, workspace: Workspace) {
         self.window.maximized = None;
         if self.window.workspace == Workspace::Teach && workspace != Workspace::Teach {
-            // A step of the search is no plan: elsewhere it would be taken for one.
+            // A step of the search is not a plan: elsewhere it would be taken for one.
             self.search.close();
         }
         self.window.workspace = workspace;

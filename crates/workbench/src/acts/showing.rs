@@ -178,7 +178,7 @@ impl AppState {
         }
     }
 
-    /// Says what a stop wants and the mission does not have. After an edit of the text that is nobody's mistake.
+    /// Says what a stop wants and the mission does not have. After an edit of the text that is no one's mistake.
     fn tell_lecturer(&mut self, line: u32, message: &str) {
         let is_own_text = self.lesson.text() == Some(self.document.text());
         let kind = if is_own_text { ToastKind::Failed } else { ToastKind::Info };

@@ -3,7 +3,7 @@
 //! Five things run: time along the plan, time along the run of a mission, the recorded search, the growth of a path's
 //! search tree, and a control program. Keys, the menu and the buttons of the timeline send a [`TransportCommand`], which
 //! goes to the one [`Track`] that [`AppState::track`] names. Buttons that stand beside a drawing drive that drawing by
-//! its own commands. Whatever plays goes on by itself in [`AppState::advance`], whichever track the keys drive.
+//! its own commands. Whatever plays continues by itself in [`AppState::advance`], whichever track the keys drive.
 
 use crate::panel_kind::PanelKind;
 use crate::state::AppState;
@@ -28,7 +28,7 @@ pub enum Track {
     Plan,
 }
 
-/// What went on by itself.
+/// What continued by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Advanced {
     /// Whether something else is shown now.

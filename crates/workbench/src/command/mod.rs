@@ -132,7 +132,7 @@ pub enum Command {
     Settings(SettingsCommand),
     /// Stops whatever the planning core works on.
     StopWork,
-    /// Plans the same text once more.
+    /// Plans the same text again.
     PlanAgain,
 
     ShowWorkspace(Workspace),

@@ -128,11 +128,11 @@ pub struct Pinned {
     pub events: BTreeMap<String, f64>,
     #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
     pub windows: Value,
-    /// How the run against nature stands, if nature chooses something in this plan.
+    /// How the run against the environment stands, if the environment chooses something in this plan.
     pub run: Option<NatureRun>,
 }
 
-/// A run in which nature's durations are chosen one by one.
+/// A run in which the environment's durations are chosen one by one.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 #[cfg_attr(test, derive(TS))]
@@ -141,27 +141,27 @@ pub struct NatureRun {
     pub now: f64,
     /// What happened, in the order of time.
     pub acts: Vec<Act>,
-    /// The durations that nature is choosing, and when each may still end.
+    /// The durations that the environment is choosing, and when each may still end.
     #[cfg_attr(test, ts(type = "Record<string, [Time, Time]>"))]
     pub under_way: BTreeMap<String, [Value; 2]>,
-    /// What could happen earlier if nature ended something earlier.
+    /// What could happen earlier if the environment ended something earlier.
     pub waiting: Vec<Waiting>,
-    /// What happens next if nature lets everything last.
+    /// What happens next if the environment lets everything last.
     pub next: Option<Act>,
 }
 
-/// What somebody does.
+/// What someone does.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Act {
     pub time: f64,
     /// What happens at that instant.
     pub events: Vec<String>,
-    /// The duration that nature ends there; otherwise the executive acts.
+    /// The duration that the environment ends there; otherwise the executive acts.
     pub nature: Option<String>,
 }
 
-/// An event that waits for nature.
+/// An event that waits for the environment.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Waiting {

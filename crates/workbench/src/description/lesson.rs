@@ -59,7 +59,7 @@ pub struct Question {
     pub predictions: Option<PredictionCounts>,
 }
 
-/// How often somebody predicted what came.
+/// How often someone predicted what came.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]

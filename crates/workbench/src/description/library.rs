@@ -11,7 +11,7 @@ use crate::state::AppState;
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Library {
-    /// The id of the open mission; `null` for an original that nobody has edited.
+    /// The id of the open mission; `null` for an original that no one has edited.
     pub open: Option<String>,
     /// Those changed last first, without the deleted ones.
     pub missions: Vec<KeptMission>,

@@ -168,7 +168,7 @@ pub struct Unachievable {
 }
 
 /// The step that is looked at, what is marked there and, with a plant, what is believed, true, observed and commanded;
-/// nothing if the text is no control program.
+/// nothing if the text is not a control program.
 pub(super) fn program_run(state: &AutomatonState, revision: u64) -> Option<ProgramRun> {
     let program = state.program()?;
     let moment = state.moment();

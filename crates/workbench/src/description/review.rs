@@ -81,7 +81,7 @@ pub struct ReviewWaiver {
     pub state: WaiverState,
 }
 
-/// Somebody whose signatures count here.
+/// Someone whose signatures count here.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ReviewPerson {
@@ -123,7 +123,7 @@ pub struct ReviewItem {
     pub acknowledged: Option<Acknowledged>,
 }
 
-/// Somebody has acknowledged a line.
+/// Someone has acknowledged a line.
 #[derive(Debug, Serialize)]
 pub struct Acknowledged {
     pub by: String,
@@ -141,7 +141,7 @@ pub struct BoardSeat {
     pub given: Vec<String>,
 }
 
-/// What somebody wrote.
+/// What someone wrote.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ReviewComment {
@@ -158,7 +158,7 @@ pub struct ReviewComment {
     pub open: bool,
 }
 
-/// Something that somebody did.
+/// Something that someone did.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(rename_all = "camelCase")]
@@ -179,7 +179,7 @@ pub struct HistoryEntry {
     pub hash: String,
     /// The plan that it is about; empty if none was known.
     pub plan_hash: String,
-    /// Whether somebody took it back.
+    /// Whether someone took it back.
     pub withdrawn: bool,
     /// The public key that it names, in 64 hexadecimal digits; `null` in histories of earlier versions.
     pub key: Option<String>,
@@ -191,7 +191,7 @@ pub struct HistoryEntry {
     pub counts: bool,
 }
 
-/// Somebody has approved a plan.
+/// Someone has approved a plan.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct SignOff {

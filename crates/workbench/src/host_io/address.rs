@@ -55,7 +55,7 @@ pub fn show_address(state: &AppState, host: &mut dyn Host) {
     {
         return;
     }
-    // What else the address says goes on.
+    // What else the address says continues.
     let keys = ["mission=", "source=", "open=", "step=", "t=", "lesson=", "stop="];
     let named = |part: &str| keys.iter().any(|key| part.starts_with(key));
     let rest = shown.split('&').filter(|part| !part.is_empty() && !named(part));
@@ -243,7 +243,7 @@ mod tests {
             let mut changed = packed.clone().into_bytes();
             changed[at] = if changed[at] == b'A' { b'B' } else { b'A' };
             let changed = String::from_utf8(changed).expect("letters");
-            // The last digit has bits that stand for nothing.
+            // The last digit has bits that represent nothing.
             assert!(unpack(&changed).is_err() || at + 1 == packed.len(), "{at}");
             assert_eq!(unpack(&packed[..at]), Err(LinkError::Damaged), "{at}");
         }

@@ -520,7 +520,7 @@ impl Autosave {
                 if is_all && !self.typed_in_flight.contains_key(&id) && self.typed_on_shelf.remove(&id) {
                     host.use_shelf(ShelfRequest::Remove { key: typed_key(&id) });
                 }
-                // What earlier runs left is on the shelf now, unless another tab goes on writing there.
+                // What earlier runs left is on the shelf now, unless another tab continues writing there.
                 for (key, value) in self.found.remove(&id).unwrap_or_default() {
                     if host.stored(&key).as_deref() == Some(value.as_str()) {
                         host.forget(&key);

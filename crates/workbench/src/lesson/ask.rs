@@ -55,7 +55,7 @@ pub enum Forecast {
 }
 
 impl Forecast {
-    /// What somebody predicts who expects no more of it.
+    /// What someone predicts who expects no more of it.
     pub const fn nothing(&self) -> Option<&'static str> {
         match self {
             Self::Decision => Some("No further decision"),
@@ -115,7 +115,7 @@ impl Answer {
         }
     }
 
-    /// What would be right now, as somebody would give it; nothing while that is not known, for a task, and for a
+    /// What would be right now, as someone would give it; nothing while that is not known, for a task, and for a
     /// prediction.
     pub fn right_now(&self, known: &dyn Known) -> Option<String> {
         match self {
@@ -135,7 +135,7 @@ const NUMBERS: [&str; 13] = [
     "zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
 ];
 
-/// The number that somebody gave: `20`, `2,5`, `−3 min`, `80 %`, `two`. Behind it may stand a unit, and nothing else.
+/// The number that someone gave: `20`, `2,5`, `−3 min`, `80 %`, `two`. Behind it may stand a unit, and nothing else.
 fn number_in(given: &str) -> Option<Rational> {
     let given = given.trim().trim_end_matches('.').replace('−', "-").replace(',', ".").to_lowercase();
     if let Some(number) = NUMBERS.iter().position(|word| *word == given) {
@@ -147,7 +147,7 @@ fn number_in(given: &str) -> Option<Rational> {
     number.trim().parse().ok().filter(|_| is_unit)
 }
 
-/// What somebody said, however it is spelled: `(x = a)` is `x=a`, and `b, a` is `a, b`.
+/// What someone said, however it is spelled: `(x = a)` is `x=a`, and `b, a` is `a, b`.
 fn words_in(given: &str) -> Vec<String> {
     let plain: String = given.to_lowercase().chars().filter(|it| !"`\"“”„'’".contains(*it)).collect();
     let plain = plain.trim().trim_end_matches('.');

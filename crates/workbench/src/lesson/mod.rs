@@ -82,7 +82,7 @@ pub struct Stop {
     pub line: u32,
     /// The mission from this stop on, if it is another one than before.
     pub mission: Option<LessonMission>,
-    /// What it says; `{{…}}` stands for what is computed.
+    /// What it says; `{{…}}` represents what is computed.
     pub prose: Vec<Block>,
     pub show: Show,
     pub ask: Option<Ask>,
@@ -193,7 +193,7 @@ impl Lesson {
         }
     }
 
-    /// Takes a block of the stop that was begun last.
+    /// Takes a block of the stop that was started last.
     fn take(&mut self, block: Block, errors: &mut Vec<LessonError>) {
         let Some(stop) = self.stops.last_mut() else {
             if !matches!(block.content, Content::Rule) {
@@ -236,7 +236,7 @@ fn first_word(info: &str) -> &str {
     info.split_whitespace().next().unwrap_or_default()
 }
 
-/// The lines `key: value` of a directive, each with its number from 1. A line that begins with spaces goes on with the
+/// The lines `key: value` of a directive, each with its number from 1. A line that begins with spaces continues with the
 /// one before; lines of other forms are given to `other`.
 fn entries<'a>(
     text: &'a str,
@@ -244,7 +244,7 @@ fn entries<'a>(
     mut other: impl FnMut(u32, &'a str),
 ) -> Vec<(u32, &'a str, String)> {
     let mut entries: Vec<(u32, &str, String)> = Vec::new();
-    // A line that begins with spaces goes on with the one before, whatever that is.
+    // A line that begins with spaces continues with the one before, whatever that is.
     let mut is_other = false;
     for (line, number) in text.lines().zip(fence + 1..) {
         if line.trim().is_empty() {

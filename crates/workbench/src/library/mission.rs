@@ -35,7 +35,7 @@ pub enum MissionKind {
 }
 
 impl MissionKind {
-    /// What lists say of it; nothing of what was begun here.
+    /// What lists say of it; nothing of what was started here.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Own => "",
@@ -109,7 +109,7 @@ pub struct Mission {
     pub name: SmolStr,
     /// Where it came from.
     pub kind: MissionKind,
-    /// When it was begun, in milliseconds since 1970, UTC.
+    /// When it was started, in milliseconds since 1970, UTC.
     pub created_millis: i64,
     /// When it was last changed, in milliseconds since 1970, UTC.
     pub changed_millis: i64,
@@ -161,7 +161,7 @@ pub(crate) fn print(text: &str) -> u64 {
 /// Why something cannot be read as a mission.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MissionError {
-    /// It is no mission at all.
+    /// It is not a mission.
     #[error("not a mission file")]
     NoMission,
     /// A later version of the program wrote it.

@@ -1,7 +1,7 @@
 //! The library: the missions that a user has, and what is done with them. It knows no storage: what must be kept
 //! it leaves behind as changes.
 //!
-//! Examples, and what links hold, are no missions of the library until they are edited: then a copy of its own begins,
+//! Examples, and what links hold, are not missions of the library until they are edited: then a copy of its own begins,
 //! and the original stays what it was.
 
 mod base64;
@@ -29,7 +29,7 @@ use mission::split;
 /// What the user has open.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Open {
-    /// A text that is no mission of the library unless it is edited.
+    /// A text that is not a mission of the library unless it is edited.
     Original {
         /// What its copy will be.
         kind: MissionKind,

@@ -64,7 +64,7 @@ pub struct AutomatonState {
     pub error: Option<String>,
     /// The conflicts of the step before the current moment.
     conflicts: Option<StepConflicts>,
-    /// The hitting-set tree that was begun last.
+    /// The hitting-set tree that was started last.
     diagnosing: Option<Diagnosing>,
     /// Whether steps go by themselves.
     pub is_playing: bool,

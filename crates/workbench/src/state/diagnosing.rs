@@ -180,7 +180,7 @@ pub fn label_text(model: &Model, tree: &HittingTree, label: HittingLabel) -> Str
     }
 }
 
-/// Why a node cannot become what somebody wanted, and what to do.
+/// Why a node cannot become what someone wanted, and what to do.
 pub fn refusal_text(model: &Model, tree: &HittingTree, refusal: &Refusal) -> String {
     match refusal {
         Refusal::Unknown => "This node is no longer open. Choose an open one.".to_owned(),

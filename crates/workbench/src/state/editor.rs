@@ -41,7 +41,7 @@ pub enum EditorCommand {
     },
     /// Lists what can be written at the caret.
     Complete,
-    /// Lists what mends the problem at the caret.
+    /// Lists what fixes the problem at the caret.
     QuickFix,
     /// Lists where the name at the caret stands.
     FindReferences,
@@ -161,7 +161,7 @@ pub struct Popup {
 pub enum PopupKind {
     /// What can be written here.
     Completion,
-    /// What mends the problem here.
+    /// What fixes the problem here.
     Fixes,
     /// Where the name here stands.
     References,

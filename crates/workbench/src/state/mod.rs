@@ -248,7 +248,7 @@ impl AppState {
         }
     }
 
-    /// Whether the present text has been worked out for so long that somebody may want to stop it.
+    /// Whether the present text has been worked out for so long that someone may want to stop it.
     pub fn is_long_at_work(&self) -> bool {
         self.status() == Status::Working && self.frame.now_secs - self.frame.asked_secs > LONG_SECS
     }

@@ -22,9 +22,9 @@ pub enum PinCommand {
     Pin(NodeId, Time),
     /// Takes away the pin of an event.
     Release(NodeId),
-    /// Takes away all pins, and goes back to the start of a run against nature.
+    /// Takes away all pins, and goes back to the start of a run against the environment.
     ReleaseAll,
-    /// Lets time pass until the next thing happens, in a plan some of whose durations nature chooses.
+    /// Lets time pass until the next thing happens, in a plan some of whose durations the environment chooses.
     GoOn,
     /// Takes the last step of such a run back.
     TakeBack,
@@ -64,7 +64,7 @@ impl Pins {
         self.pinned.as_ref().map(PinnedPlan::pins).unwrap_or_default()
     }
 
-    /// Whether no event is pinned, and no run has begun.
+    /// Whether no event is pinned, and no run has started.
     pub fn is_empty(&self) -> bool {
         self.pinned.as_ref().is_none_or(PinnedPlan::is_untouched)
     }

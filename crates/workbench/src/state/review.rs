@@ -62,7 +62,7 @@ pub enum ReviewCommand {
     SaveKeys,
 }
 
-/// Somebody of the board.
+/// Someone of the board.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Person {
     pub name: String,
@@ -91,7 +91,7 @@ pub struct ReviewState {
     set_aside: BTreeMap<SmolStr, Record>,
     /// What the present content is called.
     current: Option<Current>,
-    /// The hash of the plan that is drawn, with the answer that it is of; only while somebody has to know it.
+    /// The hash of the plan that is drawn, with the answer that it is of; only while someone has to know it.
     plan: Option<(Arc<Snapshot>, String)>,
     /// The minute since 1970 at which the history was last checked.
     judged_minute: i64,
@@ -304,7 +304,7 @@ impl Reviewing<'_> {
 
     /// Takes a review that was asked for. Returns whether a report was waiting for it.
     pub(crate) fn take(&mut self, revision: u64, review: Arc<Review>) -> bool {
-        // What nobody waits for any more may be of another mission.
+        // What no one waits for any more may be of another mission.
         let Some((_, search)) = self.review.running.take_if(|running| running.0 == revision) else {
             return false;
         };

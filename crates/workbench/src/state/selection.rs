@@ -124,7 +124,7 @@ impl Selection {
 
     /// What stands at a byte offset of the text: the thing with the smallest span around it.
     ///
-    /// Among equals, `current` stays selected if it is one of them: the text of a definition stands for all of its
+    /// Among equals, `current` stays selected if it is one of them: the text of a definition represents all of its
     /// expansions.
     pub fn at_offset(snapshot: &Snapshot, offset: u32, current: &Self) -> Self {
         let mut best: Option<(u32, Self)> = None;
@@ -330,7 +330,7 @@ fn offer_network(network: &Network, offer: &mut impl FnMut(Option<Span>, Selecti
         offer(it.span, Selection::Decision(id));
     }
     for (index, it) in network.labels.iter().enumerate() {
-        // An assertion's own text stands for the assertion, which is an occurrence and was offered already.
+        // An assertion's own text represents the assertion, which is an occurrence and was offered already.
         let is_assertion = it
             .owner
             .and_then(|owner| network.occurrences.get(owner.index()))

@@ -107,7 +107,7 @@ impl Writing<'_> {
         Some(Popup { kind: PopupKind::Completion, items, chosen: 0, span: found.replaces })
     }
 
-    /// Lists what mends the problems at the caret, in its line if there are none right there.
+    /// Lists what fixes the problems at the caret, in its line if there are none right there.
     pub(crate) fn list_fixes(&mut self) {
         self.editor.popup = None;
         let revision = self.document.revision();
@@ -134,7 +134,7 @@ impl Writing<'_> {
         if items.is_empty() {
             items = fixes_in(line);
         }
-        // What mends several problems at once is listed once.
+        // What fixes several problems at once is listed once.
         let mut seen = BTreeSet::new();
         items.retain(|item| seen.insert(item.label.clone()));
         if items.is_empty() {

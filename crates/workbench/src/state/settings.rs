@@ -132,7 +132,7 @@ pub enum ThemeChoice {
 pub struct PlanSettings {
     #[serde(skip)]
     pub goal: Goal,
-    /// Which search plans, and is recorded; if nobody chose one, each is the one that suits.
+    /// Which search plans, and is recorded; if no one chose one, each is the one that suits.
     pub search: Option<SearchKind>,
     /// Seeds path planning.
     pub seed: u64,
@@ -153,12 +153,12 @@ impl PlanSettings {
         }
     }
 
-    /// The search that plans; if nobody chose one, the fastest.
+    /// The search that plans; if no one chose one, the fastest.
     pub fn planner(&self) -> SearchKind {
         self.search.unwrap_or_default()
     }
 
-    /// The search that is recorded where one is; if nobody chose one, the paper's, whose steps are the easiest to follow.
+    /// The search that is recorded where one is; if no one chose one, the paper's, whose steps are the easiest to follow.
     pub fn recorded(&self) -> SearchKind {
         self.search.unwrap_or(SearchKind::Chronological)
     }

@@ -631,7 +631,7 @@ fn signatures_of_an_imported_history_are_shown_and_nothing_counts_until_it_is_va
     share_keys(&author, &mut app);
     open_json(&mut app, &document.to_string());
     assert_eq!((last_entry(&app).0, status(&app)), (json!("broken"), json!("in-review")));
-    // Somebody who is not trusted any more has approved nothing.
+    // Someone who is not trusted any more has approved nothing.
     let key = author.json()["review"]["people"][1]["key"].clone();
     author.dispatch("review.removeKey", &json!({ "key": key }));
     assert_eq!(status(&author), "in-review");

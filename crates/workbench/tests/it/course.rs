@@ -233,7 +233,7 @@ fn nobody_predicts_what_was_shown() {
     let stop = lesson.stops.iter().position(is_asked).expect("a prediction");
     let all = outcomes(&mut app, course.name, stop, &Forecast::Decision);
     open(&mut app, course.name, stop);
-    // Somebody looks ahead to the next decision and back: now the one after it is to be predicted.
+    // Someone looks ahead to the next decision and back: now the one after it is to be predicted.
     let here = app.session.state().search.step().expect("a step").step;
     while app.json()["search"]["known"]["event"] != "decide" || app.json()["search"]["step"] == here + 1 {
         app.run(Command::Search(SearchCommand::Step(1)));

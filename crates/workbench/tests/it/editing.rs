@@ -1,4 +1,4 @@
-//! The editor's help while somebody types: lists that stay, templates, carets, places gone back to.
+//! The editor's help while someone types: lists that stay, templates, carets, places gone back to.
 
 use test_support::App;
 use text_editing::{Motion, TextCommand};
@@ -135,7 +135,7 @@ fn a_line_that_was_copied_without_selecting_is_pasted_as_a_line_above() {
     assert_eq!(text(&app), "one\ntwo\ntw|o\nthree\n");
     app.run(paste("other\n"));
     assert_eq!(text(&app), "one\ntwo\ntwother\n|o\nthree\n", "what comes from elsewhere goes to the caret");
-    // What is selected is no line, whatever it holds.
+    // What is selected is not a line, whatever it holds.
     app.run(Command::Text(TextCommand::Select { anchor: 0, head: 4 }));
     app.run(Command::Editor(EditorCommand::CopySelection { cut: false }));
     app.run(Command::Text(TextCommand::Select { anchor: 1, head: 1 }));

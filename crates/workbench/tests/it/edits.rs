@@ -173,7 +173,7 @@ impl Desk {
         while self.link.next_event().is_some() {}
     }
 
-    /// The core's end takes another text for the one that is edited, and nobody is told.
+    /// The core's end takes another text for the one that is edited, and no one is told.
     fn mislead(&mut self) {
         let other = Request::Update(Update::new(u64::MAX, "another text"));
         let bytes = wire::write_request(&other).expect("a request is written");

@@ -14,7 +14,7 @@ use workbench::state::window::WindowCommand;
 use workbench::{Dialog, PanelEffect, PanelKind, WindowEffect};
 use workbench::{PictureFormat, ViewAction};
 
-/// A session with a short text, whose first effects nobody waits for any more.
+/// A session with a short text, whose first effects no one waits for any more.
 fn opened(source: &str) -> App {
     let mut app = test_support::start();
     app.run(Command::OpenSource { name: "errand".into(), source: source.to_owned() });

@@ -86,7 +86,7 @@ fn a_network_is_turned_into_a_mission_in_rmpl_and_nothing_is_lost() {
 
 #[test]
 fn a_network_that_does_not_nest_says_what_is_in_the_way_and_stays() {
-    // b goes on to both ends of what a and c part into.
+    // b continues to both ends of what a and c part into.
     let network = r#"{"network-id": "net", "net": {"tpn-type": "network", "begin-node": "s", "end-node": "e"},
         "s": {"tpn-type": "p-begin", "activities": ["sa", "sb"]}, "e": {"tpn-type": "p-end", "activities": []},
         "a": {"tpn-type": "state", "activities": ["ac", "ad"]}, "b": {"tpn-type": "state", "activities": ["bd"]},
@@ -117,7 +117,7 @@ fn documents_that_are_no_mission_open_nothing_and_say_what_is_read() {
     }
 }
 
-/// An activity between two events, whose duration is nature's.
+/// An activity between two events, whose duration is the environment's.
 const PTPN: &str = r#"<?xml version="1.0" ?>
 <tpns xmlns="http://mers.csail.mit.edu/tpn"><tpn><id>survey</id><name>survey</name>
 <start-event>s</start-event><end-event>e</end-event>
@@ -143,7 +143,7 @@ fn a_ptpn_opens_as_a_mission_and_is_written_as_it_was() {
         assert!(text_of(&app).contains("[2,5]"), "{}", text_of(&app));
         assert_eq!(app.json()["status"], "plan");
     }
-    // What is no pTPN, or no sound one, is said.
+    // What is not a pTPN, or not a sound one, is reported.
     let mut app = started();
     let before = text_of(&app);
     open(&mut app, "drawing.xml", b"<svg xmlns=\"http://www.w3.org/2000/svg\"/>");

@@ -117,7 +117,7 @@ impl Tab {
         Ok(answer["result"]["value"].take())
     }
 
-    /// Waits until a JavaScript expression is true (one that throws is not), and answers its value. Goes on in the next
+    /// Waits until a JavaScript expression is true (one that throws is not), and answers its value. Continues in the next
     /// page when this one is left meanwhile. Fails with the page's state and messages when that takes too long.
     pub fn wait_until(&self, expression: &str) -> Result<Value> {
         let waiting = format!(
@@ -159,7 +159,7 @@ impl Tab {
         })
     }
 
-    /// What the page wrote to its console and the exceptions that nobody caught, so far.
+    /// What the page wrote to its console and the exceptions that no one caught, so far.
     pub fn messages(&self) -> Vec<String> {
         let events = self.connection.borrow_mut().take_events(&self.session);
         let mut log = self.log.borrow_mut();

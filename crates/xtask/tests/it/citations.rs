@@ -22,7 +22,7 @@ fn texts_below(folder: &Path, found: &mut Vec<PathBuf>) {
         let extension = path.extension().and_then(|extension| extension.to_str());
         if path.is_dir() {
             // Build outputs of a workspace of its own.
-            // What once broke a reader is no source, and may be no text.
+            // What once broke a reader is not a source, and may not be text.
             if !path.ends_with("target") && !path.ends_with("tests/fuzz/broken") {
                 texts_below(&path, found);
             }

@@ -38,7 +38,7 @@ fn code_words(markdown: &str) -> Vec<&str> {
     found
 }
 
-/// The part of a word that names a path of this repository, up to the first part in capitals, which stands for any name.
+/// The part of a word that names a path of this repository, up to the first part in capitals, which represents any name.
 fn path_of(word: &str) -> Option<String> {
     let is_path =
         word.contains('/') && word.chars().all(|it| it.is_ascii_alphanumeric() || "._-/".contains(it));

@@ -129,7 +129,7 @@ pub struct Outcome {
     pub is_read: bool,
 }
 
-/// An input that is no document of the reader's kind at all.
+/// An input that is not a document of the reader's kind at all.
 const NOTHING: Outcome = Outcome { signature: 0, is_read: false };
 
 /// A refusal: its first words count, and what differs from one input to the next does not.

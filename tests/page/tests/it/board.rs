@@ -49,7 +49,7 @@ fn before_the_board(page: Opened, source: Option<&str>) -> Result<Opened> {
     Ok(page)
 }
 
-/// Ada acknowledges whatever nobody has acknowledged or waived.
+/// Ada acknowledges whatever no one has acknowledged or waived.
 fn acknowledge_all(page: &Opened) -> Result<()> {
     page.tab.evaluate(
         "enroute.state().review.items.forEach((it, item) => it.status === 'attention' && !it.acknowledged
@@ -94,7 +94,7 @@ fn a_board_is_not_cheated_in_the_page() -> Result<()> {
     }
     assert!(refused(&page, "review.approve", &json!({ "name": "Ada" }))?.contains("already"));
     assert!(refused(&page, "review.approve", &json!({ "name": "Eve" }))?.contains("Unknown key “Eve”"));
-    // Nobody takes back the signature of somebody else.
+    // No one takes back the signature of someone else.
     let given = page.state()?["review"]["history"].as_array().and_then(|all| all.last().cloned());
     let id = given.context("an entry")?["id"].clone();
     let back = json!({ "name": "Grace", "id": id, "text": "Not read." });
@@ -103,7 +103,7 @@ fn a_board_is_not_cheated_in_the_page() -> Result<()> {
     let key = page.state()?["review"]["people"][0]["key"].clone();
     let why = refused(&page, "review.trust", &json!({ "name": "Eve", "key": key }))?;
     assert!(why.contains("trusted already"), "{why}");
-    // Nobody resolves the comment of somebody else.
+    // No one resolves the comment of someone else.
     dispatch(&page, "review.comment", &json!({ "author": "Ada", "text": "Why so long?" }))?;
     page.wait_for("state.review.comments.length === 1")?;
     let id = page.state()?["review"]["comments"][0]["id"].clone();
@@ -141,10 +141,10 @@ fn a_forged_history_is_marked_and_counts_for_nothing() -> Result<()> {
     other.tab.drop_file("board.keys.json", keys.as_bytes())?;
     other.wait_for("state.review.people.length === 2 && state.review.history[0].counts")?;
     other.wait_for("state.review.planStatus === 'in-review'")?;
-    // What was signed by nobody else's hand completes the board.
+    // What was signed by no one else's hand completes the board.
     other.tab.drop_file("board.review.json", review.as_bytes())?;
     other.wait_for("state.review.planStatus === 'approved'")?;
-    // What is left out, or says something else, is no history.
+    // What is left out, or says something else, is not a history.
     for (name, from, to) in
         [("words", "As meant.", "Whatever."), ("order", "\"former\": []", "\"former\": [\"00\"]")]
     {
@@ -190,7 +190,7 @@ fn a_history_of_another_mission_counts_for_nothing() -> Result<()> {
     Ok(())
 }
 
-/// A mission in which nobody knows when the permission comes.
+/// A mission in which no one knows when the permission comes.
 fn with_delay(world: &str) -> String {
     format!(
         "var GO : {{OK, NO}}; var STORM : {{ON, OFF}}; primitive Dig()[4,4];

@@ -45,7 +45,7 @@ fn a_closed_tab_and_a_tab_beside_it_have_what_was_typed() -> Result<()> {
     // What one says the other takes over.
     beside.evaluate("enroute.setSource('// one and two')")?;
     beside.next_frame()?;
-    // A tab that nobody sees draws no frames, and hears of it when it is shown.
+    // A tab that no one sees draws no frames, and hears of it when it is shown.
     page.tab.call("Page.bringToFront", &json!({}))?;
     page.tab.wait_until("enroute.source() === '// one and two'")?;
     page.tab.evaluate("enroute.setSource('// one, two and three')")?;

@@ -85,7 +85,7 @@ fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Re
     recording.press(Key::Character('y'), Modifiers::CONTROL)?;
     recording.source_has("{ Go(Ridge)")?;
 
-    // A wrong name is told, and Control with the full stop mends it.
+    // A wrong name is told, and Control with the full stop fixes it.
     recording.page.place_caret_after("Survey = { Go")?;
     recording.page.type_text("o")?;
     recording.page.wait_for("state.diagnostics.some((it) => it.code === 'W-UNDEF')")?;

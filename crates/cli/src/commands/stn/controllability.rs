@@ -1,5 +1,5 @@
 //! `enroute stn` for networks with contingent links: consistency and windows as for plain ones, and whether the network
-//! is dynamically controllable; if not, the cycle and what would mend it.
+//! is dynamically controllable; if not, the cycle and what would fix it.
 
 use std::fmt::Write as _;
 
@@ -8,18 +8,18 @@ use serde_json::{Value, json};
 use stn::{Inconsistency, Stn};
 use stnu::{Conflict, Document, Edge, Part, Relaxation, Verdict};
 
-/// Larger networks are answered without what would mend them, which takes many checks.
+/// Larger networks are answered without what would fix them, which takes many checks.
 const MAX_POINTS_FOR_RELAXATIONS: usize = 2_000;
 
 /// Whether a network is controllable, and why not.
 pub enum Controllability {
-    /// Whatever nature chooses, execution can go on to the end.
+    /// Whatever the environment chooses, execution can continue to the end.
     Controllable,
     /// It cannot, for this reason; the least changes of its members, if they were asked for.
     Uncontrollable(Conflict, Option<Vec<Relaxation>>),
 }
 
-/// Checks a network, and looks for what would mend it.
+/// Checks a network, and looks for what would fix it.
 pub fn check(document: &Document) -> anyhow::Result<Controllability> {
     let network = &document.network;
     let never = &mut || false;

@@ -1,4 +1,4 @@
-//! Proof by exhaustion: what holds in every run of a program with its plant, whatever nature does (SPEC 9.4).
+//! Proof by exhaustion: what holds in every run of a program with its plant, whatever the environment does (SPEC 9.4).
 //!
 //! Components fail up to so many times, in any step in which they can. What is decided by chance, a choice or one of several
 //! outcomes, may fall in any way; where it falls again and again, each outcome comes at some time. A property that a run

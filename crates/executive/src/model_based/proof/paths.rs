@@ -12,11 +12,11 @@ use super::product::{End, Move, NodeId, Product};
 pub struct Counterexample {
     /// Where the plant starts, if not in its most likely state, and the choices made before the first step.
     pub start: Move,
-    /// What nature decides in each step.
+    /// What the environment decides in each step.
     pub moves: Vec<Move>,
     /// If the run then goes round forever: how many of the moves come before the first round.
     pub repeats_after: Option<usize>,
-    /// If more than the moves was tried: for how many steps the run went on by what is nominal, and still breaks the
+    /// If more than the moves was tried: for how many steps the run continued by what is nominal, and still breaks the
     /// property.
     pub goes_on_for: Option<u32>,
     /// Why the run is over at its end, if it is.

@@ -23,7 +23,7 @@ use crate::model_based::system::System;
 /// Index of a node.
 pub(super) type NodeId = u32;
 
-/// What nature decides in a step.
+/// What the environment decides in a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Move {
     /// The components that do not do what is nominal, with the modes that they enter.
@@ -74,7 +74,7 @@ pub(super) struct Node {
     pub(super) end: Option<End>,
     /// Why goals contradict each other in the next step, if some do.
     pub(super) contradiction: Option<String>,
-    /// Where nature can lead it in a step; `None` if that was not explored.
+    /// Where the environment can lead it in a step; `None` if that was not explored.
     pub(super) edges: Option<Vec<Edge>>,
 }
 
@@ -149,7 +149,7 @@ impl StepObserver for Fired {
     }
 }
 
-/// A way through a step: where it leads, and what nature decided.
+/// A way through a step: where it leads, and what the environment decided.
 pub(super) struct Way {
     standing: Standing,
     closed: ClosedLoop,

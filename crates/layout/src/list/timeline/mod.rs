@@ -85,7 +85,7 @@ pub struct Standing {
 pub struct TimelineState<'a> {
     /// The time that is shown, if one is.
     pub now: Option<f64>,
-    /// Whether a run is shown, so that what goes on is marked.
+    /// Whether a run is shown, so that what continues is marked.
     pub is_executing: bool,
     /// The range of times that is selected.
     pub range: Option<[f64; 2]>,
@@ -663,7 +663,7 @@ pub fn pair_list(rows: &[PairRow], track: &Track, indent: f64) -> DisplayList {
     list
 }
 
-/// A bar of a comparison: pale where it may go on, strong where it goes on for certain.
+/// A bar of a comparison: pale where it may continue, strong where it continues for certain.
 pub fn pair_bar(list: &mut DisplayList, whole: Rect, certain: Option<Rect>, is_after: bool) {
     if is_after {
         list.rectangle(whole, 2.0, Some(ColorRole::Slack.mixed(0.35).into()), None);

@@ -206,7 +206,7 @@ fn calls(parse: &Parse, items: &mut Vec<CompletionItem>) {
     }
 }
 
-/// Names that stand for numbers.
+/// Names that represent numbers.
 fn numbers(parse: &Parse, offset: u32, items: &mut Vec<CompletionItem>) {
     local_names(parse, offset, &NameKind::BoundName, CompletionKind::BoundName, items);
     local_names(parse, offset, &NameKind::Parameter, CompletionKind::Parameter, items);
@@ -284,14 +284,14 @@ fn models(parse: &Parse, items: &mut Vec<CompletionItem>) {
     items.extend(VEHICLE_MODELS.iter().map(|model| plain(model, CompletionKind::Vehicle)));
 }
 
-/// What a vehicle has of its own; what stands for one may have what any model has.
+/// What a vehicle has of its own; what represents one may have what any model has.
 fn equipment(parse: &Parse, owner: &str, items: &mut Vec<CompletionItem>) {
     let meaning = parse.meaning();
     let names = models_of(parse, owner).into_iter().flat_map(|model| &model.equipment);
     items.extend(names.map(|own| plain(meaning.names.text(own.name), CompletionKind::Variable)));
 }
 
-/// The declared models of a vehicle; of what stands for one, all of them.
+/// The declared models of a vehicle; of what represents one, all of them.
 fn models_of<'a>(parse: &'a Parse, owner: &str) -> Vec<&'a Definition> {
     let meaning = parse.meaning();
     let vehicle =

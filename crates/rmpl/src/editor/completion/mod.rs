@@ -151,7 +151,7 @@ fn callee<'parse>(context: &[SyntaxToken<'parse>]) -> Option<&'parse str> {
         .map(|it| it.text)
 }
 
-/// Whether an activity has a definition, and is no primitive.
+/// Whether an activity has a definition, and is not a primitive.
 fn is_definition(parse: &Parse, name: &str) -> bool {
     outline(parse).iter().any(|item| item.kind == OutlineKind::Activity && item.name == name)
 }

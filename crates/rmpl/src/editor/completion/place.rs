@@ -192,7 +192,7 @@ fn behind_word(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Pla
     }
 }
 
-/// Behind a whole statement or condition: the words that may go on.
+/// Behind a whole statement or condition: the words that may continue.
 fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
     // Bounds follow a call, a condition or a delay that has none yet.
     let may_be_natures = context.last().is_some_and(|last| match last.kind {

@@ -170,7 +170,7 @@ impl<'a> Game<'a> {
         })
     }
 
-    /// Nature's turn at `now`. `executive_moved`: whether the executive gets another turn at this instant.
+    /// The environment's turn at `now`. `executive_moved`: whether the executive gets another turn at this instant.
     fn nature(&mut self, times: Vec<i8>, now: i8, executive_moved: bool) -> bool {
         let key = (times, now, executive_moved);
         if let Some(&known) = self.memo.get(&key) {
@@ -220,7 +220,7 @@ impl<'a> Game<'a> {
                 return true;
             }
         }
-        // It lets time pass; nature may still act now.
+        // It lets time pass; the environment may still act now.
         self.nature(times, now, false)
     }
 

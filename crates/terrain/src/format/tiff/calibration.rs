@@ -49,7 +49,7 @@ impl Calibration {
         self.scale == 1.0 && self.offset == 0.0 && self.unit_m == 1.0
     }
 
-    /// Rounds what stands for no data as the samples are: it is often written with other digits than they have.
+    /// Rounds what represents no data as the samples are: it is often written with other digits than they have.
     pub fn round_no_data_to_single(&mut self) {
         self.no_data = self.no_data.map(|hole| f64::from(hole as f32));
     }

@@ -147,7 +147,7 @@ impl Search<'_> {
             |it: &&Taken| self.is_over(placed, it.start) && it.end != node && !self.is_over(placed, it.end);
         let running: Vec<Taken> = shared.uses.iter().filter(goes_on).copied().collect();
         let starting = || shared.uses.iter().filter(|it| it.start == node);
-        // What is one event counts beside what goes on, and each for itself.
+        // What is one event counts beside what continues, and each for itself.
         let momentary = starting().filter(|it| it.end == node && !running.is_empty());
         let lasting: Vec<Taken> = starting().filter(|it| it.end != node).copied().collect();
         let beside = momentary.map(|it| vec![*it]).chain([lasting]).filter(|it| !it.is_empty());

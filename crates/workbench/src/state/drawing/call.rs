@@ -24,7 +24,7 @@ const MAX_CALLS: usize = 24;
 /// The bounds of a new activity, and of a statement whose duration is set, for the author to type over.
 pub const NEW_BOUNDS: &str = "[1,5]";
 
-/// What a parameter can stand for.
+/// What a parameter can represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Vehicle,
@@ -75,7 +75,7 @@ pub fn callables(program: &Program) -> Vec<Callable> {
     found.into_iter().map(|(_, callable)| callable).collect()
 }
 
-/// What the parameters of a primitive stand for, as far as the declaration tells.
+/// What the parameters of a primitive represent, as far as the declaration tells.
 pub(super) fn kinds(primitive: &PrimitiveDecl) -> Vec<(String, Kind)> {
     let moves = primitive.moves.as_ref();
     let kind_of = |(index, formal): (usize, &rmpl::program::Name)| {

@@ -1,6 +1,6 @@
 //! Activities as they are drawn: created, moved, wrapped, bounded and deleted, each as edits of the mission's text.
 //!
-//! `site` finds the statement that a drawing stands for, `list` adds to and removes from statements in a row, `wrap` puts
+//! `site` finds the statement that a drawing represents, `list` adds to and removes from statements in a row, `wrap` puts
 //! constructs around them, `call` lists calls and their arguments, and `visit` sends a vehicle to a place.
 
 mod call;
@@ -182,13 +182,13 @@ fn syntax_errors(parse: &Parse) -> usize {
     parse.diagnostics().iter().filter(is_syntax).count()
 }
 
-/// The text of the statement that a span stands for, as it is copied.
+/// The text of the statement that a span represents, as it is copied.
 pub fn statement_text(parse: &Parse, what: Span) -> Option<String> {
     let site = Site::of(parse, what).ok()?;
     Some(list::outdented(parse.text(), site.span()))
 }
 
-/// Whether a span stands for a statement that can be changed as a whole.
+/// Whether a span represents a statement that can be changed as a whole.
 pub fn is_statement(parse: &Parse, what: Span) -> bool {
     Site::of(parse, what).is_ok()
 }

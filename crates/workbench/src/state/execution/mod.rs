@@ -73,7 +73,7 @@ pub enum ExecutionCommand {
     },
     /// A disturbance, by its place in the script, did not happen.
     TakeBack(usize),
-    /// Whether nature chooses so as to break the plan, from the start.
+    /// Whether the environment chooses so as to break the plan, from the start.
     Oppose(bool),
     /// Everything goes as planned, from the start.
     Reset,
@@ -116,7 +116,7 @@ impl ExecutionState {
         })
     }
 
-    /// Whether nature chooses so as to break the plan.
+    /// Whether the environment chooses so as to break the plan.
     pub const fn is_opposed(&self) -> bool {
         self.script.adversary
     }

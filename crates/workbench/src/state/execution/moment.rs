@@ -19,7 +19,7 @@ pub struct Moment {
     pub under_way: Vec<Pending>,
     /// Conditions that hold.
     pub holding: Vec<Pending>,
-    /// Activities and conditions that have not begun, those that may begin first in front.
+    /// Activities and conditions that have not started, those that may begin first in front.
     pub to_come: Vec<Pending>,
     /// The event that must happen first, and by when.
     pub deadline: Option<(EventRef, Time)>,
@@ -31,7 +31,7 @@ pub struct Pending {
     pub occurrence: OccurrenceId,
     /// When it began, if it has.
     pub since: Option<Time>,
-    /// When it can begin, or end if it has begun.
+    /// When it can begin, or end if it has started.
     pub window: Window,
 }
 
@@ -111,7 +111,7 @@ fn moment(network: &Network, executed: &Executed, windows: &[Option<Window>], ti
         if !is_activity && occurrence.kind != OccurrenceKind::Assertion {
             continue;
         }
-        // A condition that was withdrawn before it came is over as soon as it would have begun: nobody waits for it.
+        // A condition that was withdrawn before it came is over as soon as it would have started: no one waits for it.
         let is_gone = |arc: &tpn::Arc| arc.upper == Bound::Finite(Time::ZERO);
         let arc = occurrence.arc.and_then(|arc| network.arcs.get(arc.index()));
         if !is_activity && arc.is_some_and(is_gone) {

@@ -1,7 +1,7 @@
 //! Searches for the path of one leg, sample by sample: the trees growing from its ends.
 //!
 //! It is the recorded search that planned the leg, another planner's on the same ground from the same seed, or a race of
-//! all planners. Other planners are run by the core, which answers what each sample did as it goes on.
+//! all planners. Other planners are run by the core, which answers what each sample did as it continues.
 
 mod search;
 mod wording;
@@ -205,7 +205,7 @@ impl Growth {
             }
             return;
         };
-        // Who has seen all samples goes on to see all of them.
+        // Who has seen all samples continues to see all of them.
         let saw_all = before.total() > 0 && before.is_complete() && before.at >= before.total();
         self.shown = self.start(&input, traverse, before.leg);
         if let Some(shown) = &mut self.shown {

@@ -28,7 +28,7 @@ pub enum LessonCommand {
     GoTo(usize),
     /// To the next stop, or the next lesson of the course (`true`), or back.
     Turn(bool),
-    /// Shows what the stop shows once more.
+    /// Shows what the stop shows again.
     ShowAgain,
     /// Gives the mission the text that the lesson begins with, as an edit.
     Restore,

@@ -5,7 +5,7 @@
 pub struct Predictions {
     /// The text that they are about: another one begins again.
     pub(crate) revision: u64,
-    /// How many steps of the search, or of the program, were shown at most. Nobody predicts what was shown.
+    /// How many steps of the search, or of the program, were shown at most. No one predicts what was shown.
     pub(crate) seen: usize,
     /// What was predicted of a step of the program that the core still computes.
     pub(crate) pending: Option<String>,

@@ -25,7 +25,7 @@ impl ReviewState {
         Some(standing(&self.record, &present))
     }
 
-    /// Somebody with the role that is meant: the only one of the board where none is named.
+    /// Someone with the role that is meant: the only one of the board where none is named.
     pub(crate) fn seated(&self, by: &Person) -> Person {
         let role = match self.record.rules().board.as_slice() {
             [seat] if by.role.trim().is_empty() => seat.role.clone(),
@@ -34,7 +34,7 @@ impl ReviewState {
         Person { name: by.name.trim().to_owned(), role }
     }
 
-    /// Whether somebody whose key is `key` may do something; `Err` says why not.
+    /// Whether someone whose key is `key` may do something; `Err` says why not.
     pub fn may_say(&self, key: &PublicKey, act: &Act) -> Result<(), String> {
         let record = &self.record;
         let of = act.of().map(|of| record.entry(of).ok_or_else(|| format!("Unknown entry {of}")));
@@ -87,7 +87,7 @@ impl ReviewState {
 }
 
 impl Reviewing<'_> {
-    /// Somebody who does something about the present content, now. The name and the role are remembered.
+    /// Someone who does something about the present content, now. The name and the role are remembered.
     pub(super) fn who(&mut self, by: Person) -> Who {
         self.settings.reviewer.clone_from(&by.name);
         self.settings.reviewer_role.clone_from(&by.role);
