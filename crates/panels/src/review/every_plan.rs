@@ -4,12 +4,10 @@
 use egui::{Button, ProgressBar, RichText, Ui};
 use review::flight_rule::proof::Verdict;
 use review::{Outcome, Review};
-use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::state::rule_proof::RuleProofCommand;
 
 use super::capital::sentence;
-use super::row;
 use crate::Context;
 
 /// Under the line of a rule: the button that proves it in every plan, and what was found before.
@@ -55,22 +53,18 @@ pub(super) fn of_rule(
 
 /// Above the rules: the button that proves all of them, and how far that is.
 pub(super) fn all(ui: &mut Ui, context: &Context<'_>, review: &Review, commands: &mut CommandSender) {
-    ui.horizontal_wrapped(|ui| {
-        ui.add_space(row::INDENT);
-        if let Some([done, of]) = context.state.rule_proof.progress() {
-            let share = done as f32 / of.max(1) as f32;
-            let text = format!("{done} of {of} rules");
-            ui.add(ProgressBar::new(share).desired_width(220.0).desired_height(16.0).text(text));
-            if ui.button("Stop").accessible_name("Stop proving rules").clicked() {
-                commands.send(Command::RuleProof(RuleProofCommand::Stop));
-            }
-            return;
+    if let Some([done, of]) = context.state.rule_proof.progress() {
+        let share = done as f32 / of.max(1) as f32;
+        let text = format!("{done} of {of} rules");
+        ui.add(ProgressBar::new(share).desired_width(220.0).desired_height(16.0).text(text));
+        if ui.button("Stop").accessible_name("Stop proving rules").clicked() {
+            commands.send(Command::RuleProof(RuleProofCommand::Stop));
         }
-        let button = ui.add_enabled(review.is_planned(), Button::new("Prove all rules"));
-        let hint = "Find out which rules hold in every plan of this mission";
-        if button.on_hover_text(hint).on_disabled_hover_text("No plan to prove rules about").clicked() {
-            commands.send(Command::RuleProof(RuleProofCommand::Start(None)));
-        }
-        ui.add_space(space::S);
-    });
+        return;
+    }
+    let button = ui.add_enabled(review.is_planned(), Button::new("Prove all rules"));
+    let hint = "Find out which rules hold in every plan of this mission";
+    if button.on_hover_text(hint).on_disabled_hover_text("No plan to prove rules about").clicked() {
+        commands.send(Command::RuleProof(RuleProofCommand::Start(None)));
+    }
 }

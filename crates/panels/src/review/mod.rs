@@ -136,7 +136,10 @@ impl ReviewPanel {
             return;
         }
         if section == Section::MissionRules && !list.is_stale {
-            every_plan::all(ui, list.context, list.review, commands);
+            ui.horizontal_wrapped(|ui| {
+                ui.add_space(row::INDENT);
+                every_plan::all(ui, list.context, list.review, commands);
+            });
         }
         let is_expanded = self.expanded.contains(section.title());
         let most = if section == Section::Events { events::FIRST_EVENTS } else { FIRST_LINES };
