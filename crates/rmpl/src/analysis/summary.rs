@@ -189,8 +189,10 @@ impl Summary {
 
     /// Whether names with a dot in other declarations may mean something else because of it.
     pub(crate) fn equips(&self) -> bool {
-        self.definitions()
-            .any(|definition| definition.model.is_some() || definition.namespace == Namespace::Model)
+        self.definitions().any(|definition| {
+            definition.model.is_some()
+                || matches!(definition.namespace, Namespace::Model | Namespace::Vehicle)
+        })
     }
 
     /// Every name that checks of this declaration look up; some more than once.

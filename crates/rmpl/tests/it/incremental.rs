@@ -158,3 +158,16 @@ fn deep_nesting_is_reported_and_not_followed() {
     let sum = format!("primitive A()[0{}, inf];", "+1".repeat(20_000));
     assert_eq!(parse(&sum).diagnostics().len(), 1);
 }
+
+/// What a name with a dot means depends on its vehicle, also while that has no model.
+#[test]
+fn a_vehicle_that_loses_its_model_and_then_its_declaration_is_unknown() {
+    let mut edited =
+        parse("location A (1, 2);\nvehicle V : ATRV at A;\nprimitive D()[1,2] requires V.arm=OUT;\n");
+    for (removed, inserted) in [(" : ATRV at A", ""), ("vehicle", "x"), ("x V", "vehicle V")] {
+        let start = edited.text().find(removed).expect("it is there") as u32;
+        let span = Span::new(start, start + removed.len() as u32);
+        edited.edit(&Edit { span, text: inserted.to_owned() });
+        assert_same_as_fresh(&edited);
+    }
+}
