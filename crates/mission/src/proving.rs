@@ -31,7 +31,7 @@ pub(crate) fn prove_rule(
     // What is known of movements without paths bounds them from below, so that no plan that can be driven is missed.
     let network: Cow<'_, Network> = if needs_paths {
         let mut network = problem.network.as_ref().clone();
-        network.departures = Departures::new(problem.network, problem.program).all();
+        network.departures = Departures::new(&problem, grounds).bounds();
         let network = Arc::new(network);
         let relaxed = planning::without_upper_limits(&network, &BTreeMap::new());
         Cow::Owned(Arc::unwrap_or_clone(relaxed.unwrap_or(network)))
@@ -40,7 +40,7 @@ pub(crate) fn prove_rule(
     };
     let mut with_paths = |plan: &Plan| {
         let routes = traverse::routes(problem.network, problem.program, plan, &[]);
-        let departures = Departures::new(problem.network, problem.program).only(&routes);
+        let departures = Departures::new(&problem, grounds).only(&routes);
         let inserted = listing::inserted(&problem, routes, grounds, paths)?;
         Ok(Network { departures, ..planning::with_paths(&problem, &inserted) })
     };

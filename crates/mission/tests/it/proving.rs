@@ -27,7 +27,7 @@ fn proven_of(source: String, rule: &str) -> Verdict {
     let update = Update::new(1, source);
     let compiled = core.compile(&update, &SilentHost);
     assert!(compiled.network().is_some(), "{:?}", compiled.diagnostics);
-    let ground = core.ground(&compiled.program.world).expect("known ground");
+    let ground = core.ground(&compiled.program).expect("known ground");
     let evaluated = core.plan(compiled, ground, Manner::default(), &mut SilentHost).expect("a network");
     let rule = MissionRule { name: "R".into(), rule: rule.into(), ..MissionRule::default() };
     let verdict = core.prove_rule(&evaluated, &rule, ALTERNATIVES, &mut || false).verdict;
