@@ -369,34 +369,34 @@ export type TriedItem = {
 export type Pinned = {
   events: { [key in string]: number };
   windows: Record<string, [Time, Time]>;
-  /** How the run against nature stands, if nature chooses something in this plan. */
+  /** How the run against the environment stands, if the environment chooses something in this plan. */
   run: NatureRun | null;
 };
 
-/** A run in which nature's durations are chosen one by one. */
+/** A run in which the environment's durations are chosen one by one. */
 export type NatureRun = {
   /** The present. */
   now: number;
   /** What happened, in the order of time. */
   acts: Array<Act>;
-  /** The durations that nature is choosing, and when each may still end. */
+  /** The durations that the environment is choosing, and when each may still end. */
   underWay: Record<string, [Time, Time]>;
-  /** What could happen earlier if nature ended something earlier. */
+  /** What could happen earlier if the environment ended something earlier. */
   waiting: Array<Waiting>;
-  /** What happens next if nature lets everything last. */
+  /** What happens next if the environment lets everything last. */
   next: Act | null;
 };
 
-/** What somebody does. */
+/** What someone does. */
 export type Act = {
   time: number;
   /** What happens at that instant. */
   events: Array<string>;
-  /** The duration that nature ends there; otherwise the executive acts. */
+  /** The duration that the environment ends there; otherwise the executive acts. */
   nature: string | null;
 };
 
-/** An event that waits for nature. */
+/** An event that waits for the environment. */
 export type Waiting = {
   event: string;
   /** The duration whose end it waits for. */
@@ -407,7 +407,7 @@ export type Waiting = {
 
 /** The missions that the user has. */
 export type Library = {
-  /** The id of the open mission; `null` for an original that nobody has edited. */
+  /** The id of the open mission; `null` for an original that no one has edited. */
   open: string | null;
   /** Those changed last first, without the deleted ones. */
   missions: Array<KeptMission>;
@@ -477,7 +477,7 @@ export type Question = {
   predictions: PredictionCounts | null;
 };
 
-/** How often somebody predicted what came. */
+/** How often someone predicted what came. */
 export type PredictionCounts = {
   made: number;
   right: number;
@@ -574,7 +574,7 @@ export type BoardSeat = {
   given: Array<string>;
 };
 
-/** What somebody wrote. */
+/** What someone wrote. */
 export type ReviewComment = {
   /** What `review.resolve`, `review.reopen` and `review.withdraw` take. */
   id: string;
@@ -589,7 +589,7 @@ export type ReviewComment = {
   open: boolean;
 };
 
-/** Something that somebody did. */
+/** Something that someone did. */
 export type HistoryEntry = {
   /** Its digest. */
   id: string;
@@ -607,7 +607,7 @@ export type HistoryEntry = {
   hash: string;
   /** The plan that it is about; empty if none was known. */
   planHash: string;
-  /** Whether somebody took it back. */
+  /** Whether someone took it back. */
   withdrawn: boolean;
   /** The public key that it names, in 64 hexadecimal digits; `null` in histories of earlier versions. */
   key: string | null;
@@ -631,7 +631,7 @@ export type ReviewWaiver = {
   state: "in-force" | "about-to-lapse" | "lapsed";
 };
 
-/** Somebody whose signatures count here. */
+/** Someone whose signatures count here. */
 export type ReviewPerson = {
   name: string;
   /** The public key, in 64 hexadecimal digits. */
@@ -640,7 +640,7 @@ export type ReviewPerson = {
   own: boolean;
 };
 
-/** Somebody has approved a plan. */
+/** Someone has approved a plan. */
 export type SignOff = {
   name: string;
   /** An ISO 8601 time in UTC. */

@@ -16,10 +16,10 @@ impl ValueSet {
     /// How many values a variable can have at most, and modes a class.
     pub const MOST: usize = 64 * WORDS;
 
-    /// No value.
+    /// Of no value, as a condition that is never met has.
     pub const EMPTY: Self = Self { words: [0; WORDS] };
 
-    /// Every value.
+    /// Of all values, as no condition has.
     pub(crate) const FULL: Self = Self { words: [u64::MAX; WORDS] };
 
     /// Only this value.

@@ -190,6 +190,8 @@ fn steps_turn_with_one_key_and_the_trees_of_the_lesson_are_worked_with_keys() {
     go_to_panel(&mut app, PanelKind::Search);
     let selected = |app: &App| {
         let items = app.harness.query_all_by_role(Role::TreeItem).map(|node| node.accesskit_node());
+        // The other tree of the panel is that of trajectories.
+        let items = items.filter(|it| !it.label().is_some_and(|label| label.starts_with("before step")));
         let chosen: Vec<String> =
             items.filter(|it| it.is_selected() == Some(true)).filter_map(|it| it.label()).collect();
         chosen.join(", ")
@@ -216,6 +218,8 @@ fn the_hitting_set_tree_is_a_tree_and_is_built_with_keys() {
     };
     let items = |app: &App| -> Vec<(String, usize, [usize; 2])> {
         let items = app.harness.query_all_by_role(Role::TreeItem).map(|node| node.accesskit_node());
+        // The other tree of the panel is that of trajectories.
+        let items = items.filter(|it| !it.label().is_some_and(|label| label.starts_with("before step")));
         let place = |it: &egui_kittest::kittest::AccessKitNode<'_>| {
             [it.position_in_set().expect("a place"), it.size_of_set().expect("a size")]
         };

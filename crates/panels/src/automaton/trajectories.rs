@@ -54,7 +54,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, model: &Model, commands: 
     if plants.len() < 2 {
         return;
     }
-    title(ui, context, "Trajectories", "how the most likely states came about");
+    title(ui, context, "Trajectories", "the most likely states, each with its past");
     let mut rows: Vec<Row> = Vec::with_capacity(plants.len());
     for (number, (at, plant)) in plants.iter().enumerate() {
         let before = number.checked_sub(1).and_then(|before| plants.get(before)).map(|(_, plant)| *plant);
@@ -232,6 +232,8 @@ fn items(ui: &mut Ui, response: &Response, rect: Rect, rows: &[Row]) -> Option<u
             node.set_bounds(accesskit::Rect { x0, y0, x1, y1 });
             node.set_label(format!("before step {}: {}", rows[row].at + 1, rows[row].marks[column].name));
             node.set_level(row + 1);
+            node.set_position_in_set(column);
+            node.set_size_of_set(rows[row].marks.len());
             node.add_action(Action::Click);
         });
         if ui.input(|input| input.has_accesskit_action_request(widget.id, Action::Click)) {

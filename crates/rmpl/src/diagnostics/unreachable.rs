@@ -33,6 +33,6 @@ pub fn mode(class: &str, mode: &str, span: Span) -> Diagnostic {
 
 /// A part of a control program that no run comes to.
 pub fn part(span: Span) -> Diagnostic {
-    Diagnostic::warning(CODE, span, "this part of the program is active in no run, whatever components fail")
+    Diagnostic::warning(CODE, span, "this part of the program is active in no run, with or without failures")
         .with_hint("remove it, or correct what comes before it")
 }
