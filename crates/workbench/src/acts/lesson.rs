@@ -278,7 +278,12 @@ impl AppState {
         }
     }
 
-    fn solve(&mut self) {
+    /// Does what the task asks for, once the mission's run is there if one is on its way.
+    pub(super) fn solve(&mut self) {
+        self.lesson.is_solution_due = self.is_awaiting_run();
+        if self.lesson.is_solution_due {
+            return;
+        }
         let Some(ask) = self.lesson.stop().and_then(|stop| stop.ask.as_ref()) else { return };
         for action in ask.solution.clone() {
             match action {

@@ -37,6 +37,9 @@ impl AppState {
             return;
         }
         self.draw_samples();
+        if self.lesson.is_solution_due {
+            self.solve();
+        }
         self.judge_task();
         self.follow_predictions();
     }
@@ -125,6 +128,7 @@ impl AppState {
         *self.selection = Selection::None;
         *self.pins = Pins::default();
         self.lesson.samples_due = None;
+        self.lesson.is_solution_due = false;
         self.reason = 0;
         self.time_range = None;
         self.playback.is_playing = false;

@@ -281,6 +281,14 @@ impl AppState {
                 .is_some_and(|(run, shown)| shown.revision == run.revision && shown.plan().is_some())
     }
 
+    /// Whether a run of the mission will be shown as soon as it is there.
+    pub(crate) fn is_awaiting_run(&self) -> bool {
+        self.window.workspace == Workspace::Execute
+            && self.status() == Status::Plan
+            && self.execution.trouble().is_none()
+            && !self.is_executing()
+    }
+
     /// The run of the mission, while it is shown.
     pub fn run_shown(&self) -> Option<&snapshot::Execution> {
         self.execution.run().map(AsRef::as_ref).filter(|_| self.is_executing())

@@ -52,6 +52,8 @@ pub struct LessonState {
     pub(crate) is_due: bool,
     /// Samples that are to be drawn as soon as the core has found them.
     pub(crate) samples_due: Option<u32>,
+    /// Whether the task is to be solved as soon as the run is there.
+    pub(crate) is_solution_due: bool,
     /// Whether the panels stand as the lesson wants them.
     pub(crate) is_beside: bool,
     /// The panels beside the lesson: rows of columns of tabs.
