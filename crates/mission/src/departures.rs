@@ -199,10 +199,8 @@ impl<'mission> Departures<'mission> {
     /// Whether what is assumed holds wherever vehicles stand.
     pub(crate) fn is_bounded_as_assumed(&self) -> bool {
         self.movements.iter().all(|movement| {
-            let reached = movement.places.iter().filter(|place| place.is_open && place.is_reached);
-            reached
-                .into_iter()
-                .all(|place| self.assumed_of(movement, place) == self.bounds_of(movement, place))
+            let mut reached = movement.places.iter().filter(|place| place.is_open && place.is_reached);
+            reached.all(|place| self.assumed_of(movement, place) == self.bounds_of(movement, place))
         })
     }
 

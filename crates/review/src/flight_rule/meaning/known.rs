@@ -31,6 +31,16 @@ impl Asked {
             Self::NotDenied => Self::NotKnown,
         }
     }
+
+    /// What is asked of the contrary where more than one touching side must not do.
+    pub(in crate::flight_rule) const fn of_contrary(self) -> Self {
+        match self {
+            Self::Known => Self::NotDenied,
+            Self::NotKnown => Self::Denied,
+            Self::Denied => Self::NotKnown,
+            Self::NotDenied => Self::Known,
+        }
+    }
 }
 
 /// When conditions are asked for, and how what touches a moment is taken.
@@ -72,13 +82,8 @@ impl Meaning<'_> {
                 Asked::NotKnown | Asked::Denied => Condition::All(all(parts)),
             },
             Formula::Is { .. } | Formula::Underway(_) if reading == Reading::Strict => {
-                let contrary = match asked {
-                    Asked::Known => Asked::NotDenied,
-                    Asked::Denied => Asked::NotKnown,
-                    Asked::NotKnown => Asked::Denied,
-                    Asked::NotDenied => Asked::Known,
-                };
-                let parts = [asked, contrary].map(|it| self.condition(formula, it, Reading::Touching));
+                let parts =
+                    [asked, asked.of_contrary()].map(|it| self.condition(formula, it, Reading::Touching));
                 match asked {
                     Asked::Known | Asked::Denied => Condition::All(parts.into()),
                     Asked::NotKnown | Asked::NotDenied => Condition::Any(parts.into()),

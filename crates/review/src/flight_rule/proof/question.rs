@@ -133,14 +133,8 @@ impl Question<'_> {
             Formula::All(inner) | Formula::Any(inner) if is_conjunction => Requirement::all(parts(inner)),
             Formula::All(inner) | Formula::Any(inner) => Requirement::any(parts(inner)),
             Formula::Is { .. } | Formula::Underway(_) if reading == Reading::Strict => {
-                let contrary = match asked {
-                    Asked::Known => Asked::NotDenied,
-                    Asked::Denied => Asked::NotKnown,
-                    Asked::NotKnown => Asked::Denied,
-                    Asked::NotDenied => Asked::Known,
-                };
                 let own = self.condition(formula, asked, Reading::Touching);
-                let other = self.condition(formula, contrary, Reading::Touching);
+                let other = self.condition(formula, asked.of_contrary(), Reading::Touching);
                 match asked {
                     Asked::Known | Asked::Denied => Requirement::all([own, other]),
                     Asked::NotKnown | Asked::NotDenied => Requirement::any([own, other]),
