@@ -118,7 +118,8 @@ fn row(model: &Model, at: usize, plant: &PlantMoment, before: Option<&PlantMomen
             _ => format!(", also from {} more", crate::counted(others as u64, "state")),
         };
         marks.push(Mark {
-            from: branch.and_then(|branch| branch.from),
+            // Of the states before, only those in the first columns are drawn; crosses follow them.
+            from: branch.and_then(|branch| branch.from).filter(|from| *from < MAX_STATES),
             is_ruled_out: false,
             is_true: *state == plant.true_state,
             weight: probability.to_f64().0 as f32,

@@ -2,7 +2,7 @@
 
 use link::{Request, Response, Update};
 use review::MissionRule;
-use review::flight_rule::proof::{Counterexample, Proven, Verdict};
+use review::flight_rule::proof::{ALTERNATIVES, Counterexample, Proven, Verdict};
 
 use crate::state::window::Window;
 
@@ -36,10 +36,9 @@ struct Running {
     alternatives: u64,
 }
 
-/// So many alternatives at first, this many times more each next time, and so many at last: what is simple is known at once.
+/// So many alternatives at first, and this many times more each next time: what is simple is known at once.
 const FIRST_ALTERNATIVES: u64 = 2_000;
 const FACTOR: u64 = 10;
-const LAST_ALTERNATIVES: u64 = 200_000;
 /// Contents of which results are kept.
 const MAX_CONTENTS: usize = 6;
 
@@ -111,7 +110,7 @@ impl RuleProofState {
         match proven {
             Ok(proven) => {
                 let is_open = matches!(proven.verdict, Verdict::Open(_));
-                if is_open && proven.alternatives >= alternatives && alternatives < LAST_ALTERNATIVES {
+                if is_open && proven.alternatives >= alternatives && alternatives < ALTERNATIVES {
                     running.alternatives = alternatives * FACTOR;
                 } else {
                     running.alternatives = FIRST_ALTERNATIVES;
