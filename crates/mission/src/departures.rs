@@ -7,16 +7,14 @@
 
 use snapshot::vehicle;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use exact::{Rational, Time};
 use nalgebra::{Point2, distance};
 use smol_str::{SmolStr, format_smolstr};
-use terrain::ConfigurationSpace;
 use tpn::worth::rounded_up;
 use tpn::{Departure, Distance, Extent, LabelId, Network, OccurrenceId, ValueId};
 
-use crate::ground::Grounds;
+use crate::ground::{Grounds, StandingGround};
 use crate::planning::{self, Problem};
 use crate::spots::PossibleSpots;
 use crate::traverse::{self, Route, Waypoint};
@@ -49,8 +47,8 @@ struct Movement {
     arrival: LabelId,
     /// Through the places that the call names; it starts wherever its leader is.
     route: Route,
-    /// Where its vehicles can be, if they may stand beside a location.
-    space: Option<Arc<ConfigurationSpace>>,
+    /// Where its vehicles can stand, if they may stand beside a location.
+    ground: Option<StandingGround>,
     places: Vec<Place>,
 }
 
@@ -272,14 +270,13 @@ impl<'mission> Departures<'mission> {
         let variable = &network.variables[network.labels[position].literal.variable.index()];
         let route = traverse::route_from(network, program, occurrence, None)?;
         let arrival = LabelId::from_index(position);
-        let mut movement = Movement { occurrence, arrival, route, space: None, places: Vec::new() };
+        let mut movement = Movement { occurrence, arrival, route, ground: None, places: Vec::new() };
         for (index, name) in variable.values.iter().enumerate() {
             let Some(middle) = traverse::waypoint(&program.world, name) else { continue };
             let (from, to) = self.ends(&movement, &middle);
             let is_beside = from.iter().chain(&to).any(|place| place.slot > 0);
-            if let Some(ground) = self.problem.ground.filter(|_| is_beside && movement.space.is_none()) {
-                let space = planning::space(&self.problem, ground, grounds, &movement.route);
-                movement.space = Some(space.exact);
+            if let Some(ground) = self.problem.ground.filter(|_| is_beside && movement.ground.is_none()) {
+                movement.ground = Some(grounds.standing(ground, &program.world, movement.route.vehicles[0]));
             }
             let straights = pairs(&movement, &from, &to).map(|ends| self.straight(&movement, &ends));
             let place = Place {
@@ -343,7 +340,7 @@ fn pairs<'places>(
     to: &'places [Waypoint],
 ) -> impl Iterator<Item = Ends<'places>> {
     let free_m = |places: &[Waypoint]| -> Vec<Point2<f64>> {
-        places.iter().map(|place| planning::free_m(place, movement.space.as_deref())).collect()
+        places.iter().map(|place| planning::free_m(place, movement.ground.as_ref())).collect()
     };
     let (from_m, to_m) = (free_m(from), free_m(to));
     from.iter().zip(from_m).flat_map(move |(from, from_m)| {

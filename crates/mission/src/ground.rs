@@ -9,9 +9,11 @@ use rmpl::program::{ObstacleShape, Program, TerrainDecl, World};
 use rmpl::{Code, Diagnostic};
 use sha2::{Digest as _, Sha256};
 use smol_str::SmolStr;
-use snapshot::{MapKey, standing};
+use snapshot::{MapKey, standing, vehicle};
 use terrain::format::ImportOptions;
 use terrain::{ConfigurationSpace, GridFrame, Obstacle, Terrain};
+
+use crate::simulation::nearest_free;
 
 /// How many free spaces are kept. Vehicle models have one each, and one more for each set of areas that are closed to them.
 const MAX_SPACES: usize = 8;
@@ -33,6 +35,16 @@ pub struct FreeSpace {
     pub exact: Arc<ConfigurationSpace>,
     /// With more room around the vehicle, most room first: where paths are looked for first.
     pub roomy: Vec<Arc<ConfigurationSpace>>,
+}
+
+/// Where all vehicles that fly, or all that drive, can stand beside a location: the spaces of their models.
+pub(crate) struct StandingGround(Vec<Arc<ConfigurationSpace>>);
+
+impl StandingGround {
+    /// The nearest place where they all can stand; the place itself if there is none near.
+    pub(crate) fn nearest_free(&self, place_m: Point2<f64>) -> Point2<f64> {
+        nearest_free(|place_m| self.0.iter().all(|space| space.is_free(place_m)), place_m).unwrap_or(place_m)
+    }
 }
 
 /// Meters of room beyond the margin that a path keeps where that makes it little longer.
@@ -122,6 +134,27 @@ impl Grounds {
         }
         self.spaces.push((wanted, space.clone()));
         space
+    }
+
+    /// Where every vehicle can stand that flies or drives, as this one does, whatever moves it there and away again.
+    pub(crate) fn standing(
+        &mut self,
+        (key, map): (&MapKey, &Arc<Terrain>),
+        world: &World,
+        vehicle: usize,
+    ) -> StandingGround {
+        let flies = vehicle::flies(world, vehicle as u32);
+        let closed = world.obstacles.iter().filter(|obstacle| !(flies && obstacle.is_solid()));
+        let closed: Vec<ObstacleShape> = closed.map(|obstacle| obstacle.shape.clone()).collect();
+        let all = (0..world.vehicles.len()).filter(|&it| vehicle::flies(world, it as u32) == flies);
+        let mut models: Vec<VehicleModel> = Vec::new();
+        for model in all.filter_map(|it| vehicle::model_of(world, it)) {
+            if !models.contains(&model) {
+                models.push(model);
+            }
+        }
+        let space = |model: &VehicleModel| self.space(key, map, model, closed.clone()).exact;
+        StandingGround(models.iter().map(space).collect())
     }
 
     fn flat(&mut self, program: &Program) -> Option<(MapKey, Arc<Terrain>)> {

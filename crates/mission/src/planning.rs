@@ -32,12 +32,13 @@ use tpn::{
 
 use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
-use crate::ground::{FreeSpace, Grounds};
+use crate::ground::{FreeSpace, Grounds, StandingGround};
 use crate::listing::{self, Listed};
 use crate::meetings::{self, KeepOuts, best_plan};
 use crate::programs::{self, Programs};
 use crate::separation::{self, Meeting};
 use crate::simulation::nearest_free;
+use crate::spots::ON_THE_WAY;
 use crate::traverse::{self, Paths, Preference, Route, Waypoint};
 
 /// What to plan and how.
@@ -734,7 +735,8 @@ fn found_legs(
 ) -> Result<Vec<Leg>, Undrivable> {
     let space = space(problem, ground, grounds, route);
     let map = ground.1;
-    let route = &on_free_ground(route, &space);
+    let standing = grounds.standing(ground, &problem.program.world, route.vehicles[0]);
+    let route = &on_free_ground(route, &standing, &space.exact);
     let mut legs = paths.legs(route, &space, problem.seed, Preference::Roomy);
     let does_not_fit = |legs: &Vec<Leg>| out_of_bounds(problem, route, legs, map).is_some();
     if legs.as_ref().is_ok_and(does_not_fit) {
@@ -755,19 +757,24 @@ pub(crate) fn space(
     grounds.space(key, map, &route.model, obstacles)
 }
 
-/// A route whose ends are free where they are not the locations themselves but places beside them.
-fn on_free_ground(route: &Route, space: &FreeSpace) -> Route {
+/// A route whose ends are free where they are not the locations themselves but places beside them: the same for a drive that
+/// leads there and for the next one from there. Where a vehicle has stopped on its way, `space` has room for this drive.
+fn on_free_ground(route: &Route, standing: &StandingGround, space: &ConfigurationSpace) -> Route {
     let mut route = route.clone();
     for place in &mut route.waypoints {
-        place.position_m = free_m(place, Some(&space.exact));
+        place.position_m = match place.slot {
+            ON_THE_WAY => {
+                nearest_free(|place_m| space.is_free(place_m), place.position_m).unwrap_or(place.position_m)
+            }
+            _ => free_m(place, Some(standing)),
+        };
     }
     route
 }
 
 /// The place itself, or the nearest free one if it is beside its location.
-pub(crate) fn free_m(place: &Waypoint, space: Option<&ConfigurationSpace>) -> Point2<f64> {
-    let free = space.filter(|_| place.slot > 0).and_then(|space| nearest_free(space, place.position_m));
-    free.unwrap_or(place.position_m)
+pub(crate) fn free_m(place: &Waypoint, ground: Option<&StandingGround>) -> Point2<f64> {
+    ground.filter(|_| place.slot > 0).map_or(place.position_m, |ground| ground.nearest_free(place.position_m))
 }
 
 /// The legs of a route that can be driven within its bounds.

@@ -166,16 +166,13 @@ impl<'run> Driving<'run> {
         self.stand.iter().map(|(&vehicle, &(place, _))| (vehicle, place)).chain(parked)
     }
 
-    /// Where a vehicle is that has not driven yet: a follower is at its place in the formation.
+    /// Where a vehicle is that has not driven yet: where its first drive starts, in its place of the formation.
     fn start_m(&self, vehicle: u32, start: Start) -> Point2<f64> {
-        if !start.is_shared {
-            return start.place_m;
-        }
         let courses = self.courses.borrow();
         let drives = courses.known.values().map(|course| &course.drive);
         let first = drives.filter(|drive| drive.vehicles.contains(&vehicle)).min_by_key(|drive| drive.start);
         let track = first.and_then(|drive| {
-            let index = drive.vehicles.iter().position(|&it| it == vehicle).filter(|&index| index > 0)?;
+            let index = drive.vehicles.iter().position(|&it| it == vehicle)?;
             driving::tracks_m(drive).into_iter().nth(index)
         });
         track.and_then(|track| track.points_m.first().copied()).unwrap_or(start.place_m)

@@ -263,13 +263,10 @@ impl Driver {
         points
     }
 
-    /// Changes the speed that it aims at, in meters per second. Standing on command is not being blocked.
+    /// Changes the speed that it aims at, in meters per second. Standing on command is not being blocked, and the time that
+    /// it takes does not count.
     pub const fn set_cruise(&mut self, speed_mps: f64) {
         self.settings.cruise_mps = speed_mps;
-        if speed_mps <= 0.0 {
-            self.last_way.0 = self.time_s;
-            self.commanded_m = 0.0;
-        }
     }
 
     /// Changes the time between two decisions, in seconds.
@@ -313,6 +310,9 @@ impl Driver {
             self.state = self.state.after(speed, rate, self.settings.step_s / moments, &self.settings.limits);
         }
         self.time_s += self.settings.step_s;
+        if self.settings.cruise_mps <= 0.0 {
+            self.last_way.0 += self.settings.step_s;
+        }
         self.commanded_m += self.settings.cruise_mps * self.settings.step_s;
         (self.judge(), scan)
     }

@@ -582,9 +582,9 @@ fn way_between<const COUNT: usize>(
             max_samples: 20_000,
             ..motion::Settings::of(PlannerKind::RrtConnect)
         };
-        let start_m = nearest_free(&space, here)?;
+        let start_m = nearest_free(|place| space.is_free(place), here)?;
         // What was seen near the goal fills whole cells as well.
-        let end_m = nearest_free(&space, goal_m)?;
+        let end_m = nearest_free(|place| space.is_free(place), goal_m)?;
         let query = Query { start_m, goal_m: end_m };
         let shortcut = ShortcutSettings::default();
         let found = motion::find_shortest_path(&space, query, &settings, &shortcut, 3, &mut |_| false);

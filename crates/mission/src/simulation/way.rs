@@ -2,13 +2,12 @@
 
 use motion::Path;
 use nalgebra::{Point2, UnitComplex, Vector2};
-use terrain::ConfigurationSpace;
 
 /// The place itself, or the nearest free one around it: what a vehicle has come close to fills whole cells.
-pub(crate) fn nearest_free(space: &ConfigurationSpace, here: Point2<f64>) -> Option<Point2<f64>> {
+pub(crate) fn nearest_free(is_free: impl Fn(Point2<f64>) -> bool, here: Point2<f64>) -> Option<Point2<f64>> {
     const DIRECTIONS: u32 = 24;
     const RING_M: f64 = 0.2;
-    if space.is_free(here) {
+    if is_free(here) {
         return Some(here);
     }
     (1..=20).flat_map(|ring| (0..DIRECTIONS).map(move |direction| (ring, direction))).find_map(
@@ -16,7 +15,7 @@ pub(crate) fn nearest_free(space: &ConfigurationSpace, here: Point2<f64>) -> Opt
             let angle = std::f64::consts::TAU * f64::from(direction) / f64::from(DIRECTIONS);
             let radius = RING_M * f64::from(ring);
             let place = here + UnitComplex::new(angle) * Vector2::new(radius, 0.0);
-            space.is_free(place).then_some(place)
+            is_free(place).then_some(place)
         },
     )
 }

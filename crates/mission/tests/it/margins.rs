@@ -78,3 +78,35 @@ fn no_driver_gives_up_or_needs_more_than_plans_count() {
     }
     assert!(drives > 40, "only {drives} drives");
 }
+
+/// A rover goes aside where another one is parked; its next drive, in formation, starts there, and ends beside a rock.
+const BESIDE: &str = "terrain \"tai-plain\" cell 0.6 origin (0, 0);
+    location HOME (27, 83); location WEST (15, 17); location MIDDLE (19, 43); location ROCK (35, 19);
+    model Small { body 1.0 x 0.6; resource battery 10..100 = 61; }
+    vehicle S[1..3] : Small at HOME;
+    primitive Drive(r : vehicle, to : location)[1,200] moves r consumes r.battery 0.1 per metre;
+    primitive Convoy(a : vehicle, b : vehicle, to : location)contingent [10,60] moves a, b consumes a.battery 0.2 per metre;
+    objective maximize reward, minimize end;
+    scenario M[0,495] = {
+      { Drive(S[3], MIDDLE); delay; Drive(S[1], MIDDLE); delay; Convoy(S[1], S[3], ROCK) },
+      { delay; Drive(S[2], WEST); delay[1,9] } }";
+
+#[test]
+fn a_vehicle_starts_where_the_drive_before_has_left_it() {
+    Mission::read(BESIDE).with_plan((Options::default(), 0), |problem, planned, grounds, paths| {
+        let ends = |name: &str| {
+            let is_its =
+                |it: &&snapshot::Traverse| planned.network.occurrences[it.occurrence.index()].name == name;
+            let traverse = planned.traverses.iter().find(is_its).expect(name);
+            let points_m = snapshot::joined(&traverse.legs).points_m;
+            (points_m[0], points_m[points_m.len() - 1])
+        };
+        let (arrived, left) = (ends("Drive#2").1, ends("Convoy#1").0);
+        assert_ne!(arrived, nalgebra::Point2::new(19.0, 43.0), "S[3] is parked there");
+        assert_eq!(arrived, left);
+        let script = Script { nature: [("Convoy#1".into(), 10.into())].into(), ..Script::default() };
+        let ran = execution::execute(problem, &planned, &script, grounds, paths).expect("it has a plan");
+        let ran = ran.expect("its times fit");
+        assert!(ran.drives.iter().all(|drive| drive.duration.is_some()), "{:?}", ran.outcome.log.last());
+    });
+}

@@ -163,6 +163,35 @@ fn a_vehicle_with_a_slow_pace_is_not_blocked_by_nothing() {
     }
 }
 
+/// What it waits for in between does not make it forget that it could not continue before.
+#[test]
+fn a_blocked_vehicle_that_often_waits_reports_it() {
+    let mut world = FineWorld::default();
+    for (low, high) in [([-2.0, 1.6], [16.0, 2.6]), ([-2.0, -2.6], [16.0, -1.6]), ([15.0, -2.6], [16.0, 2.6])]
+    {
+        let corners_m = [low, [high[0], low[1]], high, [low[0], high[1]]].map(Point2::from).to_vec();
+        world.add(&Obstacle::Polygon { corners_m });
+    }
+    let path = Path::new([[0.0, 0.0], [40.0, 0.0]].map(Point2::from).to_vec());
+    let mut driver = Driver::new(path, 0.0, settings(), 1);
+    let mut waited_s = 0.0;
+    for step in 0..12_000 {
+        let waits = step % 40 < 20;
+        driver.set_cruise(if waits { 0.0 } else { 0.8 });
+        let before_s = driver.time_s();
+        match driver.step(&world, None).0 {
+            DriveEvent::Driving => {}
+            DriveEvent::Blocked { seconds } => {
+                assert!(seconds < 40.0, "{seconds} s, of which it was to stand in half");
+                return;
+            }
+            other => panic!("{other:?}"),
+        }
+        waited_s += if waits { driver.time_s() - before_s } else { 0.0 };
+    }
+    panic!("it waited {waited_s} s and reported nothing at {:?}", driver.state());
+}
+
 #[test]
 fn a_convoy_keeps_apart_waits_for_a_stopped_follower_and_arrives() {
     let jr = rover();
