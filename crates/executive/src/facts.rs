@@ -210,21 +210,7 @@ fn add_back_arc(network: &mut Network, node: NodeId, earliest: Time, latest: Tim
 
 /// Holds the second of two nodes to come between `lower` and `upper` after the first.
 fn add_arc(network: &mut Network, [from, to]: [NodeId; 2], lower: Time, upper: Time) {
-    let id = ArcId::from_index(network.arcs.len());
-    network.arcs.push(Arc {
-        from,
-        to,
-        lower,
-        upper: Bound::Finite(upper),
-        is_contingent: false,
-        kind: ArcKind::Span,
-        labels: Vec::new(),
-        occurrence: None,
-        choice: None,
-        span: None,
-    });
-    network.nodes[from.index()].out_arcs.push(id);
-    network.nodes[to.index()].in_arcs.push(id);
+    network.connect(Arc::bare(from, to, (lower, Bound::Finite(upper)), ArcKind::Span));
 }
 
 /// An event of the world at a time that has come, with an arc that begins at it. Planning takes it as one more event that

@@ -8,7 +8,6 @@ use snapshot::vehicle;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use exact::{Bound, Time};
 use kirk::{Options, Stats, Status};
 use smol_str::SmolStr;
 use snapshot::LeftOut;
@@ -176,7 +175,7 @@ impl Listing<'_, '_> {
         paths: &mut Paths,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<OfWay, String> {
-        let mut network = restricted(self.problem.network, &plan.choices);
+        let mut network = self.problem.network.with_choices(plan.choices.iter().copied());
         network.departures = Departures::new(self.problem, grounds).only(&routes);
         let network = Arc::new(network);
         let ways: Vec<_> = routes.iter().map(|route| (route.occurrence, route.waypoints.clone())).collect();
@@ -215,19 +214,6 @@ fn no_time(problem: &Problem<'_>, inserted: &BTreeMap<OccurrenceId, Inserted>) -
     };
     let drives: Vec<String> = inserted.values().filter_map(least).collect();
     format!("no plan with the paths of its drives: {}", drives.join(", "))
-}
-
-/// The network with these choices: the arcs to other alternatives would have to take at least one unit and at most none.
-fn restricted(network: &Network, choices: &[Choice]) -> Network {
-    let mut network = network.clone();
-    for choice in choices {
-        let alternatives = network.decisions[choice.decision.index()].alternatives.clone();
-        for (_, arc) in (0..).zip(alternatives).filter(|&(number, _)| number != choice.alternative) {
-            network.arcs[arc.index()].lower = Time::ONE;
-            network.arcs[arc.index()].upper = Bound::ZERO;
-        }
-    }
-    network
 }
 
 /// The network of `problem` with the paths of a plan's traverses; why there is none.

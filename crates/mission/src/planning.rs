@@ -26,9 +26,7 @@ use terrain::{ConfigurationSpace, Terrain};
 use tpn::path::{PathLeg, TraversePath};
 use tpn::worth;
 use tpn::worth::rounded_up;
-use tpn::{
-    ArcId, ArcKind, Choice, Departure, Distance, Goal, LevelCondition, Network, OccurrenceId, Plan, Supply,
-};
+use tpn::{ArcKind, Choice, Departure, Distance, Goal, LevelCondition, Network, OccurrenceId, Plan, Supply};
 
 use crate::departures::{self, Departures};
 use crate::driving::{self, Drive};
@@ -937,21 +935,8 @@ fn block(network: &mut Network, occurrence: OccurrenceId) {
     };
     for units in [0, 1] {
         let duration = Time::from(units);
-        let id = ArcId::from_index(network.arcs.len());
-        network.arcs.push(tpn::Arc {
-            from: start,
-            to: end,
-            lower: duration,
-            upper: Bound::Finite(duration),
-            is_contingent: false,
-            kind: ArcKind::Path,
-            labels: Vec::new(),
-            occurrence: Some(occurrence),
-            choice: None,
-            span,
-        });
-        network.nodes[start.index()].out_arcs.push(id);
-        network.nodes[end.index()].in_arcs.push(id);
+        let arc = tpn::Arc::bare(start, end, (duration, Bound::Finite(duration)), ArcKind::Path);
+        network.connect(tpn::Arc { occurrence: Some(occurrence), span, ..arc });
     }
 }
 

@@ -134,7 +134,7 @@ impl<'input> Examiner<'input> {
         if self.examined > MAX_EXAMINED || stop() {
             return Fate::NotExamined;
         }
-        let network = self.restricted(other);
+        let network = self.network.with_choices(self.earlier(other).chain([other]));
         let options = Options { relax: false, explain: false, ..Options::default() };
         let mut enough = |stats: &Stats| stats.expanded >= MAX_EXPANDED || stop();
         let outcome = kirk::plan(&network, &options, &mut enough);
@@ -194,20 +194,6 @@ impl<'input> Examiner<'input> {
     /// What the plan chose before another choice, in textual order.
     fn earlier(&self, other: Choice) -> impl Iterator<Item = Choice> {
         self.plan.choices.iter().copied().filter(move |choice| choice.decision < other.decision)
-    }
-
-    /// The network in which earlier decisions are as in the plan and this one is `other`: the arcs to their other
-    /// alternatives would have to take at least one unit and at most none.
-    fn restricted(&self, other: Choice) -> Network {
-        let mut network = self.network.clone();
-        for choice in self.earlier(other).chain([other]) {
-            let arcs = self.network.decisions[choice.decision.index()].alternatives.iter();
-            for (_, arc) in arcs.enumerate().filter(|&(number, _)| number != choice.alternative as usize) {
-                network.arcs[arc.index()].lower = Time::ONE;
-                network.arcs[arc.index()].upper = Bound::ZERO;
-            }
-        }
-        network
     }
 }
 

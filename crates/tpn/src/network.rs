@@ -189,6 +189,24 @@ pub struct Arc {
     pub span: Option<Span>,
 }
 
+impl Arc {
+    /// An arc of the planner's bounds and no more: it has no text, no labels, and no occurrence, and nobody chooses its duration.
+    pub const fn bare(from: NodeId, to: NodeId, (lower, upper): (Time, Bound), kind: ArcKind) -> Self {
+        Self {
+            from,
+            to,
+            lower,
+            upper,
+            is_contingent: false,
+            kind,
+            labels: Vec::new(),
+            occurrence: None,
+            choice: None,
+            span: None,
+        }
+    }
+}
+
 /// What an arc represents (SPEC 3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -635,6 +653,29 @@ impl Label {
 }
 
 impl Network {
+    /// Adds an arc between two events that are in the network.
+    pub fn connect(&mut self, arc: Arc) -> ArcId {
+        let id = ArcId::from_index(self.arcs.len());
+        self.nodes[arc.from.index()].out_arcs.push(id);
+        self.nodes[arc.to.index()].in_arcs.push(id);
+        self.arcs.push(arc);
+        id
+    }
+
+    /// The network with these choices: the arcs to other alternatives would have to take at least one unit and at most none.
+    #[must_use]
+    pub fn with_choices(&self, choices: impl IntoIterator<Item = crate::Choice>) -> Self {
+        let mut network = self.clone();
+        for choice in choices {
+            let alternatives = &self.decisions[choice.decision.index()].alternatives;
+            for (_, arc) in (0..).zip(alternatives).filter(|&(number, _)| number != choice.alternative) {
+                network.arcs[arc.index()].lower = Time::ONE;
+                network.arcs[arc.index()].upper = Bound::ZERO;
+            }
+        }
+        network
+    }
+
     /// For each event the first of those at one instant with it, if the ends of each of `ties` are.
     pub fn instants<'network>(&self, ties: impl Iterator<Item = &'network Arc>) -> Vec<NodeId> {
         fn find(first: &mut [usize], mut index: usize) -> usize {

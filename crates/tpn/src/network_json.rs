@@ -367,18 +367,7 @@ impl Reader {
         {
             self.occurrences[occurrence.index()].arc = Some(id);
         }
-        let mut arc = Arc {
-            from,
-            to,
-            lower,
-            upper,
-            is_contingent,
-            kind,
-            labels: Vec::new(),
-            occurrence,
-            choice: None,
-            span: None,
-        };
+        let mut arc = Arc { is_contingent, occurrence, ..Arc::bare(from, to, (lower, upper), kind) };
         for label in value.get("labels").and_then(Value::as_array).into_iter().flatten() {
             let label = self.read_label(label, id, occurrence, vocabulary, &place)?;
             arc.labels.push(LabelId::from_index(self.labels.len()));

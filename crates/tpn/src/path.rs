@@ -4,7 +4,7 @@
 
 use exact::{Bound, Rational, Time};
 
-use crate::network::{Arc, ArcId, ArcKind, EventEnd, EventRef, Network, Node, NodeId, OccurrenceId, Role};
+use crate::network::{Arc, ArcKind, EventEnd, EventRef, Network, Node, NodeId, OccurrenceId, Role};
 
 /// A path found for one traverse.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,21 +132,8 @@ fn insert_path(network: &mut Network, path: &TraversePath, unit_seconds: i64) ->
             network.nodes.push(Node { role: Role::Event, events: vec![event], ..Node::default() });
             NodeId::from_index(network.nodes.len() - 1)
         };
-        let id = ArcId::from_index(network.arcs.len());
-        network.arcs.push(Arc {
-            from,
-            to,
-            lower: least,
-            upper: greatest,
-            is_contingent: false,
-            kind: ArcKind::Path,
-            labels: Vec::new(),
-            occurrence: Some(path.occurrence),
-            choice: None,
-            span,
-        });
-        network.nodes[from.index()].out_arcs.push(id);
-        network.nodes[to.index()].in_arcs.push(id);
+        let arc = Arc::bare(from, to, (least, greatest), ArcKind::Path);
+        network.connect(Arc { occurrence: Some(path.occurrence), span, ..arc });
         from = to;
     }
     Ok(())

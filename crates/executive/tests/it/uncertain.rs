@@ -248,21 +248,8 @@ fn waiting() -> (Network, Plan) {
     let mut plan = first_plan(&network).expect("nothing keeps them apart");
     let (drive, dig) = (named(&network, "Drive#1.end"), named(&network, "Dig#1.start"));
     // Drive is over no later than 3 after the dig begins.
-    let id = tpn::ArcId::from_index(network.arcs.len());
-    network.arcs.push(tpn::Arc {
-        from: dig,
-        to: drive,
-        lower: Time::from(-30),
-        upper: Bound::Finite(Time::from(3)),
-        is_contingent: false,
-        kind: tpn::ArcKind::Span,
-        labels: Vec::new(),
-        occurrence: None,
-        choice: None,
-        span: None,
-    });
-    network.nodes[dig.index()].out_arcs.push(id);
-    network.nodes[drive.index()].in_arcs.push(id);
+    let bounds = (Time::from(-30), Bound::Finite(Time::from(3)));
+    network.connect(tpn::Arc::bare(dig, drive, bounds, tpn::ArcKind::Span));
     plan.selected_arcs.push(true);
     (network, plan)
 }

@@ -418,18 +418,7 @@ impl<'file> Reader<'file> {
         bounds: Bounds,
         uid: Option<&str>,
     ) -> ArcId {
-        self.arcs.push(Arc {
-            from,
-            to,
-            lower: bounds.0,
-            upper: bounds.1,
-            is_contingent: false,
-            kind,
-            labels: Vec::new(),
-            occurrence: None,
-            choice: None,
-            span: None,
-        });
+        self.arcs.push(Arc::bare(from, to, bounds, kind));
         self.arc_uids.push(uid.map(str::to_owned));
         ArcId::from_index(self.arcs.len() - 1)
     }

@@ -17,18 +17,7 @@ fn bare(node_count: usize, arcs: &[(u32, u32, ArcKind)]) -> Network {
         nodes[to as usize].in_arcs.push(ArcId::from_index(at));
         let lower = Time::from(at as i64);
         let upper = Bound::Finite(Time::from(10 * at as i64));
-        Arc {
-            from: NodeId(from),
-            to: NodeId(to),
-            lower,
-            upper,
-            is_contingent: false,
-            kind,
-            labels: Vec::new(),
-            occurrence: None,
-            choice: None,
-            span: None,
-        }
+        Arc::bare(NodeId(from), NodeId(to), (lower, upper), kind)
     });
     let arcs = arcs.collect();
     Network {

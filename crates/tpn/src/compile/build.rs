@@ -70,18 +70,8 @@ impl Builder {
         interval: Interval,
         span: Span,
     ) -> ArcId {
-        self.arcs.push(Arc {
-            from,
-            to,
-            lower: interval.lower,
-            upper: interval.upper,
-            is_contingent: false,
-            kind,
-            labels: Vec::new(),
-            occurrence: None,
-            choice: None,
-            span: Some(span),
-        });
+        let arc = Arc::bare(from, to, (interval.lower, interval.upper), kind);
+        self.arcs.push(Arc { span: Some(span), ..arc });
         ArcId::from_index(self.arcs.len() - 1)
     }
 

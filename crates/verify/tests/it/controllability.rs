@@ -182,21 +182,8 @@ fn bare(events: usize) -> Network {
 }
 
 fn add_arc(network: &mut Network, from: NodeId, to: NodeId, (lower, upper): (i64, i64), is_contingent: bool) {
-    let id = ArcId::from_index(network.arcs.len());
-    network.arcs.push(Arc {
-        from,
-        to,
-        lower: Time::from(lower),
-        upper: Bound::Finite(Time::from(upper)),
-        is_contingent,
-        kind: ArcKind::Span,
-        labels: Vec::new(),
-        occurrence: None,
-        choice: None,
-        span: None,
-    });
-    network.nodes[from.index()].out_arcs.push(id);
-    network.nodes[to.index()].in_arcs.push(id);
+    let bounds = (Time::from(lower), Bound::Finite(Time::from(upper)));
+    network.connect(Arc { is_contingent, ..Arc::bare(from, to, bounds, ArcKind::Span) });
 }
 
 /// Makes nodes know their arcs.

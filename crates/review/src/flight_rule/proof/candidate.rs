@@ -13,7 +13,7 @@ use rmpl::rule::Rule;
 use stn::INFINITE;
 use tpn::plan_json::plan_to_json;
 use tpn::{
-    ArcKind, Choice, Network, NodeId, Ordering, Plan, Precedence, ResourceId, Supply, UseId, UseOrdering,
+    Arc, ArcKind, Choice, Network, NodeId, Ordering, Plan, Precedence, ResourceId, Supply, UseId, UseOrdering,
 };
 use verify::Rule as Checked;
 
@@ -21,7 +21,6 @@ use super::super::Outcome;
 use super::super::cut::Times;
 use super::super::meaning::{Meaning, times_of};
 use super::question::Sought;
-use super::witness::bare_arc;
 use super::{Counterexample, Meter, OPTIONS};
 use crate::contradict::{Scheduled, named_times};
 
@@ -116,7 +115,7 @@ impl Judge<'_> {
         (extended, found): (&Network, &Plan),
         meter: &mut Meter<'_>,
     ) -> Tried {
-        let mut chosen = chosen(network, &own_choices(network, found));
+        let mut chosen = network.with_choices(own_choices(network, found));
         chosen.objective.clear();
         for orders in [Some(Orders::default()), Orders::of(network, extended, found)].into_iter().flatten() {
             let bare = meter.plan(&orders.added_to(&chosen), &OPTIONS, &[]);
@@ -162,19 +161,6 @@ pub(super) fn own_choices(network: &Network, found: &Plan) -> Vec<Choice> {
     own.copied().collect()
 }
 
-/// The network with these choices: the arcs to other alternatives would have to take at least one unit and at most none.
-pub(super) fn chosen(network: &Network, choices: &[Choice]) -> Network {
-    let mut network = network.clone();
-    for choice in choices {
-        let alternatives = network.decisions[choice.decision.index()].alternatives.clone();
-        for (_, arc) in (0..).zip(alternatives).filter(|&(number, _)| number != choice.alternative) {
-            network.arcs[arc.index()].lower = Time::ONE;
-            network.arcs[arc.index()].upper = Bound::ZERO;
-        }
-    }
-    network
-}
-
 /// A plan of the restricted network as one of the mission's.
 fn plan_of(network: &Network, mut plan: Plan, orders: &Orders) -> Plan {
     plan.selected_arcs.truncate(network.arcs.len());
@@ -201,7 +187,7 @@ impl Orders {
         let mut network = network.clone();
         for order in &self.precedences {
             let bounds = (order.least, Bound::Infinite);
-            network.arcs.push(bare_arc(order.earlier, order.later, bounds, ArcKind::Constraint));
+            network.arcs.push(Arc::bare(order.earlier, order.later, bounds, ArcKind::Constraint));
         }
         network
     }

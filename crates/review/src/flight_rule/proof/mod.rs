@@ -17,7 +17,7 @@ use rmpl::rule::Rule;
 use serde::{Deserialize, Serialize};
 use tpn::{ArcId, Choice, Network, Plan};
 
-use self::candidate::{Held, Judge, Tried, chosen, own_choices};
+use self::candidate::{Held, Judge, Tried, own_choices};
 use self::question::{Question, Sought};
 use self::witness::with_instant;
 use super::meaning::times_of;
@@ -342,7 +342,7 @@ impl Proof<'_, '_> {
 
     /// Looks for it among the plans that make these choices, with the paths of their traverses.
     fn driven(&mut self, network: &Network, judge: Judge<'_>, choices: &[Choice]) -> Tried {
-        let mut bare = chosen(network, choices);
+        let mut bare = network.with_choices(choices.iter().copied());
         bare.objective.clear();
         let outcome = self.meter.plan(&bare, &OPTIONS, &[]);
         let (Some(plan), Some(with_paths)) = (outcome.plans.first(), &mut self.with_paths) else {
@@ -356,7 +356,7 @@ impl Proof<'_, '_> {
         match with_paths(plan) {
             Err(_) if is_only_way => Tried::Refuted,
             Err(why) => Tried::Open(why),
-            Ok(driven) => match self.find_in(&chosen(&driven, choices), false, judge) {
+            Ok(driven) => match self.find_in(&driven.with_choices(choices.iter().copied()), false, judge) {
                 Found::Shown(shown) => Tried::Shown(shown),
                 Found::Open(why) => Tried::Open(why),
                 Found::None if is_only_way => Tried::Refuted,

@@ -252,20 +252,12 @@ impl Witness<'_> {
 
     /// An arc from nothing to `upper`.
     fn arc(&mut self, from: NodeId, to: NodeId, upper: Bound, kind: ArcKind) -> ArcId {
-        let id = self.push(from, to, (Time::ZERO, upper), kind);
-        self.network.nodes[from.index()].out_arcs.push(id);
-        self.network.nodes[to.index()].in_arcs.push(id);
-        id
+        self.network.connect(Arc::bare(from, to, (Time::ZERO, upper), kind))
     }
 
     /// A bound where a plan has both events.
     fn bound(&mut self, from: NodeId, to: NodeId, lower: Time, upper: Bound) {
-        self.push(from, to, (lower, upper), ArcKind::Constraint);
-    }
-
-    fn push(&mut self, from: NodeId, to: NodeId, (lower, upper): (Time, Bound), kind: ArcKind) -> ArcId {
-        self.network.arcs.push(bare_arc(from, to, (lower, upper), kind));
-        ArcId::from_index(self.network.arcs.len() - 1)
+        self.network.arcs.push(Arc::bare(from, to, (lower, upper), ArcKind::Constraint));
     }
 
     fn block(&mut self, kind: BlockKind, start: NodeId, end: NodeId) -> BlockId {
@@ -293,21 +285,5 @@ impl Witness<'_> {
         let extent = Extent::Arc;
         self.network.labels.push(Label { arc, mode, extent, literal, text, owner: None, span: None });
         self.network.arcs[arc.index()].labels.push(id);
-    }
-}
-
-/// An arc that stands for nothing in a text.
-pub(super) const fn bare_arc(from: NodeId, to: NodeId, (lower, upper): (Time, Bound), kind: ArcKind) -> Arc {
-    Arc {
-        from,
-        to,
-        lower,
-        upper,
-        is_contingent: false,
-        kind,
-        labels: Vec::new(),
-        occurrence: None,
-        choice: None,
-        span: None,
     }
 }
