@@ -9,25 +9,49 @@ export function createMirror(root, canvas, announcements) {
   // The element that says which one has the keyboard.
   let pointing = null;
 
+  // The window listens: browsers call everything clickable whose parents do.
   for (const kind of ["click", "focus"]) {
-    root.addEventListener(
+    window.addEventListener(
       kind,
-      (event) => {
-        const element = event.target.closest("[data-id]");
+      ({ target }) => {
+        if (!(target instanceof Element) || !root.contains(target)) return;
+        const element = target.closest("[data-id]");
         if (element) act(element.dataset.id, kind);
         // Keys go to the canvas, which passes them on to the widget that has egui's focus.
-        if (kind === "focus") canvas().focus({ preventScroll: true });
+        if (kind === "focus") takeKeyboard();
       },
       true,
     );
   }
 
+  // A screen reader takes the focus from everything when its user reads a text. The next key is for the page again.
+  window.addEventListener(
+    "keydown",
+    (event) => {
+      if (!isIdle()) return;
+      takeKeyboard();
+      const again = new KeyboardEvent(event.type, event);
+      if (!canvas().dispatchEvent(again)) event.preventDefault();
+      event.stopPropagation();
+    },
+    true,
+  );
+
+  /** Whether nothing has the focus but the page as a whole. */
+  function isIdle() {
+    return [null, document.body, document.documentElement].includes(document.activeElement);
+  }
+
+  function takeKeyboard() {
+    canvas().focus({ preventScroll: true });
+  }
+
   function setFocus(id) {
     pointing?.removeAttribute("aria-activedescendant");
     pointing = null;
-    const holder = document.activeElement ?? canvas();
     const focused = id && shown.get(id);
     if (!focused) return;
+    const holder = isIdle() ? canvas() : document.activeElement;
     holder.setAttribute("aria-activedescendant", focused.id);
     pointing = holder;
     // Typing goes to a small input that the canvas keeps; it is named for the widget that it types into.
@@ -85,7 +109,7 @@ export function createMirror(root, canvas, announcements) {
           height,
           enabled: element.getAttribute("aria-disabled") !== "true",
           checked: element.getAttribute("aria-checked") ?? element.getAttribute("aria-pressed"),
-          selected: element.getAttribute("aria-selected"),
+          selected: element.getAttribute("aria-selected") ?? element.getAttribute("aria-current"),
           expanded: element.getAttribute("aria-expanded"),
         });
       }
@@ -105,7 +129,7 @@ function create(id) {
 
 /** Writes what an element is; nothing is touched that stays as it was. */
 function describe(element, { role, label, value, description, enabled, clickable, toggled, selected, ...rest }) {
-  const { expanded, multiline, number, level, position } = rest;
+  const { current, sort, expanded, multiline, number, level, position } = rest;
   const pressed = role === "button";
   const checks = role === "menuitemcheckbox";
   // What only some roles can be; elsewhere a browser would not pass it on.
@@ -122,6 +146,8 @@ function describe(element, { role, label, value, description, enabled, clickable
     "aria-checked": checks ? choice : toggled && !pressed && !selects ? toggled : null,
     "aria-pressed": pressed ? choice : null,
     "aria-selected": selects ? choice : null,
+    "aria-current": current ? "true" : null,
+    "aria-sort": role === "columnheader" ? sort : null,
     "aria-expanded": role === "combobox" ? String(expanded ?? false) : expanded,
     "aria-modal": role === "dialog" ? "true" : null,
     "aria-multiline": multiline ? "true" : null,

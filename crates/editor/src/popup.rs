@@ -30,6 +30,7 @@ pub(crate) fn show(
             ui.set_width(WIDTH);
             ui.spacing_mut().item_spacing.y = 0.0;
             ScrollArea::vertical().max_height(ROWS as f32 * row).show(ui, |ui| {
+                theme::structure::options(ui, "Suggestions");
                 for (index, item) in popup.items.iter().enumerate() {
                     let response = show_item(ui, view, popup, item, index == popup.chosen, row);
                     if index == popup.chosen && !ui.clip_rect().contains_rect(response.rect) {
@@ -56,7 +57,7 @@ fn show_item(
     let tokens = view.tokens;
     let (rect, response) = ui.allocate_exact_size(egui::vec2(ui.available_width(), row), Sense::click());
     let name = format!("{}{}", popup.prefix, item.label);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &name));
+    response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, true, is_chosen, &name));
     let fill = match (is_chosen, response.hovered()) {
         (true, _) => Some(tokens.selection),
         (_, true) => Some(tokens.hover),

@@ -1,6 +1,6 @@
 //! What the text declares, in order; a click leads there.
 
-use egui::{RichText, Role, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{RichText, ScrollArea, Sense, Ui};
 use rmpl::Span;
 use rmpl::program::Program;
 use text_editing::TextCommand;
@@ -101,7 +101,7 @@ fn show_item(ui: &mut Ui, context: &Context<'_>, item: &Item<'_>, is_here: bool)
     let size = egui::vec2(ui.available_width(), space::ROW - ui.spacing().item_spacing.y);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let name = format!("{} {}", item.kind, item.name);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_here, &name));
+    theme::structure::item(&response, is_here, &name);
     let row = rect.expand2(egui::vec2(0.0, ui.spacing().item_spacing.y / 2.0));
     if is_here {
         ui.painter().rect_filled(row, 0.0, tokens.accent_soft);

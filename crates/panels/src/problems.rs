@@ -1,7 +1,7 @@
 //! What is wrong with the text: a list that leads to the places, offers fixes and explains.
 
 use editor::Severity;
-use egui::{Role, ScrollArea, Sense, Ui, WidgetInfo};
+use egui::{ScrollArea, Sense, Ui};
 use rmpl::Span;
 use snapshot::Problem;
 use text_editing::{EditKind, TextCommand};
@@ -97,7 +97,7 @@ fn show_row(ui: &mut Ui, context: &Context<'_>, problem: &Problem, is_selected: 
     let height = (message.size().y + 6.0).max(space::ROW);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
     let name = format!("Line {}: {} {}", problem.line, problem.code, without_backticks(&problem.message));
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, &name));
+    theme::structure::item(&response, is_selected, &name);
     if is_selected {
         ui.painter().rect_filled(rect, 0.0, tokens.selection);
     } else if response.hovered() || response.has_focus() {

@@ -69,14 +69,15 @@ pub(super) fn gather_rows(table: u64, cells: &[u64], elements: &mut BTreeMap<u64
     ids
 }
 
-/// A text becomes a cell, anything else is put into one.
+/// A text becomes a cell, anything else is put into one, which says how the table is sorted by it.
 fn as_cell(id: u64, role: &'static str, elements: &mut BTreeMap<u64, Element>) -> u64 {
     let Some(element) = elements.get_mut(&id) else { return id };
     if element.role.is_empty() {
         element.role = role;
         return id;
     }
-    let cell = Element::group(derived(id, 0), role, element.bounds, vec![id]);
+    let mut cell = Element::group(derived(id, 0), role, element.bounds, vec![id]);
+    cell.sort = element.sort.take();
     let id = cell.id;
     elements.insert(id, cell);
     id

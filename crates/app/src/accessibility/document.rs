@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use egui::accesskit::{Node, NodeId, Role, Toggled, TreeUpdate};
+use egui::accesskit::{AriaCurrent, Node, NodeId, Role, SortDirection, Toggled, TreeUpdate};
 use serde::Serialize;
 
 use super::arrange::{gather_rows, gather_tabs, is_leaf};
@@ -46,6 +46,10 @@ pub struct Element {
     pub toggled: Option<Flag>,
     /// Whether it is the chosen one among others; `None` if it cannot be.
     pub selected: Option<bool>,
+    /// Whether it leads to what is selected now.
+    pub current: bool,
+    /// How it sorts what it heads.
+    pub sort: Option<&'static str>,
     /// Whether what it holds is shown; `None` if it does not fold.
     pub expanded: Option<bool>,
     /// Whether it holds several lines of text.
@@ -101,6 +105,8 @@ impl Element {
             clickable: false,
             toggled: None,
             selected: None,
+            current: false,
+            sort: None,
             expanded: None,
             multiline: false,
             number: None,
@@ -239,6 +245,12 @@ impl Reader<'_> {
                 Toggled::Mixed => Flag::Mixed,
             }),
             selected: node.is_selected(),
+            current: node.aria_current() == Some(AriaCurrent::True),
+            sort: node.sort_direction().map(|direction| match direction {
+                SortDirection::Ascending => "ascending",
+                SortDirection::Descending => "descending",
+                SortDirection::Other => "other",
+            }),
             expanded: node.is_expanded(),
             multiline: node.role() == Role::MultilineTextInput,
             number,

@@ -166,6 +166,43 @@ fn tabs_stand_in_a_list_and_cells_in_rows() {
 }
 
 #[test]
+fn what_selects_something_is_no_toggle_button() {
+    let context = mirrored();
+    for _ in 0..2 {
+        frame(&context, |ui| {
+            for (name, is_current) in [("Drill", true), ("Drive", false)] {
+                theme::structure::item(&ui.button(name), is_current, name);
+            }
+            theme::structure::choice(ui, true, "Plant");
+            theme::structure::folding(&ui.button("Events"), false, "Events");
+            egui::Grid::new("windows").show(ui, |ui| {
+                theme::structure::part(ui, egui::accesskit::Role::Table, "Windows");
+                theme::structure::sorting(&ui.button("Slack"), Some(true), "Sort by slack");
+                ui.end_row();
+                ui.label("3");
+                ui.end_row();
+            });
+            ui.scope(|ui| {
+                theme::structure::options(ui, "Speed");
+                theme::structure::option(ui, true, "×2");
+            });
+            ui.toggle_value(&mut true, "Measure");
+        });
+    }
+    let current = |role, name| {
+        let element = find(&context, role, name);
+        (element.current, element.toggled)
+    };
+    assert_eq!(current("button", "Drill"), (true, None));
+    assert_eq!(current("button", "Drive"), (false, None));
+    assert_eq!(current("button", "Plant"), (true, None));
+    assert_eq!(find(&context, "button", "Events").expanded, Some(false));
+    assert_eq!(find(&context, "columnheader", "").sort, Some("descending"));
+    assert_eq!(find(&context, "option", "×2").toggled, Some(Flag::True), "mirrored as selected");
+    assert_eq!(current("button", "Measure"), (false, Some(Flag::True)), "what stays pressed says so");
+}
+
+#[test]
 fn what_is_announced_is_handed_out_once() {
     let context = mirrored();
     let announce = |words: &str| context.plugin::<AccessibilityMirror>().lock().announce(words);

@@ -101,7 +101,7 @@ fn entries(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
     for mission in missions.iter().take(MAX_LISTED) {
         let is_open = library.open_id() == Some(&mission.id);
-        if ui.selectable_label(is_open, mission.name.as_str()).clicked() {
+        if theme::structure::choice(ui, is_open, mission.name.as_str()).clicked() {
             commands.send(Command::Library(LibraryCommand::Open(mission.id.clone())));
             ui.close();
         }
@@ -110,7 +110,7 @@ fn entries(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ui.label(heading("Examples"));
     for example in EXAMPLES {
         let is_open = library.open_id().is_none() && context.state.mission == example.name;
-        if ui.selectable_label(is_open, example.title).clicked() {
+        if theme::structure::choice(ui, is_open, example.title).clicked() {
             commands.send(Command::OpenExample(example.name.into()));
             ui.close();
         }

@@ -178,7 +178,9 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
             .fill(fill)
             .stroke(Stroke::NONE)
             .selected(is_open);
-        if ui.add(button).clicked() {
+        let button = ui.add(button);
+        structure::mark_current(&button, is_open);
+        if button.clicked() {
             commands.send(Command::ShowWorkspace(workspace));
         }
     }
@@ -187,7 +189,9 @@ fn workspaces(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
     let fill = if is_open { tokens.pressed } else { tokens.background };
     let lessons =
         Button::new(RichText::new("Lessons").color(color)).fill(fill).stroke(Stroke::NONE).selected(is_open);
-    if ui.add(lessons).on_hover_text("Open the guided course (L)").clicked() {
+    let lessons = ui.add(lessons).on_hover_text("Open the guided course (L)");
+    structure::mark_current(&lessons, is_open);
+    if lessons.clicked() {
         commands.send(Command::Lesson(LessonCommand::Show));
     }
     ui.spacing_mut().item_spacing.x = space::M;
@@ -199,13 +203,14 @@ fn workspace_list(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSend
     let title = if is_lesson { "Lessons" } else { context.state.window.workspace.title() };
     let list = egui::ComboBox::from_id_salt("workspace").selected_text(title).width(0.0);
     let shown = list.show_ui(ui, |ui| {
+        structure::options(ui, "Workspace");
         for workspace in Workspace::ALL {
             let is_open = context.state.window.workspace == workspace && !is_lesson;
-            if ui.selectable_label(is_open, workspace.title()).clicked() {
+            if structure::option(ui, is_open, workspace.title()).clicked() {
                 commands.send(Command::ShowWorkspace(workspace));
             }
         }
-        if ui.selectable_label(is_lesson, "Lessons").clicked() {
+        if structure::option(ui, is_lesson, "Lessons").clicked() {
             commands.send(Command::Lesson(LessonCommand::Show));
         }
     });

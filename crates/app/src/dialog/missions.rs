@@ -1,9 +1,6 @@
 //! The list of missions: to open, begin, name, copy, delete and bring back.
 
-use egui::{
-    Align, Key, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2,
-    WidgetInfo,
-};
+use egui::{Align, Key, Layout, Rect, RichText, ScrollArea, Sense, Stroke, StrokeKind, TextEdit, Ui, Vec2};
 use panels::{Context, counted};
 use theme::space;
 use workbench::Dialog;
@@ -156,7 +153,7 @@ fn row(
     let size = egui::vec2(ui.available_width(), ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let label = format!("Open {}", mission.name);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, &label));
+    theme::structure::item(&response, is_open, &label);
     let fill = match (is_open, response.hovered() || response.has_focus()) {
         (true, _) => Some(tokens.selection),
         (false, true) => Some(tokens.hover),
@@ -300,7 +297,7 @@ fn card(ui: &mut Ui, context: &Context<'_>, example: &Example, width: f32, comma
     let tokens = context.tokens;
     let is_open = context.state.library.open_id().is_none() && context.state.mission == example.name;
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, CARD.y), Sense::click());
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_open, example.title));
+    theme::structure::item(&response, is_open, example.title);
     let is_pointed = response.hovered() || response.has_focus();
     let fill = match (is_open, is_pointed) {
         (true, _) => tokens.selection,

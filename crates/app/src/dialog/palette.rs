@@ -62,6 +62,7 @@ pub(super) fn show(
 
     let mut run = enter.then_some(chosen);
     ScrollArea::vertical().max_height(360.0).auto_shrink([false, true]).show(ui, |ui| {
+        theme::structure::options(ui, "Results");
         for (index, entry) in entries.iter().enumerate() {
             let response = show_entry(ui, context, entry, index == chosen);
             if index == chosen && (up || down) {
@@ -135,7 +136,7 @@ fn show_entry(ui: &mut Ui, context: &Context<'_>, entry: &Entry, is_chosen: bool
     let size = egui::vec2(ui.available_width(), space::ROW + 2.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let is_enabled = entry.unavailable.is_none();
-    response.widget_info(|| WidgetInfo::selected(Role::Button, is_enabled, is_chosen, &entry.title));
+    response.widget_info(|| WidgetInfo::selected(Role::ListBoxOption, is_enabled, is_chosen, &entry.title));
     let fill = match (is_chosen, response.hovered()) {
         (true, _) => Some(tokens.selection),
         (false, true) => Some(tokens.hover),

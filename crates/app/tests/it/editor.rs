@@ -149,20 +149,20 @@ fn text_being_composed_is_no_part_of_the_document_until_it_is_committed() {
 fn completion_offers_the_values_of_a_variable_and_tab_takes_the_chosen_one() {
     let mut app = editing("var LAMP : {ON, OFF};\nscenario S = { LAMP$0 }");
     app.type_text("=");
-    app.harness.get_by_role_and_label(Role::Button, "ON");
-    app.harness.get_by_role_and_label(Role::Button, "OFF");
+    app.harness.get_by_role_and_label(Role::ListBoxOption, "ON");
+    app.harness.get_by_role_and_label(Role::ListBoxOption, "OFF");
     app.press(NONE, Key::ArrowDown);
     app.press(NONE, Key::Tab);
     let text = app.harness.state().source();
     assert!(text.contains("LAMP=ON }") || text.contains("LAMP=OFF }"), "{text}");
-    assert!(app.harness.query_by_role_and_label(Role::Button, "ON").is_none());
+    assert!(app.harness.query_by_role_and_label(Role::ListBoxOption, "ON").is_none());
 }
 
 #[test]
 fn a_click_on_a_completion_takes_it_and_the_text_keeps_the_keyboard() {
     let mut app = editing("var LAMP : {ON, OFF};\nscenario S = { LAMP$0 }");
     app.type_text("=");
-    app.harness.get_by_role_and_label(Role::Button, "OFF").click();
+    app.harness.get_by_role_and_label(Role::ListBoxOption, "OFF").click();
     app.settle();
     assert_eq!(app.text(), "var LAMP : {ON, OFF};\nscenario S = { LAMP=OFF$0 }");
     app.type_text("!");
@@ -173,9 +173,9 @@ fn a_click_on_a_completion_takes_it_and_the_text_keeps_the_keyboard() {
 fn escape_closes_the_completions_and_leaves_the_text() {
     let mut app = editing("primitive Drive(to);\nscenario S = { $0 }");
     app.press(CTRL, Key::Space);
-    app.harness.get_by_role_and_label(Role::Button, "Drive");
+    app.harness.get_by_role_and_label(Role::ListBoxOption, "Drive");
     app.press(NONE, Key::Escape);
-    assert!(app.harness.query_by_role_and_label(Role::Button, "Drive").is_none());
+    assert!(app.harness.query_by_role_and_label(Role::ListBoxOption, "Drive").is_none());
     assert_eq!(app.text(), "primitive Drive(to);\nscenario S = { $0 }");
 }
 

@@ -433,7 +433,7 @@ fn what_is_selected_in_one_panel_is_selected_in_the_others() {
                     .label()
                     .is_some_and(|label| label.starts_with(starts) || label.contains(&format!(", {starts}")))
         });
-        node.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+        node.accesskit_node().aria_current() == Some(egui::accesskit::AriaCurrent::True)
     };
     // From the timeline.
     app.harness

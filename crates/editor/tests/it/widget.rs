@@ -174,7 +174,7 @@ fn keys_go_to_an_open_list_and_only_the_first_of_a_frame_takes_from_it() {
     let mut told = Told::new("");
     told.completions = vec!["alpha", "beta"];
     let mut window = open(told);
-    window.harness.get_by_role_and_label(Role::Button, "Take: alpha");
+    window.harness.get_by_role_and_label(Role::ListBoxOption, "Take: alpha");
     // All in one frame: the owner of the text has not closed the list in between.
     for key in [Key::ArrowDown, Key::Enter, Key::Enter] {
         window.harness.input_mut().events.push(Event::Key {
@@ -195,7 +195,7 @@ fn keys_go_to_an_open_list_and_only_the_first_of_a_frame_takes_from_it() {
             EditorAction::Text(TextCommand::NewLine),
         ]
     );
-    window.harness.get_by_role_and_label(Role::Button, "Take: beta").click();
+    window.harness.get_by_role_and_label(Role::ListBoxOption, "Take: beta").click();
     window.settle();
     let wanted = window.wanted();
     assert!(wanted.contains(&EditorAction::TakeFromPopup(Some(1))), "{wanted:?}");

@@ -150,7 +150,7 @@ impl Canvas {
                 _ => text.clone(),
             };
             let response = ui.interact(rect, ui.scope_id().with(("automaton-item", at)), Sense::click());
-            response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_marked, &name));
+            theme::structure::item(&response, is_marked, &name);
             if response.has_focus() {
                 let stroke = egui::Stroke::new(1.5, ui.visuals().selection.stroke.color);
                 ui.painter_at(panel).rect_stroke(rect.expand(3.0), 5.0, stroke, egui::StrokeKind::Outside);

@@ -178,13 +178,13 @@ fn fault_menu(
     let menu = ui.menu_button(component.name.as_str(), |ui| {
         ui.label(RichText::new("Force mode in this step:").small());
         for (mode, data) in (0..=u8::MAX).zip(&component.modes) {
-            if ui.selectable_label(injected == Some(mode), data.name.as_str()).clicked() {
+            if theme::structure::choice(ui, injected == Some(mode), data.name.as_str()).clicked() {
                 commands.send(Command::Automaton(AutomatonCommand::Inject(id, Some(mode))));
                 ui.close();
             }
         }
         ui.separator();
-        if ui.selectable_label(injected.is_none(), "Clear fault").clicked() {
+        if theme::structure::choice(ui, injected.is_none(), "Clear fault").clicked() {
             commands.send(Command::Automaton(AutomatonCommand::Inject(id, None)));
             ui.close();
         }

@@ -217,8 +217,9 @@ fn observation(
 ) {
     let text = values.get(usize::from(now)).map_or("?", |value| value.as_str());
     let combo = ComboBox::from_id_salt(("observed", id.0)).selected_text(text).show_ui(ui, |ui| {
+        theme::structure::options(ui, "Observed value");
         for (value, text) in (0..=u8::MAX).zip(values) {
-            if ui.selectable_label(value == now, text.as_str()).clicked() && value != now {
+            if theme::structure::option(ui, value == now, text.as_str()).clicked() && value != now {
                 commands.send(Command::Automaton(AutomatonCommand::Observe(id, Some(value))));
             }
         }

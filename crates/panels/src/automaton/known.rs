@@ -25,8 +25,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, automaton: &Automaton, co
                 }
             };
             let combo = ComboBox::from_id_salt(("known", id)).selected_text(text(now)).show_ui(ui, |ui| {
+                theme::structure::options(ui, "Known value");
                 for value in std::iter::once(None).chain((0..variable.value_count()).map(Some)) {
-                    if ui.selectable_label(now == value, text(value)).clicked() {
+                    if theme::structure::option(ui, now == value, text(value)).clicked() {
                         commands.send(Command::Automaton(AutomatonCommand::Know(VariableId(id), value)));
                     }
                 }

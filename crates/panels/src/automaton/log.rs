@@ -44,7 +44,7 @@ pub(super) fn show(
             for (at, moment) in state.moments().iter().enumerate() {
                 let is_shown = at == state.at();
                 let number = if moment.marking.is_empty() { "end".to_owned() } else { (at + 1).to_string() };
-                let label = ui.selectable_label(is_shown, number).on_hover_text("Show this step");
+                let label = theme::structure::choice(ui, is_shown, number).on_hover_text("Show this step");
                 if is_shown && *in_view != at {
                     *in_view = at;
                     label.scroll_to_me(None);

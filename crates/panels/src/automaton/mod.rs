@@ -270,7 +270,7 @@ fn choose(ui: &mut Ui, part: ProgramPart, is_chosen: bool, has_plant: bool, comm
         ProgramPart::Proof => "Proof",
         ProgramPart::Steps => "Steps",
     };
-    if ui.selectable_label(is_chosen, name).clicked() {
+    if theme::structure::choice(ui, is_chosen, name).clicked() {
         commands.send(Command::Automaton(AutomatonCommand::Show(part)));
     }
 }

@@ -62,8 +62,9 @@ impl Components {
                     let selected = names.get(*place).copied().unwrap_or_default();
                     let shown = ComboBox::from_id_salt((label, &name)).selected_text(selected).width(84.0);
                     let response = shown.show_ui(ui, |ui| {
+                        theme::structure::options(ui, label);
                         for (index, name) in names.iter().enumerate() {
-                            ui.selectable_value(place, index, *name);
+                            theme::structure::option_value(ui, place, index, *name);
                         }
                     });
                     response.response.accessible_name(label);

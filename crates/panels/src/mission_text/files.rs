@@ -17,7 +17,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     ui.horizontal_wrapped(|ui| {
         ui.add_space(space::S);
         for (index, name) in state.file_names().iter().enumerate() {
-            let chosen = ui.selectable_label(index == here, name.as_str());
+            let chosen = theme::structure::choice(ui, index == here, name.as_str());
             if chosen.on_hover_text("Go to this file in the text below").clicked() {
                 let heading = index.checked_sub(1).and_then(|own| document.headings().get(own));
                 let start = heading.map_or(0, |heading| document.line_range(heading + 1).start) as u32;

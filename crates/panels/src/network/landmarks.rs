@@ -1,6 +1,6 @@
 //! The activities and decisions in view as widgets: a screen reader lists them, Tab walks them, Enter selects them.
 
-use egui::{Rect, Role, Sense, Ui, WidgetInfo};
+use egui::{Rect, Sense, Ui};
 use layout::{BlockForm, Item, TextRole};
 use smol_str::SmolStr;
 use tpn::{BlockId, Network};
@@ -54,7 +54,7 @@ pub(super) fn show(
         let block = opens.as_ref().map(|(first, ..)| first.0);
         let response = ui.interact(rect, ui.scope_id().with(("landmark", &name, block)), Sense::click());
         let is_chosen = selection == *chosen;
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &name));
+        theme::structure::item(&response, is_chosen, &name);
         if response.has_focus() {
             let stroke = egui::Stroke::new(1.5, ui.visuals().selection.stroke.color);
             ui.painter_at(panel).rect_stroke(rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);

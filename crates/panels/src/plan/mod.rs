@@ -150,6 +150,7 @@ pub(crate) fn selectable_row(
     let whole = text.text().to_owned();
     let button = egui::Button::selectable(is_selected, text).truncate();
     let response = ui.add(button).on_hover_text(whole);
+    theme::structure::mark_current(&response, is_selected);
     if response.hovered() && context.state.hovered != *selection {
         commands.send(Command::Hover(selection.clone()));
     }

@@ -167,7 +167,7 @@ fn show_header(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender)
         let response = ui.interact(cell, ui.scope_id().with(title), Sense::click());
         let is_sorted = view.sort == sort;
         let name = format!("Sort by {}", title.to_lowercase());
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_sorted, &name));
+        theme::structure::sorting(&response, is_sorted.then_some(view.descending), &name);
         let color =
             if is_sorted || response.hovered() { context.tokens.text } else { context.tokens.text_muted };
         let arrow = match (is_sorted, view.descending) {
@@ -205,8 +205,7 @@ fn show_row(
     let response = ui.interact(rect, ui.scope_id().with(&name), Sense::click());
     let is_selected = is_selected(context, network, row);
     let window = time_text::interval(row.earliest, row.latest);
-    response
-        .widget_info(|| WidgetInfo::selected(Role::Button, true, is_selected, format!("{name} {window}")));
+    theme::structure::item(&response, is_selected, &format!("{name} {window}"));
     if is_selected {
         ui.painter().rect_filled(rect, 3.0, tokens.selection);
     } else if response.hovered() {

@@ -1,6 +1,6 @@
 //! The windows and the slack of every event, the tightest first, with the slack as a bar.
 
-use egui::{Align2, Pos2, Rect, Role, Sense, TextStyle, Ui, WidgetInfo};
+use egui::{Align2, Pos2, Rect, Sense, TextStyle, Ui};
 use exact::Bound;
 use review::{EventReview, Section};
 use theme::space;
@@ -29,10 +29,8 @@ pub(super) fn show(ui: &mut Ui, list: &List<'_>, count: usize, commands: &mut Co
     for event in events {
         let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
         let is_selected = list.selected.contains(&event.name);
-        response.widget_info(|| {
-            let name = format!("{} {}, slack {}", event.name, window_text(event), time_text(event.slack));
-            WidgetInfo::selected(Role::Button, true, is_selected, name)
-        });
+        let name = format!("{} {}, slack {}", event.name, window_text(event), time_text(event.slack));
+        theme::structure::item(&response, is_selected, &name);
         if ui.is_rect_visible(rect) {
             row::background(ui, list.context, rect, &response, is_selected);
             paint(ui, list, event, rect, longest, is_narrow);

@@ -104,8 +104,9 @@ impl People {
         ui.horizontal_wrapped(|ui| {
             row::muted_word(ui, "Sign as");
             let combo = ComboBox::from_id_salt("signer").selected_text(name.clone()).show_ui(ui, |ui| {
+                theme::structure::options(ui, "Your key");
                 for person in ring.own() {
-                    ui.selectable_value(&mut name, person.name.clone(), &person.name);
+                    theme::structure::option_value(ui, &mut name, person.name.clone(), &person.name);
                 }
             });
             combo.response.accessible_name("Your key");
@@ -116,8 +117,10 @@ impl People {
                 row::muted_word(ui, "as");
                 let combo =
                     ComboBox::from_id_salt("role").selected_text(self.role.as_str()).show_ui(ui, |ui| {
+                        theme::structure::options(ui, "Your role");
                         for seat in board {
-                            ui.selectable_value(&mut self.role, seat.role.clone(), &seat.role);
+                            let role = seat.role.clone();
+                            theme::structure::option_value(ui, &mut self.role, role, &seat.role);
                         }
                     });
                 combo.response.accessible_name("Your role");
@@ -435,10 +438,11 @@ impl People {
             let shown = self.addressee.as_ref().map_or("everyone", |(name, _)| name.as_str());
             let combo = ComboBox::from_id_salt("addressee").selected_text(shown.to_owned());
             let combo = combo.show_ui(ui, |ui| {
-                ui.selectable_value(&mut self.addressee, None, "everyone");
+                theme::structure::options(ui, "Addressee");
+                theme::structure::option_value(ui, &mut self.addressee, None, "everyone");
                 for person in others {
                     let to = Some((person.name.clone(), person.key.clone()));
-                    ui.selectable_value(&mut self.addressee, to, &person.name);
+                    theme::structure::option_value(ui, &mut self.addressee, to, &person.name);
                 }
             });
             combo.response.accessible_name("Addressee");

@@ -1,8 +1,6 @@
 //! The rows of the checklist: drawn as one piece, so that they wrap well and are one stop for the keyboard.
 
-use egui::{
-    Align2, Color32, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
-};
+use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui};
 use review::Status;
 use theme::icon::{self, Icon};
 use theme::{space, strong_family};
@@ -54,11 +52,9 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, row: &Row<'_>) -> Respons
     let below = if is_narrow && !(word.is_empty() && row.place.is_empty()) { 15.0 } else { 0.0 };
     let height = (galley.size().y + below + 6.0).max(space::ROW);
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, height), Sense::click());
-    response.widget_info(|| {
-        let parts = [word, row.text, row.criterion, row.place].into_iter().filter(|part| !part.is_empty());
-        let name = inline_code::without_backticks(&parts.collect::<Vec<_>>().join(": "));
-        WidgetInfo::selected(Role::Button, true, row.is_selected, name)
-    });
+    let parts = [word, row.text, row.criterion, row.place].into_iter().filter(|part| !part.is_empty());
+    let name = inline_code::without_backticks(&parts.collect::<Vec<_>>().join(": "));
+    theme::structure::item(&response, row.is_selected, &name);
     if !ui.is_rect_visible(rect) {
         return response;
     }
@@ -99,11 +95,9 @@ pub(super) fn heading(
     let tokens = context.tokens;
     let width = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(egui::vec2(width, space::ROW + 4.0), Sense::click());
-    response.widget_info(|| {
-        let look = status.map_or("", |status| status_look(tokens, status, is_stale(context)).1);
-        let parts = [title, look, note].into_iter().filter(|part| !part.is_empty());
-        WidgetInfo::selected(Role::Button, true, is_open, parts.collect::<Vec<_>>().join(", "))
-    });
+    let look = status.map_or("", |status| status_look(tokens, status, is_stale(context)).1);
+    let parts = [title, look, note].into_iter().filter(|part| !part.is_empty());
+    theme::structure::folding(&response, is_open, &parts.collect::<Vec<_>>().join(", "));
     if !ui.is_rect_visible(rect) {
         return response;
     }

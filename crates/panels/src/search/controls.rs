@@ -85,8 +85,10 @@ fn show_speed(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) 
         .selected_text(format!("{now}/s"))
         .width(58.0)
         .show_ui(ui, |ui| {
+            theme::structure::options(ui, "Speed");
             for choice in SPEEDS {
-                ui.selectable_value(&mut speed, choice, format!("{choice} steps per second"));
+                let text = format!("{choice} steps per second");
+                theme::structure::option_value(ui, &mut speed, choice, text);
             }
         })
         .response
@@ -154,8 +156,10 @@ fn show_kind(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     ComboBox::from_id_salt("search-kind")
         .selected_text(kind_name(kind))
         .show_ui(ui, |ui| {
+            theme::structure::options(ui, "Search");
             for choice in SearchKind::ALL {
-                ui.selectable_value(&mut kind, choice, kind_name(choice)).on_hover_text(kind_help(choice));
+                theme::structure::option_value(ui, &mut kind, choice, kind_name(choice))
+                    .on_hover_text(kind_help(choice));
             }
         })
         .response

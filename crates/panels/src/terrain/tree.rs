@@ -26,8 +26,10 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
             .selected_text(format!("to {}", goal(leg)))
             .width(96.0)
             .show_ui(ui, |ui| {
+                theme::structure::options(ui, "Leg of the traverse");
                 for index in 0..shown.goals.len() {
-                    ui.selectable_value(&mut leg, index, format!("{}. to {}", index + 1, goal(index)));
+                    let text = format!("{}. to {}", index + 1, goal(index));
+                    theme::structure::option_value(ui, &mut leg, index, text);
                 }
             });
         picker.response.accessible_name("Leg of the traverse").on_hover_text(shown.name.as_str());
@@ -39,8 +41,9 @@ pub(super) fn controls(ui: &mut Ui, context: &Context<'_>, commands: &mut Comman
             .selected_text(planners.title())
             .width(96.0)
             .show_ui(ui, |ui| {
+                theme::structure::options(ui, "Path planner");
                 for choice in Planners::ALL {
-                    ui.selectable_value(&mut planners, choice, choice.title());
+                    theme::structure::option_value(ui, &mut planners, choice, choice.title());
                 }
             });
         picker.response.accessible_name("Path planner");

@@ -85,8 +85,9 @@ fn grouping(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
         .selected_text(chosen.title())
         .width(96.0)
         .show_ui(ui, |ui| {
+            theme::structure::options(ui, "Group rows by");
             for choice in Grouping::ALL {
-                if ui.selectable_label(chosen == choice, choice.title()).clicked() {
+                if theme::structure::option(ui, chosen == choice, choice.title()).clicked() {
                     let mut views = context.state.settings.views.clone();
                     views.timeline.grouping = choice;
                     commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(views))));
@@ -132,8 +133,9 @@ pub(crate) fn rate(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
         .selected_text(format!("×{rate}"))
         .width(56.0)
         .show_ui(ui, |ui| {
+            theme::structure::options(ui, "Speed");
             for choice in [0.25, 0.5, 1.0, 2.0, 4.0, 8.0] {
-                if ui.selectable_label(rate == choice, format!("×{choice}")).clicked() {
+                if theme::structure::option(ui, rate == choice, format!("×{choice}")).clicked() {
                     commands.send(Command::SetRate(choice));
                 }
             }

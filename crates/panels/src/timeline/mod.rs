@@ -689,23 +689,16 @@ fn respond(
     let context = painting.context;
     carry(ui, response, painting, painting.bar_rect(bar, row), bar, commands);
     let selection = bar::selection(bar, painting.network);
-    response.widget_info(|| {
-        let owner = bar.occurrence.and_then(|it| painting.network.occurrences.get(it.index()));
-        let name = match (bar.label, owner) {
-            _ if bar.kind.is_of_state() => state::words(painting.network, plan, bar).join(", "),
-            (Some(_), Some(owner)) if owner.name != bar.name => format!("{} of {}", bar.name, owner.name),
-            // Several may have the name that is seen; what has no arguments begins with it.
-            (None, Some(owner)) if owner.activity == bar.name => owner.name.to_string(),
-            (None, Some(owner)) => format!("{}, {}", bar.name, owner.name),
-            _ => bar.name.to_string(),
-        };
-        WidgetInfo::selected(
-            egui::Role::Button,
-            true,
-            is_selected,
-            format!("{name}: {}", bar::words(bar, plan)),
-        )
-    });
+    let owner = bar.occurrence.and_then(|it| painting.network.occurrences.get(it.index()));
+    let name = match (bar.label, owner) {
+        _ if bar.kind.is_of_state() => state::words(painting.network, plan, bar).join(", "),
+        (Some(_), Some(owner)) if owner.name != bar.name => format!("{} of {}", bar.name, owner.name),
+        // Several may have the name that is seen; what has no arguments begins with it.
+        (None, Some(owner)) if owner.activity == bar.name => owner.name.to_string(),
+        (None, Some(owner)) => format!("{}, {}", bar.name, owner.name),
+        _ => bar.name.to_string(),
+    };
+    theme::structure::item(response, is_selected, &format!("{name}: {}", bar::words(bar, plan)));
     if response.hovered() && context.state.hovered != selection {
         commands.send(Command::Hover(selection.clone()));
     }

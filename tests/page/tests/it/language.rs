@@ -65,8 +65,8 @@ fn keys_complete_a_value_rename_a_name_fix_a_mistake_and_format_the_text() -> Re
     // Completion knows that a variable's value is wanted, and Tab takes the chosen one.
     recording.page.place_caret_after("Drive(Ridge)")?;
     recording.page.type_text("; LAMP=")?;
-    recording.widget("button", "ON")?;
-    recording.widget("button", "OFF")?;
+    recording.widget("option", "ON")?;
+    recording.widget("option", "OFF")?;
     recording.keep("complete")?;
     recording.press(Key::Tab, Modifiers::NONE)?;
     recording.page.tab.wait_until("/LAMP=O(N|FF) }/.test(enroute.source())")?;
