@@ -262,6 +262,8 @@ export type Terrain = {
   clearance: boolean;
   /** How many rays of range sensors are drawn. */
   rays: number;
+  /** Whether a video is recorded. */
+  recording: boolean;
   growth: PathGrowth | null;
 };
 

@@ -15,6 +15,7 @@ import { keptMission, latestText, remember } from "./rescue.js";
 import { joinTabs, openShelf } from "./shelf.js";
 import { keepShortcutsFromBrowser } from "./shortcuts.js";
 import { noteTyping } from "./typed.js";
+import { createCamera } from "./video.js";
 
 // Opening the page does not wait longer than this for the missions; they come later then.
 const SHELF_PATIENCE_MILLIS = 1500;
@@ -41,6 +42,7 @@ async function load() {
     canvas,
     document.getElementById("announcements"),
   );
+  const camera = createCamera(canvas);
   let frontEnd = null;
   const glue = {
     startCore,
@@ -52,6 +54,8 @@ async function load() {
     ...joinTabs(),
     readClipboard,
     isPrivateWindow,
+    film: camera.film,
+    saveFilm: camera.saveFilm,
     // Called while a frame is being drawn. What it leads to must wait until the frame is done.
     frameDrawn: () => {
       typing.taken();
@@ -74,6 +78,7 @@ async function load() {
   document.addEventListener("visibilitychange", () => document.visibilityState === "hidden" && keepNow([]));
 
   function settle() {
+    camera.frameDrawn();
     if (!frontEnd) return;
     const change = frontEnd.takeAccessibilityChange();
     if (change) mirror.apply(change);

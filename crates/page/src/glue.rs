@@ -50,6 +50,14 @@ extern "C" {
     #[wasm_bindgen(method, js_name = savePicture)]
     pub(crate) fn save_picture(this: &Glue, name: &str, svg: &str, width: u32, height: u32) -> Promise;
 
+    /// Records what is drawn in a part of the canvas; throws if the browser can't. See `web/video.js`.
+    #[wasm_bindgen(method, catch)]
+    pub(crate) fn film(this: &Glue, left: f32, top: f32, width: f32, height: f32) -> Result<(), JsValue>;
+
+    /// Ends the video and lets the user save it: a promise that fails if there is none.
+    #[wasm_bindgen(method, js_name = saveFilm)]
+    pub(crate) fn save_film(this: &Glue, name: &str) -> Promise;
+
     /// What lies on the shelf: pairs of keys and bytes, or an error; undefined as long as that is not known. See
     /// `web/shelf.js`.
     #[wasm_bindgen(method, js_name = shelfContent)]

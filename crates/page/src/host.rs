@@ -6,6 +6,7 @@ use wasm_bindgen::prelude::*;
 use web_sys::{Location, MediaQueryList, Storage, Window};
 use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
 use workbench::limits::{MAX_FILE_BYTES, too_large};
+use workbench::state::terrain::Area;
 
 use crate::{
     core_link::CoreLink,
@@ -271,6 +272,20 @@ impl Host for PageHost {
 
     fn save_file(&mut self, suggested_name: &str, bytes: Vec<u8>) {
         self.glue.save_file(suggested_name, Uint8Array::from(bytes.as_slice()));
+    }
+
+    fn film(&mut self, [left, top, width, height]: Area) -> Result<(), String> {
+        self.glue.film(left, top, width, height).map_err(|thrown| words(&thrown))
+    }
+
+    fn save_film(&mut self, suggested_name: &str) {
+        let saved = self.glue.save_film(suggested_name);
+        let (link, name) = (self.link.clone(), suggested_name.to_owned());
+        wasm_bindgen_futures::spawn_local(async move {
+            if let Err(thrown) = wasm_bindgen_futures::JsFuture::from(saved).await {
+                link.happened(HostEvent::FileFailed { name, reason: words(&thrown) });
+            }
+        });
     }
 
     fn save_picture(&mut self, suggested_name: &str, svg: String, [width, height]: [u32; 2]) {

@@ -23,7 +23,12 @@ pub(crate) fn draw(shapes: &mut Shapes, input: &SceneInput<'_>) {
         let color = palette.vehicles[vehicle as usize % palette.vehicles.len()];
         way_ahead(shapes, input, origin, frame, color);
         if input.options.rays {
-            rays(shapes, input, origin, frame, color);
+            let declared = input.snapshot.program.world.vehicles.get(vehicle as usize);
+            let model = declared
+                .and_then(|it| snapshot::vehicle::model(&input.snapshot.program.world, &it.model.text));
+            let length_m = model.map_or(1.0, |model| model.length_m as f32);
+            let body_m = 0.5 * length_m * input.options.vehicle_scale;
+            rays(shapes, input, (origin, body_m), frame, color);
         }
     }
 }
@@ -61,7 +66,13 @@ fn way_ahead(shapes: &mut Shapes, input: &SceneInput<'_>, origin: Vec2, frame: &
 }
 
 /// The sector that the range sensor sweeps, its rays that meet something, and a mark where they do.
-fn rays(shapes: &mut Shapes, input: &SceneInput<'_>, origin: Vec2, frame: &DriveFrame, color: [f32; 4]) {
+fn rays(
+    shapes: &mut Shapes,
+    input: &SceneInput<'_>,
+    (origin, body_m): (Vec2, f32),
+    frame: &DriveFrame,
+    color: [f32; 4],
+) {
     const ARC_PIECES: u16 = 24;
     let model = RangeSensor::SICK;
     let (reach, heading) = (model.range_m as f32, frame.heading_rad as f32);
@@ -77,17 +88,33 @@ fn rays(shapes: &mut Shapes, input: &SceneInput<'_>, origin: Vec2, frame: &Drive
     for end in [rim(0), rim(ARC_PIECES)] {
         shapes.draped_line(input.ground, [origin, end], 1.0, edge);
     }
-    let eye = input.ground.drape(origin, SENSOR_M);
     for &point in &frame.rays_m {
-        let met = input.ground.drape(single(point), SENSOR_M);
-        shapes.line(eye, met, 1.0, faded(color, 0.5));
+        let point = single(point);
+        let met = input.ground.drape(point, SENSOR_M);
+        // A ray begins where it leaves the body, which is drawn larger from afar.
+        if let Some(from) = outside_of_body(origin, point, body_m) {
+            shapes.air_line(input.ground.drape(from, SENSOR_M), met, 1.0, faded(color, 0.5));
+        }
         shapes.line(met, met + Vec3::Z * MARK_M, 1.4, input.palette.light);
     }
+}
+
+/// Where a ray from the middle of a body with this radius leaves it; `None` if it ends before.
+fn outside_of_body(origin: Vec2, end: Vec2, radius_m: f32) -> Option<Vec2> {
+    let length_m = origin.distance(end);
+    (length_m > radius_m).then(|| origin.lerp(end, radius_m / length_m))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_ray_begins_at_the_rim_of_the_body_and_one_inside_it_is_not_drawn() {
+        let end = Vec2::new(13.0, 4.0);
+        assert_eq!(outside_of_body(Vec2::new(10.0, 0.0), end, 2.5), Some(Vec2::new(11.5, 2.0)));
+        assert_eq!(outside_of_body(Vec2::new(10.0, 0.0), end, 6.0), None);
+    }
 
     #[test]
     fn the_nearest_thing_seen_is_measured_from_the_vehicle() {

@@ -14,9 +14,11 @@ use crate::camera::Camera;
 use crate::detail;
 use crate::gpu::{Frame, TerrainImage, ViewUniform};
 use crate::ground::Ground;
+use crate::pace::Savings;
 use crate::rocks;
 use crate::scale::{grid_spacing_m, vehicle_scale};
 use crate::scene::{self, SceneInput, SceneOptions, ScenePalette, Sketch};
+use crate::sun::Sun;
 
 /// What an image shows.
 #[derive(Clone, Copy)]
@@ -33,6 +35,10 @@ pub struct Input<'a> {
     pub ground: &'a Ground,
     /// What a tool has.
     pub sketch: &'a Sketch,
+    /// The light.
+    pub sun: Sun,
+    /// What is left out where frames are slow.
+    pub savings: Savings,
 }
 
 /// Meters of height between contour lines, by the relief of the map.
@@ -49,6 +55,7 @@ pub fn paint(
     image: &mut TerrainImage,
     input: &Input<'_>,
 ) {
+    let pixels_per_point = pixels_per_point * input.savings.resolution();
     let pixels = [rect.width() * pixels_per_point, rect.height() * pixels_per_point];
     let frame = frame(input, pixels, pixels_per_point);
     let texture = image.draw(state, pixels.map(|side| side.round() as u32), frame);
@@ -57,13 +64,13 @@ pub fn paint(
 }
 
 fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
-    let Input { state, tokens, snapshot, map, view, camera, ground, sketch } = *input;
+    let Input { state, tokens, snapshot, map, view, camera, ground, sketch, sun, savings } = *input;
     let clip_from_world = camera.clip_from_world(pixels[0] / pixels[1].max(1.0));
     let eye = camera.eye_m();
     let relief = (ground.range_m[1] - ground.range_m[0]) / view.height_scale;
     let contour = CONTOUR_STEPS_M.into_iter().find(|step| relief / step < 20.0).unwrap_or(5000.0);
-    let sun = scene::SUN.normalize();
-    let looks_real = !view.data_only && view.coloring == Coloring::Natural;
+    let has_grain = !view.data_only && view.coloring == Coloring::Natural && savings == Savings::None;
+    let has_shadows = !view.data_only;
     let horizon = rgba(tokens.sunken);
     let options = SceneOptions {
         trees: view.trees,
@@ -71,7 +78,7 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         obstacles: view.obstacles,
         rays: view.rays,
         sights: view.sights,
-        shadows: !view.data_only,
+        sun: has_shadows.then_some(sun.toward),
         vehicle_scale: vehicle_scale(camera.distance_m),
     };
     let appeared: Vec<_> = if state.is_executing() {
@@ -93,14 +100,14 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
         appeared: &appeared,
     });
     if let Some(map) = map {
-        rocks::draw(&mut shapes, ground, map, camera);
+        rocks::draw(&mut shapes, ground, map, camera, options.sun.filter(|_| savings == Savings::None));
     }
     shapes.scale_widths(pixels_per_point);
     Frame {
         view: ViewUniform {
             clip_from_world: clip_from_world.to_cols_array_2d(),
             eye: eye.extend(camera.distance_m * 2.5 + 600.0).to_array(),
-            sun: sun.extend(0.38).to_array(),
+            sun: sun.toward.extend(0.38).to_array(),
             origin_cell: [ground.origin_m.x, ground.origin_m.y, ground.cell_m, view.height_scale],
             range: [
                 ground.range_m[0],
@@ -120,13 +127,21 @@ fn frame(input: &Input<'_>, pixels: [f32; 2], pixels_per_point: f32) -> Frame {
             ],
             horizon: [horizon[0], horizon[1], horizon[2], camera.near_m()],
             world_from_clip: clip_from_world.inverse().to_cols_array_2d(),
-            look: [f32::from(u8::from(looks_real)), f32::from(u8::from(!view.data_only)), 0.0, 0.0],
+            look: [flag(has_grain), flag(!view.data_only), flag(has_shadows), sun.daylight],
         },
+        has_volumes: has_shadows && view.obstacles,
         patches: detail::patches(ground, eye, &clip_from_world, REFINEMENT),
         shapes,
         background: [horizon[0], horizon[1], horizon[2]],
     }
 }
+
+fn flag(is_set: bool) -> f32 {
+    f32::from(u8::from(is_set))
+}
+
+/// Obstacles that are volumes: grayer than the ground, so that they stand out from it.
+pub const STONE: [f32; 4] = [0.50, 0.38, 0.32, 1.0];
 
 /// The colors of the scene: those of the dark theme, because the ground is as dark in both.
 fn palette() -> ScenePalette {
@@ -139,6 +154,7 @@ fn palette() -> ScenePalette {
         light: color(Tokens::ON_GROUND, 1.0),
         under: color(Tokens::UNDER_LINES, 0.62),
         fence: color(Tokens::OBSTACLE, 0.45),
+        stone: STONE,
         selected: color(tokens.accent, 1.0),
         trees: [color(tokens.series(0), 1.0), color(tokens.series(4), 1.0)],
         warning: color(tokens.now, 1.0),

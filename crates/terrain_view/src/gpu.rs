@@ -10,6 +10,7 @@ use crate::decal::Decal;
 use crate::detail::{PATCH_QUADS, Patch};
 use crate::ground::Ground;
 use crate::shapes::{LineSegment, ShapeCorner, Shapes};
+use crate::sunlight::Sunlight;
 
 const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -34,7 +35,8 @@ pub struct ViewUniform {
     pub horizon: [f32; 4],
     /// Column by column.
     pub world_from_clip: [[f32; 4]; 4],
-    /// How strong the ground's detail is, and whether there is a sky (1) or not (0).
+    /// How strong the ground's detail is, whether there is a sky (1) or not (0), how strong shadows are, and how much
+    /// daylight there is.
     pub look: [f32; 4],
 }
 
@@ -46,6 +48,8 @@ pub struct Frame {
     pub patches: Vec<Patch>,
     /// What stands and lies on it.
     pub shapes: Shapes,
+    /// Whether the volumes of obstacles are shown.
+    pub has_volumes: bool,
     /// Color behind everything.
     pub background: [f32; 3],
 }
@@ -60,6 +64,8 @@ pub struct TerrainImage {
     view_group: wgpu::BindGroup,
     ground: Option<GroundTextures>,
     ground_group: Option<wgpu::BindGroup>,
+    /// The volumes of obstacles, and how many corners they have.
+    volumes: Option<(wgpu::Buffer, u32)>,
     targets: Option<Targets>,
     drawn: Option<Frame>,
 }
@@ -69,6 +75,7 @@ struct GroundTextures {
     heights: wgpu::TextureView,
     normals: wgpu::TextureView,
     decal: wgpu::TextureView,
+    sunlight: wgpu::TextureView,
     sampler: wgpu::Sampler,
 }
 
@@ -130,6 +137,7 @@ impl TerrainImage {
             view_group,
             ground: None,
             ground_group: None,
+            volumes: None,
             targets: None,
             drawn: None,
         }
@@ -160,6 +168,7 @@ impl TerrainImage {
             heights: texture(state, wgpu::TextureFormat::R32Float, heights, size),
             normals: texture(state, wgpu::TextureFormat::Rgba8Unorm, bytemuck::cast_slice(&normals), size),
             decal: no_decal(state),
+            sunlight: texture(state, wgpu::TextureFormat::R8Unorm, &[255], [1, 1]),
             sampler: state.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("terrain ground"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -183,6 +192,23 @@ impl TerrainImage {
         self.bind_ground(state);
     }
 
+    /// Tells which ground the sun reaches.
+    pub fn set_sunlight(&mut self, state: &RenderState, light: &Sunlight) {
+        let Some(ground) = &mut self.ground else { return };
+        ground.sunlight =
+            texture(state, wgpu::TextureFormat::R8Unorm, &light.pixels, [light.width, light.height]);
+        self.bind_ground(state);
+    }
+
+    /// Puts the volumes of obstacles on the ground, in place of those before.
+    pub fn set_volumes(&mut self, state: &RenderState, volumes: &Shapes) {
+        let corners = bytemuck::cast_slice(&volumes.triangles);
+        let count = volumes.triangles.len() as u32;
+        self.volumes = (count > 0)
+            .then(|| (filled_buffer(state, "terrain volumes", corners, wgpu::BufferUsages::VERTEX), count));
+        self.drawn = None;
+    }
+
     fn bind_ground(&mut self, state: &RenderState) {
         let Some(ground) = &self.ground else { return };
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
@@ -194,6 +220,7 @@ impl TerrainImage {
                 entry(1, wgpu::BindingResource::TextureView(&ground.normals)),
                 entry(2, wgpu::BindingResource::TextureView(&ground.decal)),
                 entry(3, wgpu::BindingResource::Sampler(&ground.sampler)),
+                entry(4, wgpu::BindingResource::TextureView(&ground.sunlight)),
             ],
         }));
         self.drawn = None;
@@ -244,6 +271,11 @@ impl TerrainImage {
                 pass.set_vertex_buffer(1, patch_buffer.slice(..));
                 pass.set_index_buffer(self.grid_indices.slice(..), wgpu::IndexFormat::Uint16);
                 pass.draw_indexed(0..self.index_count, 0, 0..patches.len() as u32);
+            }
+            if let Some((volumes, corners)) = self.volumes.as_ref().filter(|_| frame.has_volumes) {
+                pass.set_pipeline(&self.pipelines.shapes);
+                pass.set_vertex_buffer(0, volumes.slice(..));
+                pass.draw(0..*corners, 0..1);
             }
             if !frame.shapes.triangles.is_empty() {
                 pass.set_pipeline(&self.pipelines.shapes);
@@ -377,6 +409,7 @@ impl Pipelines {
                     ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
                     count: None,
                 },
+                texture_entry(4, wgpu::ShaderStages::FRAGMENT, true),
             ],
         });
         let layout = |groups: &[Option<&wgpu::BindGroupLayout>]| {

@@ -214,14 +214,18 @@ pub fn contains(shape: &ObstacleShape, point: Vec2) -> bool {
         }
         ObstacleShape::Polygon { corners_m } => {
             let corners: Vec<Vec2> = corners_m.iter().map(|&corner| scene::place(corner)).collect();
-            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-            let crossings = sides.filter(|(a, b)| {
-                (a.y > point.y) != (b.y > point.y)
-                    && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
-            });
-            crossings.count() % 2 == 1
+            is_inside(&corners, point)
         }
     }
+}
+
+/// Whether a place is inside an outline.
+pub fn is_inside(corners: &[Vec2], point: Vec2) -> bool {
+    let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossings = sides.filter(|(a, b)| {
+        (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+    });
+    crossings.count() % 2 == 1
 }
 
 /// Which part of the way from `from` to `to` is nearest to `point`, from 0 to 1.

@@ -18,8 +18,8 @@ const MAX_ROCKS: usize = 300;
 const SIDES: u16 = 7;
 const STONE: [f32; 4] = [0.53, 0.38, 0.29, 1.0];
 
-/// Draws the rocks around the camera's target, the largest if there are too many.
-pub(crate) fn draw(shapes: &mut Shapes, ground: &Ground, map: &Terrain, camera: &Camera) {
+/// Draws the rocks around the camera's target, the largest if there are too many, and their shadows if there is a sun.
+pub(crate) fn draw(shapes: &mut Shapes, ground: &Ground, map: &Terrain, camera: &Camera, sun: Option<Vec3>) {
     let around_m = AROUND_M.max(RangeSensor::SICK.range_m as f32);
     if camera.distance_m > SHOWN_WITHIN_M {
         return;
@@ -34,7 +34,30 @@ pub(crate) fn draw(shapes: &mut Shapes, ground: &Ground, map: &Terrain, camera: 
         near.truncate(MAX_ROCKS);
     }
     for rock in near {
+        if let Some(sun) = sun {
+            shadow(shapes, ground, rock, sun);
+        }
         stone(shapes, ground, rock);
+    }
+}
+
+/// The shadow of a rock: what a disc sweeps on its way from the foot to where the top throws its shadow.
+fn shadow(shapes: &mut Shapes, ground: &Ground, rock: &Rock, sun: Vec3) {
+    let center = place(rock.center_m);
+    let radius = rock.diameter_m as f32 / 2.0;
+    let along = -sun.truncate() / sun.z.max(0.05) * radius * 0.8;
+    let aside = along.perp().normalize_or(Vec2::X);
+    let direction = along.normalize_or(Vec2::Y);
+    let outline = [
+        center + aside * radius * 0.85,
+        center - aside * radius * 0.85,
+        center + along - aside * radius * 0.65,
+        center + along + direction * radius * 0.4,
+        center + along + aside * radius * 0.65,
+    ];
+    let on_ground = outline.map(|at| ground.drape(at, ground.cell_m * 0.1));
+    for pair in on_ground[1..].windows(2) {
+        shapes.triangle([on_ground[0], pair[0], pair[1]], crate::shadow::COLOR);
     }
 }
 
@@ -73,12 +96,14 @@ mod tests {
         let rocks = vec![rock(200.0, 1.0), rock(220.0, 0.1), rock(390.0, 2.0)];
         let map = Terrain::flat(frame).with_rocks(rocks);
         let ground = Ground::new(400, 400, 1.0, Vec2::splat(0.5), &vec![0.0; 160_000]);
-        let count = |distance_m| {
+        let count = |distance_m, sun| {
             let mut shapes = Shapes::default();
             let camera = Camera { distance_m, ..Camera::overview(Vec3::new(200.0, 200.0, 0.0), 10.0) };
-            draw(&mut shapes, &ground, &map, &camera);
+            draw(&mut shapes, &ground, &map, &camera, sun);
             shapes.triangles.len() / 3
         };
-        assert_eq!([count(40.0), count(400.0)], [3 * usize::from(SIDES), 0]);
+        let stone = 3 * usize::from(SIDES);
+        assert_eq!([count(40.0, None), count(400.0, None)], [stone, 0]);
+        assert_eq!([count(40.0, Some(Vec3::ONE)), count(400.0, Some(Vec3::ONE))], [stone + 3, 0]);
     }
 }

@@ -15,6 +15,7 @@ use crate::shapes::{Shapes, circle_outline};
 use crate::sights;
 use crate::tree;
 use crate::vehicles::{VehicleShape, airship, rover};
+use crate::volume::Volume;
 
 /// The colors of the scene. They do not depend on the theme, because the ground does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,8 @@ pub struct ScenePalette {
     pub under: [f32; 4],
     /// The fences around obstacles.
     pub fence: [f32; 4],
+    /// Obstacles that are volumes.
+    pub stone: [f32; 4],
     /// Whatever is selected.
     pub selected: [f32; 4],
     /// Trees that grow from the start and from the goal.
@@ -47,8 +50,8 @@ pub struct SceneOptions {
     pub rays: bool,
     /// What is in sight of what, as far as conditions ask.
     pub sights: bool,
-    /// Shadows of vehicles, and the tracks of their wheels.
-    pub shadows: bool,
+    /// Where shadows come from, if vehicles throw shadows and leave tracks, and obstacles are volumes.
+    pub sun: Option<Vec3>,
     /// How many times larger than life vehicles are drawn.
     pub vehicle_scale: f32,
 }
@@ -94,10 +97,10 @@ pub struct Sketch {
 /// The height of the posts at locations, in meters.
 pub const POST_M: f32 = 7.0;
 const FENCE_M: f32 = 2.0;
-/// Toward the sun.
-pub const SUN: Vec3 = Vec3::new(-0.55, 0.45, 0.70);
 /// Wheel tracks are drawn up to this scale of vehicles. From farther away, they are too thin to see.
 const MAX_TRACK_SCALE: f32 = 2.0;
+/// The height of a rover with its mast, in lengths of its body.
+const ROVER_HEIGHT: f32 = 0.85;
 const TRACK_COLOR: [f32; 4] = [0.16, 0.10, 0.07, 0.55];
 
 /// Builds the scene.
@@ -110,7 +113,16 @@ pub fn build(input: &SceneInput<'_>) -> Shapes {
     for &(center_m, radius_m) in input.appeared {
         let outline = circle_outline(place(center_m), radius_m as f32);
         let rim = (input.palette.warning, 3.0);
-        shapes.fence(input.ground, &outline, FENCE_M, faded(input.palette.warning, 0.5), rim);
+        let Some(sun) = input.options.sun else {
+            shapes.fence(input.ground, &outline, FENCE_M, faded(input.palette.warning, 0.5), rim);
+            continue;
+        };
+        let volume = Volume::new(outline);
+        let mut body = Shapes::default();
+        volume.draw(&mut body, input.ground, input.palette.stone);
+        shadow::cast(&mut shapes, input.ground, &body, sun);
+        shapes.append(body);
+        shapes.rim(input.ground, &volume.outline_m, volume.height_m, rim);
     }
     locations(&mut shapes, world, input);
     if input.growth.shown().is_none() {
@@ -240,7 +252,14 @@ fn obstacles(shapes: &mut Shapes, world: &World, input: &SceneInput<'_>) {
         };
         let outline = outline(&obstacle.shape);
         if obstacle.is_solid() {
-            shapes.fence(input.ground, &outline, FENCE_M, palette.fence, rim);
+            match input.options.sun {
+                // The volume itself is on the graphics card.
+                Some(_) => {
+                    let volume = Volume::new(outline);
+                    shapes.rim(input.ground, &volume.outline_m, volume.height_m, rim);
+                }
+                None => shapes.fence(input.ground, &outline, FENCE_M, palette.fence, rim),
+            }
             continue;
         }
         // Nothing stands there: the rim lies on the ground, in dashes.
@@ -315,8 +334,14 @@ fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
             model.map_or((1.0, 0.8), |model| (model.length_m as f32, model.width_m as f32));
         // Airships are large enough to be seen as they are.
         let height_m = flight_height_m(ground, &snapshot.program.world, vehicle, position);
-        let has_tracks = options.shadows && height_m.is_none() && options.vehicle_scale <= MAX_TRACK_SCALE;
-        trail(shapes, input, index, (color, has_tracks.then_some(width_m * options.vehicle_scale * 0.84)));
+        let has_tracks =
+            options.sun.is_some() && height_m.is_none() && options.vehicle_scale <= MAX_TRACK_SCALE;
+        let driven_m = trail(
+            shapes,
+            input,
+            index,
+            (color, has_tracks.then_some(width_m * options.vehicle_scale * 0.84)),
+        );
         let scale = if height_m.is_some() { options.vehicle_scale.sqrt() } else { options.vehicle_scale };
         let shape = VehicleShape {
             place_m: position,
@@ -324,6 +349,7 @@ fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
             length_m: length_m * scale,
             width_m: width_m * scale,
             color,
+            driven_lengths: driven_m / (length_m * scale),
         };
         let around = if selected { palette.selected } else { color };
         ring(shapes, input, position, shape.length_m * 0.85, around, if selected { 3.0 } else { 1.6 });
@@ -331,29 +357,30 @@ fn vehicles(shapes: &mut Shapes, input: &SceneInput<'_>) {
         match height_m {
             Some(height_m) => {
                 let foot = ground.drape(position, 0.0);
-                shapes.line(foot, foot + Vec3::Z * height_m, 1.2, faded(palette.light, 0.5));
+                shapes.air_line(foot, foot + Vec3::Z * height_m, 1.2, faded(palette.light, 0.5));
                 airship(&mut body, &shape, foot.z + height_m);
             }
             None => rover(&mut body, ground, &shape),
         }
-        if options.shadows {
-            shadow::cast(shapes, ground, &body, SUN);
+        if let Some(sun) = options.sun {
+            shadow::cast(shapes, ground, &body, sun);
         }
         shapes.append(body);
     }
 }
 
-/// The path of a vehicle so far, and its wheel tracks if a gauge is given.
+/// Draws the path of a vehicle so far, and its wheel tracks if a gauge is given; returns how long it is, in meters.
 fn trail(
     shapes: &mut Shapes,
     input: &SceneInput<'_>,
     vehicle: usize,
     (color, gauge_m): ([f32; 4], Option<f32>),
-) {
+) -> f32 {
     let motion = input.snapshot.motions.iter().find(|motion| motion.vehicle as usize == vehicle);
     let Some((motion, (now, _))) = motion.and_then(|motion| Some((motion, motion.at(input.time)?))) else {
-        return;
+        return 0.0;
     };
+    let mut driven_m = 0.0;
     let mut before: Option<Vec2> = None;
     for frame in &motion.keyframes {
         let frame_time = frame.time.to_f64();
@@ -369,12 +396,55 @@ fn trail(
             // The leader's trail is wider, so that those that follow in its track are seen on it.
             let width = if vehicle == 0 { 6.0 } else { 3.0 };
             shapes.draped_line(input.ground, [before, next], width, color);
+            driven_m += before.distance(next);
         }
         before = Some(next);
         if is_done {
             break;
         }
     }
+    driven_m
+}
+
+/// The volumes of the obstacles that something stands at, in their order.
+pub fn volumes(world: &World) -> Vec<Volume> {
+    let solid = world.obstacles.iter().filter(|it| it.is_solid());
+    solid.map(|it| Volume::new(outline(&it.shape))).collect()
+}
+
+/// The corners in space of the box around a vehicle as it is drawn.
+pub fn vehicle_box_m(input: &VehicleBox<'_>) -> Option<[Vec3; 8]> {
+    let VehicleBox { snapshot, ground, vehicle: index, time, vehicle_scale } = *input;
+    let vehicle = snapshot.program.world.vehicles.get(index)?;
+    let (place_m, heading_rad) = vehicle_pose(snapshot, index, time)?;
+    let model = snapshot::vehicle::model(&snapshot.program.world, &vehicle.model.text);
+    let (length_m, width_m) = model.map_or((1.0, 0.8), |it| (it.length_m as f32, it.width_m as f32));
+    let flight_m = flight_height_m(ground, &snapshot.program.world, vehicle, place_m);
+    let scale = if flight_m.is_some() { vehicle_scale.sqrt() } else { vehicle_scale };
+    let (half, aside) = (length_m * scale / 2.0, width_m * scale / 2.0);
+    let [low, high] = match flight_m {
+        Some(height_m) => [height_m - aside * 1.3, height_m + aside],
+        None => [0.0, length_m * scale * ROVER_HEIGHT],
+    };
+    let foot = ground.drape(place_m, 0.0);
+    let (ahead, left) = (Vec2::from_angle(heading_rad) * half, Vec2::from_angle(heading_rad).perp() * aside);
+    Some(std::array::from_fn(|corner| {
+        let sign = |bit: usize| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        foot + (ahead * sign(0) + left * sign(1)).extend(if corner >> 2 & 1 == 1 { high } else { low })
+    }))
+}
+
+/// Which vehicle, and when.
+#[derive(Clone, Copy, Debug)]
+pub struct VehicleBox<'a> {
+    pub snapshot: &'a Snapshot,
+    pub ground: &'a Ground,
+    /// As an index into the program's world.
+    pub vehicle: usize,
+    /// In mission units.
+    pub time: f64,
+    /// How many times larger than life vehicles are drawn.
+    pub vehicle_scale: f32,
 }
 
 fn sketch(shapes: &mut Shapes, input: &SceneInput<'_>) {

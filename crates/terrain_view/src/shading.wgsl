@@ -10,7 +10,7 @@ struct View {
     image: vec4<f32>,        // width and height in pixels, colouring, overlay strength
     horizon: vec4<f32>,      // colour of distance, distance of the near plane
     world_from_clip: mat4x4<f32>,
-    look: vec4<f32>,         // x strength of ground detail, y whether there is a sky
+    look: vec4<f32>,         // x strength of ground detail, y whether there is a sky, z strength of shadows, w daylight
 };
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -18,6 +18,18 @@ struct View {
 @group(1) @binding(1) var normals: texture_2d<f32>;
 @group(1) @binding(2) var overlay: texture_2d<f32>;
 @group(1) @binding(3) var smooth_sampler: sampler;
+@group(1) @binding(4) var sunlight: texture_2d<f32>;
+
+// The night is bluish, and light enough to read the map by.
+fn by_daylight(color: vec3<f32>) -> vec3<f32> {
+    return color * mix(vec3<f32>(0.52, 0.57, 0.72), vec3<f32>(1.0), view.look.w);
+}
+
+// Low suns are warm.
+fn sun_color() -> vec3<f32> {
+    let warmth = (1.0 - smoothstep(0.05, 0.4, view.sun.z)) * view.look.w * step(0.5, view.look.z);
+    return mix(vec3<f32>(1.0), vec3<f32>(1.06, 0.88, 0.70), warmth);
+}
 
 struct GroundVertex {
     @builtin(position) clip: vec4<f32>,
@@ -90,17 +102,37 @@ fn noise(at: vec2<f32>) -> vec3<f32> {
     return vec3<f32>(value, du * (vec2<f32>(b - a, c - a) + k * u.yx));
 }
 
-// Grain of the ground down to a few centimeters: a shade, and a slope. Sizes below a pixel fade out.
+// A stone in each third cell or so, round, wholly inside its cell: a shade, and a slope.
+fn pebbles(at: vec2<f32>, size: f32) -> vec3<f32> {
+    let scaled = at / size;
+    let cell = floor(scaled);
+    let chance = hash(cell + 91.0);
+    if (chance > 0.38) { return vec3<f32>(0.0); }
+    let radius = 0.10 + 0.22 * hash(cell + 37.0);
+    let middle = vec2<f32>(hash(cell + 11.0), hash(cell + 53.0)) * (1.0 - 2.0 * radius) + radius;
+    let away = (scaled - cell - middle) / radius;
+    let part = length(away);
+    let cover = 1.0 - smoothstep(0.80, 1.0, part);
+    return vec3<f32>((chance - 0.22) * 0.9, -away * 0.75) * cover;
+}
+
+// Grain of the ground down to a centimeter, with stones on it: a shade, and a slope. Sizes below a pixel fade out.
 fn grains(at: vec2<f32>, pixel_m: f32) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
     var size = 6.0;
-    for (var octave = 0; octave < 5; octave += 1) {
+    for (var octave = 0; octave < 7; octave += 1) {
         let strength = 1.0 - smoothstep(0.12, 0.45, pixel_m / size);
         if (strength > 0.0) {
             let own = noise(at / size + f32(octave) * 17.3);
             sum += vec3<f32>((own.x - 0.5) * 0.16, own.yz * 0.13) * strength;
         }
         size *= 0.36;
+    }
+    size = 0.9;
+    for (var octave = 0; octave < 3; octave += 1) {
+        let strength = 1.0 - smoothstep(0.03, 0.10, pixel_m / size);
+        if (strength > 0.0) { sum += pebbles(at + f32(octave) * 7.7, size) * strength; }
+        size *= 0.27;
     }
     return sum;
 }
@@ -115,7 +147,10 @@ fn ground_fragment(in: GroundVertex) -> @location(0) vec4<f32> {
     let span = max(view.range.y - view.range.x, 1e-3);
     let height = (in.world.z - view.range.x) / span;
     let slope = atan(length(smooth_normal.xy) / max(smooth_normal.z, 1e-3) / view.origin_cell.w);
-    let light = view.sun.w + (1.0 - view.sun.w) * max(dot(normal, view.sun.xyz), 0.0);
+    let lit = mix(1.0, textureSample(sunlight, smooth_sampler, in.uv).r, view.look.z);
+    let direct = (1.0 - view.sun.w) * max(dot(normal, view.sun.xyz), 0.0) * lit;
+    // What the sky lights is darker where the ground leans away from it.
+    let ambient = view.sun.w * mix(1.0, 0.62 + 0.38 * normal.z, view.look.z);
     let mode = u32(view.image.z);
     var color = mars(height, slope) * (1.0 + detail.x);
     if (mode == 1u) { color = ramp(height); }
@@ -123,7 +158,7 @@ fn ground_fragment(in: GroundVertex) -> @location(0) vec4<f32> {
     // What lies on the ground is shaded with it, so that the relief stays visible.
     let covered = textureSample(overlay, smooth_sampler, in.uv) * view.image.w;
     color = color * (1.0 - covered.a) + covered.rgb;
-    color = color * (0.25 + 0.95 * light);
+    color = by_daylight(color * (0.25 + 0.95 * (ambient + direct * sun_color())));
     // Every fifth contour is darker, so that heights can be counted; the others stay behind what lies on the ground.
     let level = in.world.z / view.origin_cell.w;
     let contour = line_at(level, max(view.range.z, 1e-3));
@@ -157,8 +192,10 @@ fn sky_fragment(in: SkyVertex) -> @location(0) vec4<f32> {
     let low = vec3<f32>(0.78, 0.63, 0.50);
     let high = vec3<f32>(0.38, 0.34, 0.33);
     var color = mix(low, high, smoothstep(0.0, 0.45, direction.z));
-    let glow = pow(max(dot(direction, view.sun.xyz), 0.0), 48.0);
-    color = mix(color, vec3<f32>(0.96, 0.93, 0.90), glow * 0.7);
+    let toward = max(dot(direction, view.sun.xyz), 0.0);
+    let glow = pow(toward, 48.0) * 0.7 + smoothstep(0.99945, 0.9997, toward) * 0.3;
+    color = mix(color, vec3<f32>(0.96, 0.93, 0.90) * sun_color(), glow * view.look.w);
+    color = by_daylight(color) * mix(0.45, 1.0, view.look.w);
     // Below the horizon is nothing: the ground ends there.
     return vec4<f32>(mix(color, view.horizon.rgb, smoothstep(0.0, 0.12, -direction.z)), 1.0);
 }
@@ -184,16 +221,21 @@ fn shape_vertex(
 
 @fragment
 fn shape_fragment(in: ShapeVertex) -> @location(0) vec4<f32> {
-    let light = 0.45 + 0.55 * max(dot(normalize(in.normal), view.sun.xyz), 0.0);
-    return vec4<f32>(in.color.rgb * light * in.color.a, in.color.a);
+    let normal = normalize(in.normal);
+    let light = 0.40 + 0.08 * normal.z + 0.57 * max(dot(normal, view.sun.xyz), 0.0) * sun_color();
+    return vec4<f32>(by_daylight(in.color.rgb * light) * in.color.a, in.color.a);
 }
 
 struct LineVertex {
     @builtin(position) clip: vec4<f32>,
     @location(0) color: vec4<f32>,
+    // Pixels from the middle of the line and half its width, both times the depth, and the depth: their ratios are even on
+    // the screen.
+    @location(1) across: vec3<f32>,
 };
 
-// One instance is a segment; its six vertices are the corners of a quad of constant width on the screen.
+// One instance is a segment; its six vertices are the corners of a quad of constant width on the screen, with room for soft
+// edges.
 @vertex
 fn line_vertex(
     @builtin(vertex_index) corner: u32,
@@ -211,21 +253,25 @@ fn line_vertex(
     out.color = vec4<f32>(color.rgb * color.a, color.a);
     if (a.w <= 0.01 || b.w <= 0.01) {
         out.clip = vec4<f32>(0.0, 0.0, 2.0, 1.0);
+        out.across = vec3<f32>(0.0, 0.0, 1.0);
         return out;
     }
+    let radius = from_width.w * 0.5;
     let pixels = view.image.xy * 0.5;
     let direction = (b.xy / b.w - a.xy / a.w) * pixels;
     let along = direction / max(length(direction), 1e-4);
-    let across = vec2<f32>(-along.y, along.x) * side * from_width.w * 0.5;
+    let across = vec2<f32>(-along.y, along.x) * side * (radius + 1.0);
     let cap = along * (at_end * 2.0 - 1.0) * from_width.w * 0.25;
     let end = mix(a, b, at_end);
     // Towards the eye by a small part of its distance, so that draped lines do not drown in the ground between two
     // samples: as if the end were that much nearer.
+    out.across = vec3<f32>(side * (radius + 1.0), radius, 1.0) * end.w;
     out.clip = vec4<f32>(end.xy + (across + cap) / pixels * end.w, end.z - to_.w * view.horizon.w, end.w);
     return out;
 }
 
 @fragment
 fn line_fragment(in: LineVertex) -> @location(0) vec4<f32> {
-    return in.color;
+    let away = in.across.xy / in.across.z;
+    return in.color * clamp(away.y + 0.5 - abs(away.x), 0.0, 1.0);
 }

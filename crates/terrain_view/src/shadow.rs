@@ -8,7 +8,8 @@ use glam::{Vec2, Vec3};
 use crate::ground::Ground;
 use crate::shapes::Shapes;
 
-const COLOR: [f32; 4] = [0.0, 0.0, 0.0, 0.42];
+/// How much darker the ground is in the shadow.
+pub const COLOR: [f32; 4] = [0.0, 0.0, 0.0, 0.42];
 
 /// Lays the shadow of a body on the ground; `sun` points toward the sun, above the horizon.
 pub fn cast(shapes: &mut Shapes, ground: &Ground, body: &Shapes, sun: Vec3) {

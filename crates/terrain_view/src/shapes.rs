@@ -37,8 +37,11 @@ pub struct Shapes {
     pub lines: Vec<LineSegment>,
 }
 
-/// How much nearer to the eye lines are drawn than they are, as a part of their distance.
+/// How much nearer to the eye lines on the ground are drawn than they are, as a part of their distance: as much as keeps
+/// them above the ground between two of its samples.
 const DEPTH_LIFT: f32 = 0.006;
+/// The same for lines through the air, which what is in front of them covers.
+const AIR_LIFT: f32 = 0.0005;
 
 impl Shapes {
     /// Makes all lines so many times wider.
@@ -69,11 +72,20 @@ impl Shapes {
         self.triangle([corners[0], corners[2], corners[3]], color);
     }
 
-    /// A straight segment.
+    /// A straight segment on the ground.
     pub fn line(&mut self, from: Vec3, to: Vec3, width_px: f32, color: [f32; 4]) {
+        self.lifted_line(from, to, (width_px, DEPTH_LIFT), color);
+    }
+
+    /// A straight segment through the air.
+    pub fn air_line(&mut self, from: Vec3, to: Vec3, width_px: f32, color: [f32; 4]) {
+        self.lifted_line(from, to, (width_px, AIR_LIFT), color);
+    }
+
+    fn lifted_line(&mut self, from: Vec3, to: Vec3, (width_px, lift): (f32, f32), color: [f32; 4]) {
         self.lines.push(LineSegment {
             from_width: from.extend(width_px).to_array(),
-            to_lift: to.extend(DEPTH_LIFT).to_array(),
+            to_lift: to.extend(lift).to_array(),
             color,
         });
     }
@@ -130,6 +142,24 @@ impl Shapes {
             self.quad([bottom + a, bottom + b, top + b, top + a], color);
             self.triangle([top, top + a, top + b], color);
             self.triangle([bottom, bottom + b, bottom + a], color);
+        }
+    }
+
+    /// The line around the top of what stands on `outline_m`.
+    pub fn rim(
+        &mut self,
+        ground: &Ground,
+        outline_m: &[Vec2],
+        height_m: f32,
+        (color, width_px): ([f32; 4], f32),
+    ) {
+        let sides = outline_m.iter().zip(outline_m.iter().cycle().skip(1));
+        for (&from, &to) in sides {
+            let pieces = (from.distance(to) / (ground.cell_m * 4.0)).ceil().clamp(1.0, 64.0) as u32;
+            let top = |index: u32| ground.drape(from.lerp(to, index as f32 / pieces as f32), height_m);
+            for piece in 0..pieces {
+                self.line(top(piece), top(piece + 1), width_px, color);
+            }
         }
     }
 

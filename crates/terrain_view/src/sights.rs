@@ -59,12 +59,12 @@ fn line(shapes: &mut Shapes, input: &SceneInput<'_>, ends: [(Vec2, f32); 2], vie
     let palette = input.palette;
     let [from, to] = ends.map(|(place_m, height_m)| input.ground.drape(place_m, height_m));
     match view {
-        View::Clear => shapes.line(from, to, 1.6, faded(palette.light, 0.9)),
-        View::Unknown => shapes.line(from, to, 1.2, faded(palette.warning, 0.4)),
+        View::Clear => shapes.air_line(from, to, 1.6, faded(palette.light, 0.9)),
+        View::Unknown => shapes.air_line(from, to, 1.2, faded(palette.warning, 0.4)),
         View::Blocked(at_m) => {
             let at = input.ground.drape(at_m, 0.3);
-            shapes.line(from, at, 1.6, palette.warning);
-            shapes.line(at, to, 1.2, faded(palette.warning, 0.4));
+            shapes.air_line(from, at, 1.6, palette.warning);
+            shapes.air_line(at, to, 1.2, faded(palette.warning, 0.4));
             // A cross, so that color is not the only sign.
             let arm = 0.6 * input.options.vehicle_scale;
             for direction in [Vec3::new(arm, arm, 0.0), Vec3::new(arm, -arm, 0.0)] {

@@ -15,8 +15,14 @@ pub struct VehicleShape {
     pub length_m: f32,
     pub width_m: f32,
     pub color: [f32; 4],
+    /// How far it has driven, in lengths of its body: its wheels have turned by that.
+    pub driven_lengths: f32,
 }
 
+/// The radius of a wheel, in lengths of the body.
+const WHEEL: f32 = 0.2;
+const CLEATS: u16 = 8;
+const SPOKE: [f32; 4] = [0.42, 0.42, 0.44, 1.0];
 const RUBBER: [f32; 4] = [0.11, 0.11, 0.12, 1.0];
 const HUB: [f32; 4] = [0.62, 0.63, 0.66, 1.0];
 const PANEL: [f32; 4] = [0.10, 0.16, 0.36, 1.0];
@@ -40,7 +46,8 @@ pub fn rover(shapes: &mut Shapes, ground: &Ground, shape: &VehicleShape) {
     let axes = shape.axes_on(ground);
     let base = ground.drape(shape.place_m, 0.0);
     let (length, width) = (shape.length_m, shape.width_m);
-    let wheel = length * 0.2;
+    let wheel = length * WHEEL;
+    let turn_rad = shape.driven_lengths / WHEEL;
     // A place on the vehicle: meters ahead, to the left and up.
     let at = |ahead: f32, left: f32, up: f32| base + axes * Vec3::new(ahead, left, up);
     let box_at =
@@ -66,6 +73,20 @@ pub fn rover(shapes: &mut Shapes, ground: &Ground, shape: &VehicleShape) {
         let axle = axes.y_axis;
         shapes.cylinder(hub, axle, wheel, width * 0.09, RUBBER);
         shapes.cylinder(hub, axle, wheel * 0.45, width * 0.10, HUB);
+        // Spokes and cleats show that it turns.
+        let turn = Mat3::from_axis_angle(axle, turn_rad) * axes;
+        for spoke in [
+            Vec3::new(wheel * 0.92, width * 0.095, wheel * 0.12),
+            Vec3::new(wheel * 0.12, width * 0.095, wheel * 0.92),
+        ] {
+            shapes.cuboid(hub, spoke, &turn, SPOKE);
+        }
+        for cleat in 0..CLEATS {
+            let angle = turn_rad + f32::from(cleat) / f32::from(CLEATS) * std::f32::consts::TAU;
+            let turn = Mat3::from_axis_angle(axle, angle) * axes;
+            let at = hub + turn.x_axis * wheel * 0.97;
+            shapes.cuboid(at, Vec3::new(wheel * 0.06, width * 0.092, wheel * 0.08), &turn, SPOKE);
+        }
     }
     let mast = length * 0.30;
     shapes.cylinder(at(mast, 0.0, deck + wheel * 0.9), axes.z_axis, wheel * 0.12, wheel * 0.9, METAL);
@@ -119,4 +140,36 @@ pub fn airship(shapes: &mut Shapes, shape: &VehicleShape, height_m: f32) {
     }
     let gondola = Vec3::new(half * 0.24, radius * 0.22, radius * 0.18);
     shapes.cuboid(place(half * 0.1, 0.0, -radius * 1.12), gondola, &axes, GONDOLA);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheels_turn_with_the_way_and_are_as_before_after_a_whole_turn() {
+        let ground = Ground::flat(Vec2::ZERO, 40.0);
+        let drawn = |driven_lengths| {
+            let shape = VehicleShape {
+                place_m: Vec2::new(3.0, 4.0),
+                heading_rad: 0.4,
+                length_m: 2.0,
+                width_m: 1.5,
+                color: [1.0; 4],
+                driven_lengths,
+            };
+            let mut shapes = Shapes::default();
+            rover(&mut shapes, &ground, &shape);
+            shapes.triangles
+        };
+        let apart = |left: &[crate::shapes::ShapeCorner], right: &[crate::shapes::ShapeCorner]| {
+            let away = |(a, b): (&crate::shapes::ShapeCorner, &crate::shapes::ShapeCorner)| {
+                Vec3::from(a.position_m).distance(b.position_m.into())
+            };
+            left.iter().zip(right).map(away).fold(0.0, f32::max)
+        };
+        let around = WHEEL * std::f32::consts::TAU;
+        assert!(apart(&drawn(0.0), &drawn(around / 16.0)) > 0.05);
+        assert!(apart(&drawn(0.0), &drawn(around)) < 1e-3);
+    }
 }

@@ -7,6 +7,7 @@ use smol_str::SmolStr;
 use crate::host::{FileKind, Save};
 use crate::library::MissionId;
 use crate::state::keys::KeyChange;
+use crate::state::terrain::Area;
 
 /// Something that the host is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,13 @@ pub enum Effect {
         svg: String,
         /// Width and height in pixels.
         size: [u32; 2],
+    },
+    /// Record what is drawn in a part of the window, from now on or instead of another part.
+    Film(Area),
+    /// End what is recorded, and let the user save it.
+    SaveFilm {
+        /// The name to suggest.
+        name: String,
     },
     /// Put a link to the present view on the clipboard.
     CopyLink,

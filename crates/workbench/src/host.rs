@@ -8,6 +8,7 @@ use link::{Request, Response};
 use ts_rs::TS;
 
 use crate::limits::{MAX_FILE_BYTES, MAX_TEXT_BYTES};
+use crate::state::terrain::Area;
 
 /// What the app needs from where it runs.
 ///
@@ -104,6 +105,15 @@ pub trait Host {
     /// Lets the user save an SVG as a PNG of this width and height in pixels. A browser can draw SVGs; hosts that
     /// cannot answer with [`HostEvent::FileFailed`].
     fn save_picture(&mut self, suggested_name: &str, svg: String, size: [u32; 2]);
+
+    /// Records what is drawn in a part of the window as a video, until [`Host::save_film`]; while one is recorded, it
+    /// continues with that part. Says why it can't.
+    fn film(&mut self, _area: Area) -> Result<(), String> {
+        Err("Videos are recorded in a browser: open the mission in the page of Enroute".to_owned())
+    }
+
+    /// Ends the video and lets the user save it; [`HostEvent::FileFailed`] says if there is none.
+    fn save_film(&mut self, _suggested_name: &str) {}
 
     /// What stands after `#` in the page's address; empty outside a page.
     fn fragment(&self) -> String;

@@ -18,6 +18,8 @@ pub enum ViewAction {
     TopView,
     /// Keeps the selected vehicle in the middle, or the first one; lets it go if one is kept. For the terrain.
     Follow,
+    /// Goes from vehicle to vehicle as they set out. For the terrain.
+    Tour,
 }
 
 /// The formats that drawings are saved in.

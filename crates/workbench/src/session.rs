@@ -222,6 +222,13 @@ impl Session {
                 Effect::KeepFile(id, token) => self.host.keep_file(&id.0, token),
                 Effect::SaveFile { name, bytes } => self.host.save_file(&name, bytes),
                 Effect::SavePicture { name, svg, size } => self.host.save_picture(&name, svg, size),
+                Effect::Film(area) => {
+                    if let Err(reason) = self.host.film(area) {
+                        self.state.terrain.film = None;
+                        self.state.window.failed(reason);
+                    }
+                }
+                Effect::SaveFilm { name } => self.host.save_film(&name),
                 Effect::CopyLink => self.copy_link(),
                 Effect::Post(request) => self.host.post(request),
                 Effect::Stop => self.host.stop(),

@@ -7,6 +7,7 @@ use std::rc::Rc;
 use link::{Request, Response};
 use mission::{Core, CoreHost};
 use workbench::host::{FileKind, Host, HostEvent, Save, ShelfContent, ShelfNews, ShelfRequest, StorageError};
+use workbench::state::terrain::Area;
 
 /// How the shelf of a world does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,6 +29,10 @@ type Inbox = Rc<RefCell<VecDeque<HostEvent>>>;
 /// What a test and its host share.
 #[derive(Default)]
 pub struct World {
+    /// The parts of the window that were recorded, one after the other.
+    pub filmed: RefCell<Vec<Area>>,
+    /// Whether the host has no recorder.
+    pub cannot_film: Cell<bool>,
     /// Seconds on the host's clock.
     pub now_secs: Cell<f64>,
     /// What is kept between runs.
@@ -297,6 +302,18 @@ impl Host for TestHost {
     fn save_picture(&mut self, suggested_name: &str, svg: String, size: [u32; 2]) {
         self.world.saved.borrow_mut().push((suggested_name.to_owned(), svg.into_bytes()));
         self.world.picture_size.set(size);
+    }
+
+    fn film(&mut self, area: Area) -> Result<(), String> {
+        if self.world.cannot_film.get() {
+            return Err("no recorder here".to_owned());
+        }
+        self.world.filmed.borrow_mut().push(area);
+        Ok(())
+    }
+
+    fn save_film(&mut self, suggested_name: &str) {
+        self.world.saved.borrow_mut().push((suggested_name.to_owned(), Vec::new()));
     }
 
     fn fragment(&self) -> String {

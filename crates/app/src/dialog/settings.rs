@@ -6,7 +6,7 @@ use theme::space;
 use workbench::command::{Command, CommandSender};
 use workbench::library::LibraryCommand;
 use workbench::state::Views;
-use workbench::state::settings::{HEIGHT_SCALES, SettingsCommand, TEXT_SCALES, ThemeChoice};
+use workbench::state::settings::{Effects, HEIGHT_SCALES, SettingsCommand, TEXT_SCALES, ThemeChoice};
 use workbench::state::window::WindowCommand;
 
 const WIDTH: f32 = 460.0;
@@ -135,6 +135,16 @@ fn text_and_terrain(ui: &mut Ui, context: &Context<'_>, views: &mut Views) {
     ui.add(Slider::new(scale, least..=most).step_by(0.5).text("Vertical exaggeration"));
     ui.checkbox(&mut views.terrain.names, "Place and vehicle names");
     ui.checkbox(&mut views.terrain.grid, "Grid in mission coordinates");
+    ui.horizontal(|ui| {
+        ui.label("Effects");
+        for (choice, name, help) in [
+            (Effects::Automatic, "Automatic", "Full, and reduced while frames are slow"),
+            (Effects::Full, "Full", "Ground detail and shadows in full resolution"),
+            (Effects::Reduced, "Reduced", "Half resolution, no ground detail"),
+        ] {
+            ui.radio_value(&mut views.terrain.effects, choice, name).on_hover_text(help);
+        }
+    });
     ui.add_space(space::S);
     let note = "Each panel has more under Show.";
     ui.label(RichText::new(note).small().color(context.tokens.text_muted));

@@ -449,3 +449,61 @@ fn the_camera_is_there_at_once_where_nothing_is_to_move_by_itself() {
     let later = place(&app, "HERE").distance(place(&app, "THERE"));
     assert!(at_once > 1.2 * before && (at_once - later).abs() < 0.5, "{before} {at_once} {later}");
 }
+
+#[test]
+fn a_video_is_of_the_terrain_from_the_start_of_the_run_to_its_end() {
+    let mut app = above();
+    app.harness.state_mut().run(Command::Seek(30.0));
+    dispatch(&mut app, "terrain.video", &json!(null));
+    assert_eq!(app.json()["terrain"]["recording"], true);
+    let filmed = app.world.filmed.borrow().clone();
+    let window = app.harness.ctx.content_rect().size();
+    let image = app.harness.get_by(|node| node.label().is_some_and(|it| it.starts_with("Terrain. "))).rect();
+    let [left, top, width, height] = *filmed.first().expect("it is recorded");
+    let shown = egui::Rect::from_min_size(
+        egui::pos2(left * window.x, top * window.y),
+        vec2(width * window.x, height * window.y),
+    );
+    assert!(shown.min.distance(image.min) < 1.0 && shown.max.distance(image.max) < 1.0, "{shown} {image}");
+    let playback = &app.harness.state().app_state().playback;
+    assert!(playback.is_playing && playback.time < 5.0, "{playback:?}");
+    app.harness.get_by_label("Stop recording");
+    app.harness.state_mut().run(Command::Seek(f64::MAX));
+    app.settle();
+    assert_eq!(app.json()["terrain"]["recording"], false);
+    let saved: Vec<String> = app.world.saved.borrow().iter().map(|(name, _)| name.clone()).collect();
+    assert_eq!(saved, ["test.webm"]);
+    assert!(app.harness.query_by_label("Stop recording").is_none());
+}
+
+#[test]
+fn where_there_is_no_recorder_the_command_says_so() {
+    let mut app = above();
+    app.world.cannot_film.set(true);
+    dispatch(&mut app, "terrain.video", &json!(null));
+    assert_eq!(app.json()["terrain"]["recording"], false);
+    let toasts = app.json()["toasts"].to_string();
+    assert!(toasts.contains("no recorder here"), "{toasts}");
+    assert!(app.world.saved.borrow().is_empty());
+}
+
+#[test]
+fn the_camera_tours_the_run_and_shows_the_whole_map_when_nothing_moves() {
+    let mut app = above();
+    app.world.reduces_motion.set(true);
+    app.settle();
+    let apart = |app: &support::App| place(app, "HERE").distance(place(app, "THERE"));
+    let whole = apart(&app);
+    dispatch(&mut app, "terrain.tour", &json!(null));
+    assert!(app.harness.state().app_state().playback.is_playing, "the tour plays");
+    dispatch(&mut app, "play.toggle", &json!(null));
+    let drive = app.harness.state().app_state().shown().expect("a plan").motions[0].keyframes.clone();
+    let moves: Vec<f64> = drive.iter().map(|frame| frame.time.to_f64()).collect();
+    app.harness.state_mut().run(Command::Seek(f64::midpoint(moves[0], moves[moves.len() - 1])));
+    app.settle();
+    assert!(app.harness.query_by_label("Rover1 on the map").is_some(), "the camera is on the rover");
+    assert!(app.harness.query_by_label("DEPOT on the map").is_none(), "the camera is near");
+    app.harness.state_mut().run(Command::Seek(f64::MAX));
+    app.settle();
+    assert!((apart(&app) / whole - 1.0).abs() < 0.5, "{} {whole}", apart(&app));
+}

@@ -95,7 +95,7 @@ impl Canvas {
             }
         }
         match context.view_action(PanelKind::Automaton) {
-            None | Some(ViewAction::TopView | ViewAction::Follow) => {}
+            None | Some(ViewAction::TopView | ViewAction::Follow | ViewAction::Tour) => {}
             Some(ViewAction::ZoomIn) => self.view.zoom_at(panel, panel.center(), KEY_ZOOM),
             Some(ViewAction::ZoomOut) => self.view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
             Some(ViewAction::ZoomReset) => self.view.reset_zoom(),

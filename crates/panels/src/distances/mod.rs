@@ -242,7 +242,7 @@ fn move_view(
         }
     }
     match action {
-        None | Some(ViewAction::TopView | ViewAction::Follow) => {}
+        None | Some(ViewAction::TopView | ViewAction::Follow | ViewAction::Tour) => {}
         Some(ViewAction::ZoomIn) => view.zoom_at(panel, panel.center(), KEY_ZOOM),
         Some(ViewAction::ZoomOut) => view.zoom_at(panel, panel.center(), 1.0 / KEY_ZOOM),
         Some(ViewAction::ZoomReset) => view.reset_zoom(),

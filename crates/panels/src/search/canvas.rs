@@ -189,7 +189,7 @@ impl View {
             ViewAction::Fit => (self.fits, self.least_down) = (true, 0.0),
             // As at first, and from there to the step.
             ViewAction::FitSelection => *self = Self::default(),
-            ViewAction::TopView | ViewAction::Follow => {}
+            ViewAction::TopView | ViewAction::Follow | ViewAction::Tour => {}
         }
     }
 

@@ -8,6 +8,7 @@ use terrain_view::decal::AMPLE_M;
 use terrain_view::ground::Ground;
 use terrain_view::scale::{round_step, vehicle_scale};
 use terrain_view::scene;
+use terrain_view::volume::Volume;
 use theme::{Tokens, size};
 use workbench::state::Selection;
 use workbench::state::settings::{Coloring, TerrainView};
@@ -38,9 +39,11 @@ impl Overlay<'_> {
         hint: Option<&str>,
         clearance_of: Option<&str>,
     ) -> Vec<(Rect, Selection)> {
-        let labels = if self.view.names { self.labels() } else { Vec::new() };
+        let images = self.vehicle_images();
+        let labels = if self.view.names { self.labels(&images) } else { Vec::new() };
         let corner = Rect::from_min_size(self.rect.right_top() - vec2(52.0, 0.0), vec2(52.0, 52.0));
-        let plates = labels::paint(self.painter, self.tokens(), self.rect.shrink(2.0), &labels, &[corner]);
+        let taken: Vec<Rect> = images.into_iter().flatten().chain([corner]).collect();
+        let plates = labels::paint(self.painter, self.tokens(), self.rect.shrink(2.0), &labels, &taken);
         if self.rect.width() > 160.0 && self.rect.height() > 120.0 {
             self.scale_bar();
             self.north_arrow();
@@ -66,34 +69,45 @@ impl Overlay<'_> {
         Some(self.rect.min + vec2(point.x, point.y))
     }
 
+    /// Where the images of vehicles are in the window, by their index; `None` for those that are not seen.
+    fn vehicle_images(&self) -> Vec<Option<Rect>> {
+        let image = |vehicle| {
+            let corners_m = scene::vehicle_box_m(&scene::VehicleBox {
+                snapshot: self.snapshot,
+                ground: self.ground,
+                vehicle,
+                time: self.context.state.playback.time,
+                vehicle_scale: vehicle_scale(self.camera.distance_m),
+            })?;
+            let corners: Option<Vec<Pos2>> = corners_m.into_iter().map(|corner| self.at(corner)).collect();
+            Some(Rect::from_points(&corners?).intersect(self.rect)).filter(Rect::is_positive)
+        };
+        (0..self.snapshot.program.world.vehicles.len()).map(image).collect()
+    }
+
     /// The names that are to be written, in the window.
-    fn labels(&self) -> Vec<Label> {
+    fn labels(&self, images: &[Option<Rect>]) -> Vec<Label> {
         let world = &self.snapshot.program.world;
         let state = self.context.state;
         let mut labels = Vec::new();
-        let mut add = |at: Vec3, text: &str, color: Color32, rank: Rank, names: Selection| {
-            let Some(anchor) = self.at(at) else { return };
+        let mut add = |around: Rect, text: &str, color: Color32, rank: Rank, names: Selection| {
             let is_selected = state.selection == names;
             let is_chosen = is_selected || state.hovered == names;
             labels.push(Label {
-                anchor,
+                around,
                 text: text.to_owned(),
                 color: if is_selected { self.tokens().accent } else { color },
                 rank: if is_chosen { Rank::Chosen } else { rank },
                 names,
             });
         };
-        for (index, vehicle) in world.vehicles.iter().enumerate() {
-            let pose = scene::vehicle_pose(self.snapshot, index, state.playback.time);
-            let Some((place, _)) = pose else { continue };
-            let height =
-                scene::flight_height_m(self.ground, world, vehicle, place).map(|height| height + 2.5);
-            let lift = height.unwrap_or(0.9 * vehicle_scale(self.camera.distance_m));
+        for (index, (vehicle, image)) in world.vehicles.iter().zip(images).enumerate() {
+            let Some(image) = image else { continue };
             let name = &vehicle.name.text;
             let color = self.tokens().series(index);
-            let names = Selection::Vehicle(name.clone());
-            add(self.ground.drape(place, lift), name, color, Rank::Vehicle, names);
+            add(*image, name, color, Rank::Vehicle, Selection::Vehicle(name.clone()));
         }
+        let point = |at_m: Vec3| self.at(at_m).map(Rect::from_pos);
         let driven: Vec<&str> = self
             .snapshot
             .traverses
@@ -104,22 +118,21 @@ impl Overlay<'_> {
         for location in &world.locations {
             let name = &location.name.text;
             let rank = if driven.contains(&name.as_str()) { Rank::OnPath } else { Rank::Place };
-            let top = self.ground.drape(scene::place(location.position_m), scene::POST_M);
-            add(top, name, self.tokens().text, rank, Selection::Location(name.clone()));
+            let place_m = scene::place(location.position_m);
+            let (top, foot) =
+                (point(self.ground.drape(place_m, scene::POST_M)), point(self.ground.drape(place_m, 0.0)));
+            let Some(top) = top else { continue };
+            // Where a vehicle stands at the location, the name goes beside the vehicle.
+            let stands_there = |image: &&Rect| foot.is_some_and(|foot| image.contains(foot.center()));
+            let around = images.iter().flatten().find(stands_there).copied().unwrap_or(top);
+            add(around, name, self.tokens().text, rank, Selection::Location(name.clone()));
         }
         let obstacles = world.obstacles.iter().filter(|_| self.view.obstacles);
         for obstacle in obstacles {
             let name = &obstacle.name.text;
-            let outline = scene::outline(&obstacle.shape);
-            let middle = outline.iter().copied().sum::<Vec2>() / outline.len().max(1) as f32;
-            let color = self.tokens().text_muted;
-            add(
-                self.ground.drape(middle, 0.5),
-                name,
-                color,
-                Rank::Obstacle,
-                Selection::Obstacle(name.clone()),
-            );
+            let top_m = Volume::new(scene::outline(&obstacle.shape)).top_m(self.ground);
+            let Some(top) = point(top_m) else { continue };
+            add(top, name, self.tokens().text_muted, Rank::Obstacle, Selection::Obstacle(name.clone()));
         }
         labels
     }

@@ -1,14 +1,14 @@
 //! Names over the ground: on plates, so that they stay readable over light and dark ground, and never on each other.
 
-use egui::{Color32, FontId, Painter, Pos2, Rect, Stroke, StrokeKind, Vec2, vec2};
+use egui::{Color32, FontId, Painter, Rect, Stroke, StrokeKind, Vec2, vec2};
 use theme::{Tokens, size};
 use workbench::state::Selection;
 
 /// A name to write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// The point it names, in the window.
-    pub anchor: Pos2,
+    /// What it names, in the window: the place of a vehicle's image, a point of other things.
+    pub around: Rect,
     pub text: String,
     pub color: Color32,
     /// How much it matters: names of the highest rank are never left out.
@@ -32,8 +32,9 @@ pub enum Rank {
 /// Between plates, and between a plate and what it names.
 const GAP: f32 = 3.0;
 
-/// Where the plates of labels go: each beside its anchor, inside `room`, over no other; `None` for names that are left
-/// out because there is no place for them. `sizes` are those of the plates.
+/// Where the plates of labels go: each beside what it names, inside `room`, over no other and over nothing that is
+/// `taken`, such as a vehicle; `None` for names that are left out because there is no place for them. `sizes` are those of
+/// the plates.
 pub fn arrange(room: Rect, labels: &[Label], sizes: &[Vec2], taken: &[Rect]) -> Vec<Option<Rect>> {
     let mut order: Vec<usize> = (0..labels.len()).collect();
     order.sort_by_key(|&index| (labels[index].rank, index));
@@ -41,14 +42,14 @@ pub fn arrange(room: Rect, labels: &[Label], sizes: &[Vec2], taken: &[Rect]) -> 
     let mut placed = vec![None; labels.len()];
     for index in order {
         let (label, Some(&size)) = (&labels[index], sizes.get(index)) else { continue };
-        if !room.contains(label.anchor) {
+        if !room.contains(label.around.center()) {
             continue;
         }
         let is_free = |plate: &Rect| {
             room.contains_rect(*plate) && !taken.iter().any(|other| other.expand(1.0).intersects(*plate))
         };
         let reach = if label.rank <= Rank::Vehicle { 5 } else { 1 };
-        let found = (0..reach).flat_map(|ring| positions(label.anchor, size, ring)).find(is_free);
+        let found = (0..reach).flat_map(|ring| positions(label.around, size, ring)).find(is_free);
         if let Some(plate) = found {
             taken.push(plate);
             placed[index] = Some(plate);
@@ -57,11 +58,12 @@ pub fn arrange(room: Rect, labels: &[Label], sizes: &[Vec2], taken: &[Rect]) -> 
     placed
 }
 
-/// The places for a plate around its anchor, the best first; farther away in later rings.
-fn positions(anchor: Pos2, size: Vec2, ring: u32) -> [Rect; 8] {
+/// The places for a plate around what it names, the best first; farther away in later rings.
+fn positions(around: Rect, size: Vec2, ring: u32) -> [Rect; 8] {
     let away = ring as f32 * (size.y + GAP);
-    let (right, up) = (size.x / 2.0 + GAP + away, size.y / 2.0 + GAP + away);
-    let beside = size.x / 2.0 + GAP;
+    let half = around.size() / 2.0;
+    let (right, up) = (half.x + size.x / 2.0 + GAP + away, half.y + size.y / 2.0 + GAP + away);
+    let beside = half.x + size.x / 2.0 + GAP;
     [
         vec2(0.0, -up),
         vec2(right, -up),
@@ -72,7 +74,7 @@ fn positions(anchor: Pos2, size: Vec2, ring: u32) -> [Rect; 8] {
         vec2(beside, up + GAP),
         vec2(-beside, up + GAP),
     ]
-    .map(|offset| Rect::from_center_size(anchor + offset, size))
+    .map(|offset| Rect::from_center_size(around.center() + offset, size))
 }
 
 /// Paints names where there is room for them, and answers the plates with what they name.
@@ -92,11 +94,11 @@ pub fn paint(
     let plates = arrange(room, labels, &sizes, taken);
     for (label, plate) in labels.iter().zip(&plates) {
         let Some(plate) = plate else { continue };
-        let nearest = plate.clamp(label.anchor);
-        if nearest.distance(label.anchor) > 2.0 * GAP + 1.0 {
-            painter
-                .line_segment([label.anchor, nearest], Stroke::new(3.0, tokens.surface.gamma_multiply(0.7)));
-            painter.line_segment([label.anchor, nearest], Stroke::new(1.0, label.color));
+        let from = label.around.clamp(plate.center());
+        let nearest = plate.clamp(from);
+        if nearest.distance(from) > 2.0 * GAP + 1.0 {
+            painter.line_segment([from, nearest], Stroke::new(3.0, tokens.surface.gamma_multiply(0.7)));
+            painter.line_segment([from, nearest], Stroke::new(1.0, label.color));
         }
     }
     let mut painted = Vec::new();
@@ -119,7 +121,8 @@ mod tests {
     use super::*;
 
     fn label(x: f32, y: f32, rank: Rank) -> Label {
-        Label { anchor: pos2(x, y), text: String::new(), color: Color32::WHITE, rank, names: Selection::None }
+        let around = Rect::from_pos(pos2(x, y));
+        Label { around, text: String::new(), color: Color32::WHITE, rank, names: Selection::None }
     }
 
     #[test]
@@ -141,6 +144,22 @@ mod tests {
         for (index, left) in placed.iter().enumerate() {
             assert!(room.contains_rect(*left));
             assert!(placed[index + 1..].iter().all(|right| !left.intersects(*right)));
+        }
+    }
+
+    #[test]
+    fn names_keep_clear_of_the_images_of_vehicles() {
+        let room = Rect::from_min_size(pos2(0.0, 0.0), vec2(300.0, 200.0));
+        let images =
+            [pos2(140.0, 100.0), pos2(175.0, 104.0)].map(|at| Rect::from_center_size(at, vec2(50.0, 30.0)));
+        let mut labels: Vec<Label> =
+            images.map(|around| Label { around, ..label(0.0, 0.0, Rank::Vehicle) }).to_vec();
+        labels.push(label(150.0, 100.0, Rank::Place));
+        labels.push(label(190.0, 120.0, Rank::OnPath));
+        let plates = arrange(room, &labels, &vec![vec2(60.0, 16.0); labels.len()], &images);
+        assert!(plates[..2].iter().all(Option::is_some), "vehicles keep their names: {plates:?}");
+        for plate in plates.iter().flatten() {
+            assert!(images.iter().all(|image| !image.intersects(*plate)), "{plate:?}");
         }
     }
 

@@ -24,22 +24,24 @@ use terrain::Terrain;
 use terrain_view::camera::Camera;
 use terrain_view::flight::Flight;
 use terrain_view::gpu::TerrainImage;
+use terrain_view::pace::{Pace, Savings};
 use terrain_view::pick::Scene;
+use terrain_view::sun::Sun;
+use terrain_view::tour::Shot;
 use terrain_view::{driving, frame, navigate, scene};
 use text_editing::EditKind;
 use theme::space;
 use tpn::OccurrenceId;
 use workbench::command::{Command, CommandSender};
 use workbench::state::Selection;
-use workbench::state::settings::SettingsCommand;
-use workbench::state::settings::TerrainView;
-use workbench::state::terrain::{TerrainCommand, Tool};
+use workbench::state::settings::{Effects, SettingsCommand, SunView, TerrainView};
+use workbench::state::terrain::{Film, TerrainCommand, Tool};
 
 use crate::{Context, Panel, draw_menu, show_empty};
 use clearance::Clearance;
 use drag::Drag;
 use measure::Measurement;
-use surface::{DecalKey, Shown};
+use surface::{DecalKey, Light, Shown};
 
 /// The panel, with what concerns only it: the camera and what is on the graphics card.
 #[derive(Default)]
@@ -52,11 +54,15 @@ pub struct TerrainPanel {
     camera: Option<Camera>,
     /// Where the last frame looked from: over the ground.
     drawn: Option<Camera>,
+    /// The view of the whole map, and the shape of the panel that it was made for.
+    fitted: Option<(Camera, f32)>,
     flight: Option<Flight>,
-    /// The vehicle that the camera follows, as an index into the program's world.
-    follow: Option<usize>,
-    /// The vehicle that the camera is mounted on, likewise.
-    onboard: Option<usize>,
+    mount: Mount,
+    /// How far the camera of a tour had turned in the last frame.
+    toured_rad: f32,
+    /// What the light of the last frame was made from.
+    light: Option<Light>,
+    pace: Pace,
     drag: Option<Drag>,
     /// Where a tool's drag began.
     pressed_m: Option<Vec2>,
@@ -69,6 +75,29 @@ pub struct TerrainPanel {
     told_hover: Selection,
     /// The ground under the last right click.
     menu_m: Option<nalgebra::Point2<f64>>,
+}
+
+/// What moves the camera besides its user. Vehicles are indices into the program's world.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Mount {
+    #[default]
+    Free,
+    /// It keeps a vehicle in the middle.
+    Follow(usize),
+    /// It is on a vehicle, and looks ahead.
+    OnBoard(usize),
+    /// It goes to where something moves.
+    Tour(Shot),
+}
+
+impl Mount {
+    /// The vehicle that is kept in the middle.
+    const fn followed(self) -> Option<usize> {
+        match self {
+            Self::Follow(vehicle) | Self::Tour(Shot::Vehicle(vehicle)) => Some(vehicle),
+            _ => None,
+        }
+    }
 }
 
 /// The margin between the image's border and what is written on it.
@@ -90,26 +119,36 @@ impl Panel for TerrainPanel {
         }
         let views = &context.state.settings.views;
         let mut view = views.terrain.clone();
-        let followed = self.follow;
-        let mounts = [&mut self.follow, &mut self.onboard];
-        toolbar::show(ui, context, snapshot, &mut view, mounts, commands);
+        let before = self.mount;
+        let savings = self.savings(&view);
+        toolbar::show(ui, context, snapshot, &mut view, (&mut self.mount, savings), commands);
         if view != views.terrain {
             commands.send(Command::Settings(SettingsCommand::SetViews(Box::new(workbench::state::Views {
                 terrain: view.clone(),
                 ..views.clone()
             }))));
         }
-        if self.follow != followed && self.follow.is_some() {
+        if self.mount != before && matches!(self.mount, Mount::Follow(_)) {
             self.fly_to_followed(context, snapshot);
         }
         let map = context.state.maps.of(snapshot);
         self.show_ground(context, map, snapshot, &view);
         self.lay_decal(context, snapshot, map, &view);
+        self.lay_light(context, snapshot, &view);
         self.show_image(ui, context, snapshot, map, &view, commands);
     }
 }
 
 impl TerrainPanel {
+    /// What is left out of the image.
+    const fn savings(&self, view: &TerrainView) -> Savings {
+        match view.effects {
+            Effects::Automatic => self.pace.savings(),
+            Effects::Full => Savings::None,
+            Effects::Reduced => Savings::Most,
+        }
+    }
+
     fn show_image(
         &mut self,
         ui: &mut egui::Ui,
@@ -129,11 +168,27 @@ impl TerrainPanel {
         if rect.width() < 2.0 || rect.height() < 2.0 {
             return;
         }
-        if let (None, Some(shown)) = (self.camera, &self.ground) {
-            self.camera = Some(Camera::fitting(&shown.ground, rect.aspect_ratio()));
+        // As long as the user has not moved the camera, it shows the whole map, whatever the panel's shape.
+        if let Some(shown) = &self.ground
+            && (self.camera.is_none()
+                || self.fitted.is_some_and(|(camera, shape)| {
+                    self.camera == Some(camera) && shape != rect.aspect_ratio()
+                }))
+        {
+            let camera = Camera::fitting(&shown.ground, rect.aspect_ratio());
+            (self.camera, self.fitted) = (Some(camera), None);
         }
+        tell_film_area(ui, context, rect, commands);
         self.handle_input(&response, rect, context, snapshot, commands);
         self.move_camera(&response, context, snapshot);
+        let is_moving = context.state.playback.is_playing
+            || context.state.terrain.growth.is_playing
+            || self.flight.is_some()
+            || response.dragged();
+        self.pace.note(context.now_secs, is_moving);
+        if let (None, Some(camera)) = (self.fitted, self.camera) {
+            self.fitted = Some((camera, rect.aspect_ratio()));
+        }
         let (Some(camera), Some(shown)) = (self.drawn, &self.ground) else { return };
         let ground = &shown.ground;
         let scene =
@@ -153,6 +208,8 @@ impl TerrainPanel {
             camera: &camera,
             ground,
             sketch: &sketch,
+            sun: sun(context, view),
+            savings: self.savings(view),
         };
         match (context.render_state, &mut self.image) {
             (Some(state), Some(_)) if !TerrainImage::holds(state, ground) => {
@@ -224,10 +281,9 @@ impl TerrainPanel {
             let under = response.hover_pos().and_then(|pointer| scene.hit(pointer));
             navigate::update(response, &mut moved, scene.size(), under);
             if moved != wanted {
-                (self.flight, self.onboard) = (None, None);
-                if moved.target_m != wanted.target_m && !is_zoomed(&wanted, &moved) {
-                    self.follow = None;
-                }
+                self.flight = None;
+                let stays = moved.target_m == wanted.target_m || is_zoomed(&wanted, &moved);
+                self.mount = self.mount.followed().filter(|_| stays).map_or(Mount::Free, Mount::Follow);
                 self.camera = Some(moved);
             }
         }
@@ -326,6 +382,25 @@ impl TerrainPanel {
 /// Whether a camera has only come nearer or gone away, which following a vehicle survives.
 fn is_zoomed(before: &Camera, after: &Camera) -> bool {
     before.distance_m != after.distance_m
+}
+
+/// Tells which part of the window a video is of, when that has changed.
+fn tell_film_area(ui: &egui::Ui, context: &Context<'_>, rect: Rect, commands: &mut CommandSender) {
+    let Some(film) = context.state.terrain.film else { return };
+    let window = ui.ctx().content_rect();
+    let (corner, size) = (rect.min - window.min, window.size());
+    let area = [corner.x / size.x, corner.y / size.y, rect.width() / size.x, rect.height() / size.y];
+    if film != Film::Rolling(area) {
+        commands.send(Command::Terrain(TerrainCommand::FilmArea(area)));
+    }
+}
+
+/// The light: that of the mission's clock, or as it is set. What shows data only is lit as maps are.
+fn sun(context: &Context<'_>, view: &TerrainView) -> Sun {
+    let fixed = if view.data_only { SunView::default() } else { view.sun };
+    let time_of_day_secs =
+        context.state.time_of_day_secs().filter(|_| view.sun.follows_clock && !view.data_only);
+    time_of_day_secs.map_or_else(|| Sun::fixed(fixed.azimuth_deg, fixed.height_deg), Sun::at_time_of_day)
 }
 
 /// What the measuring tool has measured, if it has two places.

@@ -6,12 +6,13 @@ use snapshot::Snapshot;
 use terrain_view::camera::Camera;
 use terrain_view::flight::Flight;
 use terrain_view::ground::Ground;
+use terrain_view::tour::{self, Shot};
 use terrain_view::{pick, scene};
 use workbench::PanelKind;
 use workbench::ViewAction;
 use workbench::state::Selection;
 
-use super::{TerrainPanel, clearance};
+use super::{Mount, TerrainPanel, clearance};
 use crate::Context;
 
 /// How near the camera comes to a place that it flies to, in meters.
@@ -26,17 +27,20 @@ const AROUND: f32 = 1.6;
 impl TerrainPanel {
     /// Follows view actions, flights and vehicles, and keeps the eye over the ground.
     pub(super) fn move_camera(&mut self, response: &Response, context: &Context<'_>, snapshot: &Snapshot) {
+        self.tour(response.rect.aspect_ratio(), context, snapshot);
         if let Some(action) = context.view_action(PanelKind::Terrain) {
             self.follow_action(action, response.rect.aspect_ratio(), context, snapshot);
         }
         let (Some(mut camera), Some(shown)) = (self.camera, &self.ground) else { return };
         let ground = &shown.ground;
         let time = context.state.playback.time;
-        if let Some(camera) = self.onboard.and_then(|index| onboard(ground, snapshot, index, time)) {
+        if let Mount::OnBoard(index) = self.mount
+            && let Some(camera) = onboard(ground, snapshot, index, time)
+        {
             (self.camera, self.drawn, self.flight) = (Some(camera), Some(camera), None);
             return;
         }
-        let followed = self.follow.and_then(|index| {
+        let followed = self.mount.followed().and_then(|index| {
             let world = &snapshot.program.world;
             let vehicle = world.vehicles.get(index)?;
             let (place, _) = scene::vehicle_pose(snapshot, index, time)?;
@@ -60,8 +64,7 @@ impl TerrainPanel {
     }
 
     fn follow_action(&mut self, action: ViewAction, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
-        let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
-        let whole = Camera::fitting(&shown.ground, aspect);
+        let (Some(camera), Some(whole)) = (self.camera, self.whole(aspect)) else { return };
         match action {
             ViewAction::ZoomIn | ViewAction::ZoomOut => {
                 let mut nearer = camera;
@@ -69,22 +72,61 @@ impl TerrainPanel {
                 self.fly(camera, nearer, context);
             }
             ViewAction::ZoomReset | ViewAction::Fit => {
-                self.follow = None;
+                self.mount = Mount::Free;
                 self.fly(camera, whole, context);
             }
             ViewAction::TopView => self.fly(camera, camera.top_view(), context),
             ViewAction::FitSelection => {
-                self.follow = None;
+                self.mount = Mount::Free;
                 match &*context.state.selection {
                     Selection::None => self.fly_to_sample(context),
                     selection => self.fly_to(context, snapshot, selection, None),
                 }
             }
-            ViewAction::Follow if self.follow.is_some() => self.follow = None,
+            ViewAction::Follow if self.mount.followed().is_some() => self.mount = Mount::Free,
             ViewAction::Follow => {
-                self.follow = clearance::vehicle(snapshot, &context.state.selection);
+                let vehicle = clearance::vehicle(snapshot, &context.state.selection);
+                self.mount = vehicle.map_or(Mount::Free, Mount::Follow);
                 self.fly_to_followed(context, snapshot);
             }
+            ViewAction::Tour => {
+                let playback = &context.state.playback;
+                self.toured_rad = tour::turn_rad(playback.time, playback.end);
+                self.go_on_tour(aspect, context, snapshot);
+            }
+        }
+    }
+
+    /// The view of the whole map.
+    fn whole(&self, aspect: f32) -> Option<Camera> {
+        self.ground.as_ref().map(|shown| Camera::fitting(&shown.ground, aspect))
+    }
+
+    /// Goes where something moves, if the camera is on a tour, and turns it slowly there.
+    fn tour(&mut self, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
+        let Mount::Tour(before) = self.mount else { return };
+        let playback = &context.state.playback;
+        let turned_rad = tour::turn_rad(playback.time, playback.end);
+        if before != tour::shot(&snapshot.motions, playback.time, playback.end) {
+            self.go_on_tour(aspect, context, snapshot);
+        } else if let Some(camera) = &mut self.camera
+            && self.flight.is_none()
+            && !context.state.system.reduces_motion
+        {
+            camera.yaw_rad += turned_rad - self.toured_rad;
+        }
+        self.toured_rad = turned_rad;
+    }
+
+    /// Flies to what a tour is on at the time shown.
+    fn go_on_tour(&mut self, aspect: f32, context: &Context<'_>, snapshot: &Snapshot) {
+        let playback = &context.state.playback;
+        let shot = tour::shot(&snapshot.motions, playback.time, playback.end);
+        self.mount = Mount::Tour(shot);
+        match (shot, self.camera, self.whole(aspect)) {
+            (Shot::Map, Some(camera), Some(whole)) => self.fly(camera, whole, context),
+            (Shot::Vehicle(_), ..) => self.fly_to_followed(context, snapshot),
+            _ => {}
         }
     }
 
@@ -118,21 +160,23 @@ impl TerrainPanel {
                 None => return,
             },
         };
-        self.follow = None;
+        self.mount = Mount::Free;
         self.fly(camera, target, context);
     }
 
     pub(super) fn fly_to_followed(&mut self, context: &Context<'_>, snapshot: &Snapshot) {
         let (Some(camera), Some(shown)) = (self.camera, &self.ground) else { return };
         let time = context.state.playback.time;
-        let pose = self.follow.and_then(|index| scene::vehicle_pose(snapshot, index, time));
+        let pose = self.mount.followed().and_then(|index| scene::vehicle_pose(snapshot, index, time));
         if let Some((place, _)) = pose {
             self.fly(camera, camera.close_up(shown.ground.drape(place, 0.5), NEAR_M * 0.6), context);
         }
     }
 
     fn fly(&mut self, from: Camera, to: Camera, context: &Context<'_>) {
-        self.onboard = None;
+        if matches!(self.mount, Mount::OnBoard(_)) {
+            self.mount = Mount::Free;
+        }
         if context.state.system.reduces_motion {
             (self.camera, self.flight) = (Some(to), None);
         } else {

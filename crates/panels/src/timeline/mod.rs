@@ -413,7 +413,7 @@ impl TimelinePanel {
         match action {
             ViewAction::ZoomIn => view.zoom(axis, axis.center().x, 1.4, horizon),
             ViewAction::ZoomOut => view.zoom(axis, axis.center().x, 1.0 / 1.4, horizon),
-            ViewAction::TopView | ViewAction::Follow => {}
+            ViewAction::TopView | ViewAction::Follow | ViewAction::Tour => {}
             ViewAction::ZoomReset | ViewAction::Fit => {
                 self.is_fitted = true;
                 *view = TimeView::fit(shown_end, axis.width());

@@ -22,6 +22,7 @@ use crate::command::Command;
 use crate::effect::Effect;
 use crate::library::MissionKind;
 use crate::limits::{MAX_TEXT_BYTES, too_large};
+use crate::panel_effect::ViewAction;
 use crate::panel_kind::PanelKind;
 use crate::state::AppState;
 use crate::state::chance::ChanceCommand;
@@ -33,7 +34,7 @@ use crate::state::program_chance::ProgramChanceCommand;
 use crate::state::rule_proof::RuleProofCommand;
 use crate::state::search::{self, SearchCommand};
 use crate::state::selection::Selection;
-use crate::state::terrain::{TerrainCommand, Tool};
+use crate::state::terrain::{Film, TerrainCommand, Tool};
 use crate::workspace::Workspace;
 
 pub use transport::{Advanced, Track};
@@ -141,6 +142,19 @@ impl AppState {
     }
 
     fn apply_to_terrain(&mut self, command: TerrainCommand) {
+        match (&command, self.terrain.film) {
+            (TerrainCommand::ToggleVideo, Some(_)) => return self.end_film(),
+            (TerrainCommand::ToggleVideo, None) if self.playback.end <= 0.0 => {
+                return self.window.failed("Plan the mission first, then record a video");
+            }
+            // The video begins with the run.
+            (TerrainCommand::FilmArea(_), Some(Film::Wanted)) => {
+                self.playback.seek(0.0);
+                self.playback.play();
+            }
+            (TerrainCommand::View(ViewAction::Tour), _) => self.playback.play(),
+            _ => {}
+        }
         let (terrain, settings, mut text) = self.on_terrain();
         terrain.apply(command, settings, &mut text);
     }

@@ -5,13 +5,14 @@
 //! goes to the one [`Track`] that [`AppState::track`] names. Buttons that stand beside a drawing drive that drawing by
 //! its own commands. Whatever plays continues by itself in [`AppState::advance`], whichever track the keys drive.
 
+use crate::effect::Effect;
 use crate::panel_kind::PanelKind;
 use crate::state::AppState;
 use crate::state::automaton::AutomatonCommand;
 use crate::state::growth::GrowthCommand;
 use crate::state::playback::{self, TransportCommand};
 use crate::state::search::SearchCommand;
-use crate::state::terrain::TerrainCommand;
+use crate::state::terrain::{Film, TerrainCommand};
 
 /// What playing and stepping drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,6 +153,13 @@ impl AppState {
         }
     }
 
+    /// Ends the video that is recorded, and lets the user save it.
+    pub(super) fn end_film(&mut self) {
+        if let Some(Film::Rolling(_)) = self.terrain.film.take() {
+            self.window.ask(Effect::SaveFilm { name: format!("{}.webm", self.mission) });
+        }
+    }
+
     /// Lets `seconds` of the host's clock go by for everything that plays.
     pub fn advance(&mut self, seconds: f64) -> Advanced {
         let mut advanced = Advanced::default();
@@ -174,6 +182,9 @@ impl AppState {
         if self.playback.is_playing {
             self.playback.advance(seconds);
             advanced.also(true, 0.0);
+            if !self.playback.is_playing && matches!(self.terrain.film, Some(Film::Rolling(_))) {
+                self.end_film();
+            }
         }
         if advanced.is_changed {
             self.derive();

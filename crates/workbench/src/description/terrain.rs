@@ -26,6 +26,8 @@ pub struct Terrain {
     pub clearance: bool,
     /// How many rays of range sensors are drawn.
     pub rays: usize,
+    /// Whether a video is recorded.
+    pub recording: bool,
     pub growth: Option<PathGrowth>,
 }
 
@@ -92,6 +94,7 @@ pub(super) fn terrain(state: &AppState) -> Terrain {
         points: terrain.points_m.iter().map(|point| [point.x, point.y]).collect(),
         clearance: state.settings.views.terrain.clearance,
         rays: rays.sum(),
+        recording: terrain.film.is_some(),
         growth: terrain.growth.shown().map(|shown| path_growth(terrain.growth.planners, shown)),
     }
 }

@@ -150,6 +150,11 @@ pub(super) fn with_vehicles(state: &AppState) -> Availability {
     if has_vehicles { Ok(()) } else { Err("the mission has no vehicles") }
 }
 
+pub(super) fn with_motion(state: &AppState) -> Availability {
+    let has_motion = state.shown().is_some_and(|shown| !shown.motions.is_empty());
+    if has_motion { Ok(()) } else { Err("the plan moves no vehicle") }
+}
+
 pub(super) fn with_natures_choice(state: &AppState) -> Availability {
     let chosen = state.shown().and_then(|shown| {
         let (network, plan) = (shown.network.as_deref()?, shown.plan()?);

@@ -10,7 +10,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("baseline", &["compare.pin"]),
     ("beautify", &["edit.format"]),
     ("bindings", &["help.keys"]),
-    ("camera", &["terrain.follow", "terrain.top", "terrain.reset"]),
+    ("camera", &["terrain.follow", "terrain.tour", "terrain.top", "terrain.reset"]),
     ("change order", &["draw.earlier", "draw.later"]),
     ("chart", &["Timeline"]),
     ("check", &["review.run", "Problems"]),

@@ -1,7 +1,7 @@
 //! The ground, its camera and its tools.
 
 use super::arguments::{number_argument, text_argument};
-use super::available::{with_goal_of_flight, with_ground, with_paths, with_run, with_vehicles};
+use super::available::{with_goal_of_flight, with_ground, with_motion, with_paths, with_run, with_vehicles};
 use super::spec::{PLAIN, called, keys, plain, when};
 use crate::command::Command;
 use crate::command::chord::Key;
@@ -23,6 +23,18 @@ pub(super) const COMMANDS: &[CommandSpec] = &[
             Command::Terrain(TerrainCommand::View(ViewAction::Follow))
         }),
         with_vehicles,
+    ),
+    when(
+        plain("terrain.tour", "Tour run", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::View(ViewAction::Tour))
+        }),
+        with_motion,
+    ),
+    when(
+        plain("terrain.video", "Record or stop video", Group::Terrain, &[], Scope::Everywhere, |_| {
+            Command::Terrain(TerrainCommand::ToggleVideo)
+        }),
+        with_ground,
     ),
     when(
         plain("terrain.top", "Show top-down view", Group::Terrain, &[], Scope::Everywhere, |_| {

@@ -45,6 +45,7 @@ pub mod window;
 use std::sync::Arc;
 
 use link::Update;
+use report::calendar::Calendar;
 use smol_str::SmolStr;
 use snapshot::{Robustness, Snapshot};
 use text_editing::Document;
@@ -287,6 +288,14 @@ impl AppState {
             && self.status() == Status::Plan
             && self.execution.trouble().is_none()
             && !self.is_executing()
+    }
+
+    /// Seconds after midnight at the time shown, by the start date that was given; `None` if there is no such date.
+    pub fn time_of_day_secs(&self) -> Option<f64> {
+        const DAY_SECS: f64 = 86_400.0;
+        let unit = self.shown()?.program.options.time_unit;
+        let start_secs = Calendar::new(self.settings.epoch.trim(), unit)?.epoch().as_second() as f64;
+        Some((start_secs + self.playback.time * unit.seconds() as f64).rem_euclid(DAY_SECS))
     }
 
     /// The run of the mission, while it is shown.

@@ -62,6 +62,13 @@ impl Playback {
         self.is_playing = !self.is_playing && self.end > 0.0;
     }
 
+    /// Starts, at the end over again; nothing changes if time runs already.
+    pub fn play(&mut self) {
+        if !self.is_playing {
+            self.toggle();
+        }
+    }
+
     /// Goes to a time within the plan.
     pub fn seek(&mut self, time: f64) {
         if time.is_finite() {

@@ -75,6 +75,8 @@ pub enum SettingsCommand {
     SetTheme(ThemeChoice),
     /// How large text is; 1 is the designed size.
     SetTextScale(f32),
+    /// When missions start, as a date; empty if that is not known.
+    SetEpoch(String),
 }
 
 impl Settings {
@@ -85,6 +87,7 @@ impl Settings {
             SettingsCommand::SetSearch(search) => self.plan.search = Some(search),
             SettingsCommand::SetSeed(seed) => self.plan.seed = seed,
             SettingsCommand::SetTrace(trace) => self.plan.trace = trace,
+            SettingsCommand::SetEpoch(epoch) => self.epoch = epoch,
             SettingsCommand::SetViews(views) => self.views = *views,
             SettingsCommand::SetTheme(theme) => {
                 self.theme = theme;
@@ -105,6 +108,9 @@ impl Settings {
         self.text_scale = within(self.text_scale, TEXT_SCALES, Self::default().text_scale);
         let heights = &mut self.views.terrain.height_scale;
         *heights = within(*heights, HEIGHT_SCALES, TerrainView::default().height_scale);
+        let (sun, usual) = (&mut self.views.terrain.sun, SunView::default());
+        sun.azimuth_deg = within(sun.azimuth_deg, SUN_AZIMUTHS_DEG, usual.azimuth_deg);
+        sun.height_deg = within(sun.height_deg, SUN_HEIGHTS_DEG, usual.height_deg);
         self
     }
 }
@@ -350,6 +356,45 @@ pub struct TerrainView {
     pub coloring: Coloring,
     /// How much heights are exaggerated; 1 is true to scale.
     pub height_scale: f32,
+    pub sun: SunView,
+    /// How much is drawn that costs time.
+    pub effects: Effects,
+}
+
+/// Where the light of the terrain comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SunView {
+    /// Whether the sun goes by the mission's clock, once the start date is known.
+    pub follows_clock: bool,
+    /// Clockwise from north.
+    pub azimuth_deg: f32,
+    /// Over the horizon.
+    pub height_deg: f32,
+}
+
+/// The directions and heights that the sun can be set to, in degrees.
+pub const SUN_AZIMUTHS_DEG: [f32; 2] = [0.0, 360.0];
+pub const SUN_HEIGHTS_DEG: [f32; 2] = [5.0, 90.0];
+
+impl Default for SunView {
+    fn default() -> Self {
+        // From the north-west, from where people take hills for hills on maps.
+        Self { follows_clock: true, azimuth_deg: 310.0, height_deg: 45.0 }
+    }
+}
+
+/// How much of the terrain is drawn that costs time and says nothing about the mission.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Effects {
+    /// All of it, and less where frames are slow.
+    #[default]
+    Automatic,
+    /// All of it, however slow.
+    Full,
+    /// Little of it.
+    Reduced,
 }
 
 /// What the colors of the ground mean.
@@ -378,6 +423,8 @@ impl Default for TerrainView {
             clearance: false,
             coloring: Coloring::Natural,
             height_scale: 2.0,
+            sun: SunView::default(),
+            effects: Effects::default(),
         }
     }
 }

@@ -5,6 +5,7 @@ use rmpl::Span;
 use smol_str::SmolStr;
 use text_editing::{Caret, EditKind};
 
+use crate::effect::Effect;
 use crate::panel_effect::ViewAction;
 use crate::panel_kind::PanelKind;
 use crate::state::editing::Writing;
@@ -62,7 +63,21 @@ pub struct TerrainState {
     pub points_m: Vec<Point2<f64>>,
     /// The growth of search trees.
     pub growth: Growth,
+    /// The video that is recorded, if one is.
+    pub film: Option<Film>,
 }
+
+/// A video of the terrain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Film {
+    /// It begins when the terrain is on screen.
+    Wanted,
+    /// What is drawn in this part of the window is recorded.
+    Rolling(Area),
+}
+
+/// A part of the window: left, top, width and height, from 0 to 1.
+pub type Area = [f32; 4];
 
 /// What can be asked of the terrain.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,6 +104,10 @@ pub enum TerrainCommand {
     ToggleClearance,
     /// Something that concerns the growth of search trees.
     Growth(GrowthCommand),
+    /// Records a video of the plan or the run from its start to its end, or ends it and saves what there is.
+    ToggleVideo,
+    /// The video that is wanted or recorded is of this part of the window.
+    FilmArea(Area),
 }
 
 impl TerrainState {
@@ -135,6 +154,16 @@ impl TerrainState {
                 self.growth.apply(command, text.maps.growth_input(text.snapshots, text.selection));
                 if command == GrowthCommand::Toggle {
                     text.window.turn_to(PanelKind::Terrain);
+                }
+            }
+            TerrainCommand::ToggleVideo => {
+                self.film = Some(Film::Wanted);
+                text.window.turn_to(PanelKind::Terrain);
+            }
+            TerrainCommand::FilmArea(area) => {
+                if self.film.is_some() {
+                    self.film = Some(Film::Rolling(area));
+                    text.window.ask(Effect::Film(area));
                 }
             }
         }

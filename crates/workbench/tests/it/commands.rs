@@ -7,8 +7,8 @@ use workbench::registry::all_commands;
 /// What a title may start with. *New mission* and *About Enroute* are called so everywhere.
 const VERBS: &str = "About Acknowledge Add Advance Allow Announce Answer Approve Build Change Choose Close Compare Contradict Convert Copy \
     Create Cut Decrease Delete Draw Duplicate Expand Export Find Focus Fold Follow Force Format Go Group Import Increase Insert Make \
-    Maximize Measure Merge Move New Open Paste Pin Place Plan Play Prove Redo Remove Rename Reopen Replace Replay Reset Resolve Restart \
-    Restore Review Run Save Search Select Send Set Show Solve Stop Switch Take Toggle Trigger Trust Try Undo Unfold Unpin Use Waive Withdraw Wrap Write \
+    Maximize Measure Merge Move New Open Paste Pin Place Plan Play Prove Record Redo Remove Rename Reopen Replace Replay Reset Resolve Restart \
+    Restore Review Run Save Search Select Send Set Show Solve Stop Switch Take Toggle Tour Trigger Trust Try Undo Unfold Unpin Use Waive Withdraw Wrap Write \
     Zoom";
 
 const MAX_WORDS: usize = 5;
