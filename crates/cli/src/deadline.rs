@@ -30,7 +30,7 @@ pub struct Deadline(Option<Instant>);
 pub struct Enforced(Arc<Mutex<bool>>);
 
 impl Enforced {
-    /// There is an answer: the limit has no say any more.
+    /// Lifts the limit, because there is an answer.
     pub fn answered(self) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = true;
     }
@@ -98,14 +98,14 @@ impl Deadline {
         self.0.is_some_and(|deadline| Instant::now() >= deadline + GRACE)
     }
 
-    /// From now on the process ends when the time is up, whatever it does, until what is undecided is answered.
+    /// Ends the process when the time is up, until [`Enforced::answered`] is called.
     pub fn enforce(self, undecided: Undecided, answer: (&'static str, Format)) -> Enforced {
         let enforced = Enforced(Arc::new(Mutex::new(false)));
         if let Some(moment) = self.0 {
             let is_answered = Arc::clone(&enforced.0);
             std::thread::spawn(move || {
                 std::thread::sleep(moment.saturating_duration_since(Instant::now()));
-                // Who answers does not let go before the answer is there.
+                // The lock is held until the answer is printed.
                 let is_answered = is_answered.lock().unwrap_or_else(PoisonError::into_inner);
                 if !*is_answered {
                     print_failure(answer, E_TIME, &TimeIsUp(undecided).to_string());

@@ -5,23 +5,25 @@
 //! may have several ways. A bound holds for all of them: before a path is known, that of the straight line at the greatest
 //! speed. The search for an order assumes more: that a leg takes what the paths that are known say.
 
-use snapshot::vehicle;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use exact::{Rational, Time};
 use nalgebra::{Point2, distance};
+use rmpl::program::LabelMode;
 use smol_str::{SmolStr, format_smolstr};
 use tpn::worth::rounded_up;
-use tpn::{Departure, Distance, Extent, LabelId, Network, OccurrenceId, ValueId};
+use tpn::{Departure, Distance, Extent, LabelId, Network, OccurrenceId, ValueId, ValueSet, VariableId};
 
 use crate::ground::{Grounds, StandingGround};
 use crate::planning::{self, Problem};
 use crate::spots::PossibleSpots;
 use crate::traverse::{self, Route, Waypoint};
+use crate::world_index::WorldIndex;
 
 /// How long the movements of a mission take, by where they start.
 pub(crate) struct Departures<'mission> {
     problem: Problem<'mission>,
+    index: WorldIndex<'mission>,
     spots: PossibleSpots<'mission>,
     movements: Vec<Movement>,
     /// What paths have told, of each way of a leg.
@@ -82,9 +84,12 @@ impl<'mission> Departures<'mission> {
     /// Of the traverses of a problem, by straight lines.
     pub(crate) fn new(problem: &Problem<'mission>, grounds: &mut Grounds) -> Self {
         let spots = PossibleSpots::new(problem.network, problem.program, planning::places(problem));
-        let mut departures = Self { problem: *problem, spots, movements: Vec::new(), known: BTreeMap::new() };
-        for index in 0..problem.network.occurrences.len() {
-            let movement = departures.movement(OccurrenceId::from_index(index), grounds);
+        let index = WorldIndex::new(problem.program);
+        let (movements, known) = (Vec::new(), BTreeMap::new());
+        let mut departures = Self { problem: *problem, index, spots, movements, known };
+        let (arrivals, given) = (arrivals(problem.network), given_values(problem.network));
+        for (&occurrence, labels) in &arrivals {
+            let movement = departures.movement(occurrence, labels, &given, grounds);
             departures.movements.extend(movement);
         }
         departures
@@ -257,30 +262,36 @@ impl<'mission> Departures<'mission> {
         distances
     }
 
-    fn movement(&self, occurrence: OccurrenceId, grounds: &mut Grounds) -> Option<Movement> {
-        let (network, program) = (self.problem.network, self.problem.program);
-        let moving = vehicle::moving(program, &network.occurrences[occurrence.index()])?;
+    /// The movement of an occurrence whose effects are `labels`, from each place that something in the network gives its leader.
+    fn movement(
+        &self,
+        occurrence: OccurrenceId,
+        labels: &[LabelId],
+        given: &BTreeMap<VariableId, BTreeSet<ValueId>>,
+        grounds: &mut Grounds,
+    ) -> Option<Movement> {
+        let network = self.problem.network;
+        let moving = self.index.moving(&network.occurrences[occurrence.index()])?;
         let name = format_smolstr!("{}.at", moving.vehicles.first()?);
-        let is_arrival = |label: &&tpn::Label| {
-            label.owner == Some(occurrence)
-                && label.extent == Extent::Effect
-                && network.variables[label.literal.variable.index()].name == name
-        };
-        let position = network.labels.iter().position(|label| is_arrival(&label))?;
-        let variable = &network.variables[network.labels[position].literal.variable.index()];
-        let route = traverse::route_from(network, program, occurrence, None)?;
-        let arrival = LabelId::from_index(position);
+        let variable_of = |label: LabelId| network.labels[label.index()].literal.variable;
+        let is_arrival = |&label: &LabelId| network.variables[variable_of(label).index()].name == name;
+        let arrival = labels.iter().copied().find(is_arrival)?;
+        let variable = &network.variables[variable_of(arrival).index()];
+        let route = self.route_from(occurrence, None)?;
         let mut movement = Movement { occurrence, arrival, route, ground: None, places: Vec::new() };
-        for (index, name) in variable.values.iter().enumerate() {
-            let Some(middle) = traverse::waypoint(&program.world, name) else { continue };
-            let (from, to) = self.ends(&movement, &middle);
+        let to = self.after(&movement);
+        for &value in given.get(&variable_of(arrival)).into_iter().flatten() {
+            let name = variable.values.get(value.index());
+            let Some(middle) = name.and_then(|name| self.index.waypoint(name)) else { continue };
+            let from = self.before(&movement, &middle);
             let is_beside = from.iter().chain(&to).any(|place| place.slot > 0);
             if let Some(ground) = self.problem.ground.filter(|_| is_beside && movement.ground.is_none()) {
-                movement.ground = Some(grounds.standing(ground, &program.world, movement.route.vehicles[0]));
+                movement.ground =
+                    Some(grounds.standing(ground, &self.problem.program.world, movement.route.vehicles[0]));
             }
             let straights = pairs(&movement, &from, &to).map(|ends| self.straight(&movement, &ends));
             let place = Place {
-                value: ValueId::from_index(index),
+                value,
                 is_reached: !self.spots.before(occurrence, movement.route.vehicles[0], &middle).is_empty(),
                 is_open: from.len() > 1 || to.len() > 1,
                 straight: least_of(straights),
@@ -293,19 +304,31 @@ impl<'mission> Departures<'mission> {
 
     /// Where a movement may start at a location, and where it may end.
     fn ends(&self, movement: &Movement, at: &Waypoint) -> (Vec<Waypoint>, Vec<Waypoint>) {
-        let Route { vehicles, waypoints, .. } = &movement.route;
-        let mut from = self.spots.before(movement.occurrence, vehicles[0], at);
+        (self.before(movement, at), self.after(movement))
+    }
+
+    fn before(&self, movement: &Movement, at: &Waypoint) -> Vec<Waypoint> {
+        let mut from = self.spots.before(movement.occurrence, movement.route.vehicles[0], at);
         if from.is_empty() {
             from.push(at.clone());
         }
+        from
+    }
+
+    fn after(&self, movement: &Movement) -> Vec<Waypoint> {
+        let Route { vehicles, waypoints, .. } = &movement.route;
         let to = waypoints.last().map(|last| self.spots.after(movement.occurrence, vehicles, last));
-        (from, to.unwrap_or_default())
+        to.unwrap_or_default()
+    }
+
+    fn route_from(&self, occurrence: OccurrenceId, from: Option<&Waypoint>) -> Option<Route> {
+        let world = &self.problem.program.world;
+        traverse::route_from(self.problem.network, (world, &self.index), occurrence, from)
     }
 
     /// A movement from one place to another one.
     fn route(&self, movement: &Movement, from: &Waypoint, to: &Waypoint) -> Option<Route> {
-        let Problem { network, program, .. } = self.problem;
-        let mut route = traverse::route_from(network, program, movement.occurrence, Some(from))?;
+        let mut route = self.route_from(movement.occurrence, Some(from))?;
         *route.waypoints.last_mut()? = to.clone();
         Some(route)
     }
@@ -331,6 +354,28 @@ impl<'mission> Departures<'mission> {
         let least = round_down(meters / speed_mps / Rational::from_integer(unit_seconds).to_f64());
         Bounds { least: Some(least.unwrap_or_default()), meters: parts_rounded_down(meters) }
     }
+}
+
+/// The effects of each occurrence, in order.
+fn arrivals(network: &Network) -> BTreeMap<OccurrenceId, Vec<LabelId>> {
+    let mut arrivals: BTreeMap<OccurrenceId, Vec<LabelId>> = BTreeMap::new();
+    for (position, label) in network.labels.iter().enumerate() {
+        if let Some(owner) = label.owner.filter(|_| label.extent == Extent::Effect) {
+            arrivals.entry(owner).or_default().push(LabelId::from_index(position));
+        }
+    }
+    arrivals
+}
+
+/// The values that something gives each variable: no vehicle departs from a place to which nothing brings it.
+fn given_values(network: &Network) -> BTreeMap<VariableId, BTreeSet<ValueId>> {
+    let mut given: BTreeMap<VariableId, BTreeSet<ValueId>> = BTreeMap::new();
+    for label in network.labels.iter().filter(|label| label.mode == LabelMode::Tell) {
+        if let ValueSet::In(values) = &label.literal.values {
+            given.entry(label.literal.variable).or_default().extend(values);
+        }
+    }
+    given
 }
 
 /// The ways from each of some places to each of others.

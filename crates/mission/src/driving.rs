@@ -3,6 +3,7 @@
 //! The leader of a traverse drives its path at constant speed from the traverse's start to its end; the others keep
 //! formation behind it. When the same vehicles drive on, their formation continues along the path before.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use exact::Time;
@@ -44,14 +45,10 @@ pub(crate) fn all_tracks(drives: &[Drive]) -> Vec<Vec<Vec<Place>>> {
 
 /// The motions of all vehicles that move, in the order of the vehicles, by [`all_tracks`] of the drives.
 pub(crate) fn motions(drives: &[Drive], all_tracks: &[Vec<Vec<Place>>]) -> Vec<VehicleMotion> {
-    let mut motions: Vec<VehicleMotion> = Vec::new();
+    let mut motions: BTreeMap<u32, Vec<Keyframe>> = BTreeMap::new();
     for (drive, tracks) in drives.iter().zip(all_tracks) {
         for (vehicle, track) in drive.vehicles.iter().zip(tracks) {
-            let at = motions.iter().position(|motion| motion.vehicle == *vehicle).unwrap_or_else(|| {
-                motions.push(VehicleMotion { vehicle: *vehicle, keyframes: Vec::new() });
-                motions.len() - 1
-            });
-            let frames = &mut motions[at].keyframes;
+            let frames = motions.entry(*vehicle).or_default();
             // A vehicle that comes from elsewhere joins the formation on the way.
             let joins = frames.last().filter(|last| {
                 track.first().is_some_and(|first| distance(&last.position_m, &first.position_m) > EVEN_M)
@@ -60,8 +57,7 @@ pub(crate) fn motions(drives: &[Drive], all_tracks: &[Vec<Vec<Place>>]) -> Vec<V
             frames.extend(keyframes(track, from, drive.start, drive.end));
         }
     }
-    motions.sort_by_key(|motion| motion.vehicle);
-    motions
+    motions.into_iter().map(|(vehicle, keyframes)| VehicleMotion { vehicle, keyframes }).collect()
 }
 
 /// A place on the way of a vehicle, and which share of its time has then gone by.
@@ -83,7 +79,6 @@ pub(crate) fn tracks_m(drive: &Drive) -> Vec<Path> {
 
 /// The ways of the vehicles of a drive, the leader's first; `before` are the drives that came before it.
 fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
-    let (path, driven_m) = prolonged_back(drive, before);
     let length_m = drive.path.length_m();
     let share = |way_m: f64| if length_m > 0.0 { way_m / length_m } else { 1.0 };
     let mut leader = Vec::with_capacity(drive.path.points_m.len());
@@ -100,6 +95,7 @@ fn tracks(drive: &Drive, before: &[Drive]) -> Vec<Vec<Place>> {
         return tracks;
     }
     tracks.resize(drive.vehicles.len(), Vec::new());
+    let (path, driven_m) = prolonged_back(drive, before);
     let formation = Formation { spacing_m: drive.spacing_m };
     let steps = (length_m / FOLLOWER_STEP_M).ceil().max(1.0) as u32;
     for step in 0..=steps {

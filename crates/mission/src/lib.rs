@@ -36,6 +36,7 @@ mod sight;
 mod simulation;
 mod spots;
 pub mod traverse;
+mod world_index;
 
 pub use self::core::Core;
 pub use control::{Control, read_control};

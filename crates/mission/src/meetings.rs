@@ -31,11 +31,14 @@ const SPARE_M: f64 = 0.3;
 /// Where the paths of traverses may not go, because other vehicles are there then.
 pub type KeepOuts = BTreeMap<OccurrenceId, Vec<ObstacleShape>>;
 
+/// Plans a mission again; `None` if planning is to stop.
+type PlanAgain<'a> = dyn FnMut(&Problem<'_>) -> Option<Planned> + 'a;
+
 /// `planned`, or a plan of the same mission in which fewer vehicles come too near each other.
 pub(crate) fn kept_apart(
     problem: &Problem<'_>,
     mut planned: Planned,
-    plan_again: &mut dyn FnMut(&Problem<'_>) -> Planned,
+    plan_again: &mut PlanAgain<'_>,
 ) -> Planned {
     let best = best_plan(&planned).map(|(plan, counted_m)| (plan.clone(), counted_m));
     let mut network = Arc::clone(problem.network);
@@ -49,6 +52,7 @@ pub(crate) fn kept_apart(
         tried.insert((first, then));
         let ordered = Arc::new(with_order(&network, first, then));
         let other = plan_again(&Problem { network: &ordered, options, ..*problem });
+        let Some(other) = other else { break };
         let is_valid = other.planning.verdict.as_ref().is_some_and(|verdict| verdict.valid);
         let has_plan = planning::has_plan(&other.planning.outcome);
         if is_valid && has_plan && is_better(problem.network, &planned, &other) {
@@ -117,11 +121,7 @@ fn admit_worse(network: &Network, best: (&Plan, f64), planned: &mut Planned) {
 
 /// `planned`, or a plan of the same mission in which fewer vehicles come too near each other, because the paths of some go
 /// around where the others can be then.
-fn led_around(
-    problem: &Problem<'_>,
-    mut planned: Planned,
-    plan_again: &mut dyn FnMut(&Problem<'_>) -> Planned,
-) -> Planned {
+fn led_around(problem: &Problem<'_>, mut planned: Planned, plan_again: &mut PlanAgain<'_>) -> Planned {
     let mut keep_outs = KeepOuts::new();
     let mut tried: BTreeSet<(OccurrenceId, u32)> = BTreeSet::new();
     let mut in_vain = 0;
@@ -134,6 +134,7 @@ fn led_around(
         for _ in 0..MAX_WAYS_OF_TRAVERSE {
             wider.entry(way.occurrence).or_default().append(&mut places);
             let other = plan_again(&Problem { keep_outs: Some(&wider), ..*problem });
+            let Some(other) = other else { return planned };
             let is_valid = other.planning.verdict.as_ref().is_some_and(|verdict| verdict.valid);
             let fits = is_valid && planning::has_plan(&other.planning.outcome);
             if fits && is_better(problem.network, &planned, &other) {

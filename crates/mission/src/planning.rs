@@ -6,7 +6,7 @@
 use snapshot::vehicle;
 use std::borrow::Cow;
 use std::cell::Cell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use exact::{Bound, Rational, Time};
@@ -140,7 +140,7 @@ pub struct Planned {
 /// Rounds of planning and path finding; each adds the paths of at least one traverse or of a new start for one.
 const MAX_ROUNDS: usize = 64;
 
-/// A traverse as it stands in the network: its way, and its legs, or why it can't be driven.
+/// A traverse as it is in the network: its way, and its legs, or why it can't be driven.
 pub(crate) struct Inserted {
     pub(crate) waypoints: Vec<Waypoint>,
     pub(crate) legs: Result<Vec<Leg>, Undrivable>,
@@ -182,7 +182,9 @@ fn plan_first(
     if planned.separation_violations.is_empty() || stop() {
         return planned;
     }
-    meetings::kept_apart(problem, planned, &mut |problem| plan_paths(problem, grounds, paths, stop))
+    meetings::kept_apart(problem, planned, &mut |problem| {
+        if stop() { None } else { Some(plan_paths(problem, grounds, paths, stop)) }
+    })
 }
 
 /// Plans `problem` with the paths of its first plan; others that are asked for have theirs only as far as they share them. Where
@@ -1032,14 +1034,12 @@ fn with_parked(mut motions: Vec<VehicleMotion>, problem: &Problem<'_>) -> Vec<Ve
         return motions;
     }
     let starts = standing::starts(program, &problem.network.occurrences);
-    for (vehicle, start) in starts.into_iter().enumerate() {
-        let is_moved = |motion: &VehicleMotion| motion.vehicle as usize == vehicle;
-        let has_stopped = places(problem).iter().any(|stopped| stopped.vehicle as usize == vehicle);
-        let Some(start) = start.filter(|_| !has_stopped && !motions.iter().any(is_moved)) else {
-            continue;
-        };
+    let moved = motions.iter().map(|motion| motion.vehicle);
+    let elsewhere: BTreeSet<u32> = moved.chain(places(problem).iter().map(|it| it.vehicle)).collect();
+    for (vehicle, start) in (0..).zip(starts) {
+        let Some(start) = start.filter(|_| !elsewhere.contains(&vehicle)) else { continue };
         let frame = Keyframe { time: Time::ZERO, position_m: start.place_m, heading_rad: 0.0 };
-        motions.push(VehicleMotion { vehicle: vehicle as u32, keyframes: vec![frame] });
+        motions.push(VehicleMotion { vehicle, keyframes: vec![frame] });
     }
     motions.sort_by_key(|motion| motion.vehicle);
     motions

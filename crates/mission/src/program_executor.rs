@@ -43,7 +43,7 @@ pub struct ProgramExecutor<'run> {
     revision: Option<Revision>,
 }
 
-/// Where everything stands after a step.
+/// Where everything is after a step.
 #[derive(Clone)]
 struct Moment {
     time: Time,
@@ -170,7 +170,7 @@ impl<'run> ProgramExecutor<'run> {
         })
     }
 
-    /// What was to come after `now` is forgotten.
+    /// Drops everything that was planned after `now`.
     fn go_back(&mut self, now: Time) {
         let known = self.moments.partition_point(|moment| moment.time <= now);
         self.moments.truncate(known);
@@ -208,7 +208,7 @@ impl<'run> ProgramExecutor<'run> {
         self.end_what_is_done(&mut moment)?;
         let is_awaited = |active: &Active| active.given_up > moment.time;
         if !moment.active().any(is_awaited) {
-            // Whoever ended at once has no step of its own.
+            // A program that ends at once has no step of its own.
             self.moments.pop();
             self.moments.push(moment);
             return Ok(false);

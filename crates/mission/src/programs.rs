@@ -44,7 +44,7 @@ impl Programs {
             found.push(Diagnostic::error(Code("E-DUP"), extra.span, message));
         }
         let runners =
-            program.primitives.iter().filter_map(|primitive| Some((primitive, primitive.runs.as_ref()?)));
+            program.primitives.iter().filter_map(|primitive| Some((primitive, primitive.runs.as_deref()?)));
         let mut runners = runners.peekable();
         if runners.peek().is_none() {
             return (programs, found);

@@ -180,7 +180,7 @@ impl Reading {
     fn compile_programs(&mut self, network: Option<&Network>) {
         let program = self.program();
         let runners: Vec<(SmolStr, Runs)> = (program.value.primitives.iter())
-            .filter_map(|primitive| Some((primitive.name.text.clone(), primitive.runs.clone()?)))
+            .filter_map(|primitive| Some((primitive.name.text.clone(), primitive.runs.as_deref().cloned()?)))
             .collect();
         let is_handed = |activity: &SmolStr| {
             runners.iter().any(|(name, runs)| name == activity && !runs.arguments.is_empty())

@@ -320,7 +320,7 @@ fn durations(
         };
         occurrence.arc.is_some_and(is_chosen)
     };
-    // Whoever says what the environment chooses leaves the rest to the plan.
+    // If uncertainty is given for what the environment chooses, the plan decides the rest.
     let is_told = network.occurrences.iter().any(is_natures);
     let primitives = network.occurrences.iter().enumerate();
     primitives

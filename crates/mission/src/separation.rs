@@ -6,9 +6,9 @@ mod schedules;
 use std::collections::BTreeMap;
 
 use motion::TimedPoint;
-use nalgebra::{Point2, distance};
+use nalgebra::{Point2, Vector2, distance};
 use rmpl::Diagnostic;
-use rmpl::program::Program;
+use rmpl::program::{Program, World};
 use snapshot::vehicle::{GAP_M, flies, radius_m};
 use snapshot::{MovementTimes, SeparationViolation, VehicleMotion, standing};
 use tpn::{ArcKind, Network, NodeId, OccurrenceId, Plan};
@@ -83,44 +83,86 @@ pub(crate) fn meetings(
     network: &Network,
     plan: &Plan,
 ) -> Vec<Meeting> {
-    let world = &program.world;
     let parts = parts((drives, tracks), motions, program, network);
-    let events: Vec<NodeId> = parts.values().flatten().flat_map(|it| [it.from, it.until[1]]).collect();
-    let Some(gaps) = (parts.len() > 1).then(|| Gaps::new(network, plan, &events)).flatten() else {
+    let near = near_parts(&parts, &program.world);
+    let of = |(vehicle, index): (u32, usize)| &parts[&vehicle][index];
+    let pairs = near.iter().map(|pair| [of(pair.one), of(pair.other)]);
+    let events = pairs.map(|pair| pair.map(|part| [part.from, part.until[0], part.until[1]]).concat());
+    let Some(gaps) = (!near.is_empty()).then(|| Gaps::new(network, plan, events)).flatten() else {
         return Vec::new();
     };
     let mut found = Vec::new();
-    // Once for each vehicle, and not for each pair.
-    let bodies: BTreeMap<u32, (bool, f64)> =
-        parts.keys().map(|&vehicle| (vehicle, (flies(world, vehicle), radius_m(world, vehicle)))).collect();
-    for (&one, own) in &parts {
-        let (one_flies, one_radius_m) = bodies[&one];
-        for (&other, others) in parts.range(one + 1..) {
-            let (other_flies, other_radius_m) = bodies[&other];
-            if one_flies != other_flies {
-                continue;
-            }
-            let safety_m = one_radius_m + other_radius_m + GAP_M;
-            for (index, part) in own.iter().enumerate() {
-                for (other_index, other_part) in others.iter().enumerate() {
-                    let is_together = part.movement.is_some() && part.movement == other_part.movement;
-                    let (full, other_full) = (part.full(), other_part.full());
-                    if is_together || gaps.is_before(&full, &other_full) || gaps.is_before(&other_full, &full)
-                    {
-                        continue;
-                    }
-                    let Some(meeting) = meeting(&gaps, [one, other], [part, other_part], safety_m) else {
-                        continue;
-                    };
-                    let orders = orders([(own.as_slice(), index), (others.as_slice(), other_index)]);
-                    found.push(Meeting { orders, ..meeting });
-                }
-            }
+    for NearParts { one, other, safety_m } in near {
+        let (part, other_part) = (of(one), of(other));
+        let (full, other_full) = (part.full(), other_part.full());
+        if gaps.is_before(&full, &other_full) || gaps.is_before(&other_full, &full) {
+            continue;
         }
+        let Some(meeting) = meeting(&gaps, [one.0, other.0], [part, other_part], safety_m) else { continue };
+        let orders = orders([one, other].map(|(vehicle, index)| (parts[&vehicle].as_slice(), index)));
+        found.push(Meeting { orders, ..meeting });
     }
     in_earliest_schedule(&mut found, drives, motions);
     found.sort_by_key(|meeting| !meeting.violation.schedule.is_empty());
     found
+}
+
+/// Parts of two vehicles whose tracks may be nearer to each other than `safety_m`, each with the vehicle and its number there.
+struct NearParts {
+    one: (u32, usize),
+    other: (u32, usize),
+    safety_m: f64,
+}
+
+/// The pairs of parts of different vehicles that are not one movement and have boxes around their tracks that are near each
+/// other, in the order of vehicles and parts: boxes are compared with those that overlap them from west to east.
+fn near_parts(parts: &BTreeMap<u32, Vec<Part>>, world: &World) -> Vec<NearParts> {
+    let mut boxes: Vec<PartBox> = Vec::new();
+    for (&vehicle, own) in parts {
+        let (flies, radius_m) = (flies(world, vehicle), radius_m(world, vehicle));
+        // Half of the gap on each side.
+        let room = Vector2::repeat(radius_m + 0.5 * GAP_M);
+        boxes.extend(own.iter().enumerate().filter_map(|(index, part)| {
+            let mut places = part.track.iter().map(|place| place.position_m);
+            let first = places.next()?;
+            let (low, high) =
+                places.fold((first, first), |(low, high), place| (low.inf(&place), high.sup(&place)));
+            let (part, movement) = ((vehicle, index), part.movement);
+            Some(PartBox { part, movement, flies, radius_m, low: low - room, high: high + room })
+        }));
+    }
+    boxes.sort_by(|one, other| one.low.x.total_cmp(&other.low.x));
+    let mut near = Vec::new();
+    for (at, west) in boxes.iter().enumerate() {
+        let overlapping = boxes[at + 1..].iter().take_while(|east| east.low.x <= west.high.x);
+        for east in overlapping.filter(|east| west.may_meet(east)) {
+            let (one, other) = (west.part.min(east.part), west.part.max(east.part));
+            near.push(NearParts { one, other, safety_m: west.radius_m + east.radius_m + GAP_M });
+        }
+    }
+    near.sort_by_key(|pair| (pair.one.0, pair.other.0, pair.one.1, pair.other.1));
+    near
+}
+
+/// A part with the box around its track and the room around the vehicle.
+struct PartBox {
+    part: (u32, usize),
+    movement: Option<OccurrenceId>,
+    flies: bool,
+    radius_m: f64,
+    low: Point2<f64>,
+    high: Point2<f64>,
+}
+
+impl PartBox {
+    /// Whether this part and one of another vehicle, which begins no farther west, overlap from south to north and are no one movement.
+    fn may_meet(&self, other: &Self) -> bool {
+        self.part.0 != other.part.0
+            && self.flies == other.flies
+            && (self.movement.is_none() || self.movement != other.movement)
+            && self.low.y <= other.high.y
+            && other.low.y <= self.high.y
+    }
 }
 
 /// How near each pair of vehicles comes: in the earliest schedule, or in another one where that has nothing to say.
@@ -173,9 +215,12 @@ fn parts(
     let mut parts: BTreeMap<u32, Vec<Part>> = BTreeMap::new();
     let mut stands: BTreeMap<u32, (NodeId, Point2<f64>)> = BTreeMap::new();
     let starts = standing::starts(program, &network.occurrences);
+    let paths = least_of_paths(network);
     for (drive, tracks) in drives.iter().zip(tracks) {
         let of = &network.occurrences[drive.occurrence.index()];
-        let least = least_duration(network, drive.occurrence);
+        let bounds = of.arc.map_or(0.0, |arc| network.arcs[arc.index()].lower.to_f64());
+        // By its own bounds and by its path.
+        let least = paths.get(&drive.occurrence).copied().unwrap_or_default().max(bounds);
         for (index, (&vehicle, mut track)) in drive.vehicles.iter().zip(tracks).enumerate() {
             let Some(first) = track.first().map(|place| place.position_m) else { continue };
             let (since, stands_m) = stands.get(&vehicle).copied().unwrap_or_else(|| {
@@ -207,12 +252,15 @@ fn parts(
     parts
 }
 
-/// How long a traverse takes at least in every schedule, in mission units: by its own bounds and by its path.
-fn least_duration(network: &Network, occurrence: OccurrenceId) -> f64 {
-    let own = network.occurrences[occurrence.index()].arc.map(|arc| network.arcs[arc.index()].lower.to_f64());
-    let path =
-        network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path && arc.occurrence == Some(occurrence));
-    own.unwrap_or(0.0).max(path.map(|arc| arc.lower.to_f64()).sum())
+/// How long the path of each traverse takes at least in every schedule, in mission units.
+fn least_of_paths(network: &Network) -> BTreeMap<OccurrenceId, f64> {
+    let mut least: BTreeMap<OccurrenceId, f64> = BTreeMap::new();
+    for arc in network.arcs.iter().filter(|arc| arc.kind == ArcKind::Path) {
+        if let Some(occurrence) = arc.occurrence {
+            *least.entry(occurrence).or_default() += arc.lower.to_f64();
+        }
+    }
+    least
 }
 
 /// Where two vehicles can be too near each other at once while they do these parts, and how near at the nearest.
@@ -284,10 +332,9 @@ fn orders(of: [(&[Part], usize); 2]) -> Vec<(OccurrenceId, OccurrenceId)> {
 /// What two vehicles come to in the earliest schedule is told of that.
 fn in_earliest_schedule(meetings: &mut [Meeting], drives: &[Drive], motions: &[VehicleMotion]) {
     let last = drives.iter().map(|drive| drive.end.to_f64()).fold(0.0, f64::max);
-    let track = |vehicle: u32| {
-        let motion = motions.iter().find(|motion| motion.vehicle == vehicle)?;
-        Some(track(motion, last))
-    };
+    let of_vehicles: BTreeMap<u32, &VehicleMotion> =
+        motions.iter().map(|motion| (motion.vehicle, motion)).collect();
+    let track = |vehicle: u32| of_vehicles.get(&vehicle).map(|motion| track(motion, last));
     for meeting in meetings {
         let [Some(one), Some(other)] = meeting.vehicles.map(track) else { continue };
         let Some(near) = motion::closest_approach(&one, &other, meeting.violation.least_m) else { continue };

@@ -7,10 +7,11 @@ use executive::facts::StandingPlace;
 use rmpl::program::Program;
 use smol_str::SmolStr;
 use snapshot::standing::{self, Start};
-use snapshot::vehicle::{self, moving};
+use snapshot::vehicle;
 use tpn::{Network, NodeId, OccurrenceId};
 
-use crate::traverse::{Waypoint, waypoint};
+use crate::traverse::Waypoint;
+use crate::world_index::WorldIndex;
 
 /// The slot of a place where a vehicle has stopped on its way, away from the location that it came from.
 pub(crate) const ON_THE_WAY: usize = usize::MAX;
@@ -47,19 +48,12 @@ impl Spots {
 
     /// The place of a location that vehicles take that come there together, the first of them leading: the first one at which
     /// none of the others stands, which are at `positions`.
-    pub(crate) fn free(
-        &self,
-        location: &Waypoint,
-        vehicles: &[usize],
-        positions: &[Option<Waypoint>],
-    ) -> Waypoint {
+    pub(crate) fn free(&self, location: &Waypoint, vehicles: &[usize], positions: &Positions) -> Waypoint {
         let Some(&leader) = vehicles.first() else { return location.clone() };
-        // What stands there already stays where it is.
-        let others = (positions.iter().enumerate()).filter(|&(other, _)| self.is_other(vehicles, other));
-        let taken: Vec<usize> = (others.filter_map(|(_, place)| place.as_ref()))
-            .filter(|place| place.name == location.name)
-            .map(|place| place.slot)
-            .collect();
+        // What is there already stays where it is.
+        let others = positions.at(&location.name).filter(|&other| self.is_other(vehicles, other));
+        let taken: BTreeSet<usize> =
+            others.filter_map(|other| positions.of(other)).map(|place| place.slot).collect();
         let free = (0..taken.len()).find(|slot| !taken.contains(slot)).unwrap_or(taken.len());
         self.at(location, free, leader)
     }
@@ -68,6 +62,44 @@ impl Spots {
     fn is_other(&self, vehicles: &[usize], other: usize) -> bool {
         vehicles.first().is_some_and(|&leader| self.flies[leader] == self.flies[other])
             && !vehicles.contains(&other)
+    }
+}
+
+/// Where each vehicle is.
+pub(crate) struct Positions {
+    of: Vec<Option<Waypoint>>,
+    /// The vehicles at each location.
+    at: BTreeMap<SmolStr, BTreeSet<usize>>,
+}
+
+impl Positions {
+    pub(crate) fn new(of: Vec<Option<Waypoint>>) -> Self {
+        let mut at: BTreeMap<SmolStr, BTreeSet<usize>> = BTreeMap::new();
+        for (vehicle, place) in of.iter().enumerate() {
+            if let Some(place) = place {
+                at.entry(place.name.clone()).or_default().insert(vehicle);
+            }
+        }
+        Self { of, at }
+    }
+
+    pub(crate) fn of(&self, vehicle: usize) -> Option<&Waypoint> {
+        self.of.get(vehicle)?.as_ref()
+    }
+
+    /// The vehicles at a location.
+    fn at(&self, location: &str) -> impl Iterator<Item = usize> {
+        self.at.get(location).into_iter().flatten().copied()
+    }
+
+    pub(crate) fn set(&mut self, vehicle: usize, place: Waypoint) {
+        if let Some(before) = self.of(vehicle).map(|before| before.name.clone())
+            && let Some(there) = self.at.get_mut(&before)
+        {
+            there.remove(&vehicle);
+        }
+        self.at.entry(place.name.clone()).or_default().insert(vehicle);
+        self.of[vehicle] = Some(place);
     }
 }
 
@@ -83,6 +115,8 @@ type Context = BTreeSet<(usize, usize)>;
 /// Where vehicles may stand in some plan of a network.
 pub(crate) struct PossibleSpots<'mission> {
     spots: Spots,
+    /// The vehicles that start at each location.
+    starting: BTreeMap<SmolStr, Vec<usize>>,
     /// The movements that end at each location.
     arrivals: BTreeMap<SmolStr, Vec<Arrival>>,
     contexts: BTreeMap<OccurrenceId, Context>,
@@ -92,22 +126,28 @@ pub(crate) struct PossibleSpots<'mission> {
 impl<'mission> PossibleSpots<'mission> {
     /// In plans of `network`, in which some vehicles may have stopped on their way.
     pub(crate) fn new(network: &Network, program: &Program, stopped: &'mission [StandingPlace]) -> Self {
-        let world = &program.world;
+        let index = WorldIndex::new(program);
         let of_events = contexts(network);
         let mut arrivals: BTreeMap<SmolStr, Vec<Arrival>> = BTreeMap::new();
         let mut contexts = BTreeMap::new();
-        for (index, it) in network.occurrences.iter().enumerate() {
-            let Some(moving) = moving(program, it) else { continue };
-            let occurrence = OccurrenceId::from_index(index);
-            let Some(last) = it.arguments.iter().filter_map(|name| waypoint(world, name)).next_back() else {
+        for (position, it) in network.occurrences.iter().enumerate() {
+            let Some(moving) = index.moving(it) else { continue };
+            let occurrence = OccurrenceId::from_index(position);
+            let Some(last) = it.arguments.iter().filter_map(|name| index.waypoint(name)).next_back() else {
                 continue;
             };
-            let is_it = |name: &SmolStr| world.vehicles.iter().position(|it| it.name.text == *name);
-            let vehicles = moving.vehicles.iter().filter_map(is_it).collect();
+            let vehicles = moving.vehicles.iter().filter_map(|name| index.vehicle(name)).collect();
             arrivals.entry(last.name).or_default().push(Arrival { occurrence, vehicles });
             contexts.insert(occurrence, of_events[it.start.index()].clone().unwrap_or_default());
         }
-        Self { spots: Spots::new(network, program), arrivals, contexts, stopped }
+        let spots = Spots::new(network, program);
+        let mut starting: BTreeMap<SmolStr, Vec<usize>> = BTreeMap::new();
+        for (vehicle, start) in spots.starts.iter().enumerate() {
+            if let Some(start) = start {
+                starting.entry(start.name.clone()).or_default().push(vehicle);
+            }
+        }
+        Self { spots, starting, arrivals, contexts, stopped }
     }
 
     /// Where the leader of a movement may stand at a location before it; nowhere if nothing brings it there.
@@ -138,9 +178,7 @@ impl<'mission> PossibleSpots<'mission> {
 
     /// How many vehicles may stand at a location when others come there in a movement.
     fn num_others(&self, occurrence: OccurrenceId, vehicles: &[usize], at: &Waypoint) -> usize {
-        let starting = self.spots.starts.iter().enumerate().filter_map(|(vehicle, start)| {
-            start.as_ref().is_some_and(|start| start.name == at.name).then_some(vehicle)
-        });
+        let starting = self.starting.get(&at.name).into_iter().flatten().copied();
         let arriving = self.arrivals.get(&at.name).into_iter().flatten();
         let arriving = arriving
             .filter(|arrival| self.can_be_together(arrival.occurrence, occurrence))

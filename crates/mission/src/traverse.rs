@@ -2,7 +2,7 @@
 
 use snapshot::vehicle;
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use exact::Rational;
@@ -14,12 +14,13 @@ use rmpl::program::{ObstacleShape, Per, Program, World};
 use smol_str::SmolStr;
 use snapshot::Leg;
 use snapshot::ground::closed_to;
-use snapshot::vehicle::{Moving, moving};
+use snapshot::vehicle::Moving;
 use terrain::ConfigurationSpace;
 use tpn::{Network, OccurrenceId, OccurrenceKind, Plan};
 
 use crate::ground::FreeSpace;
-use crate::spots::{ON_THE_WAY, Spots};
+use crate::spots::{ON_THE_WAY, Positions, Spots};
+use crate::world_index::WorldIndex;
 
 /// A traverse of a plan: who drives, and through which places.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,16 +58,14 @@ pub struct Waypoint {
 pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[StandingPlace]) -> Vec<Route> {
     let world = &program.world;
     let spots = Spots::new(network, program);
-    let mut positions = spots.starts.clone();
+    let index = WorldIndex::new(program);
+    let mut positions = Positions::new(spots.starts.clone());
     let mut moving: Vec<(OccurrenceId, Moving<'_>)> = network
         .occurrences
         .iter()
         .enumerate()
         .filter(|(_, it)| it.kind == OccurrenceKind::Primitive && plan.selected_nodes[it.start.index()])
-        .filter_map(|(index, it)| {
-            let moving = moving(program, it)?;
-            Some((OccurrenceId::from_index(index), moving))
-        })
+        .filter_map(|(position, it)| Some((OccurrenceId::from_index(position), index.moving(it)?)))
         .collect();
     let departure = |id: OccurrenceId| {
         let start = network.occurrences[id.index()].start;
@@ -80,16 +79,18 @@ pub fn routes(network: &Network, program: &Program, plan: &Plan, places: &[Stand
         let start = network.occurrences[id.index()].start;
         let starts = plan.windows[start.index()].map(|window| window.earliest);
         stopped.retain(|it| {
-            let place = positions.get_mut(it.vehicle as usize).and_then(Option::as_mut);
+            let place = positions.of(it.vehicle as usize);
             let Some(place) = place.filter(|_| starts >= Some(it.since)) else { return true };
-            (place.position_m, place.slot) = (it.place_m.into(), ON_THE_WAY);
+            let place = Waypoint { position_m: it.place_m.into(), slot: ON_THE_WAY, ..place.clone() };
+            positions.set(it.vehicle as usize, place);
             false
         });
-        let Some(mut route) = route(network, world, id, &moving, &positions) else { continue };
+        let place_of = |vehicle: usize| positions.of(vehicle).cloned();
+        let Some(mut route) = route(network, (world, &index), id, &moving, &place_of) else { continue };
         if let Some(last) = route.waypoints.last_mut() {
             *last = spots.free(last, &route.vehicles, &positions);
             for &vehicle in &route.vehicles {
-                positions[vehicle] = Some(last.clone());
+                positions.set(vehicle, last.clone());
             }
         }
         routes.push(route);
@@ -129,24 +130,14 @@ fn in_plan_order<'program>(
     ordered
 }
 
-/// The middle of a location.
-pub(crate) fn waypoint(world: &World, name: &str) -> Option<Waypoint> {
-    let location = world.locations.iter().find(|location| location.name.text == name)?;
-    Some(Waypoint { name: location.name.text.clone(), position_m: location.position_m.into(), slot: 0 })
-}
-
 fn route(
     network: &Network,
-    world: &World,
+    (world, index): (&World, &WorldIndex<'_>),
     id: OccurrenceId,
     moving: &Moving<'_>,
-    positions: &[Option<Waypoint>],
+    place_of: &dyn Fn(usize) -> Option<Waypoint>,
 ) -> Option<Route> {
-    let vehicles: Vec<usize> = moving
-        .vehicles
-        .iter()
-        .filter_map(|name| world.vehicles.iter().position(|vehicle| vehicle.name.text == *name))
-        .collect();
+    let vehicles: Vec<usize> = moving.vehicles.iter().filter_map(|name| index.vehicle(name)).collect();
     let &leader = vehicles.first()?;
     let models = || vehicles.iter().filter_map(|&vehicle| vehicle::model_of(world, vehicle));
     let drives = |model: &VehicleModel| matches!(model.drive, motion::Drive::SkidSteer { .. });
@@ -155,9 +146,11 @@ fn route(
     };
     let model = models().max_by(widest)?;
     let own_mps = models().map(|model| model.speed_mps).fold(f64::INFINITY, f64::min);
-    let mut waypoints: Vec<Waypoint> = positions[leader].clone().into_iter().collect();
+    let before = place_of(leader);
+    let from = before.as_ref().map(|before| before.name.clone());
+    let mut waypoints: Vec<Waypoint> = before.into_iter().collect();
     let arguments = &network.occurrences[id.index()].arguments;
-    let named: Vec<Waypoint> = arguments.iter().filter_map(|name| waypoint(world, name)).collect();
+    let named: Vec<Waypoint> = arguments.iter().filter_map(|name| index.waypoint(name)).collect();
     if named.is_empty() {
         return None;
     }
@@ -176,7 +169,6 @@ fn route(
         Rational::from_f64_nearest(own_mps, 1000)?,
     );
     let speed_mps = moving.moves.speed_mps.unwrap_or(own_speed_mps);
-    let from = positions[leader].as_ref().map(|before| before.name.clone());
     let limits = models()
         .map(|model| DriveLimits::of(&model))
         .reduce(DriveLimits::of_both)
@@ -190,34 +182,35 @@ fn route(
 /// traverse, or names none.
 pub(crate) fn route_from(
     network: &Network,
-    program: &Program,
+    (world, index): (&World, &WorldIndex<'_>),
     occurrence: OccurrenceId,
     place: Option<&Waypoint>,
 ) -> Option<Route> {
-    let moving = moving(program, &network.occurrences[occurrence.index()])?;
-    let positions = vec![place.cloned(); program.world.vehicles.len()];
-    route(network, &program.world, occurrence, &moving, &positions)
+    let moving = index.moving(&network.occurrences[occurrence.index()])?;
+    route(network, (world, index), occurrence, &moving, &|_| place.cloned())
 }
 
 /// What is wrong with the `moves` clauses and calls of a program: a traverse without places or vehicles is an ordinary
 /// activity, and its author should know.
 pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
     let world = &program.world;
+    let index = WorldIndex::new(program);
     let mut found: Vec<rmpl::Diagnostic> = Vec::new();
+    let mut warned: BTreeSet<Span> = BTreeSet::new();
     let mut warn = |span: Span, message: String| {
-        if !found.iter().any(|it| it.span == span) {
+        if warned.insert(span) {
             found.push(rmpl::Diagnostic::warning(rmpl::Code("W-TRAVERSE"), span, message));
         }
     };
     for occurrence in &network.occurrences {
-        let Some(moving) = moving(program, occurrence) else { continue };
+        let Some(moving) = index.moving(occurrence) else { continue };
         let Some(span) = occurrence.span else { continue };
-        if !occurrence.arguments.iter().any(|name| waypoint(world, name).is_some()) {
+        if !occurrence.arguments.iter().any(|name| index.waypoint(name).is_some()) {
             let name = &occurrence.activity;
             warn(span, format!("`{name}` moves vehicles, but no argument of this call is a location"));
         }
         for (vehicle, written) in moving.vehicles.iter().zip(&moving.moves.vehicles) {
-            if !world.vehicles.iter().any(|it| it.name.text == *vehicle) {
+            if index.vehicle(vehicle).is_none() {
                 let place = if *vehicle == written.text { written.span } else { span };
                 warn(place, format!("unknown vehicle `{vehicle}`"));
             }
@@ -244,7 +237,7 @@ pub fn check(network: &Network, program: &Program) -> Vec<rmpl::Diagnostic> {
                     .with_hint(hint),
             );
         }
-        if waypoint(world, &vehicle.start.text).is_none() {
+        if index.waypoint(&vehicle.start.text).is_none() {
             let message = format!("unknown location `{}`", vehicle.start.text);
             found.push(rmpl::Diagnostic::error(rmpl::Code("E-UNDEF"), vehicle.start.span, message));
         }

@@ -12,7 +12,7 @@ use crate::range_sensor::RangeScan;
 use crate::sonar::{Echo, Echoes, SonarArray};
 use crate::way_around::way_around;
 
-/// Seen points farther away than this are forgotten, in meters.
+/// Seen points farther away than this are dropped, in meters.
 const MEMORY_RADIUS_M: f64 = 6.0;
 /// Points that share a square of this side, in meters, are kept as their mean, which evens out the sensor's noise.
 const SQUARE_M: f64 = 0.05;

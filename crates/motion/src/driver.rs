@@ -274,7 +274,7 @@ impl Driver {
         self.settings.step_s = step_s;
     }
 
-    /// Tells it of vehicles that it goes around, as place and radius in meters; those told before are forgotten.
+    /// Sets the vehicles that it drives around, as place and radius in meters; they replace the previous ones.
     pub fn set_vehicles(&mut self, vehicles: &[(Point2<f64>, f64)]) {
         self.seen.set_vehicles(vehicles);
     }

@@ -1,5 +1,7 @@
 //! Where two polylines come near each other, whenever their vehicles are there: piece by piece.
 
+use std::ops::Range;
+
 use nalgebra::{Point2, Vector2, distance};
 
 use crate::path::between;
@@ -18,8 +20,8 @@ pub struct NearPieces {
 }
 
 /// Calls `visit` for all pieces of two polylines that come nearer to each other than `within_m`; pieces are at most `piece_m`
-/// long. A polyline of one point is a vehicle that stands. Quadratic in the numbers of segments, and of pieces where segments
-/// are near each other.
+/// long. A polyline of one point is a vehicle that stands. Quadratic in the numbers of segments; where segments are near each other,
+/// linear in the number of pieces.
 pub fn near_pieces(
     one_m: &[Point2<f64>],
     other_m: &[Point2<f64>],
@@ -40,7 +42,7 @@ pub fn near_pieces(
             let (parts_a, parts_b) = (parts(a), parts(b));
             for part_a in 0..parts_a {
                 let (shares_a, piece_a) = piece(a, part_a, parts_a);
-                for part_b in 0..parts_b {
+                for part_b in parts_around(piece_a, b, parts_b, within_m) {
                     let (shares_b, piece_b) = piece(b, part_b, parts_b);
                     let (places_m, distance_m) = nearest_places(piece_a, piece_b);
                     if distance_m < within_m {
@@ -51,6 +53,24 @@ pub fn near_pieces(
             }
         }
     }
+}
+
+/// The parts of a segment that may be within `within_m` of a piece of another one: those whose places are not too far along the
+/// segment from the place that is nearest to the middle of the piece.
+fn parts_around(piece: [Point2<f64>; 2], segment: [Point2<f64>; 2], parts: u32, within_m: f64) -> Range<u32> {
+    let ahead = segment[1] - segment[0];
+    let length_m = distance(&segment[0], &segment[1]);
+    if length_m == 0.0 {
+        return 0..parts;
+    }
+    let middle = between(piece[0], piece[1], 0.5);
+    let reach_m = within_m + 0.5 * distance(&piece[0], &piece[1]);
+    let nearest = (middle - segment[0]).dot(&ahead) / (length_m * length_m);
+    // A part more on each side, for rounding.
+    let number = |share: f64| (share * f64::from(parts)).floor();
+    let first = (number(nearest - reach_m / length_m) - 1.0).max(0.0);
+    let last = (number(nearest + reach_m / length_m) + 2.0).min(f64::from(parts));
+    first as u32..last.max(0.0) as u32
 }
 
 /// The segments of a polyline; of a single point one without length.
@@ -109,6 +129,29 @@ mod tests {
         let (low, high) = shares.fold((1.0_f64, 0.0_f64), |(low, high), it| (low.min(it), high.max(it)));
         // 2 m to both sides of the middle of 20 m, and at most a piece more.
         assert!((0.375..=0.4).contains(&low) && (0.6..=0.625).contains(&high), "{low} to {high}");
+    }
+
+    #[test]
+    fn no_part_that_is_near_is_passed_over() {
+        let mut random = terrain::Random::from_seed(3);
+        let mut count = 0;
+        for _ in 0..300 {
+            let [one, other] =
+                [0, 1].map(|_| [0, 1].map(|_| Point2::new(random.range(-9.0, 9.0), random.range(-9.0, 9.0))));
+            let (within_m, parts) = (random.range(0.1, 4.0), 7);
+            let around = parts_around(one, other, parts, within_m);
+            for part in 0..parts {
+                let ends = [part, part + 1].map(|end| f64::from(end) / f64::from(parts));
+                let is_near =
+                    nearest_places(one, ends.map(|share| between(other[0], other[1], share))).1 < within_m;
+                assert!(
+                    !is_near || around.contains(&part),
+                    "{one:?} {other:?} {within_m}: {part} not in {around:?}"
+                );
+                count += u32::from(!around.contains(&part));
+            }
+        }
+        assert!(count > 300, "only {count} parts are passed over");
     }
 
     #[test]

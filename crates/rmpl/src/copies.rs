@@ -11,7 +11,7 @@ use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// Of more activities nothing is told.
 const MAX_ACTIVITIES: usize = 1_000;
-/// What parameters are called, by what they stand for.
+/// What parameters are called, by what they represent.
 const VEHICLE_NAMES: [&str; 3] = ["r", "rover", "v"];
 const LOCATION_NAMES: [&str; 3] = ["site", "place", "goal"];
 
@@ -22,7 +22,7 @@ struct Activity<'a> {
     name: usize,
 }
 
-/// The names that a parameter can stand for.
+/// The names that a parameter can represent.
 struct Subjects<'a> {
     vehicles: BTreeSet<&'a str>,
     locations: BTreeSet<&'a str>,
@@ -34,12 +34,14 @@ pub(crate) fn check(parse: &Parse) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let mut by_shape: BTreeMap<Vec<u8>, Vec<Activity<'_>>> = BTreeMap::new();
-    for activity in declarations(parse).filter_map(Activity::new) {
+    for (count, activity) in declarations(parse).filter_map(Activity::new).enumerate() {
+        if count >= MAX_ACTIVITIES {
+            return Vec::new();
+        }
         let shape = activity.tokens.iter().map(|token| token.kind as u8).collect();
         by_shape.entry(shape).or_default().push(activity);
     }
-    let count: usize = by_shape.values().map(Vec::len).sum();
-    if count > MAX_ACTIVITIES || by_shape.values().all(|alike| alike.len() < 2) {
+    if by_shape.values().all(|alike| alike.len() < 2) {
         return Vec::new();
     }
     let subjects = Subjects::new(parse);
@@ -220,7 +222,7 @@ impl Merger<'_, '_> {
         if is_free { name } else { first }
     }
 
-    /// The edits of all calls outside the copies. `None` where a name stands for anything but a call.
+    /// The edits of all calls outside the copies. `None` where a name represents anything but a call.
     fn calls(&self, name: &str) -> Option<Vec<Edit>> {
         let mut edits = Vec::new();
         let removed: Vec<Span> = self.others.iter().map(|(other, _)| other.span()).collect();

@@ -11,7 +11,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 
 use crate::analysis::local::local_diagnostics;
-use crate::analysis::{Checked, DeclarationKey, Index, Meaning, Names, Summary, check, recursion, summarize};
+use crate::analysis::{
+    Checked, DeclarationKey, Index, Meaning, Names, Namespace, Summary, check, recursion, summarize,
+};
 use crate::control::{ComponentModes, component_modes};
 use crate::copies;
 use crate::diagnostic::{Diagnostic, Edit, Known, Listed, Severity};
@@ -23,7 +25,7 @@ use crate::lower::{Item, Lowering, OptionValue};
 use crate::parser::{Scratch, parse_declaration};
 use crate::program::{ControlDecl, Controllability, ImportDecl, Name, Program, TimeUnit, state_of_component};
 use crate::span::Span;
-use crate::syntax::{DeclarationTree, SyntaxNode};
+use crate::syntax::{DeclarationTree, SyntaxKind, SyntaxNode};
 
 /// Parses a mission text in the infix notation (SPEC 1). Never fails and never panics.
 ///
@@ -49,7 +51,7 @@ pub struct Parse {
     declarations_read: u64,
 }
 
-/// Where a declaration stands.
+/// Where a declaration is.
 #[derive(Clone, Debug)]
 struct Place {
     start: u32,
@@ -63,6 +65,14 @@ impl Place {
         let end = self.start + self.declaration.tree.len();
         self.declaration.tree.root(text.get(self.start as usize..end as usize).unwrap_or(""), self.start)
     }
+
+    /// What the declaration declares, with places relative to it. It is made again whenever it is needed: a mission may have a
+    /// million declarations.
+    fn item(&self, text: &str) -> Option<Item> {
+        let end = self.start + self.declaration.tree.len();
+        let own = text.get(self.start as usize..end as usize).unwrap_or("");
+        Lowering::new(&|_| false).item(self.declaration.tree.root(own, 0))
+    }
 }
 
 /// What is known of one declaration whatever the rest of the file says; offsets are relative to its first byte.
@@ -70,7 +80,6 @@ impl Place {
 pub(crate) struct Declaration {
     tree: DeclarationTree,
     diagnostics: Vec<Diagnostic>,
-    item: Option<Item>,
     summary: Summary,
     /// Whether it has no errors of its own.
     is_sound: bool,
@@ -224,7 +233,7 @@ impl Parse {
                 place.checked = Arc::new(check(
                     place.key,
                     &declaration.summary,
-                    declaration.item.as_ref(),
+                    place.item(&self.text).as_ref(),
                     declaration.is_sound,
                     &self.names,
                     &self.index,
@@ -251,7 +260,7 @@ impl Parse {
     }
 
     /// The trees of the file's declarations, each with whether it follows the grammar. What a declaration lacks may be
-    /// reported behind it, where the next one begins.
+    /// reported after it, where the next one begins.
     pub(crate) fn declarations_by_syntax(&self) -> impl Iterator<Item = (SyntaxNode<'_>, bool)> {
         self.places.iter().map(|place| {
             let own = &place.declaration.diagnostics;
@@ -279,10 +288,11 @@ impl Parse {
     /// [`MAX_LISTED`]: crate::diagnostic::MAX_LISTED
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         let imports: Vec<(Span, ImportDecl)> = (self.places.iter())
-            .filter_map(|place| match &place.declaration.item {
-                Some(Item::Import(import)) => {
+            .filter(|place| place.root(&self.text).child(SyntaxKind::ImportDecl).is_some())
+            .filter_map(|place| match place.item(&self.text)? {
+                Item::Import(import) => {
                     let span = import.file_span;
-                    Some((Span::new(span.start + place.start, span.end + place.start), import.clone()))
+                    Some((Span::new(span.start + place.start, span.end + place.start), import))
                 }
                 _ => None,
             })
@@ -340,14 +350,11 @@ impl Parse {
 
     /// What the text means, as far as it is well formed.
     pub fn program(&self) -> Program {
-        let mut callables = FxHashSet::default();
-        for place in &self.places {
-            match &place.declaration.item {
-                Some(Item::Primitive(decl)) => callables.insert(decl.name.text.as_str()),
-                Some(Item::Activity(decl)) => callables.insert(decl.name.text.as_str()),
-                _ => continue,
-            };
-        }
+        let definitions =
+            self.places.iter().filter_map(|place| place.declaration.summary.definition.as_ref());
+        let callables = definitions.filter(|definition| definition.namespace == Namespace::Callable);
+        let callables: FxHashSet<&str> =
+            callables.map(|definition| self.names.text(definition.name).as_str()).collect();
         let is_callable = |name: &str| callables.contains(name);
         let mut lowering = Lowering::new(&is_callable);
         let mut program = Program::default();
@@ -453,8 +460,9 @@ impl Declaration {
         }
         let mut known = Known::default();
         diagnostics.retain(|found| known.is_new(found));
+        diagnostics.shrink_to_fit();
         let summary = summarize(item.as_ref(), &lowering.bare_names, names);
-        Self { tree: parsed.tree, diagnostics, item, summary, is_sound, reach: parsed.reach }
+        Self { tree: parsed.tree, diagnostics, summary, is_sound, reach: parsed.reach }
     }
 }
 
@@ -486,6 +494,6 @@ mod tests {
     fn a_declaration_takes_little_room_of_its_own() {
         // A mission may have a million of them.
         let sizes = [size_of::<Item>(), size_of::<Summary>(), size_of::<Declaration>()];
-        assert!(sizes[0] <= 128 && sizes[2] <= 512, "{sizes:?}");
+        assert!(sizes[0] <= 128 && sizes[2] <= 408, "{sizes:?}");
     }
 }

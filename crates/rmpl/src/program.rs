@@ -13,7 +13,6 @@ use crate::span::Span;
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Name {
     pub text: SmolStr,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -53,9 +52,8 @@ pub struct Program {
 /// `control { … }`: control programs and their plant, in prefix notation (SPEC 2).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ControlDecl {
-    /// What stands between the braces.
+    /// What is between the braces.
     pub text: String,
-    /// Where it stands.
     pub text_span: Span,
     /// The whole block.
     pub span: Span,
@@ -180,9 +178,9 @@ pub struct PrimitiveDecl {
     /// Its default duration; `[0,inf]` when absent.
     pub bounds: Option<Bounds>,
     /// Present if the primitive is a traverse.
-    pub moves: Option<Moves>,
+    pub moves: Option<Box<Moves>>,
     /// The control program that the primitive runs when it is executed.
-    pub runs: Option<Runs>,
+    pub runs: Option<Box<Runs>>,
     /// What each activity of it requires, in textual order (SPEC 10.1).
     pub requires: Vec<Requirement>,
     /// What each activity of it changes.
@@ -194,7 +192,7 @@ pub struct PrimitiveDecl {
     /// What each activity of it is rewarded with; several add up.
     pub rewards: Vec<Expr>,
     /// How long it takes to end an activity of it early, if that can be done (SPEC 15).
-    pub aborts: Option<Bounds>,
+    pub aborts: Option<Box<Bounds>>,
     /// The whole declaration.
     pub span: Span,
 }
@@ -274,7 +272,7 @@ pub struct FleetDecl {
     pub first: u32,
     /// The number of the last member; an empty or too large range is reported, and has none.
     pub last: u32,
-    /// Where its range stands in the text, with the brackets.
+    /// Where its range is in the text, with the brackets.
     pub range_span: Span,
 }
 
@@ -583,7 +581,6 @@ pub struct Bounds {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expr {
     pub kind: ExprKind,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -603,7 +600,7 @@ pub enum ExprKind {
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
 }
 
-/// A unit that is written behind a number.
+/// A unit that is written after a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum DurationUnit {
     /// `s`
@@ -659,18 +656,18 @@ pub enum BinaryOp {
     Divide,
 }
 
-/// A statement with the bounds written behind it.
+/// A statement with the bounds written after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Statement {
     pub kind: StatementKind,
-    /// The bounds written behind it.
+    /// The bounds written after it.
     pub bounds: Option<Bounds>,
-    /// Where it stands, with its bounds.
+    /// Where it is, with its bounds.
     pub span: Span,
 }
 
 impl Statement {
-    /// What stands directly in it.
+    /// What is directly in it.
     pub fn parts(&self) -> &[Self] {
         match &self.kind {
             StatementKind::Sequence(parts)
@@ -770,7 +767,6 @@ pub enum LabelMode {
 pub struct Argument {
     /// What is handed over.
     pub value: ArgumentValue,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -780,7 +776,7 @@ pub enum ArgumentValue {
     /// A name: a formal of the surrounding activity, a location, or a symbol.
     Name(SmolStr),
     Number(Rational),
-    /// An expression, evaluated where the call stands.
+    /// An expression, evaluated where the call is.
     Expression(Expr),
     Condition(Condition),
 }
@@ -801,7 +797,6 @@ pub struct Condition {
     pub level: Option<Level>,
     /// Whether the literal is negated an odd number of times (`not`, `!`, `!=`).
     pub negated: bool,
-    /// Where it stands.
     pub span: Span,
 }
 
@@ -951,7 +946,7 @@ pub struct ObstacleDecl {
 pub enum ObstacleKind {
     /// A body that vehicles would touch.
     Solid,
-    /// A rule: nothing stands there.
+    /// A rule: nothing is there.
     KeepOut {
         /// The vehicles, vehicle models, and activities that the rule holds for; all of them if it names none.
         closed_to: Vec<Name>,

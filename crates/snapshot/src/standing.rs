@@ -1,5 +1,5 @@
 //! Where vehicles stand that are at one location at the same time (SPEC 10.3): the first at the location itself, others
-//! around it, so that none stands inside another.
+//! around it, so that none is inside another.
 //!
 //! Vehicles that start together and are moved together by one traverse keep formation and count as one here. Those that fly
 //! are above those that drive, and neither makes the other go aside.
@@ -34,16 +34,21 @@ pub fn start_slots(program: &Program, occurrences: &[Occurrence]) -> Vec<usize> 
         let names = [one, other].map(|vehicle| &vehicles[vehicle].name.text);
         convoys.iter().any(|convoy| names.iter().all(|name| convoy.contains(name)))
     };
+    let in_convoys: BTreeSet<&SmolStr> = convoys.iter().flatten().copied().collect();
     let mut slots: Vec<usize> = Vec::with_capacity(vehicles.len());
-    // The vehicles so far that start at a location, those that fly apart from those that drive.
-    let mut starting: BTreeMap<(&str, bool), Vec<usize>> = BTreeMap::new();
+    // The vehicles so far that start at a location and drive in a convoy, and the next free place; those that fly apart from
+    // those that drive.
+    let mut starting: BTreeMap<(&str, bool), (Vec<usize>, usize)> = BTreeMap::new();
     for (vehicle, declared) in vehicles.iter().enumerate() {
         let flies = vehicle::flies(&program.world, vehicle as u32);
-        let before = starting.entry((declared.start.text.as_str(), flies)).or_default();
+        let (before, free) = starting.entry((declared.start.text.as_str(), flies)).or_default();
         let group = before.iter().find(|&&other| drive_together(other, vehicle));
-        let free = before.iter().map(|&other| slots[other] + 1).max().unwrap_or(0);
-        slots.push(group.map_or(free, |&group| slots[group]));
-        before.push(vehicle);
+        let slot = group.map_or(*free, |&group| slots[group]);
+        slots.push(slot);
+        *free = (*free).max(slot + 1);
+        if in_convoys.contains(&declared.name.text) {
+            before.push(vehicle);
+        }
     }
     slots
 }

@@ -1,7 +1,7 @@
 //! Vehicles of a mission's world: how wide they are, whether they fly, and which activities move them.
 
 use motion::VehicleModel;
-use rmpl::program::{Moves, Program, Property, World};
+use rmpl::program::{Moves, PrimitiveDecl, Program, Property, World};
 use smol_str::SmolStr;
 use tpn::{Occurrence, Resource};
 
@@ -67,9 +67,15 @@ pub struct Moving<'program> {
 
 /// What `occurrence` moves, if it is a traverse.
 pub fn moving<'program>(program: &'program Program, occurrence: &Occurrence) -> Option<Moving<'program>> {
-    let primitive = program.primitives.iter().find(|it| it.name.text == occurrence.activity)?;
-    let moves = primitive.moves.as_ref()?;
-    Some(Moving { moves, vehicles: primitive.moved(&occurrence.arguments).cloned().collect() })
+    Moving::of(program.primitives.iter().find(|it| it.name.text == occurrence.activity)?, occurrence)
+}
+
+impl<'program> Moving<'program> {
+    /// What a call of `primitive` moves, if it is a traverse.
+    pub fn of(primitive: &'program PrimitiveDecl, occurrence: &Occurrence) -> Option<Self> {
+        let moves = primitive.moves.as_ref()?;
+        Some(Self { moves, vehicles: primitive.moved(&occurrence.arguments).cloned().collect() })
+    }
 }
 
 #[cfg(test)]

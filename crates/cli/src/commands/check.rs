@@ -7,7 +7,7 @@ use mission::{Manner, Scenarios};
 use serde_json::{Value, json};
 use snapshot::Problem;
 
-use crate::deadline::{Deadline, TimeLimit};
+use crate::deadline::{Deadline, TimeLimit, Undecided};
 use crate::diagnostics::{path_of_file, print_problems};
 use crate::opened::Opened;
 use crate::output::{Format, WRONG, YES, any_error, document, exit, print_json, print_text};
@@ -34,7 +34,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     for file in &args.files {
         let target = Target { file: file.clone(), scenario: None, activity: None, bounds: None };
         let mut mission = target.open()?;
+        let limit = deadline.enforce(Undecided::Plan, ("check", args.format));
         let problems = check(&mut mission, deadline)?;
+        limit.answered();
         let name = &mission.name;
         wrong |= any_error(&problems);
         match args.format {

@@ -73,6 +73,30 @@ fn each_of_many_scenarios_is_compiled() {
 }
 
 #[test]
+fn thousands_of_vehicles_and_locations_are_checked_and_planned_and_a_time_limit_holds() {
+    let folder = folder("fleet");
+    let mut text = String::new();
+    for number in 0..10_000 {
+        let (east, north) = (number % 100 * 50, number / 100 * 50);
+        let _ =
+            writeln!(text, "location L{number} ({east}, {north});\nvehicle V{number} : ATRV at L{number};");
+    }
+    text += "primitive Go(v : vehicle, to)[1,100000] moves v speed (1, 2);\n";
+    let drives = |count: usize| {
+        let calls: Vec<String> = (0..count).map(|at| format!("Go(V{at}, L{})", at + 1)).collect();
+        format!("{text}scenario S[0,inf] = {{ {} }}\n", calls.join(", "))
+    };
+    let check = enroute(&["check", &written(&folder, "few.rmpl", &drives(3))]);
+    assert_eq!(check.status.code(), Some(0), "{:?}", String::from_utf8_lossy(&check.stderr));
+    // Each of them may meet the next one.
+    let all = written(&folder, "all.rmpl", &drives(9_999));
+    let check = enroute(&["check", &all, "--time-limit", "0.1", "--format", "json"]);
+    assert_eq!(check.status.code(), Some(3), "{:?}", String::from_utf8_lossy(&check.stderr));
+    let document: Value = serde_json::from_slice(&check.stdout).expect("a document");
+    assert_eq!(document["format"], "enroute-check/1");
+}
+
+#[test]
 fn what_a_file_says_commands_no_terminal() {
     let folder = folder("commands");
     let name = "Dr\u{1b}]0;x\u{7}ive\u{202e}\u{9b}2J";

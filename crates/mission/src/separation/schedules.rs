@@ -6,7 +6,7 @@
 //! is at a share of its way no earlier than that share of the least duration after the start, and no later than that share of
 //! the time between start and end.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use exact::Bound;
 use review::distances::Distances;
@@ -38,14 +38,21 @@ const LONG: f64 = 1e5;
 const TOLERANCE: f64 = 1e-6;
 
 impl Gaps {
-    /// Of the events of a plan; `None` where times do not fit, which planning would already have said.
-    pub(super) fn new(network: &Network, plan: &Plan, events: &[NodeId]) -> Option<Self> {
+    /// Between the events of a plan that are in one of `sets`, and between these and the start of the plan; `None` where times do not
+    /// fit, which planning would already have said.
+    pub(super) fn new(
+        network: &Network,
+        plan: &Plan,
+        sets: impl Iterator<Item = Vec<NodeId>>,
+    ) -> Option<Self> {
         let mut distances = Distances::new(network, plan)?;
-        let mut events: Vec<NodeId> = events.iter().copied().chain([network.start]).collect();
-        events.sort_unstable();
-        events.dedup();
-        let pairs: Vec<(NodeId, NodeId)> =
-            events.iter().flat_map(|&one| events.iter().map(move |&other| (one, other))).collect();
+        let mut pairs: BTreeSet<(NodeId, NodeId)> = BTreeSet::new();
+        for mut events in sets {
+            events.push(network.start);
+            let of_one = |&one: &NodeId| events.iter().map(move |&other| (one, other));
+            pairs.extend(events.iter().flat_map(of_one).filter(|(one, other)| one < other));
+        }
+        let pairs: Vec<(NodeId, NodeId)> = pairs.into_iter().collect();
         let ranges = distances.between(&pairs);
         let mut least: BTreeMap<(NodeId, NodeId), f64> = BTreeMap::new();
         for (&(one, other), range) in pairs.iter().zip(&ranges) {

@@ -115,7 +115,7 @@ fn what_one_rover_has_met_another_one_drives_around() {
         |north: f64| Disturbance::Obstacle { at: 0.into(), x: 55.0, y: north, radius: 4.0, low: false };
     let ran = run(source, &[wall(36.0), wall(40.0), wall(44.0)]);
     assert_eq!(ran.ending, Ending::Finished, "{:?}", ran.log.last());
-    // The first one stands at EAST, so that the second stops beside it.
+    // The first one is at EAST, so that the second stops beside it.
     let told = told(&ran, "Drive#3");
     let [around, beside] = told.as_slice() else { panic!("{told:?}") };
     assert!(around.contains("around an obstacle that was seen before"), "{around}");

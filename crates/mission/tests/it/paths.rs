@@ -422,7 +422,7 @@ fn the_clearance_is_negative_exactly_where_the_vehicle_cannot_be() {
     }
 }
 
-/// A file of the data that stands beside the repository, or `None` with a message.
+/// A file of the data that is beside the repository, or `None` with a message.
 #[expect(clippy::print_stderr, reason = "a test that could not look at its data says so")]
 fn shared(name: &str) -> Option<Vec<u8>> {
     let path =

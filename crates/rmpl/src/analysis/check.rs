@@ -74,6 +74,7 @@ pub(crate) fn check(
     if !is_sound {
         checker.checked.diagnostics.retain(|(_, diagnostic)| diagnostic.severity == Severity::Error);
     }
+    checker.checked.diagnostics.shrink_to_fit();
     checker.checked
 }
 

@@ -252,7 +252,7 @@ impl<'program> Kinds<'program> {
             }
             primitive.costs.iter().for_each(|amount| self.expression(&amount.value));
             primitive.rewards.iter().for_each(|reward| self.expression(reward));
-            self.bounds(primitive.aborts.as_ref());
+            self.bounds(primitive.aborts.as_deref());
         }
         for (index, activity) in program.activities.iter().enumerate() {
             self.here = Some(program.primitives.len() + index);

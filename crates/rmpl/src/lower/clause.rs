@@ -16,14 +16,14 @@ impl Lowering<'_> {
             formals: formals(node),
             kinds: kinds(node),
             bounds: bounds_in(node),
-            moves: node.child(SyntaxKind::Moves).and_then(moves),
-            runs: node.child(SyntaxKind::Runs).and_then(runs),
+            moves: node.child(SyntaxKind::Moves).and_then(moves).map(Box::new),
+            runs: node.child(SyntaxKind::Runs).and_then(runs).map(Box::new),
             requires: Vec::new(),
             sets: Vec::new(),
             uses: Vec::new(),
             costs: Vec::new(),
             rewards: Vec::new(),
-            aborts: node.child(SyntaxKind::Aborts).and_then(bounds_in),
+            aborts: node.child(SyntaxKind::Aborts).and_then(bounds_in).map(Box::new),
             span: node.span(),
         };
         for clause in node.children() {

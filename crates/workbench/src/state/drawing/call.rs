@@ -77,7 +77,7 @@ pub fn callables(program: &Program) -> Vec<Callable> {
 
 /// What the parameters of a primitive represent, as far as the declaration tells.
 pub(super) fn kinds(primitive: &PrimitiveDecl) -> Vec<(String, Kind)> {
-    let moves = primitive.moves.as_ref();
+    let moves = primitive.moves.as_deref();
     let kind_of = |(index, formal): (usize, &rmpl::program::Name)| {
         let name = formal.text.as_str();
         let is_vehicle = moves.is_some_and(|moves| moves.vehicles.iter().any(|it| it.text == name))
