@@ -5,6 +5,7 @@ mod cycles;
 mod documentation;
 mod names;
 mod policy;
+mod releases;
 mod repository;
 mod spelling;
 mod wording;
