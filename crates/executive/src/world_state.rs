@@ -244,7 +244,7 @@ impl WorldState {
         self.levels.get(resource.index()).copied().unwrap_or_default()
     }
 
-    /// Time continues: what held between two values at the last instant is forgotten.
+    /// Advances time, and drops what held between two values at the last instant.
     pub(crate) fn advance(&mut self) {
         self.momentary.clear();
         self.moved.clear();
@@ -462,7 +462,7 @@ impl WorldState {
     }
 }
 
-/// Whether a resource stands for an order, such as that of the parts of an `unordered` block, and not for one of the mission.
+/// Whether a resource represents an order, such as that of the parts of an `unordered` block, and not for one of the mission.
 fn is_unnamed(resource: &Resource) -> bool {
     resource.name.contains('#')
 }

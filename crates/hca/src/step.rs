@@ -73,7 +73,7 @@ struct Stage {
     range: std::ops::Range<u32>,
 }
 
-/// Where a run stands between two steps, to come back to: what is marked, and the time of its clocks.
+/// Where a run is between two steps, to come back to: what is marked, and the time of its clocks.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Standing {
     marking: Marking,
@@ -201,7 +201,7 @@ impl Stepper {
         &self.marking
     }
 
-    /// Where it stands, to come back to.
+    /// Where it is, to come back to.
     pub fn standing(&self) -> Standing {
         let (marking, aside) = (self.marking.clone(), self.aside.clone());
         Standing { marking, aside, times: self.times.clone() }

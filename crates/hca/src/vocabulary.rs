@@ -38,7 +38,7 @@ impl Variable {
         self.values.len() as u32 + if self.closed { 0 } else { 1 }
     }
 
-    /// The number of `value`; an open domain counts unknown values as the one number behind its known ones.
+    /// The number of `value`; an open domain counts unknown values as the one number after its known ones.
     pub fn value_number(&self, value: &str) -> Option<u32> {
         let known = self.values.iter().position(|known| known == value).map(|at| at as u32);
         known.or_else(|| (!self.closed).then_some(self.values.len() as u32))

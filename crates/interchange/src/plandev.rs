@@ -35,7 +35,7 @@ pub enum PlanDevError {
     Interval {
         /// The plan or a directive.
         place: String,
-        /// What stands there.
+        /// What is there.
         text: String,
     },
     /// A moment that is none.

@@ -565,7 +565,7 @@ impl<'m> ChronologicalSearch<'m> {
         }
     }
 
-    /// The plan that the search stands at.
+    /// The plan that the search is at.
     fn plan(&mut self) -> Result<Plan, Unplannable> {
         let model = self.model;
         let mut conflict_order = Vec::new();

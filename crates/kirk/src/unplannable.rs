@@ -1,4 +1,4 @@
-//! What stands in the way of planning a network at all.
+//! What is in the way of planning a network at all.
 
 use std::collections::VecDeque;
 

@@ -93,7 +93,7 @@ impl Random {
         }
     }
 
-    /// One of some modes, each with its weight of `total`. A mode that stands alone takes no draw.
+    /// One of some modes, each with its weight of `total`. A mode that is alone takes no draw.
     pub(crate) fn weighted(&mut self, weights: &[(u8, u64)], total: u64) -> u8 {
         let mut left = if weights.len() > 1 { self.below(total) } else { 0 };
         for &(mode, weight) in weights {

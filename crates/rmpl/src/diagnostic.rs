@@ -61,7 +61,7 @@ pub struct Diagnostic {
     pub hint: Option<String>,
     /// Changes that fix it.
     pub fixes: Vec<Fix>,
-    /// How many more of its severity there are behind it, which no one lists.
+    /// How many more of its severity there are after it, which no one lists.
     pub more: u32,
 }
 

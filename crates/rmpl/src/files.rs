@@ -1,6 +1,6 @@
 //! A mission of several files (SPEC 14): its texts as one, and the way back from a place to its file.
 //!
-//! The texts are joined, that of the first file as it is and each other one behind a heading with its name. Places are
+//! The texts are joined, that of the first file as it is and each other one after a heading with its name. Places are
 //! places of the whole, so that everything below the front end reads one text whatever number of files there is, and a
 //! mission of one file is its text. A heading ends whatever the file before it leaves open. Nothing here reads files:
 //! who joins them says what their texts are.

@@ -22,7 +22,7 @@ impl Span {
         Self::new(self.start.min(other.start), self.end.max(other.end))
     }
 
-    /// Whether `offset` lies in the span or just behind it, where a cursor still belongs to it.
+    /// Whether `offset` lies in the span or just after it, where a cursor still belongs to it.
     pub const fn touches(self, offset: u32) -> bool {
         self.start <= offset && offset <= self.end
     }

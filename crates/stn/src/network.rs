@@ -236,7 +236,7 @@ impl Stn {
         }
     }
 
-    /// Takes back one edge wherever it stands in the order of insertion, in time linear in the edges at its ends.
+    /// Takes back one edge wherever it is in the order of insertion, in time linear in the edges at its ends.
     /// Positions are those of [`Stn::num_edges`] before the insertion; they stay what they are, also for rolling back.
     pub fn withdraw(&mut self, position: usize) {
         let Some(&edge) = self.edges.get(position).filter(|edge| !edge.is_withdrawn) else { return };

@@ -1,7 +1,7 @@
 //! The dispatcher: what may happen when, what must, and what waits for what. A pure state machine, without a clock.
 //!
-//! Whoever runs it lets time pass ([`Dispatcher::advance`]), executes what is enabled ([`Dispatcher::execute`]) and
-//! tells it what the environment ended ([`Dispatcher::observe`]). As long as the environment keeps to its ranges, every
+//! The caller advances time ([`Dispatcher::advance`]), executes enabled events ([`Dispatcher::execute`]) and
+//! reports the events that the environment ended ([`Dispatcher::observe`]). As long as the environment keeps to its ranges, every
 //! choice that it allows can be followed to the end.
 
 use std::fmt;

@@ -174,7 +174,7 @@ fn keep<'a>(nodes: &mut Vec<Node>, first: usize, starts: impl Iterator<Item = &'
     let found = nodes.split_off(first);
     let mut kept = vec![NONE; found.len()];
     for start in starts {
-        // A node stands behind the one at which the rest of its path starts.
+        // A node is behind the one at which the rest of its path starts.
         let mut path = Vec::new();
         let mut node = *start;
         let mut next = loop {

@@ -88,7 +88,7 @@ impl CallNames {
     }
 }
 
-/// What stands on an arc: its bounds, its labels and its activity.
+/// What is on an arc: its bounds, its labels and its activity.
 fn arc_text(network: &Network, id: ArcId) -> String {
     let arc = &network.arcs[id.index()];
     let mut text = format!("{} {}", bounds_text(arc), kind_name(arc.kind));

@@ -108,7 +108,7 @@ fn cycle(steps: &[Step], awaited: &[u32], from: NodeId) -> Vec<Step> {
     let mut path: Vec<Step> = Vec::new();
     let mut node = from;
     while seen.insert(node) {
-        // Whoever waits has one before it that waits, too.
+        // An event that waits has a predecessor that also waits.
         let Some(&step) = steps.iter().find(|step| step.to == node && awaited[step.from.index()] > 0) else {
             break;
         };

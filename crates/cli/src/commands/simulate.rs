@@ -106,7 +106,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(file) = &args.state {
         let saved = SavedState::at_end(&outcome, &drives, &evaluated.compiled.program);
         let saved = saved.map_err(|reason| {
-            anyhow::anyhow!("no state is written to {}: {}", file.display(), names.in_text(&reason))
+            anyhow::anyhow!("cannot write a state to {}: {}", file.display(), names.in_text(&reason))
         })?;
         save(file, &format!("{}\n", serde_json::to_string_pretty(&saved)?))?;
     }

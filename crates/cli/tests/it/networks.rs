@@ -178,7 +178,7 @@ fn variables_for_bounds_stand_at_their_default_and_other_files_of_the_tool_are_r
         written("variable.tpn.json", &network(|file| file["c2"]["value"] = variable.clone()).to_string());
     let plan = told(&enroute(&["plan", text(&file), "--format", "json"]));
     assert_eq!(plan["plans"][0]["windows"]["Dig#1.end"], json!([6, 12]), "{plan}");
-    assert!(plan["diagnostics"].to_string().contains("bounds that are a variable"), "{plan}");
+    assert!(plan["diagnostics"].to_string().contains("bounds given by a variable"), "{plan}");
     let open = json!({ "type": "lvar", "name": "dig-bounds" });
     let file = written("open.tpn.json", &network(|file| file["c2"]["value"] = open.clone()).to_string());
     let plan = told(&enroute(&["plan", text(&file), "--format", "json"]));

@@ -25,7 +25,6 @@ use super::system::System;
 pub struct ProgramExecution {
     /// The program with its plant.
     pub system: Arc<System>,
-    /// Where it stands.
     pub stepper: Stepper,
     /// How many steps it has taken.
     pub steps: u32,

@@ -195,7 +195,7 @@ impl Work<'_> {
         }
     }
 
-    /// What comes next where the program stands, with the plant in a state: its open choices are followed in their order.
+    /// What comes next where the program is, with the plant in a state: its open choices are followed in their order.
     fn open(&mut self, state: &State) -> Next {
         if let Some(choice) = self.program.stepper.open_choice().cloned() {
             let standing = self.program.stepper.standing();

@@ -86,7 +86,7 @@ pub enum RunStatus {
     Deadlock,
 }
 
-/// Where a run stands before a step, to come back to.
+/// Where a run is before a step, to come back to.
 #[derive(Clone, Debug)]
 struct Before {
     program: Standing,

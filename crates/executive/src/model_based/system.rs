@@ -76,7 +76,7 @@ pub struct SystemCompilation {
     pub system: Option<Arc<System>>,
     /// What is wrong with the program's text.
     pub program_diagnostics: Vec<Diagnostic>,
-    /// What is wrong with the model's text; empty when the model stands in the program's text.
+    /// What is wrong with the model's text; empty when the model is in the program's text.
     pub model_diagnostics: Vec<Diagnostic>,
 }
 

@@ -150,7 +150,7 @@ fn what_is_done_under_a_lock_is_dropped_when_its_constraint_is_lost() {
 fn locks_that_exclude_each_other_are_granted_in_the_order_of_the_text() {
     let text = "(PARALLEL (LOCK (x = a) (WAIT 2)) (LOCK (x = b) (WAIT 1)) (LOCK (y = a) (WAIT 1)))";
     let (seen, _) = goals(text, &["", "x=a y=a", "x=a", "", "x=b", ""]);
-    // The third does not wait behind the second; the second begins when the first has ended.
+    // The third does not wait after the second; the second begins when the first has ended.
     assert_eq!(seen, ["", "x=a y=a", "", "x=b", "x=b", ""].map(String::from).to_vec());
 }
 

@@ -12,7 +12,7 @@ pub enum PddlError {
     /// RMPL cannot express a part of an action on objects, of the goal or of the metric.
     #[error("{place}: {what} is not supported")]
     Said { place: String, what: &'static str },
-    #[error("{place} speaks of `{name}`, which is not an object; declare it in :objects or :constants")]
+    #[error("{place} mentions `{name}`, which is not an object; declare it in :objects or :constants")]
     Unknown { place: String, name: String },
     #[error("`{name}` is not a name in RMPL; rename it: letters, digits, and single `-` and `_` inside")]
     Name { name: String },

@@ -145,7 +145,7 @@ fn said_in_vain(object: &Value) -> Vec<String> {
         said.push("a duration that is not controllable".to_owned());
     }
     if read::is_variable(object.get("value")) {
-        said.push("bounds that are a variable, which is taken at its default".to_owned());
+        said.push("bounds given by a variable, which has its default value".to_owned());
     }
     if holds("guard") || holds("guards") {
         said.push("a guard".to_owned());

@@ -364,7 +364,7 @@ impl<'file> Reader<'file> {
         }
         let error =
             |problem: &str| PlanSchemaError::Bounds { uid: uid.to_owned(), problem: problem.to_owned() };
-        // What is left out bounds nothing, and a variable for bounds stands at its default.
+        // What is left out bounds nothing, and a variable for bounds is at its default.
         let value = object.get("value");
         let value = if is_variable(value) { value.and_then(|value| value.get("default")) } else { value };
         let (lower, upper) = match value {

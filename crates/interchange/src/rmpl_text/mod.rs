@@ -16,7 +16,7 @@ use tpn::network::{ArcId, ArcKind, EventEnd, Extent, Network, NodeId};
 /// What keeps a network from being written in RMPL.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Obstacle {
-    /// What is in the way: behind the names of the nodes and arcs, where there are any.
+    /// What is in the way: after the names of the nodes and arcs, where there are any.
     pub problem: String,
     /// The events it is about.
     pub nodes: Vec<NodeId>,

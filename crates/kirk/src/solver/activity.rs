@@ -9,7 +9,7 @@ pub(crate) struct Activity {
     scores: TiVec<ChoicePointId, f64>,
     increment: f64,
     heap: Vec<ChoicePointId>,
-    /// Where each choice point stands in the heap, if it does.
+    /// Where each choice point is in the heap, if it does.
     position: TiVec<ChoicePointId, Option<u32>>,
 }
 

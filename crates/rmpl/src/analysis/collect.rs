@@ -407,7 +407,7 @@ impl Collector<'_> {
                             }
                         }
                         ArgumentValue::Expression(expr) => self.expression(expr),
-                        // What it is used for, asked or told, is known where the parameter stands.
+                        // What it is used for, asked or told, is known where the parameter is.
                         ArgumentValue::Condition(condition) => {
                             self.literal(LabelMode::Tell, condition, Origin::Argument, false);
                         }

@@ -28,7 +28,7 @@ pub(crate) fn local_diagnostics(item: &Item, root: SyntaxNode<'_>) -> Vec<Diagno
     local.found
 }
 
-/// The occurrences that are named so far where a statement stands.
+/// The occurrences that are named so far where a statement is.
 #[derive(Default)]
 struct Occurrences {
     names: Vec<Name>,
@@ -296,7 +296,7 @@ impl Local {
     }
 
     /// Names of occurrences that stand twice where both can be selected. `known` are those before, and those in
-    /// `statement` behind it.
+    /// `statement` after it.
     fn named(&mut self, statement: &Statement, known: &mut Occurrences) {
         match &statement.kind {
             StatementKind::Choose(alternatives) => {
@@ -311,7 +311,7 @@ impl Local {
                 }
             }
             StatementKind::Named(body, name) => {
-                // What `or` copies stands in one place.
+                // What `or` copies is in one place.
                 if known
                     .spans
                     .get(&name.text)

@@ -30,7 +30,7 @@ pub(crate) struct Summary {
     pub(crate) moves_a_parameter: bool,
     /// The components of the plant that it models.
     pub(crate) components: Vec<ComponentState>,
-    /// Where the declaration begins, behind the comments before it.
+    /// Where the declaration begins, after the comments before it.
     pub(crate) start: u32,
 }
 
@@ -121,7 +121,7 @@ pub(crate) struct Literal {
     pub(crate) vehicle: Option<Vehicle>,
 }
 
-/// Where a condition stands, as far as that decides what it means for a state variable.
+/// Where a condition is, as far as that decides what it means for a state variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// In a statement that asserts or requires it, or in a `requires`.

@@ -27,7 +27,7 @@ pub(super) fn check_steps(file: &ControlFile) -> Vec<Diagnostic> {
     found
 }
 
-/// What is wrong with the numbers that an expression names itself; those that `is_open` says stand for others are left out.
+/// What is wrong with the numbers that an expression names itself; those that `is_open` says represent others are left out.
 pub(super) fn check_numbers(expression: &Expression, is_open: &dyn Fn(&Name) -> bool) -> Vec<Diagnostic> {
     let durations = expression.durations().into_iter().filter(|name| !is_open(name));
     let mut found: Vec<Diagnostic> = durations.filter_map(duration).collect();

@@ -87,7 +87,7 @@ fn is_mission_keyword(word: &str) -> bool {
     )
 }
 
-/// Lines on which something stands before a `;`, as at the end of a declaration, and nothing or a comment behind.
+/// Lines on which something is before a `;`, as at the end of a declaration, and nothing or a comment after.
 fn statement_ends(text: &str) -> u32 {
     text.lines()
         .filter_map(|line| line.split_once(';'))

@@ -37,7 +37,7 @@ pub fn format(text: &str) -> String {
 struct Piece {
     kind: TokenKind,
     text: String,
-    /// Whether an empty line stands before it.
+    /// Whether an empty line is before it.
     blank_before: bool,
     /// Whether it starts a line in the source.
     starts_line: bool,

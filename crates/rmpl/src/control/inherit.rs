@@ -74,7 +74,7 @@ pub struct MergedClass<'file> {
     /// Its variables, those of the most general class first.
     pub variables: Vec<MergedVariable>,
     pub commands: Vec<MergedVariable>,
-    /// Its ports, each with the class of what stands there.
+    /// Its ports, each with the class of what is there.
     pub ports: Vec<(&'file Name, &'file Name)>,
     pub parts: Vec<MergedPart<'file>>,
     pub methods: Vec<MergedMethod<'file>>,

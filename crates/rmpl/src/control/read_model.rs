@@ -82,7 +82,7 @@ impl Reader<'_> {
         Some((ports, initial))
     }
 
-    /// Reads what stands after `INIT`: a mode, `*`, or modes with their probabilities.
+    /// Reads what is after `INIT`: a mode, `*`, or modes with their probabilities.
     fn initial(&mut self, init: &Node, given: &[Node]) -> Initial {
         match given {
             [] => {

@@ -54,7 +54,7 @@ fn starts_definition(items: &[Node], at: usize) -> bool {
 /// How many items belong to the definition, class, component or expression at the front.
 fn unit_length(items: &[Node]) -> usize {
     if !starts_definition(items, 0) {
-        // A guard's bar stands before its list.
+        // A guard's bar is before its list.
         let barred = matches!(items.first(), Some(Node::Leaf(token)) if token.kind == TokenKind::Tilde);
         return if barred && items.len() > 1 { 2 } else { 1 };
     }

@@ -30,7 +30,7 @@ pub struct ControlFile {
     pub options: Vec<ProgramOption>,
     /// The lengths of a step that the text names, in textual order: one at most is right.
     pub steps: Vec<Name>,
-    /// How many seconds a step of the mission takes that the text stands in.
+    /// How many seconds a step of the mission takes that the text is in.
     pub mission_step_secs: Option<Rational>,
 }
 

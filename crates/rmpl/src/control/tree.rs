@@ -15,7 +15,7 @@ const DEEPEST_NESTING: usize = 200;
 pub enum Node {
     /// A token that is not a parenthesis, blank or comment.
     Leaf(Token),
-    /// What stands between parentheses or braces.
+    /// What is between parentheses or braces.
     List(List),
 }
 
@@ -32,7 +32,7 @@ impl Node {
 /// A list with its parentheses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct List {
-    /// What stands inside, without blanks and comments.
+    /// What is inside, without blanks and comments.
     pub items: Vec<Node>,
     /// From the opening to the closing parenthesis, or to the last item if it is never closed.
     pub span: Span,
@@ -43,7 +43,7 @@ pub struct List {
 /// A tree over all tokens of a text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tree {
-    /// What stands outside all parentheses.
+    /// What is outside all parentheses.
     pub items: Vec<Node>,
     /// Where parentheses do not match: what is read from around there is a guess.
     pub broken: Vec<Span>,

@@ -24,7 +24,7 @@ primitive Dig()[5,5];
 scenario Day[0,60] = { { Drive(); Dig() } [15,35] }",
 };
 
-/// Contingent bounds at `span` of `what`, which is composite. `word` is their word with the blanks behind it, `moved` a
+/// Contingent bounds at `span` of `what`, which is composite. `word` is their word with the blanks after it, `moved` a
 /// change that puts them where the environment can choose.
 pub(crate) fn composite(what: &str, word: Span, span: Span, moved: Option<Fix>) -> Diagnostic {
     let message = format!("only an activity, an assertion or a delay can be contingent, not {what}");

@@ -34,11 +34,11 @@ pub struct Choice {
     pub statement: Span,
     /// How it reads: `delay` or its condition.
     pub name: String,
-    /// The bounds as they are evaluated, `[5,20]`, and where they stand, if they are written.
+    /// The bounds as they are evaluated, `[5,20]`, and where they are, if they are written.
     pub bounds: (String, Option<Span>),
     /// Whether the upper one is finite, so that the environment can choose.
     pub is_finite: bool,
-    /// Whether the word needs a blank before it where the bounds stand.
+    /// Whether the word needs a blank before it where the bounds is.
     pub needs_blank: bool,
 }
 

@@ -49,7 +49,7 @@ pub(crate) fn expected(wanted: &str, found: Found<'_>, span: Span) -> Diagnostic
     error(span, format!("expected {wanted}, {}", found.describe()))
 }
 
-/// `wanted` is missing at `place`, which lies just behind `span`.
+/// `wanted` is missing at `place`, which lies just after `span`.
 pub(crate) fn missing(wanted: &str, found: Found<'_>, span: Span, place: u32, text: &str) -> Diagnostic {
     error(span, format!("expected {wanted} after this, {}", found.describe())).with_fix(insertion(
         format!("Insert `{}`", text.trim()),

@@ -101,7 +101,7 @@ pub(crate) fn level_told(resource: &str, span: Span) -> Diagnostic {
     Diagnostic::error(CODE, span, message).with_fix(insertion("Write `ask`", span.start, "ask "))
 }
 
-/// A level behind `watching`, which asserts that something does not hold.
+/// A level after `watching`, which asserts that something does not hold.
 pub(crate) fn level_watched(resource: &str, span: Span) -> Diagnostic {
     let message = format!("the level of `{resource}` follows from activities, so nothing can watch for it");
     Diagnostic::error(CODE, span, message)

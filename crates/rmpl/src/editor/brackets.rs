@@ -4,7 +4,7 @@ use crate::parse::Parse;
 use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxToken};
 
-/// The bracket at `offset` (behind the cursor first, then before it) and its partner. Works on broken programs: brackets
+/// The bracket at `offset` (after the cursor first, then before it) and its partner. Works on broken programs: brackets
 /// are matched by kind within the declaration.
 pub fn matching_bracket(parse: &Parse, offset: u32) -> Option<(Span, Span)> {
     let at = |start: u32| {

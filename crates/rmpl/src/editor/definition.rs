@@ -9,7 +9,7 @@ use crate::syntax::SyntaxKind;
 
 use super::name::{NameUse, name_at, names_in};
 
-/// A place where a name stands.
+/// A place where a name is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     pub span: Span,

@@ -169,7 +169,7 @@ fn hover_bound(parse: &Parse, offset: u32, evaluation: &Evaluation) -> Option<Ho
     Some(Hover { span: shown.span(), topic: Topic::Bounds, markdown: lines.join("  \n") })
 }
 
-/// The name that an operand is; what stands behind a number is a unit.
+/// The name that an operand is; what follows a number is a unit.
 fn plain_name(node: SyntaxNode<'_>) -> Option<&str> {
     let is_operand = node.kind() == SyntaxKind::Operand && node.token(SyntaxKind::Number).is_none();
     node.token(SyntaxKind::Name).filter(|_| is_operand).map(|name| name.text)

@@ -8,7 +8,7 @@ use crate::syntax::{SyntaxKind, SyntaxNode, SyntaxToken};
 
 /// The edit of pressing Enter with `selection` selected, and where the cursor stands afterwards.
 ///
-/// Behind `{` the new line is one level deeper, and a `}` right behind the cursor goes to a line of its own. Inside a
+/// Behind `{` the new line is one level deeper, and a `}` right after the cursor goes to a line of its own. Inside a
 /// line comment the comment continues. Otherwise the new line is as deep as its block.
 pub fn new_line(parse: &Parse, selection: Span) -> (Edit, u32) {
     let text = parse.text();

@@ -52,14 +52,13 @@ impl NameKind {
 /// A name in the text. `X_V` that represents `X=V` is two of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameUse {
-    /// Where it stands.
     pub span: Span,
     pub text: SmolStr,
     /// What it represents.
     pub kind: NameKind,
     /// Whether it is declared here.
     pub is_definition: bool,
-    /// The declaration that it stands in.
+    /// The declaration that it is in.
     pub declaration: Span,
 }
 
@@ -322,7 +321,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// `X=V` behind `sets`
+    /// `X=V` after `sets`
     fn effect(&mut self, node: SyntaxNode<'a>) {
         let mut names = node.own_tokens().filter(|token| token.kind == SyntaxKind::Name);
         if let Some(dotted) = node.child(SyntaxKind::Dotted) {
@@ -368,7 +367,7 @@ impl<'a> Collector<'a> {
         self.refer(Some(name), kind);
     }
 
-    /// A name in an expression; what stands behind a number is a unit.
+    /// A name in an expression; what follows a number is a unit.
     fn operand(&mut self, node: SyntaxNode<'_>) {
         let Some(name) = node.token(SyntaxKind::Name) else { return };
         let is_unit = node.token(SyntaxKind::Number).is_some();

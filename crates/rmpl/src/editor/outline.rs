@@ -36,7 +36,7 @@ pub struct OutlineItem {
     pub name: String,
     /// What follows the name in the declaration, on one line: parameters, bounds, domain, coordinates.
     pub detail: String,
-    /// Where the name stands.
+    /// Where the name is.
     pub name_span: Span,
     /// The whole declaration.
     pub span: Span,

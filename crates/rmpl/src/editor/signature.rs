@@ -12,7 +12,7 @@ use super::hover::header;
 pub struct Signature {
     /// The activity's header, such as `primitive Drive(from, to)[20,30]`.
     pub label: String,
-    /// Where each parameter stands in the label, in bytes.
+    /// Where each parameter is in the label, in bytes.
     pub parameters: Vec<Span>,
     /// The parameter that the cursor is at; may be past the last.
     pub active: u32,
@@ -62,7 +62,7 @@ fn open_bracket(parse: &Parse, offset: u32) -> Option<(String, String, String, u
     Some((tokens[at].text.to_owned(), owner.to_owned(), first.to_owned(), commas))
 }
 
-/// What a declaration, or bounds, want in a bracket behind the word `owner`, where the declaration begins with `first`.
+/// What a declaration, or bounds, want in a bracket after the word `owner`, where the declaration begins with `first`.
 fn of_declaration(bracket: &str, owner: &str, first: &str) -> Option<(&'static str, &'static str)> {
     Some(match (bracket, owner, first) {
         ("[", ..) => ("[MIN, MAX]", "Minimum and maximum duration; `inf` for no maximum."),

@@ -2,7 +2,7 @@
 //! hold, and what parameters represent.
 //!
 //! A vehicle's own resources and states become ordinary ones with the vehicle's name before a dot, so that nothing
-//! behind the front end knows of models.
+//! after the front end knows of models.
 
 mod groups;
 mod kinds;

@@ -115,7 +115,7 @@ impl Layout {
         }
     }
 
-    /// What stands behind the sign of a goal's first term is tight: `minimize -cost`.
+    /// What follows the sign of a goal's first term is tight: `minimize -cost`.
     fn note_sign(&mut self, goal: SyntaxNode<'_>) {
         let mut tokens = goal.own_tokens().skip(1);
         let sign = tokens.next().filter(|token| matches!(token.kind, SyntaxKind::Plus | SyntaxKind::Minus));
@@ -149,7 +149,7 @@ impl Layout {
         self.widths.push(width);
     }
 
-    /// The width of a node and the separator behind it on one line.
+    /// The width of a node and the separator after it on one line.
     fn width(&self, node: SyntaxNode<'_>) -> usize {
         let mut tokens = node.tokens();
         let Some(first) = tokens.next() else { return 0 };
@@ -245,7 +245,7 @@ fn first_token(node: SyntaxNode<'_>) -> Option<usize> {
     node.tokens().find(|token| !token.kind.is_trivia()).map(|token| token.index as usize)
 }
 
-/// Whether nothing stands between the braces: such a block is always written `{}`.
+/// Whether nothing is between the braces: such a block is always written `{}`.
 fn is_empty(block: SyntaxNode<'_>) -> bool {
     block.children().next().is_none() && !block.tokens().any(|token| token.kind.is_comment())
 }

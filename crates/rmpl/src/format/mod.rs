@@ -1,6 +1,6 @@
 //! The formatter of mission texts: one layout for all, keeping every token and every comment.
 //!
-//! Only blanks and line ends change. A block stands on one line if its author wrote it so and it fits; otherwise each
+//! Only blanks and line ends change. A block is on one line if its author wrote it so and it fits; otherwise each
 //! step has a line. Declarations with syntax errors are left as they are.
 
 mod layout;

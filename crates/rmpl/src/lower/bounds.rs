@@ -7,7 +7,7 @@ use crate::parser::CONTINGENT;
 use crate::program::{BinaryOp, Bounds, DurationUnit, Expr, ExprKind, HeaderBound, HeaderBounds};
 use crate::syntax::{Element, SyntaxKind, SyntaxNode, SyntaxToken};
 
-/// The bounds behind a construct, if they stand directly in `node` and are whole.
+/// The bounds after a construct, if they stand directly in `node` and are whole.
 pub(super) fn bounds_in(node: SyntaxNode<'_>) -> Option<Bounds> {
     let bounds = node.child(SyntaxKind::Bounds)?;
     let (lower, upper) = sides(bounds)?;

@@ -11,7 +11,7 @@ use crate::syntax::{SyntaxKind, SyntaxNode};
 use super::bounds::expression;
 use super::{Lowering, name_of, names, variable_in};
 
-/// A declaration grows by no more statements than this where `or` copies what it stands beside.
+/// A declaration grows by no more statements than this where `or` copies what it is beside.
 const MAX_COPIED: usize = 10_000;
 /// What is required of something nests no deeper than compilation allows, so that no text can exhaust the stack.
 const MAX_NESTED: usize = 200;

@@ -9,7 +9,7 @@ use crate::span::Span;
 use crate::syntax::{SyntaxKind, SyntaxNode};
 
 impl Lowering<'_> {
-    /// The bounds behind the statement `node`, whose parts `core` holds. Those of a composite say only what is required.
+    /// The bounds after the statement `node`, whose parts `core` holds. Those of a composite say only what is required.
     pub(super) fn chosen_by_plans(&mut self, core: SyntaxNode<'_>, node: SyntaxNode<'_>) -> Option<Bounds> {
         let bounds = bounds_in(node)?;
         if !bounds.is_contingent || is_simple(core.kind()) {

@@ -136,7 +136,7 @@ fn variable_in(node: SyntaxNode<'_>) -> Option<Name> {
 fn dotted(dotted: SyntaxNode<'_>) -> Option<Name> {
     let mut parts = names(dotted);
     let (owner, part) = (parts.next()?, parts.next()?);
-    // What stands between them has been reported, and is part of no name.
+    // What is between them has been reported, and is part of no name.
     if owner.span.end + 1 != part.span.start {
         return None;
     }

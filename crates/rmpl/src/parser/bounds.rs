@@ -132,7 +132,7 @@ impl Parser<'_> {
         self.chain(mark, SyntaxKind::Product, [SyntaxKind::Star, SyntaxKind::Slash], Self::percent);
     }
 
-    /// Further operands behind the one at `mark`, in one node.
+    /// Further operands after the one at `mark`, in one node.
     fn chain(
         &mut self,
         mark: Mark,
@@ -177,7 +177,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A number with the unit that is written right behind it, if one is: `90s`, `1.5h`.
+    /// A number with the unit that is written right after it, if one is: `90s`, `1.5h`.
     pub(super) fn quantity(&mut self) {
         let has_unit = self.at_quantity();
         self.bump();
@@ -186,7 +186,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a number stands here with a unit of time right behind it.
+    /// Whether a number stands here with a unit of time right after it.
     pub(super) fn at_quantity(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.at(SyntaxKind::Number)

@@ -1,4 +1,4 @@
-//! What stands behind a primitive's parameters and bounds: what it moves, runs, requires, sets, takes, gives, costs and
+//! What follows a primitive's parameters and bounds: what it moves, runs, requires, sets, takes, gives, costs and
 //! is worth, and how it is aborted (SPEC 1.8, 10.1, 11, 12, 15).
 //!
 //! The words of clauses are words of the language only where a clause can begin; a comma continues with a clause.
@@ -37,7 +37,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A comma, and behind it what no list continues with.
+    /// A comma, and after it what no list continues with.
     fn comma_before_clause(&mut self) {
         let next = self.index_after(self.current);
         if self.at_start_of_activity(next) {
@@ -109,7 +109,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Uses);
     }
 
-    /// A word and the one thing behind it.
+    /// A word and the one thing after it.
     fn single(&mut self, kind: SyntaxKind, item: impl Fn(&mut Self)) {
         let node = self.open();
         self.bump();
@@ -271,7 +271,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a clause begins behind the comma at the cursor.
+    /// Whether a clause begins after the comma at the cursor.
     fn begins_clause_behind(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.begins_clause(next) || self.at_start_of_activity(next)

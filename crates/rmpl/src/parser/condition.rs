@@ -21,7 +21,7 @@ impl Parser<'_> {
         self.joined(mark, "and", SyntaxKind::AllOf, Self::negation);
     }
 
-    /// Further operands behind the one at `mark`, in one node.
+    /// Further operands after the one at `mark`, in one node.
     fn joined(&mut self, mark: Mark, word: &str, kind: SyntaxKind, operand: impl Fn(&mut Self)) {
         if !self.at_word(word) {
             return;
@@ -103,7 +103,7 @@ impl Parser<'_> {
             && matches!(self.text_of(index), "and" | "or")
     }
 
-    /// Whether `and`, `or` or `in` stands behind the name at the cursor.
+    /// Whether `and`, `or` or `in` is after the name at the cursor.
     pub(super) fn at_joined_literal(&mut self) -> bool {
         let next = self.index_after(self.current);
         self.kind_at(next) == SyntaxKind::Name && matches!(self.text_of(next), "and" | "or" | "in")
@@ -218,7 +218,7 @@ impl Parser<'_> {
         true
     }
 
-    /// A name, and behind its dot another one, which may have to be this one.
+    /// A name, and after its dot another one, which may have to be this one.
     pub(super) fn dotted_name(&mut self, word: Option<&str>) {
         let node = self.open();
         self.bump();
@@ -245,7 +245,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Dotted);
     }
 
-    /// The value behind `=`.
+    /// The value after `=`.
     pub(super) fn value(&mut self) {
         if self.at(SyntaxKind::Equals) {
             let diagnostic = syntax::double_equals(self.here());

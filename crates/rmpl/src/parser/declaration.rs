@@ -256,7 +256,7 @@ impl Parser<'_> {
         self.report_expected(wanted);
     }
 
-    /// The `;` that ends a declaration; skips what stands before it.
+    /// The `;` that ends a declaration; skips what is before it.
     pub(super) fn end_declaration(&mut self) {
         if self.eat(SyntaxKind::Semicolon) {
             return;

@@ -84,7 +84,7 @@ impl Parser<'_> {
         });
     }
 
-    /// The `;` behind a part of a model.
+    /// The `;` after a part of a model.
     fn end_part(&mut self) {
         if self.eat(SyntaxKind::Semicolon) {
             return;
@@ -210,7 +210,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::GroupDecl);
     }
 
-    /// `[1..4]` behind the name of a fleet, which is being declared.
+    /// `[1..4]` after the name of a fleet, which is being declared.
     pub(super) fn fleet_range_if_any(&mut self) {
         if !self.at(SyntaxKind::LeftBracket) {
             return;
@@ -297,7 +297,7 @@ impl Parser<'_> {
         self.kind_at(next) == SyntaxKind::Name && self.text_of(next) == "in"
     }
 
-    /// `any r in G unit` or `each r in G in sequence unit`; bounds behind it bind to the unit.
+    /// `any r in G unit` or `each r in G in sequence unit`; bounds after it bind to the unit.
     pub(super) fn members(&mut self) {
         let node = self.open();
         let is_each = self.at_word("each");

@@ -266,7 +266,7 @@ impl<'t> Parser<'t> {
         self.report(diagnostic);
     }
 
-    /// Reports that `wanted` is missing behind the token accepted last; `insertion` would fix it.
+    /// Reports that `wanted` is missing after the token accepted last; `insertion` would fix it.
     fn report_missing(&mut self, wanted: &str, insertion: &str) {
         let place = self.previous_end();
         let span = Span::new(self.last_character_start(place), place);
@@ -304,7 +304,7 @@ impl<'t> Parser<'t> {
         found
     }
 
-    /// Accepts a separator or terminator, or reports it missing behind what stands before it.
+    /// Accepts a separator or terminator, or reports it missing after what is before it.
     fn expect_behind(&mut self, kind: SyntaxKind, insertion: &str) -> bool {
         let found = self.eat(kind);
         if !found {
@@ -333,7 +333,7 @@ impl<'t> Parser<'t> {
         ParsedDeclaration { tree, diagnostics: self.diagnostics, reach }
     }
 
-    /// The index just past the last token: comments behind a declaration on its line belong to it, and at the end of
+    /// The index just past the last token: comments after a declaration on its line belong to it, and at the end of
     /// the text everything does.
     fn end_of_declaration(&mut self) -> u32 {
         if self.after_previous == 0 && self.at(SyntaxKind::End) {

@@ -8,12 +8,12 @@ use crate::syntax::SyntaxKind;
 const AS: &str = "as";
 
 impl Parser<'_> {
-    /// Whether `as NAME` stands at the cursor, where a statement or its bounds end.
+    /// Whether `as NAME` is at the cursor, where a statement or its bounds end.
     fn at_naming(&mut self) -> bool {
         self.at_word(AS) && self.peek() == SyntaxKind::Name
     }
 
-    /// `as NAME`, if it stands behind a statement.
+    /// `as NAME`, if it is after a statement.
     pub(super) fn naming_if_any(&mut self) {
         if !self.at_naming() {
             return;
@@ -24,7 +24,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Naming);
     }
 
-    /// Whether `as NAME` stands behind the name at `index`.
+    /// Whether `as NAME` is after the name at `index`.
     pub(super) fn is_naming(&mut self, index: u32) -> bool {
         if self.text_of(index) != AS {
             return false;

@@ -108,7 +108,7 @@ impl Parser<'_> {
         }
     }
 
-    /// The index behind the flat group that opens at `index`; stops at what no such group contains.
+    /// The index after the flat group that opens at `index`; stops at what no such group contains.
     pub(super) fn index_after_group(&mut self, index: u32, open: SyntaxKind, close: SyntaxKind) -> u32 {
         let mut index = index;
         let mut depth = 0_u32;
@@ -146,7 +146,7 @@ impl Parser<'_> {
             && !self.at_joint()
     }
 
-    /// Whether a word that continues with the statement stands behind the name at the cursor.
+    /// Whether a word that continues with the statement is after the name at the cursor.
     pub(super) fn at_joint(&mut self) -> bool {
         let next = self.index_after(self.current);
         if self.kind_at(next) != SyntaxKind::Name {
@@ -177,7 +177,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether the word stands alone before `;`, as in a declaration that is being typed.
+    /// Whether the word is alone before `;`, as in a declaration that is being typed.
     fn at_definition_of_nothing(&mut self) -> bool {
         self.peek() == SyntaxKind::Semicolon && self.begins_line()
     }

@@ -61,7 +61,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Moment);
     }
 
-    /// What stands behind the name of an activity or a resource, if that is what the name is.
+    /// What follows the name of an activity or a resource, if that is what the name is.
     pub(super) fn rule_atom(&mut self) -> bool {
         if self.eat(SyntaxKind::Order) {
             self.sum();
@@ -74,7 +74,7 @@ impl Parser<'_> {
         is_call
     }
 
-    /// The index behind an order or the arguments of an activity at `index`.
+    /// The index after an order or the arguments of an activity at `index`.
     pub(super) fn behind_rule_atom(&mut self, index: u32) -> u32 {
         let mut index = index;
         let mut depth = 0_u32;

@@ -27,7 +27,7 @@ impl Parser<'_> {
         self.report(syntax::unclosed_brace(opened, place));
     }
 
-    /// Steps separated by `;`, with an optional `;` behind the last.
+    /// Steps separated by `;`, with an optional `;` after the last.
     fn steps(&mut self) {
         loop {
             self.stray_separators();
@@ -93,7 +93,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Parallel);
     }
 
-    /// A core statement, the bounds behind it and the name of what it is.
+    /// A core statement, the bounds after it and the name of what it is.
     pub(super) fn statement(&mut self) {
         let node = self.open();
         self.core();
@@ -184,7 +184,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Statements separated by `;`, with an optional `;` behind the last.
+    /// Statements separated by `;`, with an optional `;` after the last.
     fn alternative(&mut self) {
         let node = self.open();
         loop {
@@ -363,7 +363,7 @@ impl Parser<'_> {
         self.close(node, SyntaxKind::Repeat);
     }
 
-    /// Whether `word` stands before a statement; otherwise it is a name like any other.
+    /// Whether `word` is before a statement; otherwise it is a name like any other.
     fn at_prefix(&mut self, word: &str) -> bool {
         self.at_word(word)
             && match self.peek() {
@@ -372,7 +372,7 @@ impl Parser<'_> {
             }
     }
 
-    /// `free A` or `optional A`; bounds behind it bind to A.
+    /// `free A` or `optional A`; bounds after it bind to A.
     fn prefixed(&mut self, kind: SyntaxKind) {
         let node = self.open();
         self.bump();

@@ -211,7 +211,7 @@ pub enum SyntaxKind {
     /// `-5` at the head of a bound between events.
     Negation,
 
-    /// A core statement with the bounds behind it.
+    /// A core statement with the bounds after it.
     Statement,
     /// `{ … }`
     Block,
@@ -249,7 +249,7 @@ pub enum SyntaxKind {
     Delay,
     /// A literal with its negations and parentheses.
     Condition,
-    /// `visible(BASE)` behind `in`.
+    /// `visible(BASE)` after `in`.
     Visible,
     /// Conditions joined by `and`.
     AllOf,
@@ -263,7 +263,7 @@ pub enum SyntaxKind {
     Dotted,
     /// `from plant` of a state.
     FromPlant,
-    /// `as NAME` behind a statement.
+    /// `as NAME` after a statement.
     Naming,
     /// `NAME.start` or `NAME.end`
     EventName,
@@ -291,7 +291,7 @@ impl SyntaxKind {
         self as u8 >= Self::ChooseKeyword as u8 && self as u8 <= Self::AskKeyword as u8
     }
 
-    /// Whether it is a declaration, which stands directly under the root.
+    /// Whether it is a declaration, which is directly under the root.
     pub const fn is_declaration(self) -> bool {
         self as u8 >= Self::VariableDecl as u8 && self as u8 <= Self::VehicleDecl as u8
     }

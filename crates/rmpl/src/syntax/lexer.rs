@@ -1,6 +1,6 @@
 //! Cuts a mission text into tokens (SPEC 1.1), one at a time, and never fails.
 //!
-//! A hyphen joins names outside square brackets and is minus inside. The depth of brackets is forgotten at `;`, `{` and
+//! A hyphen joins names outside square brackets and is minus inside. The depth of brackets is reset at `;`, `{` and
 //! `}`, which no bound contains, so that one unclosed bracket does not change the names of the rest of the file.
 
 use super::SyntaxKind;

@@ -27,7 +27,7 @@ pub(crate) struct RawNode {
     pub(crate) size: u32,
 }
 
-/// The tree of one declaration, with the blanks and comments before it and the comments behind it on its last line.
+/// The tree of one declaration, with the blanks and comments before it and the comments after it on its last line.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct DeclarationTree {
     pub(crate) tokens: Vec<Token>,
@@ -69,7 +69,7 @@ pub struct SyntaxNode<'a> {
 pub struct SyntaxToken<'a> {
     pub kind: SyntaxKind,
     pub text: &'a str,
-    /// Where it stands in the file.
+    /// Where it is in the file.
     pub span: Span,
     /// Its index among the tokens of its declaration.
     pub index: u32,
@@ -99,7 +99,7 @@ impl<'a> SyntaxNode<'a> {
         self.index
     }
 
-    /// Where it stands in the file.
+    /// Where it is in the file.
     pub fn span(self) -> Span {
         let raw = self.raw();
         let start = self.tree.token_start(raw.first_token);
@@ -146,7 +146,7 @@ impl<'a> SyntaxNode<'a> {
         let mut at = self.raw().first_token;
         let mut children = self.children().peekable();
         std::iter::from_fn(move || {
-            // A node without tokens stands before the token it was expected at.
+            // A node without tokens is before the token it was expected at.
             if let Some(child) = children.next_if(|child| child.raw().first_token <= at) {
                 at = at.max(child.raw().end_token);
                 return Some(Element::Node(child));

@@ -26,7 +26,7 @@ fn nesting_that_is_too_deep_is_one_mistake() {
         let text = format!("scenario M[0,inf] = {{ {}", open.repeat(count));
         assert_eq!(codes(&parse(&text).diagnostics()), ["E-SYNTAX"], "{open}");
     }
-    // What comes behind is read.
+    // What comes after is read.
     let text = format!("scenario M[0,inf] = {{ {}\nscenario Other[0,5] = {{ delay }}", "{ ".repeat(500));
     assert_eq!(parse(&text).program().scenarios.len(), 2);
 }

@@ -1,7 +1,7 @@
 //! Runs the literate conformance suite in `tests/suite`, which is also the language's manual by example.
 //!
 //! Every `rmpl` block of the Markdown files is a mission. A comment line with `^^^ CODE` marks a diagnostic of the line
-//! before: its exact place, its code, and, behind a colon, a part of its message. There are no other diagnostics. A
+//! before: its exact place, its code, and, after a colon, a part of its message. There are no other diagnostics. A
 //! block that is followed by a `formatted` block must be formatted to it.
 
 use crate::fixture;

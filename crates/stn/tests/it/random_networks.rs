@@ -412,7 +412,7 @@ fn edges_withdrawn_out_of_turn_leave_the_others_as_they_are() {
                             standing.push(Some((from, to, weight)));
                         }
                     }
-                    // Withdrawing what stands below the checkpoint outlasts going back to it.
+                    // Withdrawing what is below the checkpoint outlasts going back to it.
                     if !standing.is_empty() {
                         let position = random.below(standing.len());
                         stn.withdraw(position);

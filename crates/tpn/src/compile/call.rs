@@ -238,7 +238,7 @@ impl<'program> Expander<'program> {
         }
     }
 
-    /// The arguments of a call after substitution, with expressions evaluated where the call stands.
+    /// The arguments of a call after substitution, with expressions evaluated where the call is.
     pub(super) fn arguments(&mut self, arguments: &[Argument], scope: &Scope) -> Vec<ArgumentValue> {
         let mut values = Vec::with_capacity(arguments.len());
         for argument in arguments {

@@ -78,7 +78,7 @@ impl Values for Constants<'_> {
     }
 }
 
-/// All constants, each behind those that it names, as far as no cycle prevents that. Linear in the number of names.
+/// All constants, each after those that it names, as far as no cycle prevents that. Linear in the number of names.
 fn after_what_they_name(named: &[Vec<(usize, Span)>]) -> Vec<usize> {
     let mut order = Vec::with_capacity(named.len());
     let mut is_seen = vec![false; named.len()];

@@ -148,7 +148,7 @@ fn choice(
     })
 }
 
-/// Whether a word before the bounds would run into what stands before it. Where more than the condition does, as in
+/// Whether a word before the bounds would run into what is before it. Where more than the condition does, as in
 /// `a and b[1,2]`, it might.
 fn needs_blank(condition: &Condition, bounds: &Bounds) -> bool {
     bounds.span.start.checked_sub(condition.span.end) != Some(1)

@@ -15,7 +15,7 @@ use super::names::Vocabulary;
 use super::scope::Scope;
 use crate::network::{ArcId, ArcKind, BlockId, Network, NodeId, OccurrenceId, ResourceId};
 
-/// What kind of node stands at an end of a piece, which decides what may share the node (rule M).
+/// What kind of node is at an end of a piece, which decides what may share the node (rule M).
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// The start or end of an activity or assertion: shares its node only with a delay.
@@ -31,7 +31,7 @@ pub(super) enum End {
 pub(super) enum Entry {
     /// At a new node.
     Free,
-    /// At `node` if the two may share it, otherwise at a new node behind an arc `[0,0]` of kind `link`.
+    /// At `node` if the two may share it, otherwise at a new node after an arc `[0,0]` of kind `link`.
     After { node: NodeId, end: End, link: ArcKind },
 }
 

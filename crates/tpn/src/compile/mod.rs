@@ -166,7 +166,7 @@ fn with_first(
 pub fn merge_diagnostics(front_end: &mut Vec<Diagnostic>, compiled: Vec<Diagnostic>) {
     let overlap = |one: Span, other: Span| one.start <= other.end && other.start <= one.end;
     let known = front_end.len();
-    // What is behind the end of a list that was cut has been counted.
+    // What is after the end of a list that was cut has been counted.
     let cut = front_end.iter().find(|told| told.more > 0 && told.severity == Severity::Error);
     let end = cut.map_or(u32::MAX, |told| told.span.start);
     let is_counted = |found: &Diagnostic| found.severity == Severity::Error && found.span.start > end;

@@ -192,7 +192,7 @@ impl<'program> Expander<'program> {
         }
     }
 
-    /// Adds a use, if its resource can ever bear it. `called` is where the call stands, `written` where the use does.
+    /// Adds a use, if its resource can ever bear it. `called` is where the call is, `written` where the use does.
     fn add_use(&mut self, used: Use, called: Span, written: Span) {
         let resource = &self.builder.resources[used.resource.index()];
         let name = &resource.name;

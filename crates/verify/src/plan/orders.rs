@@ -90,7 +90,7 @@ impl Stated {
             if !self.is_said(ordering.first, ordering.then) && !self.is_said(ordering.then, ordering.first) {
                 let (first, then) = (network.label_name(ordering.first), network.label_name(ordering.then));
                 complain(
-                    format!("{first} comes before {then}, but the plan's conflict order does not say so"),
+                    format!("{first} comes before {then}, but the plan's conflict order lacks this pair"),
                     (ordering.first, ordering.then),
                 );
             }

@@ -93,8 +93,9 @@ impl Checker<'_> {
             } else if is_shown(&label) {
                 if position > 0 {
                     let earlier = network.label_name(listed[0]);
-                    let message =
-                        format!("{earlier} is put before the start, where {variable} has its first value");
+                    let message = format!(
+                        "the plan orders {earlier} before the start, where {variable} has its first value"
+                    );
                     complain(message, label);
                 }
             } else if let Some(&producer) = by_label.get(&label) {
@@ -134,7 +135,7 @@ impl Checker<'_> {
             if !is_in_order || of(first) != of(then) || !is_asked {
                 let names = vec![network.label_name(first), network.label_name(then)];
                 let message = format!(
-                    "{} comes before {}, but the plan's order of changes does not say so",
+                    "{} comes before {}, but the plan's order of changes lacks this pair",
                     names[0], names[1]
                 );
                 violations.push(Violation::new(Rule::State, message).with_intervals(names));

@@ -371,7 +371,7 @@ fn the_order_of_a_conflict_is_said_once_and_holds() {
     // Added, and said of no conflict.
     let later = "Tell(c)@Tell(c)#2";
     let unsaid = said_of(Sketch { added: &[(X, Y), (TELL, later)], ..GOOD });
-    only(&unsaid, Rule::Conflict, &[TELL, later], "but the plan's conflict order does not say so");
+    only(&unsaid, Rule::Conflict, &[TELL, later], "but the plan's conflict order lacks this pair");
 }
 
 #[test]

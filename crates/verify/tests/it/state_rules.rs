@@ -255,7 +255,7 @@ fn assertions_keep_their_value_and_leave_it_behind() {
     let sketch =
         Sketch { links: &[(pass, one)], states: &[&[shut, one, two]], added: &added, ..Sketch::default() };
     let found = said_of(&text.replace("GATE=OPEN [4,4]", "GATE=OPEN [1,4]"), sketch);
-    only(&found, Rule::State, &[one, two], "but the plan's order of changes does not say so");
+    only(&found, Rule::State, &[one, two], "but the plan's order of changes lacks this pair");
 }
 
 /// Several values at one instant have an order, and it decides what holds afterwards.
@@ -292,7 +292,7 @@ fn ties_are_decided_by_an_order_without_circles() {
     // What was added is another order than the one that is stated.
     let found = sketch([a, c, b], &[(c, a), (a, b), (c, b)]);
     assert!(
-        found.iter().any(|it| it.message.contains("but the plan's order of changes does not say so")),
+        found.iter().any(|it| it.message.contains("but the plan's order of changes lacks this pair")),
         "{found:#?}"
     );
     // C is last, and Use requires B.

@@ -1,6 +1,6 @@
 //! Parts of a program that do nothing in any run: what is never active, and what waits for what never comes (SPEC 9.3).
 //!
-//! More runs are looked at than there are: what the program may know is taken apart from where it stands. So nothing is said of
+//! More runs are looked at than there are: what the program may know is taken apart from where it is. So nothing is said of
 //! a part that does something in some run, but not all that do nothing are found.
 
 use std::collections::{BTreeSet, HashSet};
@@ -132,7 +132,7 @@ impl Exploration {
         exploration
     }
 
-    /// Takes a step. `None` if the program stands in too many ways.
+    /// Takes a step. `None` if the program can continue in too many ways.
     fn step(&mut self, standing: &Standing, is_entailed: &dyn Fn(TestId) -> bool) -> Option<()> {
         self.stepper.return_to(standing);
         if !self.stepper.is_done() {
@@ -143,7 +143,7 @@ impl Exploration {
         (self.standings.len() <= MAX_STANDINGS).then_some(())
     }
 
-    /// Notes where the program stands after each combination of its open choices, coming from another standing.
+    /// Notes where the program is after each combination of its open choices, coming from another standing.
     fn settle(&mut self, before: Option<&Standing>) {
         if let Some(choice) = self.stepper.open_choice() {
             let children =

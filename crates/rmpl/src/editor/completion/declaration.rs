@@ -72,7 +72,7 @@ fn is_behind_colon(context: &[SyntaxToken<'_>]) -> bool {
     context.len().checked_sub(2).and_then(|at| context.get(at)).is_some_and(|it| it.kind == SyntaxKind::Colon)
 }
 
-/// `model NAME extends PARENT { … }`; nothing behind it.
+/// `model NAME extends PARENT { … }`; nothing after it.
 fn in_model(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {
     let brace = context.iter().position(|token| token.kind == SyntaxKind::LeftBrace);
     let Some(brace) = brace else {
@@ -216,7 +216,7 @@ fn in_requires(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     }
 }
 
-/// Whether the last condition of a clause compares a level, and its bound has begun.
+/// Whether the last condition of a clause compares a level, and its bound has started.
 fn compares_level(clause: &[SyntaxToken<'_>]) -> bool {
     let condition =
         clause.iter().rev().take_while(|token| token.kind != SyntaxKind::Comma && token.text != "and");
@@ -235,7 +235,7 @@ fn in_moves(clause: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     }
 }
 
-/// Where an amount stands or ends; `before` begins with what stands before it.
+/// Where an amount stands or ends; `before` begins with what is before it.
 fn in_amount(before: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Place {
     let units: Vec<&'static str> = Per::ALL.iter().map(|(word, _)| *word).collect();
     if last.kind == SyntaxKind::Name && last.text == "per" && before.len() > 1 {

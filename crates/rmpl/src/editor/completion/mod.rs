@@ -44,7 +44,7 @@ pub struct CompletionItem {
     /// More about it, in a few words.
     pub detail: String,
     /// What is written. `$1`, `$2` and so on mark where the cursor goes one after the other, `$0` where it goes at last,
-    /// if not behind everything.
+    /// if not after everything.
     pub insert: String,
 }
 
@@ -115,7 +115,7 @@ pub fn complete(parse: &Parse, offset: u32) -> Completion {
     Completion { replaces, items, wants: None }
 }
 
-/// What a string around the cursor may be, if something is known of it; what stands between the quotes is
+/// What a string around the cursor may be, if something is known of it; what is between the quotes is
 /// replaced.
 fn in_quotes(before: &[SyntaxToken<'_>], offset: u32) -> Option<Completion> {
     let (last, context) = before.split_last()?;

@@ -118,7 +118,7 @@ pub(super) fn place(context: &[SyntaxToken<'_>]) -> Place {
     }
 }
 
-/// The values of the X of `X in {`, where the brace stands at `at`.
+/// The values of the X of `X in {`, where the brace is at `at`.
 pub(super) fn in_set(context: &[SyntaxToken<'_>], at: usize) -> Option<Place> {
     let word = context.get(at.checked_sub(1)?)?;
     let is_set = word.kind == SyntaxKind::Name && word.text == "in";
@@ -161,7 +161,7 @@ pub(super) fn value_of(context: &[SyntaxToken<'_>], at: usize) -> Place {
     Place::Value(before(1).map_or(String::new(), |name| name.text.to_owned()))
 }
 
-/// Behind a word that is one of the language only in its place, and stands there.
+/// Behind a word that is one of the language only in its place, and is there.
 fn behind_word(context: &[SyntaxToken<'_>], last: SyntaxToken<'_>) -> Option<Place> {
     use SyntaxKind as Kind;
     if last.kind != Kind::Name {
@@ -229,7 +229,7 @@ fn after_statement(context: &[SyntaxToken<'_>]) -> Place {
     if may_be_natures { Place::Words(with_bounds(&["as"])) } else { Place::Words(vec!["as"]) }
 }
 
-/// Whether `token` stands in parentheses or square brackets.
+/// Whether `token` is in parentheses or square brackets.
 fn in_round(context: &[SyntaxToken<'_>], token: SyntaxToken<'_>) -> bool {
     let until: Vec<SyntaxToken<'_>> =
         context.iter().take_while(|other| other.span.start < token.span.start).copied().collect();
