@@ -37,7 +37,7 @@ fn lesson_tiles(tiles: &mut Tiles<PanelKind>, rows: &[Vec<Vec<PanelKind>>], size
         .enumerate()
         .map(|(at, columns)| {
             let parts: Vec<(TileId, f32)> = columns.iter().map(|panels| (tabs(tiles, panels), 1.0)).collect();
-            // What stands above is the figure, what stands below it explains it; a timeline is cut where it ends.
+            // What is above is the figure, what is below it explains it; a timeline is cut where it ends.
             let share = match at {
                 0 if columns.first().and_then(|tabs| tabs.first()) == Some(&PanelKind::Timeline) => 1.7,
                 0 => 1.3,

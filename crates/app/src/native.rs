@@ -186,7 +186,7 @@ impl Host for NativeHost {
 
     fn forget(&mut self, key: &str) {
         if let Some(file) = self.file_of(key) {
-            // What is not there is forgotten already.
+            // A missing file needs no removal.
             let _ = fs::remove_file(file);
         }
     }

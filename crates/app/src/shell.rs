@@ -67,7 +67,7 @@ impl Enroute {
         self
     }
 
-    /// Continues in another window, drawn by `renderer`. What panels drew in the one before is forgotten with it.
+    /// Continues in another window, drawn by `renderer`. Drawings that panels cached for the previous window are dropped.
     pub fn move_to(&mut self, egui: &egui::Context, renderer: &str) {
         theme::install_fonts(egui);
         self.egui = egui.clone();
@@ -366,7 +366,7 @@ impl PanelTiles<'_> {
         let id = panels::region_id(kind);
         let rect = ui.max_rect();
         let has_focus = ui.memory(|memory| memory.has_focus(id));
-        // It stands in the order of Tab only while it has the keyboard: to the others it would be a stop without use.
+        // It is in the order of Tab only while it has the keyboard: to the others it would be a stop without use.
         if !has_focus {
             return;
         }

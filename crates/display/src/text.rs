@@ -11,7 +11,7 @@ pub struct Text {
     pub text: SmolStr,
     /// Its size in drawing units.
     pub size: f64,
-    /// Where it stands: centered in the height, and in the width as [`Text::anchor`] says.
+    /// Where it is: centered in the height, and in the width as [`Text::anchor`] says.
     pub rect: Rect,
     /// Where in the width.
     pub anchor: Anchor,
@@ -29,7 +29,7 @@ pub struct Text {
     pub legible: Option<f64>,
     /// Present if the text may be moved along its line to stay in view.
     pub slide: Option<Slide>,
-    /// Present if the text is the heading of an area: on the screen it keeps its size and stands in the upper left corner
+    /// Present if the text is the heading of an area: on the screen it keeps its size and is in the upper left corner
     /// of what is seen of the area, if that has room for it.
     pub heading: Option<Rect>,
 }

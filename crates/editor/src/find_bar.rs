@@ -14,7 +14,7 @@ const WORDS_WIDTH: f32 = 100.0;
 /// How wide a field is at least and at most.
 const MIN_FIELD: f32 = 72.0;
 const MAX_FIELD: f32 = 320.0;
-/// What stands beside a field takes about so much, until that is known.
+/// What is beside a field takes about so much, until that is known.
 const REST_WIDTH: f32 = 260.0;
 
 /// Shows the find bar; what changes in it is told as a whole.

@@ -68,7 +68,7 @@ impl LineLayout {
         Self { galley: ui.fonts_mut(|fonts| fonts.layout_job(job)), bytes, is_last, left, composed }
     }
 
-    /// Inserts composed text at the caret, if it stands in this row.
+    /// Inserts composed text at the caret, if it is in this row.
     fn compose(
         view: &EditorView<'_>,
         bytes: &Range<usize>,
@@ -126,7 +126,7 @@ impl LineLayout {
         self.left + self.galley.size().x
     }
 
-    /// Whether a caret at this place stands in this row.
+    /// Whether a caret at this place is in this row.
     pub(crate) fn holds(&self, offset: usize) -> bool {
         holds(&self.bytes, self.is_last, offset)
     }

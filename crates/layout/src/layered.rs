@@ -31,7 +31,7 @@ const SWEEPS: usize = 16;
 /// Edges pass through this many places per node or edge at most; beyond, long edges go straight.
 const PLACES_PER_EDGE: usize = 8;
 
-/// Something that stands in a column: a node, the slot of an edge, or a place that an edge passes.
+/// Something that is in a column: a node, the slot of an edge, or a place that an edge passes.
 #[derive(Clone, Copy, Debug, Default)]
 struct Vertex {
     column: u32,

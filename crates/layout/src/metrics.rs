@@ -18,7 +18,7 @@ pub const STRUCTURAL_RADIUS: f64 = 4.0;
 
 /// Free space beside a text.
 pub(crate) const TEXT_PAD: f64 = 5.0;
-/// Between a line and the text that stands on it or hangs from it.
+/// Between a line and the text that is on it or hangs from it.
 pub(crate) const TEXT_LIFT: f64 = 3.0;
 /// Between two texts on one line.
 pub(crate) const WORD_GAP: f64 = 7.0;

@@ -165,7 +165,7 @@ impl<'a> Placer<'a> {
         self.positions[node.index()].get_or_insert(at);
     }
 
-    /// The clearance of a node where it stands, and none where a connector represents it.
+    /// The clearance of a node where it is, and none where a connector represents it.
     pub(crate) fn clearance_at(&self, node: NodeId, at: Point) -> Clearance {
         if self.positions[node.index()] == Some(at) {
             self.sizes.clearance(node)

@@ -314,7 +314,7 @@ pub(crate) fn lead_in(end: Clearance) -> f64 {
     end.before.max(end.beneath) + 2.0 + ARROW_LENGTH
 }
 
-/// Stacks branches; the fork stands in the middle, on the line of the middle branch if that is near.
+/// Stacks branches; the fork is in the middle, on the line of the middle branch if that is near.
 pub(crate) fn fan_rows(branches: &[BranchSize]) -> FanRows {
     let mut offsets = Vec::with_capacity(branches.len());
     let mut line = 0.0;
@@ -370,7 +370,7 @@ fn arch_ranks(network: &Network, tree: &Tree) -> ArchRanks {
     for part in tree.parts.iter().rev() {
         let arches = match &part.kind {
             PartKind::Span { arcs, .. } => arcs.clone(),
-            // A path stands on its traverse as one arch.
+            // A path is on its traverse as one arch.
             PartKind::Beads { chain, .. } => chain.start..chain.start + 1,
             _ => continue,
         };

@@ -15,7 +15,7 @@ use crate::options::Options;
 /// The least height of a line of text, as a part of the text's size.
 const LINE_HEIGHT: f64 = 1.15;
 
-/// A text with its width, and the line that it stands on: −1 is on the arc, 0 the first below it.
+/// A text with its width, and the line that it is on: −1 is on the arc, 0 the first below it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Run {
     pub(crate) text: SmolStr,

@@ -92,7 +92,7 @@ pub struct Moment {
     pub plant: Option<PlantMoment>,
 }
 
-/// How the plant stands between two steps.
+/// How the plant is between two steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlantMoment {
     /// What is believed.

@@ -12,13 +12,13 @@ pub use run::{Run, Style, plain};
 /// A Markdown text as a tree.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Document {
-    /// What stands between `---` lines at the very top, without them.
+    /// What is between `---` lines at the very top, without them.
     pub head: Option<Head>,
     /// What follows, in order.
     pub blocks: Vec<Block>,
 }
 
-/// What stands between `---` lines at the top of a text.
+/// What is between `---` lines at the top of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Head {
     /// The line of its first `---`, from 1.
@@ -47,7 +47,7 @@ pub enum Content {
     Paragraph(Vec<Run>),
     /// Lines that are kept as they are.
     Code {
-        /// What stands behind the fence: the language first, then whatever else; empty for indented code.
+        /// What follows the fence: the language first, then whatever else; empty for indented code.
         info: String,
         /// The lines, each with its end.
         text: String,
@@ -106,7 +106,7 @@ impl Block {
     }
 }
 
-/// What a link to a heading of these words says behind `#`, as pages of repositories have it: small letters, dashes for
+/// What a link to a heading of these words says after `#`, as pages of repositories have it: small letters, dashes for
 /// spaces, and no other signs.
 pub fn anchor(title: &str) -> String {
     let kept =

@@ -148,7 +148,7 @@ impl Host for PageHost {
 
     fn forget(&mut self, key: &str) {
         if let Ok(storage) = self.storage() {
-            // What cannot be reached is forgotten already.
+            // An entry that cannot be removed is harmless: the next write replaces it.
             let _ = storage.remove_item(&prefixed(key));
         }
     }

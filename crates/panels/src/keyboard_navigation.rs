@@ -1,7 +1,7 @@
 //! Keyboard navigation by the arrow keys: from what is selected to its neighbor in the panel that the user is in.
 //!
 //! Lists go through their rows, the network along its arcs, the timeline through its activities, and the terrain through
-//! what stands on it. The search tree has keys of its own.
+//! what is on it. The search tree has keys of its own.
 
 use egui::{Key, Modifiers, Ui};
 use tpn::{EventEnd, Network, NodeId, OccurrenceId, OccurrenceKind, Plan};

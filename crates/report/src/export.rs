@@ -182,7 +182,7 @@ pub fn json(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
 }
 
 /// The schedule as an Open MCT plan: one member for each group, with its activities; times are milliseconds since
-/// 1970. `None` without a plan or a calendar, or beyond it. What Open MCT does not know stands in each activity.
+/// 1970. `None` without a plan or a calendar, or beyond it. What Open MCT does not know is in each activity.
 pub fn open_mct(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
     let calendar = about.calendar?;
     let (network, rows) = rows(snapshot, about)?;

@@ -78,7 +78,7 @@ fn content(document: &Document<'_>, record: &Record) -> String {
     out
 }
 
-/// What stands below each printed page: its number and which content it is about.
+/// What is below each printed page: its number and which content it is about.
 fn page_margins(content_hash: &str) -> String {
     // Hexadecimal digits only, so that nothing can end the text.
     let hash: String = content_hash.chars().filter(char::is_ascii_hexdigit).collect();

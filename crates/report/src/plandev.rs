@@ -17,7 +17,7 @@ use crate::export::About;
 /// or beyond what microseconds can count.
 ///
 /// Times are those of the earliest schedule, rounded down to the microsecond. An argument is called what its primitive
-/// declares, or `argument1` and so on; how long an activity takes stands in its `metadata`, since `PlanDev`'s models decide
+/// declares, or `argument1` and so on; how long an activity takes is in its `metadata`, since `PlanDev`'s models decide
 /// on that themselves. `model_id` is 0: `PlanDev` asks for the model when it reads a plan.
 pub fn plandev(snapshot: &Snapshot, about: &About<'_>) -> Option<Value> {
     let calendar = about.calendar?;

@@ -3,7 +3,7 @@
 /// The style sheet. Sizes are relative or in points, so that both paper formats hold the same content; colors are
 /// those of the light theme.
 ///
-/// Firefox and Safari put nothing into the margins of pages. There the hash stands at the foot of each page (`.foot`), and
+/// Firefox and Safari put nothing into the margins of pages. There the hash is at the foot of each page (`.foot`), and
 /// the numbers (`.sheets`) lie a page's height from each other over the whole length of the report: those behind its end
 /// have no height. The last page may have none: room that a page leaves free before a drawing does not count. It says that
 /// the report ends there. They do not keep a heading with what follows, either: it asks for room for a few lines.

@@ -110,7 +110,7 @@ fn the_summary_comes_first_and_each_page_has_its_number_and_the_hash() {
 #[test]
 fn the_report_needs_nothing_from_elsewhere_and_no_scripts() {
     let page = report(MISSION, "enroute.rmpl");
-    // Nor may it have any, whatever would slip into it: the policy stands before everything that it is about.
+    // Nor may it have any, whatever would slip into it: the policy is before everything that it is about.
     let policy =
         page.find("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none';").expect("a policy");
     assert!(policy < page.find("<title>").expect("a title"));

@@ -1,4 +1,4 @@
-//! How a plan stands with its board: who has to approve, who has, and what stands in the way (SPEC 16.2).
+//! How a plan stands with its board: who has to approve, who has, and what is in the way (SPEC 16.2).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -79,10 +79,12 @@ impl<'a> Present<'a> {
         subject: &Subject,
     ) -> Option<&'static str> {
         match self.plan_hash {
-            _ if approval.content_hash != self.content_hash => Some("text, map, goal or seed are others"),
-            Some(plan_hash) if approval.plan_hash != plan_hash => Some("the plan is another one"),
-            _ if subject.rules != *self.rules => Some("the flight rules are others"),
-            _ if !accepted.hold_for(approval, self.review) => Some("the acknowledgments are others"),
+            _ if approval.content_hash != self.content_hash => {
+                Some("the text, map, goal or seed has changed")
+            }
+            Some(plan_hash) if approval.plan_hash != plan_hash => Some("the plan has changed"),
+            _ if subject.rules != *self.rules => Some("the flight rules have changed"),
+            _ if !accepted.hold_for(approval, self.review) => Some("the acknowledgments have changed"),
             _ => None,
         }
     }
@@ -290,7 +292,7 @@ impl Record {
 }
 
 impl Standing<'_> {
-    /// What stands in the way of any approval, in words.
+    /// What is in the way of any approval, in words.
     pub fn blockers(&self) -> Vec<String> {
         let some = |count: usize, one: &str, many: &str| {
             (count > 0).then(|| format!("{count} {}", if count == 1 { one } else { many }))

@@ -171,12 +171,12 @@ fn an_approval_lapses_with_the_text_the_plan_or_the_rules_and_counts_again_after
         table.standing(|it| it.lapsed.map(|(entry, why)| (entry.by.clone(), why))).expect("an approval")
     };
     table.review.content_hash.push('0');
-    assert_eq!(lapsed(&table), ("Ada".to_owned(), "text, map, goal or seed are others"));
+    assert_eq!(lapsed(&table), ("Ada".to_owned(), "the text, map, goal or seed has changed"));
     table.review = Review { plan_hash: "0".to_owned(), ..approved.clone() };
-    assert_eq!(lapsed(&table), ("Ada".to_owned(), "the plan is another one"));
+    assert_eq!(lapsed(&table), ("Ada".to_owned(), "the plan has changed"));
     table.review = approved.clone();
     table.review.judge(&rules(), None);
-    assert_eq!(lapsed(&table), ("Ada".to_owned(), "the flight rules are others"));
+    assert_eq!(lapsed(&table), ("Ada".to_owned(), "the flight rules have changed"));
     table.review = approved;
     assert_eq!(table.status(), PlanStatus::Approved);
     // What was never complete does not lapse.

@@ -135,7 +135,7 @@ fn one_person_with_three_spellings_is_one_person() {
         board.approve_with(spelled, &secret);
         let (signature, problem) = last_check(&board.record);
         assert_eq!(signature, Signature::Unknown);
-        assert!(problem.contains("whose key is another one"), "{problem}");
+        assert!(problem.contains("who has another key"), "{problem}");
     }
     assert_eq!(board.seats(), "Reviewer 1 of 2");
 }
@@ -342,9 +342,9 @@ fn entries_that_are_dropped_put_elsewhere_or_there_twice_are_noticed() {
         let dropped = board.read(|it| {
             it["entries"].as_array_mut().expect("a list").remove(index);
         });
-        says(dropped, "follows one that is not there");
+        says(dropped, "follows a missing entry");
     }
-    says(board.read(|it| it["entries"].as_array_mut().expect("a list").swap(1, 2)), "not there");
+    says(board.read(|it| it["entries"].as_array_mut().expect("a list").swap(1, 2)), "a missing entry");
     says(
         board.read(|it| {
             let again = entries(it)[2].clone();

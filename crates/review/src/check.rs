@@ -91,7 +91,7 @@ fn problem_of_name(entry: &Entry, known: Option<&str>, trust: &Trust) -> Option<
             Some(format!("the key is that of “{known}”, and the entry names “{name}”"))
         }
         Some(_) => None,
-        None => trust.alike(name).map(|known| format!("“{name}” is not “{known}”, whose key is another one")),
+        None => trust.alike(name).map(|known| format!("“{name}” is not “{known}”, who has another key")),
     }
 }
 

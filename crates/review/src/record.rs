@@ -349,7 +349,7 @@ impl Record {
             let runs = Sealed::<Runs>::read(runs).map_err(damaged)?;
             if digest != runs.digest() {
                 let what =
-                    format!("the runs of content {} are not those that were made", short(&runs.content_hash));
+                    format!("the Monte Carlo runs of content {} have been changed", short(&runs.content_hash));
                 return Err(RecordError::Broken(what));
             }
             record.runs.push((*runs).clone());
@@ -385,7 +385,7 @@ impl Record {
         record.put_in_order();
         let heads: BTreeSet<String> = serde_json::from_value(value["heads"].take()).map_err(damaged)?;
         if heads != record.heads {
-            return Err(RecordError::Broken("its last entry is not the one that was last".to_owned()));
+            return Err(RecordError::Broken("an entry at the end is missing".to_owned()));
         }
         Ok(record)
     }
@@ -398,15 +398,13 @@ impl Record {
         known: &BTreeSet<String>,
     ) -> Result<(), &'static str> {
         match &entry.act {
-            _ if entry.digest() != digest => Err("does not say what it said"),
+            _ if entry.digest() != digest => Err("has been changed"),
             _ if known.contains(digest) => Err("is there twice"),
-            _ if !entry.former.iter().all(|former| known.contains(former)) => {
-                Err("follows one that is not there")
-            }
+            _ if !entry.former.iter().all(|former| known.contains(former)) => Err("follows a missing entry"),
             Act::Approve { subject, .. } if !self.subjects.contains_key(subject) => {
-                Err("approves what is not there")
+                Err("approves a missing content")
             }
-            act if act.of().is_some_and(|of| !known.contains(of)) => Err("is about one that is not there"),
+            act if act.of().is_some_and(|of| !known.contains(of)) => Err("is about a missing entry"),
             _ => Ok(()),
         }
     }

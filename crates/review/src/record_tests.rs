@@ -132,24 +132,24 @@ fn whatever_is_altered_is_said_with_its_entry() {
             let found = altered(|it| it["entries"][index]["said"][member] = json!("x"));
             says(found, &format!("entry {} ", index + 1));
         }
-        says(altered(|it| it["entries"][index]["digest"] = json!("0")), "does not say what it said");
-        says(altered(|it| it["entries"][index]["said"]["more"] = json!(1)), "does not say what it said");
+        says(altered(|it| it["entries"][index]["digest"] = json!("0")), "has been changed");
+        says(altered(|it| it["entries"][index]["said"]["more"] = json!(1)), "has been changed");
     }
     says(altered(|it| it["entries"][5]["said"]["act"]["approve"]["text"] = json!("")), "entry 6 (Ada, ");
     let remove = |it: &mut Value, index: usize| {
         it["entries"].as_array_mut().expect("a list").remove(index);
     };
-    says(altered(|it| remove(it, 0)), "entry 1 (Ada, 2026-01-02T00:00:00Z) follows one that is not there");
+    says(altered(|it| remove(it, 0)), "entry 1 (Ada, 2026-01-02T00:00:00Z) follows a missing entry");
     says(altered(|it| remove(it, 3)), "entry 4 ");
-    says(altered(|it| remove(it, 6)), "last entry");
-    says(altered(|it| it["entries"].as_array_mut().expect("a list").swap(1, 2)), "not there");
+    says(altered(|it| remove(it, 6)), "at the end");
+    says(altered(|it| it["entries"].as_array_mut().expect("a list").swap(1, 2)), "a missing entry");
     says(altered(|it| it["entries"][6] = it["entries"][5].clone()), "twice");
     let other_source = |it: &mut Value| {
         let subjects = it["subjects"].as_object_mut().expect("members");
         subjects.values_mut().for_each(|subject| subject["source"] = json!("scenario S = { delay }"));
     };
     says(altered(other_source), "what was approved");
-    says(altered(|it| it["subjects"] = json!({})), "approves what is not there");
+    says(altered(|it| it["subjects"] = json!({})), "approves a missing content");
 }
 
 #[test]

@@ -142,7 +142,7 @@ impl FlightRules {
     /// Each rule in words.
     pub fn in_words(&self, unit: &str) -> Vec<String> {
         let mut words = vec![match self.margin {
-            None => "margins must be not checked".to_owned(),
+            None => "margins are not checked".to_owned(),
             Some(margin) => {
                 format!("margins must be {}", at_least(&margin.readable(), margin.is_positive(), unit))
             }

@@ -218,7 +218,7 @@ impl Document {
         self.line_text(line).strip_prefix(MARK)
     }
 
-    /// The first line of the file that holds a line, and the one behind its last; a heading belongs to no file.
+    /// The first line of the file that holds a line, and the one after its last; a heading belongs to no file.
     pub fn file_lines(&self, line: usize) -> std::ops::Range<usize> {
         let next = self.headings.partition_point(|&heading| heading <= line);
         let first = next.checked_sub(1).map_or(0, |own| self.headings[own] + 1);
@@ -340,7 +340,7 @@ impl Document {
         self.record(Step { kind, changes, before, after });
     }
 
-    /// Replaces a span as one step and puts the caret behind the new text.
+    /// Replaces a span as one step and puts the caret after the new text.
     pub fn replace(&mut self, span: Span, text: &str, kind: EditKind) {
         let end = self.boundary_before(span.start as usize) + normalized(text).len();
         self.edit(&[Edit { span, text: text.to_owned() }], kind, Some(Caret::at(end)));

@@ -53,7 +53,7 @@ impl Pattern {
         self.regex.find_iter(text).map(|found| found.range()).filter(|range| !range.is_empty())
     }
 
-    /// The first match at or behind `offset`; behind the last one it starts over.
+    /// The first match at or after `offset`; after the last one it starts over.
     pub fn find_after(&self, text: &str, offset: usize) -> Option<std::ops::Range<usize>> {
         let behind = self.matches(text).find(|range| range.start >= offset);
         behind.or_else(|| self.matches(text).next())

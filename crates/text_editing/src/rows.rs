@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// Which line stands in which row of the editor. Both count from 0.
+/// Which line is in which row of the editor. Both count from 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Rows {
     /// The lines that have no row: disjoint, in order.

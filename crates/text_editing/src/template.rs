@@ -15,7 +15,7 @@ pub(crate) struct Stops {
 
 impl Document {
     /// Replaces a span by a template, as one step. `$1`, `$2` and so on are its stops and `$0` the last one; the caret
-    /// goes to the first, or behind the text if there is none.
+    /// goes to the first, or after the text if there is none.
     pub fn insert_template(&mut self, span: Span, template: &str) {
         let (text, stops) = parsed(template);
         let start = self.boundary_before(span.start as usize);

@@ -18,7 +18,7 @@ pub enum TextCommand {
     Insert(String),
     /// Pasted text replaces the selection, as one step.
     Paste(String),
-    /// A line break, indented like its line and one deeper behind an opening bracket.
+    /// A line break, indented like its line and one deeper after an opening bracket.
     NewLine,
     /// Goes to the next stop of a template, or indents the selected lines, or inserts blanks up to the next level.
     Indent,
@@ -84,7 +84,7 @@ pub enum Motion {
     Right,
     /// To the start of the word before.
     WordLeft,
-    /// To the end of the word behind.
+    /// To the end of the word after.
     WordRight,
     /// To the first character of the line that is not blank, or to its start if there already; of a line that is broken
     /// into rows, first to the start of the row.

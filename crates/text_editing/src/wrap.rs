@@ -19,7 +19,7 @@ const TAB_COLUMNS: usize = 4;
 /// Characters from here on are twice as wide: Hangul, Han, Kana, full-width forms, pictographs.
 const FIRST_WIDE: char = '\u{1100}';
 
-/// Where a line breaks into rows of so many columns, in bytes of the line; at least one row. Rows end behind blanks and
+/// Where a line breaks into rows of so many columns, in bytes of the line; at least one row. Rows end after blanks and
 /// signs where they can, and within a word where it is longer than a row. One blank may hang over the end of a row.
 fn break_line(text: &str, columns: usize) -> Vec<Range<usize>> {
     let columns = columns.max(MIN_WRAP_COLUMNS);
@@ -53,7 +53,7 @@ fn break_line(text: &str, columns: usize) -> Vec<Range<usize>> {
     rows
 }
 
-/// The columns by which the rows of a line behind its first one stand further right: as its own text, and a level more.
+/// The columns by which the rows of a line after its first one stand further right: as its own text, and a level more.
 fn hanging_columns(text: &str, columns: usize) -> usize {
     let columns = columns.max(MIN_WRAP_COLUMNS);
     let is_blank = |grapheme: &&str| grapheme.chars().all(char::is_whitespace);
@@ -164,10 +164,10 @@ impl Document {
     }
 }
 
-/// Which row of which line stands in which row of the view, where lines are broken into rows. All count from 0.
+/// Which row of which line is in which row of the view, where lines are broken into rows. All count from 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WrappedRows {
-    /// The first row of each line, and behind the last one how many there are. What is folded away has none.
+    /// The first row of each line, and after the last one how many there are. What is folded away has none.
     first_rows: Vec<usize>,
 }
 
@@ -235,7 +235,7 @@ mod tests {
             broken("aaaaaaaaaabbbbbbbbbbccccccccccdddddddddd", 20),
             ["aaaaaaaaaabbbbbbbbbb", "ccccccccccdddddddd", "dd"]
         );
-        // The rows behind the first stand two columns further right than the line.
+        // The rows after the first stand two columns further right than the line.
         assert_eq!(broken("    one two three four five six", 20), ["    one two three ", "four five six"]);
         assert_eq!(hanging_columns("    one", 20), 6);
     }
@@ -317,7 +317,7 @@ mod tests {
         let mut document = wrapped();
         document.set_caret(Caret::at(25));
         assert_eq!(heads(&mut document, &[Motion::LineStart, Motion::LineStart]), [19, 0]);
-        // In front of the blank that ends the row: behind it the next row begins.
+        // In front of the blank that ends the row: after it the next row begins.
         assert_eq!(heads(&mut document, &[Motion::LineEnd, Motion::LineEnd, Motion::LineEnd]), [18, 33, 33]);
     }
 

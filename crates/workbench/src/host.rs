@@ -115,10 +115,10 @@ pub trait Host {
     /// Ends the video and lets the user save it; [`HostEvent::FileFailed`] says if there is none.
     fn save_film(&mut self, _suggested_name: &str) {}
 
-    /// What stands after `#` in the page's address; empty outside a page.
+    /// What is after `#` in the page's address; empty outside a page.
     fn fragment(&self) -> String;
 
-    /// Replaces what stands after `#` in the page's address, without a new entry in the history. Does nothing
+    /// Replaces what is after `#` in the page's address, without a new entry in the history. Does nothing
     /// outside a page.
     fn set_fragment(&mut self, fragment: &str);
 

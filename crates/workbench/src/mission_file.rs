@@ -56,7 +56,7 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         name: "backjump",
         title: "Backjumping",
-        about: "The first choice can never work, which shows late: watch the search jump back.",
+        about: "The first choice can never work, but the search finds out late: watch it jump back.",
         source: include_str!("../../../assets/missions/backjump.rmpl"),
     },
     Example {
@@ -92,7 +92,7 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         name: "sol",
         title: "Oversubscribed sol",
-        about: "One day has more wishes than room; the planner takes what is worth most.",
+        about: "One day has more tasks than time; the planner chooses the most valuable ones.",
         source: include_str!("../../../assets/missions/sol.rmpl"),
     },
     Example {
@@ -110,7 +110,7 @@ pub const EXAMPLES: &[Example] = &[
     Example {
         name: "exploration",
         title: "Cooperative exploration",
-        about: "Scouts, a laboratory and a blimp explore together, each step waiting for the one before.",
+        about: "Scouts, a laboratory and a blimp explore together; each step waits for the previous one.",
         source: include_str!("../../../assets/missions/exploration.rmpl"),
     },
     Example {

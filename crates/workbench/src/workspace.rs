@@ -23,7 +23,7 @@ pub enum Arrangement {
     Of(Workspace),
     /// A control program as it runs: there is nothing to show over time or on the ground.
     Program,
-    /// A lesson: its panel stands beside what the stop wants to be seen.
+    /// A lesson: its panel is beside what the stop wants to be seen.
     Lesson,
 }
 

@@ -18,7 +18,7 @@ pub(crate) struct Options {
     /// The PNG file to write.
     #[arg(long)]
     out: PathBuf,
-    /// What stands after `#` in the address, such as `mission=enroute`.
+    /// What is after `#` in the address, such as `mission=enroute`.
     #[arg(long, default_value = "")]
     hash: String,
     /// Files to drop on the page before the scripts run, such as maps.

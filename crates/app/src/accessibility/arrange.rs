@@ -42,7 +42,7 @@ pub(super) fn gather_tabs(parent: u64, inside: &[u64], elements: &mut BTreeMap<u
     all
 }
 
-/// Arranges the cells of a table in rows, by where they stand; the first row heads the columns.
+/// Arranges the cells of a table in rows, by where they are; the first row heads the columns.
 pub(super) fn gather_rows(table: u64, cells: &[u64], elements: &mut BTreeMap<u64, Element>) -> Vec<u64> {
     let mut rows: Vec<Vec<u64>> = Vec::new();
     let mut lower = f64::NEG_INFINITY;

@@ -1,4 +1,4 @@
-//! The bar on top: menus, the mission, the workspaces, and where the plan stands.
+//! The bar on top: menus, the mission, the workspaces, and where the plan is.
 
 use egui::accesskit;
 use egui::containers::menu::MenuButton;
@@ -217,7 +217,7 @@ fn workspace_list(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSend
     shown.response.accessible_name("Workspace");
 }
 
-/// Where the plan stands: a sign, a word, and a color.
+/// Where the plan is: a sign, a word, and a color.
 fn status(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     let tokens = context.tokens;
     let latest = context.state.snapshots.latest();

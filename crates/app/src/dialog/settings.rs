@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSen
     });
     ui.add_space(space::M);
     ui.horizontal(|ui| {
-        if ui.button("Reset layout").on_hover_text("Put the panels of this workspace back").clicked() {
+        if ui.button("Reset layout").on_hover_text("Restore the default panels of this workspace").clicked() {
             commands.send(Command::Window(WindowCommand::ResetWorkspace));
         }
         if ui.button("Close").clicked() {

@@ -305,7 +305,7 @@ fn a_block_folds_at_the_caret_and_its_lines_take_no_rows() {
     assert_eq!(rows(&app), 6);
     app.press(CTRL | Modifiers::SHIFT, Key::OpenBracket);
     assert_eq!(rows(&app), 4);
-    // The caret stands at the end of the line that stays, and steps over what is gone.
+    // The caret is at the end of the line that stays, and steps over what is gone.
     assert_eq!(app.text(), "primitive Drive(to);\nscenario S = {$0\n    Drive(A);\n    Drive(B)\n};\n");
     app.press(NONE, Key::ArrowDown);
     assert_eq!(app.text(), "primitive Drive(to);\nscenario S = {\n    Drive(A);\n    Drive(B)\n};$0\n");

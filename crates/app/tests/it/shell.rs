@@ -32,7 +32,7 @@ fn nothing_on_the_bar_covers_the_workspaces_in_any_window() {
         let last = app.harness.get_by_label(if is_list { "Workspace" } else { "Lessons" }).rect();
         let status = app.harness.get_by_label("Status: plan found").rect();
         assert!(last.right() < status.left(), "{width} points: {last:?} {status:?}");
-        // The longest that stands there.
+        // The longest that is there.
         app.harness
             .state_mut()
             .run(workbench::command::Command::OpenSource { name: "broken".into(), source: "(".into() });

@@ -182,7 +182,7 @@ impl<'a> Arranger<'a> {
         }
     }
 
-    /// What a location starts, with room above the arrow to it for the guard that stands there.
+    /// What a location starts, with room above the arrow to it for the guard that is there.
     fn started_size(&self, location: LocationId, element: Element) -> Size {
         let size = self.element_size(element);
         let guards = self.transitions_of(location).filter(|(_, target)| *target == element);

@@ -73,7 +73,6 @@ pub struct AutomatonText {
     pub lines: Vec<SmolStr>,
     /// What it is for: titles of composites, names of locations, guards as bounds.
     pub role: TextRole,
-    /// Where it stands.
     pub rect: Rect,
     /// What it belongs to.
     pub owner: AutomatonItem,

@@ -161,7 +161,7 @@ impl Builder<'_> {
             .stands_for(TargetKind::Location, shape.id.0);
     }
 
-    /// Writes a text into its place; what stands behind `~` gets a bar over it instead, of several lines one over all.
+    /// Writes a text into its place; what follows `~` gets a bar over it instead, of several lines one over all.
     fn text(&self, text: &AutomatonText, list: &mut DisplayList) {
         let role = match (text.role, text.owner) {
             (TextRole::Name, _) => ColorRole::Text,

@@ -26,7 +26,7 @@ pub struct ModeState {
 pub const NAME_SIZE: f64 = 12.0;
 /// Size of a percentage.
 const PERCENT_SIZE: f64 = 9.5;
-/// How far a name stands above the middle, and a percentage below it, where there are both.
+/// How far a name is above the middle, and a percentage below it, where there are both.
 const LIFTS: (f64, f64) = (5.0, 6.5);
 /// How much of the accent the most certain mode has in its fill.
 const STRONGEST_FILL: f64 = 0.5;

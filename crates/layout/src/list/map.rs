@@ -156,7 +156,7 @@ fn add_ground(frame: &MapFrame, relief: Relief<'_>, list: &mut DisplayList) {
 
 fn add_obstacles(world: &World, frame: &MapFrame, list: &mut DisplayList) {
     for (number, obstacle) in (0..).zip(&world.obstacles) {
-        // Nothing stands in a keep-out area.
+        // Nothing is in a keep-out area.
         let (dash, opacity) = if obstacle.is_solid() { (Dash::Solid, 0.22) } else { (Dash::Dashed, 0.08) };
         let fill = Some(ColorRole::Threat.faint(opacity).into());
         let stroke = Some(Stroke::solid(ColorRole::Threat, 1.0).dashed(dash));

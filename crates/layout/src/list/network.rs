@@ -182,7 +182,7 @@ pub fn progress_list(
     done.sort_unstable();
     for &at in &done {
         let node = &drawing.nodes[at as usize];
-        // Its number, which the dot would hide, stands on the dot.
+        // Its number, which the dot would hide, is on the dot.
         builder.node(node, &mut list);
         list.circle(node.center, style::done_radius(node.radius), Some(ColorRole::Now.into()), None);
     }

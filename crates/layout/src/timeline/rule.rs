@@ -20,7 +20,7 @@ pub struct RuleTrack {
 pub struct RuleBand {
     /// From when to when, in mission units; the end may be infinite.
     pub times: [f64; 2],
-    /// How it stands there.
+    /// The status of the rule there.
     pub standing: RuleStanding,
 }
 

@@ -184,7 +184,7 @@ fn part_that_matters(
     if fits { Some(marks) } else { around(&|id| is_marked(id) && asserts(id)).or(Some(marks)) }
 }
 
-/// The legend stands below the drawing.
+/// The legend is below the drawing.
 fn with_legend(mut bounds: display::Rect) -> display::Rect {
     bounds.max.y += LEGEND_HEIGHT;
     bounds

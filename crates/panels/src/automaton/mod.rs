@@ -188,7 +188,7 @@ impl AutomatonPanel {
         }
     }
 
-    /// What stands beside the automaton.
+    /// What is beside the automaton.
     fn beside(&mut self, ui: &mut Ui, context: &Context<'_>, shown: Shown<'_>, commands: &mut CommandSender) {
         if shown.moment.plant.is_some() {
             ui.horizontal(|ui| {

@@ -25,7 +25,7 @@ const LANE: f64 = 7.0;
 /// Barycenter sweeps to and fro.
 const SWEEPS: usize = 12;
 
-/// Something that stands in a column: a vertex, or a place that a long edge passes.
+/// Something that is in a column: a vertex, or a place that a long edge passes.
 struct Slots {
     column: Vec<usize>,
     before: Vec<Vec<usize>>,

@@ -160,7 +160,7 @@ fn made(ui: &mut Ui, context: &Context<'_>, commands: &mut CommandSender) {
     }
 }
 
-/// What stands behind a number in a unit.
+/// What follows a number in a unit.
 pub(super) fn suffix(unit: Option<&str>) -> String {
     unit.map_or_else(String::new, |unit| format!(" {unit}"))
 }

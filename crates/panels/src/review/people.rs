@@ -449,7 +449,7 @@ impl People {
         });
     }
 
-    /// Who has approved and who has to, and what stands in the way.
+    /// Who has approved and who has to, and what is in the way.
     pub(super) fn approval(
         &mut self,
         ui: &mut Ui,

@@ -12,7 +12,7 @@ use crate::{Context, inline_code};
 
 /// How far the text of lines is from the left.
 pub(super) const INDENT: f32 = 26.0;
-/// Narrower rows put what stands on the right below the text.
+/// Narrower rows put what is on the right below the text.
 const NARROW: f32 = 430.0;
 
 /// A line of the checklist.
@@ -22,7 +22,7 @@ pub(super) struct Row<'a> {
     pub(super) text: &'a str,
     /// What it is held against; below it.
     pub(super) criterion: &'a str,
-    /// What stands on the right: a line number.
+    /// What is on the right: a line number.
     pub(super) place: &'a str,
     /// Whether what it is about is selected.
     pub(super) is_selected: bool,

@@ -57,7 +57,7 @@ pub struct Tree<'a> {
     pub trace: &'a Trace,
     /// What is known of its states.
     pub index: &'a TreeIndex,
-    /// Where they stand.
+    /// Where they are.
     pub drawing: &'a TreeDrawing,
     /// The names of alternatives, as far as they were needed.
     pub names: &'a Names,

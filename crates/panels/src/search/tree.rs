@@ -16,7 +16,7 @@ pub struct TreeDrawing {
     pub width: f32,
 }
 
-/// What is known of the states of a search besides where they stand.
+/// What is known of the states of a search besides where they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TreeIndex {
     /// The children of state `n` are `children[child_start[n]..child_start[n + 1]]`, in order.

@@ -118,7 +118,7 @@ pub fn update(
     let Some(now_m) = scene.ground_at(pointer).filter(|&now_m| now_m.distance(drag.last_m) > 0.05) else {
         return Some(drag);
     };
-    // The text may be ahead of the snapshot that is drawn: its own declarations say where the numbers stand.
+    // The text may be ahead of the snapshot that is drawn: its own declarations say where the numbers is.
     let parse = scene.state.language.parse()?;
     if let Some(edit) = moved(&drag.what, &parse.program(), now_m - drag.begun_m) {
         commands.send(Command::Edit { edits: vec![edit], kind: EditKind::Drag(drag.number) });

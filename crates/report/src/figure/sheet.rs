@@ -8,7 +8,7 @@ pub(super) const WIDTH: f64 = 780.0;
 /// How high a drawing may be on a sheet, in units of the drawing: with its heading and what is said of it, a page.
 pub(super) const HEIGHT: f64 = 900.0;
 
-/// Where a drawing stands.
+/// Where a drawing is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Medium {
     /// On the screen and on paper.
@@ -26,7 +26,6 @@ pub(crate) struct Figure {
     pub(crate) drawing: String,
     /// What is to be said of it.
     pub(crate) caption: String,
-    /// Where it stands.
     pub(crate) medium: Medium,
 }
 

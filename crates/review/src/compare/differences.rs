@@ -88,7 +88,7 @@ fn rows(before: &Side, after: &Side) -> Vec<Row> {
         .collect();
     rows.sort_by_key(|row| {
         let windows = row.after.or(row.before);
-        // What contains others stands above them.
+        // What contains others is above them.
         windows.map(|[start, end]| (start.earliest, std::cmp::Reverse(end.earliest)))
     });
     rows

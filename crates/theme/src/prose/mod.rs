@@ -20,7 +20,7 @@ pub struct Prose<'a> {
     pub hover: &'a dyn Fn(&str) -> Option<&'a [Block]>,
 }
 
-/// Prose is a little larger than what stands on buttons.
+/// Prose is a little larger than what is on buttons.
 const TEXT: f32 = size::BODY + 1.0;
 const CODE: f32 = size::CODE;
 /// Sizes of headings by level.

@@ -1,4 +1,4 @@
-//! Tables: columns share the room by what stands in them, and cells are wrapped.
+//! Tables: columns share the room by what is in them, and cells are wrapped.
 
 use egui::{Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use markdown::{Run, plain};
@@ -57,7 +57,7 @@ fn shared(wanted: &[f32], room: f32) -> Vec<f32> {
     let fair = room / wanted.len() as f32;
     let is_kept = |width: f32| width <= fair.min(MIN_WIDTH);
     let kept: f32 = wanted.iter().copied().filter(|&width| is_kept(width)).sum();
-    // Roots: wide columns differ less than what stands in them.
+    // Roots: wide columns differ less than what is in them.
     let others: f32 = wanted.iter().copied().filter(|&width| !is_kept(width)).map(f32::sqrt).sum();
     let rest = (room - kept).max(0.0);
     wanted.iter().map(|&width| if is_kept(width) { width } else { width.sqrt() / others * rest }).collect()

@@ -37,7 +37,7 @@ pub(super) fn show_words(
     let role = if heading.is_some() { Role::Heading } else { Role::Label };
     response.widget_info(|| WidgetInfo::labeled(role, true, plain(runs)));
     if let Some(level) = heading {
-        // A page of prose stands in a panel, whose own heading is of level 2.
+        // A page of prose is in a panel, whose own heading is of level 2.
         mark_heading(&response, usize::from(level) + 1);
     }
     place(ui, prose, runs, rect.min, &galley)

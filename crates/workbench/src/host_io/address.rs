@@ -1,7 +1,7 @@
-//! What stands after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `open=`, `lesson=`, `stop=`,
+//! What is after `#` in the page's address (DESIGN 4.3): `mission=`, `source=`, `open=`, `lesson=`, `stop=`,
 //! `workspace=`, `step=`, `t=`.
 //!
-//! A shared text is compressed with a checksum (zlib) and written in the alphabet of base64 for addresses, behind the
+//! A shared text is compressed with a checksum (zlib) and written in the alphabet of base64 for addresses, after the
 //! version of this notation and a point: `source=2.eJx…`. What has no version is of the first, which had no checksum.
 
 use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_with_limit, decompress_to_vec_zlib_with_limit};
@@ -140,7 +140,7 @@ pub fn open_fragment(state: &mut AppState, fragment: &str) -> bool {
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
-/// The version of what stands behind `source=`.
+/// The version of what follows `source=`.
 const VERSION: u32 = 2;
 
 /// Links of more characters are not offered: Chromium does not show longer addresses, and Windows hands none over from one

@@ -1,6 +1,6 @@
 //! What a stop asks, and how an answer is judged: the `ask` block of a lesson.
 //!
-//! No answer stands in a lesson where it can be computed: a number and a word are expressions, a choice can be right
+//! No answer is in a lesson where it can be computed: a number and a word are expressions, a choice can be right
 //! when an expression holds, and a task is done when one holds.
 
 use exact::Rational;

@@ -268,7 +268,7 @@ impl<'a> Reader<'a> {
         Ok(Expression::Fact(fact, argument.to_owned()))
     }
 
-    /// What stands in parentheses, which may hold others: names have them.
+    /// What is in parentheses, which may hold others: names have them.
     fn argument(&mut self) -> Result<&'a str, String> {
         let mut depth = 0_u32;
         for (at, letter) in self.rest.char_indices() {

@@ -19,15 +19,15 @@ pub struct Fact {
 pub enum Of {
     /// The state as a whole.
     Nothing,
-    /// Something that stands in parentheses.
+    /// Something that is in parentheses.
     Something(&'static str),
     /// The state as a whole, or something in parentheses.
     Maybe(&'static str),
 }
 
-/// Whoever knows what facts come to.
+/// Gives the values of facts.
 pub trait Known {
-    /// What a fact is now, of what stands in its parentheses; nothing while that is not known or does not exist.
+    /// What a fact is now, of what is in its parentheses; nothing while that is not known or does not exist.
     fn value_of(&self, fact: &str, of: &str) -> Option<Value>;
 }
 

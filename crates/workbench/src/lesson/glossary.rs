@@ -1,4 +1,4 @@
-//! The glossary: terms with a sentence each, found in prose where they stand.
+//! The glossary: terms with a sentence each, found in prose where they are.
 
 use std::sync::LazyLock;
 
@@ -112,7 +112,7 @@ impl Glossary {
         out
     }
 
-    /// The first term in a text that is not marked yet, and the longest there: its number and where it stands.
+    /// The first term in a text that is not marked yet, and the longest there: its number and where it is.
     fn first_in(&self, text: &str, is_marked: &[bool]) -> Option<(usize, usize, usize)> {
         let unmarked = self.terms.iter().enumerate().filter(|(number, _)| !is_marked[*number]);
         let found = unmarked.flat_map(|(number, term)| {
@@ -125,7 +125,7 @@ impl Glossary {
     }
 }
 
-/// Where `word` stands in `text` as whole words, whatever their case.
+/// Where `word` is in `text` as whole words, whatever their case.
 fn find_word(text: &str, word: &str) -> Option<(usize, usize)> {
     let is_letter = |letter: char| letter.is_alphanumeric() || letter == '-' || letter == '_';
     text.char_indices().find_map(|(from, _)| {

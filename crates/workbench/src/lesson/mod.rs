@@ -49,7 +49,7 @@ pub struct Lesson {
 pub enum LessonMission {
     /// An example, by name.
     Example(&'static str),
-    /// A text that stands in the lesson.
+    /// A text that is in the lesson.
     Text(Arc<str>),
 }
 
@@ -184,7 +184,7 @@ impl Lesson {
         }))
     }
 
-    /// The text of a mission stands in the prose too where its fence says `shown`.
+    /// The text of a mission is in the prose too where its fence says `shown`.
     fn take_shown(&mut self, block: Block) {
         if let (Content::Code { info, .. }, Some(stop)) = (&block.content, self.stops.last_mut())
             && has_word(info, "shown")

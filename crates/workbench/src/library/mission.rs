@@ -141,10 +141,10 @@ pub const MAIN_TEXT: &str = "mission.rmpl";
 /// What the JSON of a mission calls itself.
 pub const FORMAT: &str = "enroute-mission/1";
 
-/// What stands before the checksum at the end of the JSON.
+/// What is before the checksum at the end of the JSON.
 const CHECKSUM: &str = ",\"checksum\":\"";
 
-/// Whether the checksum is that of what stands before it, if there is one.
+/// Whether the checksum is that of what is before it, if there is one.
 fn fits_checksum(text: &str) -> bool {
     let Some((body, end)) = text.rsplit_once(CHECKSUM) else { return true };
     let checksum = end.strip_suffix("\"}").and_then(|digits| u64::from_str_radix(digits, 16).ok());

@@ -100,7 +100,7 @@ pub fn score(text: &str, query: &str) -> Option<i32> {
     for letter in wanted {
         let candidates = (from..text.len()).filter(|&at| text.get(at) == Some(&letter));
         let adjacent = last.map(|last: usize| last + 1);
-        // A letter right behind the last one beats a word start, which beats the first of the others.
+        // A letter right after the last one beats a word start, which beats the first of the others.
         let best = candidates.clone().find(|&at| Some(at) == adjacent);
         let best = best.or_else(|| candidates.clone().find(|&at| starts_word(at)));
         let at = best.or_else(|| candidates.clone().next())?;

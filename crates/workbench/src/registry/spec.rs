@@ -13,7 +13,7 @@ pub struct CommandSpec {
     pub id: &'static str,
     /// Its name for people.
     pub title: &'static str,
-    /// The menu it stands in.
+    /// The menu it is in.
     pub group: Group,
     /// Its keys, the first being the one that is shown.
     pub keys: &'static [Chord],
@@ -111,7 +111,7 @@ impl CommandSpec {
         }
     }
 
-    /// Whether it stands in menus and in the palette.
+    /// Whether it is in menus and in the palette.
     pub fn is_plain(&self) -> bool {
         matches!(self.build, Build::Plain(_))
     }
@@ -129,7 +129,7 @@ pub(super) const fn keys(modifiers: Modifiers, key: Key) -> Chord {
     Chord { modifiers, key }
 }
 
-/// A command that stands in menus and in the palette.
+/// A command that is in menus and in the palette.
 pub(super) const fn plain(
     id: &'static str,
     title: &'static str,

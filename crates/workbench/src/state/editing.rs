@@ -76,12 +76,12 @@ impl Writing<'_> {
         self.document.caret().is_empty() && self.editor.copied_line.as_ref().is_some_and(is_it)
     }
 
-    /// Selects in all panels what stands at the caret, as long as the drawings belong to this text.
+    /// Selects in all panels what is at the caret, as long as the drawings belong to this text.
     fn select_at_caret(&mut self) {
         self.select_at(self.document.caret().head as u32);
     }
 
-    /// Selects in all panels what stands at a byte of the text, as long as the drawings belong to this text.
+    /// Selects in all panels what is at a byte of the text, as long as the drawings belong to this text.
     pub(crate) fn select_at(&mut self, offset: u32) {
         if self.snapshots.is_stale(self.document.revision()) {
             return;

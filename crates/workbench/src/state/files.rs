@@ -188,7 +188,7 @@ fn relative(importer: &str, name: &str) -> String {
     format!("{}{rest}", "../".repeat(steps.len() - common))
 }
 
-/// Where a file is imported in the main text, and the line that does it: behind its last import, otherwise in front of
+/// Where a file is imported in the main text, and the line that does it: after its last import, otherwise in front of
 /// its first declaration.
 fn import_line(text: &str, name: &str) -> (usize, String) {
     let main = files::split(text).first().map_or("", |(_, text)| text);

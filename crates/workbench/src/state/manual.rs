@@ -41,7 +41,7 @@ impl ManualState {
         &self.query
     }
 
-    /// Where it stands.
+    /// The places in the manual that have the searched words.
     pub fn found(&self) -> &[Found] {
         &self.found
     }

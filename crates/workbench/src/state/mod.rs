@@ -232,7 +232,7 @@ impl AppState {
         self.snapshots.shown()
     }
 
-    /// Where the plan stands, for the status display.
+    /// Where the plan is, for the status display.
     pub fn status(&self) -> Status {
         match self.snapshots.status(self.document.revision()) {
             Status::Empty if self.automaton.is_control() => Status::Program,

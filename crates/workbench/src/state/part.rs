@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// A part of the state. Whoever takes it to change it moves its count on.
+/// A part of the state. Each access that may change it increments its count.
 #[derive(Debug, Default)]
 pub struct Part<T> {
     value: T,

@@ -53,7 +53,7 @@ impl Pins {
         self.version
     }
 
-    /// How the run stands in which nature does what is pinned; `None` before one has begun, or if nature chooses nothing.
+    /// How the run is in which nature does what is pinned; `None` before one has begun, or if nature chooses nothing.
     pub fn course(&self, snapshot: &Snapshot) -> Option<&Course> {
         self.plan(snapshot)?;
         self.pinned.as_ref()?.course()

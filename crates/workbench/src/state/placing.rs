@@ -52,7 +52,7 @@ pub struct Declared {
     pub edits: Vec<Edit>,
     /// What was declared.
     pub selection: Selection,
-    /// Its declaration as it stands in the new text.
+    /// Its declaration as it is in the new text.
     pub text: String,
 }
 

@@ -491,7 +491,7 @@ impl Reviewing<'_> {
     pub(crate) fn follow(&mut self) {
         let revision = self.document.revision();
         if self.review.running.is_some_and(|running| running.0 != revision) {
-            // A newer text ends the review of the older one. Whoever waits for the first one gets that of the new text.
+            // A newer text ends the review of the older one. What waits for the older one gets that of the newer text.
             self.review.give_up();
             if self.review.done.is_empty() {
                 self.review.asked = None;

@@ -122,7 +122,7 @@ impl Selection {
         }
     }
 
-    /// What stands at a byte offset of the text: the thing with the smallest span around it.
+    /// What is at a byte offset of the text: the thing with the smallest span around it.
     ///
     /// Among equals, `current` stays selected if it is one of them: the text of a definition represents all of its
     /// expansions.

@@ -39,7 +39,7 @@ impl Writing<'_> {
     }
 
     /// Lists what can be written at the caret. Unless the author asked for it, or a list is open, only where it helps: in
-    /// a word of at least two letters, or right behind a sign that asks for something.
+    /// a word of at least two letters, or right after a sign that asks for something.
     pub(crate) fn complete(&mut self, is_asked: bool) {
         let is_open = self.editor.popup.take().is_some_and(|popup| popup.kind == PopupKind::Completion);
         let Some(found) = self.completions() else { return };

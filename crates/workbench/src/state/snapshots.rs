@@ -22,7 +22,7 @@ pub struct Snapshots {
     given_up: Option<u64>,
 }
 
-/// Where the plan stands.
+/// The state of planning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// The present text is being worked out.
@@ -124,7 +124,7 @@ impl Snapshots {
         self.shown.as_ref().is_some_and(|shown| shown.revision != revision)
     }
 
-    /// Where the plan stands for the text of `revision`.
+    /// Where the plan represents the text of `revision`.
     pub fn status(&self, revision: u64) -> Status {
         let unfinished = if self.given_up == Some(revision) { Status::Undecided } else { Status::Working };
         let Some(latest) = &self.latest else { return unfinished };

@@ -97,7 +97,7 @@ fn a_report_has_only_the_signatures_that_hold_for_its_content() {
 fn a_board_takes_a_plan_from_draft_to_approval_over_one_edit() {
     let mut app = before_the_board();
     assert_eq!(status(&app), "draft");
-    // A comment is open, and stands in the way.
+    // A comment is open, and is in the way.
     let asked = json!({ "author": "Ada", "role": "Science", "to": "Grace", "about": "Group-Wait#1", "text": "Why so long?" });
     app.dispatch("review.comment", &asked);
     assert_eq!(status(&app), "in-review");

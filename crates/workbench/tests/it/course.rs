@@ -287,7 +287,7 @@ fn the_mission_of_every_lesson_comes_to_what_the_lesson_says() {
 #[test]
 fn next_and_previous_lead_through_the_course_and_back() {
     let mut app = start();
-    // The tour stands before the course.
+    // The tour is before the course.
     let all: Vec<(String, usize)> = lessons()
         .skip(1)
         .flat_map(|(course, lesson)| (1..=lesson.stops.len()).map(move |stop| (course.name.to_owned(), stop)))

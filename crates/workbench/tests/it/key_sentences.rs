@@ -1,5 +1,5 @@
 //! Every sentence of the key steps of lessons 1 to 8, by both searches, listed in `docs/key-sentences.md`, and each held
-//! against what the search did: against the network, the choices behind it, and the list of all plans.
+//! against what the search did: against the network, the choices after it, and the list of all plans.
 
 use std::collections::BTreeSet;
 

@@ -8,7 +8,7 @@ fn policy() -> BTreeMap<String, Vec<String>> {
     let page = std::fs::read_to_string(file).expect("the page is there");
     let (before, rest) =
         page.split_once("http-equiv=\"Content-Security-Policy\" content=\"").expect("the page has a policy");
-    // What stands before it is not held to it.
+    // What is before it is not held to it.
     assert!(!["<script", "<link", "<style", "<img"].iter().any(|tag| before.contains(tag)), "{before}");
     let (policy, _) = rest.split_once('"').expect("it ends");
     let directive = |text: &str| {

@@ -76,7 +76,7 @@ const BANNED_IN_THE_INTERFACE: [(&str, &str); 6] = [
 ];
 
 /// Patterns that no text contains at all.
-const BANNED: [(&str, &str); 40] = [
+const BANNED: [(&str, &str); 46] = [
     (
         r"^(Shows|Gives|Goes|Hides|Keeps|Opens|Leaves|Brings|Adds|Checks|Marks|Runs|Works|Collapses) ",
         "a tooltip starts with an imperative",
@@ -126,6 +126,12 @@ const BANNED: [(&str, &str); 40] = [
     (r"\w\(s\)", "plurals are real: 1 decision, 2 decisions"),
     (r"\b(this|it|that|which|what) (is|are) no ([^l]|l[^o])", "say is not a"),
     (r"\bso and (pass|fail)", "name what is printed"),
+    (r"\b(is|are) (the )?others\b|\bis another one\b", "say has changed, or differs"),
+    (r"\bbegins\b|\bbegan\b|\bto begin\b", "say start"),
+    (r"\bthe ones? before\b", "say previous"),
+    (r"\bspeaks? of\b", "say mention, or refer to"),
+    (r"\bshall\b|\bupon\b|\bthus\b|\bhence\b", "use plain, modern words"),
+    (r"\bthe (least|greatest) (bound|time|value|speed|slope|level|limit)s?\b", "say minimum or maximum"),
 ];
 
 /// Texts in which a banned pattern is right, by the file's end and a part of the text, and why.
@@ -411,6 +417,7 @@ fn documents() -> Vec<(String, String)> {
             .contains(&name.as_str())
             || name.starts_with("docs/panels/")
             || name.starts_with("docs/evidence/")
+            || name.starts_with("docs/decisions/")
             || name.strip_prefix("docs/").is_some_and(|name| !name.contains('/'))
             || name.starts_with("assets/");
         let is_other = OTHER_DOCUMENTS.iter().any(|(other, _)| name.ends_with(other));

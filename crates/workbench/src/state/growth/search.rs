@@ -33,7 +33,7 @@ struct Running {
     is_complete: bool,
 }
 
-/// A search as it stands after some samples, to be drawn.
+/// A search as it is after some samples, to be drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Standing {
     /// Where the trees begin.
