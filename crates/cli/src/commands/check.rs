@@ -80,6 +80,10 @@ fn answer(checked: Vec<(String, Vec<Problem>)>) -> Value {
 /// All that the front end, the compilers and planning have to say about a text, in either notation: what the report says.
 fn check(mission: &mut Opened, deadline: Deadline) -> anyhow::Result<Vec<Problem>> {
     let Scenarios { program, mut diagnostics, scenarios } = mission.compile_all()?;
+    if rmpl::control::is_control_text(&mission.source) {
+        diagnostics.extend(mission.core.idle_parts(&mission.source, &mut || !deadline.is_over()));
+        diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
+    }
     let ground = mission.ground_or_problem(&program)?.unwrap_or_else(|problem| {
         diagnostics.push(problem);
         None

@@ -627,6 +627,22 @@ fn check_warns_of_orbit_insertion_without_an_engine_left() {
 }
 
 #[test]
+fn check_warns_of_a_goal_that_no_run_reaches() {
+    let plant = "(DEFCLASS Lamp () (COMMAND cmd {none on}) (MODE Off true) (MODE On true) (MODE Dead true)
+        (TRANSITION Off On (cmd = on)) (FAULT On Off 0.1))
+        (DEFINSTANCE A Lamp) (DEFINSTANCE B Lamp)";
+    let file = written("idle.rmpl", &format!("Main ():: (SEQUENCE (A = Dead) (B = On))\n{plant}"));
+    let answer = enroute(&["check", &file, "--format", "json"]);
+    assert_eq!(answer.status, 0, "{answer}");
+    let document = answer.json();
+    let found = list(&document["diagnostics"]);
+    let found: Vec<(&str, u64)> =
+        found.iter().map(|it| (text(&it["code"]), it["span"]["line"].as_u64().unwrap_or_default())).collect();
+    // The goal that nothing reaches, and the mode that nothing leads to.
+    assert!(found.contains(&("W-LIVENESS", 1)) && found.contains(&("W-UNREACHABLE", 2)), "{document}");
+}
+
+#[test]
 fn a_run_lists_the_clocks_with_the_steps_left_and_those_that_were_up() {
     let text = format!(
         "{ENGINE}Main ():: (TIMEOUT 2s (EngineA = Failed) (SEQUENCE (EngineA = Firing) (REWARD 2.5)))"

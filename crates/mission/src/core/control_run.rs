@@ -9,6 +9,7 @@ use hca::Automaton;
 use link::control_run::{Input, Moment};
 use link::{ControlProgram, ControlRun, ControlStanding};
 use link::{Response, Update};
+use rmpl::Diagnostic;
 use rmpl::spans::Spans as _;
 use snapshot::content::Keys;
 use snapshot::{ContentKey, Problem, Snapshot, Stage, Timings};
@@ -48,13 +49,7 @@ impl Core {
         let begun = host.now_millis();
         let text = update.source.text();
         let mut found = self.controls.diagnostics(text).to_vec();
-        let mut is_time_left = || host.now_millis() - begun < WARNING_MILLIS;
-        let idle = match self.controls.read(text, None) {
-            Control::Bound(system) => idle_parts(system, &mut is_time_left),
-            Control::Unbound(automaton) => idle_parts_alone(automaton, &mut is_time_left),
-            Control::Plant(_) | Control::Nothing => None,
-        };
-        found.extend(idle.unwrap_or_default());
+        found.extend(self.idle_parts(text, &mut || host.now_millis() - begun < WARNING_MILLIS));
         found.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.code));
         let problems = Problem::all(&found, &update.source);
         let timings = Timings { parse_millis: host.now_millis() - begun, ..Timings::default() };
@@ -63,6 +58,17 @@ impl Core {
         snapshot.problems = problems.into();
         snapshot.timings = timings;
         host.answer(Response::Snapshot(Arc::new(snapshot)));
+    }
+
+    /// Warnings of the parts of a control program that do nothing in any run; none if `go_on` returns false before all is
+    /// looked at.
+    pub fn idle_parts(&mut self, text: &Arc<str>, go_on: &mut dyn FnMut() -> bool) -> Vec<Diagnostic> {
+        let idle = match self.controls.read(text, None) {
+            Control::Bound(system) => idle_parts(system, go_on),
+            Control::Unbound(automaton) => idle_parts_alone(automaton, go_on),
+            Control::Plant(_) | Control::Nothing => None,
+        };
+        idle.unwrap_or_default()
     }
 
     /// Runs a control program up to the moment after the inputs that are wanted.
