@@ -282,7 +282,9 @@ impl FileKind {
     /// The extensions that the file dialog offers, without dots.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Mission => &["rmpl", "enroute", "txt", "lisp", "json", "edn", "tpn", "ptpn", "xml"],
+            Self::Mission => {
+                &["rmpl", "enroute", "txt", "lisp", "json", "edn", "tpn", "ptpn", "xml", "jmpl", "pamela"]
+            }
             Self::Map => {
                 &["pgm", "png", "map", "tif", "tiff", "asc", "dem", "img", "lbl", "yaml", "yml", "geojson"]
             }

@@ -1,6 +1,6 @@
 //! What is done with the missions of the library: opening, naming, copying, deleting, and taking them out and in.
 
-use interchange::is_network_file;
+use interchange::{is_network_file, jmpl, pamela};
 use link::Request;
 use smol_str::SmolStr;
 use terrain::format::{FileFormat, refusal};
@@ -284,6 +284,10 @@ impl AppState {
                     refuse(self, &reason);
                 }
             }
+            Err(MissionError::NoMission) if let Some(read) = read_model(name, &text) => match read {
+                Ok(read) => self.open_model(name, &read),
+                Err(reason) => refuse(self, &reason),
+            },
             Err(MissionError::NoMission) if is_network_file(&text) || reads_as_mission(name, &text) => {
                 let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
                 let stem =
@@ -294,6 +298,21 @@ impl AppState {
             Err(MissionError::NoMission) => self.open_what_is_no_mission(name, text.into_bytes()),
             Err(error) => refuse(self, &error.to_string()),
         }
+    }
+
+    /// Opens what was read of a model of another tool, and says how much was not.
+    fn open_model(&mut self, name: &str, read: &Model) {
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        let id = self.library.add(stem, MissionKind::File, &read.text, self.frame.unix_millis);
+        self.open_mission(&id);
+        let left_out = match read.left_out {
+            0 => return self.window.done(format!("Converted {name} to RMPL.")),
+            1 => "1 line".to_owned(),
+            count => format!("{count} lines"),
+        };
+        let text =
+            format!("Converted {name} to RMPL, without {left_out}. The first lines of the text list them.");
+        self.window.info(text);
     }
 
     /// A file that is neither mission nor network: a map under another ending, or something that is refused, by its name where
@@ -352,9 +371,30 @@ impl AppState {
     }
 }
 
+/// What was read of a model of another tool.
+struct Model {
+    text: String,
+    /// How many lines were not read.
+    left_out: usize,
+}
+
+/// Reads a model of Livingstone or Pamela; `None` if the name says that the file is neither.
+fn read_model(name: &str, text: &str) -> Option<Result<Model, String>> {
+    if pamela::is_pamela(name) {
+        let read = pamela::translate(name, text).map_err(|error| error.to_string());
+        return Some(read.map(|read| Model { text: read.text, left_out: read.left_out.len() }));
+    }
+    name.to_ascii_lowercase().ends_with(".jmpl").then(|| {
+        let file = jmpl::SourceFile { name: name.to_owned(), text: text.to_owned() };
+        let read = jmpl::translate(&[file], &[]).map_err(|error| error.to_string());
+        read.map(|read| Model { text: read.model, left_out: read.left_out.len() })
+    })
+}
+
 /// Why a file is not opened as a mission, and what is read.
 const NO_MISSION: &str = "unrecognized format. Supported: missions and control programs (.rmpl, \
-                          .enroute), networks (.tpn.json, .tpn.edn, .tpn), PlanDev plans (.json), maps \
+                          .enroute), networks (.tpn.json, .tpn.edn, .tpn), PlanDev plans (.json), models \
+                          (.jmpl, .pamela), maps \
                           (PNG, PGM, TIFF, PDS3, ESRI ASCII grid, MovingAI, ROS), places (.geojson), \
                           lessons (.md), saved plans, runs and reviews (.json)";
 

@@ -117,6 +117,22 @@ fn documents_that_are_no_mission_open_nothing_and_say_what_is_read() {
     }
 }
 
+#[test]
+fn models_of_livingstone_and_pamela_open_as_text_of_enroute() {
+    let mut app = started();
+    let lamp = "class Lamp { enum M { on, gone } m; stateVector m; failure (on, gone, 0.1) {} transition (gone, on) { a = b; } }";
+    open(&mut app, "lamp.jmpl", lamp.as_bytes());
+    let text = text_of(&app);
+    assert!(text.starts_with("; Not read: lamp.jmpl:1:") && text.contains("(FAULT on gone 0.1)"), "{text}");
+    assert!(app.json()["toasts"].to_string().contains("without 1 line"), "{}", app.json()["toasts"]);
+    open(&mut app, "day.pamela", b"(defpclass main [] :methods [(defpmethod day [] (delay :bounds [3 4]))])");
+    assert!(text_of(&app).contains("scenario day = { delay[3,4] }"), "{}", text_of(&app));
+    let before = text_of(&app);
+    open(&mut app, "broken.jmpl", b"class {");
+    assert!(app.json()["toasts"].to_string().contains("broken.jmpl, line 1"), "{}", app.json()["toasts"]);
+    assert_eq!(text_of(&app), before);
+}
+
 /// An activity between two events, whose duration is the environment's.
 const PTPN: &str = r#"<?xml version="1.0" ?>
 <tpns xmlns="http://mers.csail.mit.edu/tpn"><tpn><id>survey</id><name>survey</name>
