@@ -7,17 +7,22 @@ use std::path::{Path, PathBuf};
 use crate::command::enroute;
 
 /// The kinds of file by the ends of their names, each with the command that reads it.
-const KINDS: [(&str, &[&str], &str); 6] = [
+const KINDS: [(&str, &[&str], &str); 8] = [
     ("temporal network", &[".stn", ".plainstnu", ".stnu", ".cstn", ".cstnu", ".graphml"], "stn"),
     ("plan network", &[".tpn.json", ".tpn.edn", ".tpn", ".ptpn"], "import"),
     ("map", &[".pgm", ".png", ".tif", ".tiff", ".map", ".asc", ".yaml", ".img"], "path"),
     ("places", &[".geojson"], "import"),
     ("PDDL problem", &[".pddl"], "pddl"),
+    ("JMPL", &[".jmpl"], "jmpl"),
+    ("Pamela", &[".pamela"], "import"),
     ("mission", &[".rmpl"], "check"),
 ];
 
-/// How a file was answered: read, or not, with the reason.
-type Answers = BTreeMap<&'static str, Vec<Result<(), String>>>;
+/// How a file was answered: read, with what was left out, or not, with the reason.
+type Answer = Result<Vec<String>, String>;
+
+/// The answers of files by their kind.
+type Answers = BTreeMap<&'static str, Vec<Answer>>;
 
 fn files_in(folder: &Path, found: &mut Vec<PathBuf>) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -36,21 +41,26 @@ fn domain_of(problem: &Path) -> Option<PathBuf> {
     domains.into_iter().find(|domain| domain != problem && domain.is_file())
 }
 
-fn answer(command: &str, path: &Path) -> Option<Result<(), String>> {
+fn answer(command: &str, path: &Path) -> Option<Answer> {
     let name = path.to_str()?;
     let domain = domain_of(path);
     let arguments = match (command, &domain) {
         ("path", _) => vec!["path", name, "--from", "0.5,0.5", "--to", "0.5,0.5"],
         ("pddl", Some(domain)) => vec!["import", domain.to_str()?, name],
         ("pddl", None) => return None,
+        // Classes of a model are in the folders beside that of its system.
+        ("jmpl", _) => vec!["import", name, path.parent()?.parent()?.to_str()?],
         _ => vec![command, name],
     };
     let output = enroute(&arguments);
-    if output.status.code() != Some(2) {
-        return Some(Ok(()));
-    }
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    let line = said.lines().find(|line| line.starts_with("error")).unwrap_or("no reason given");
+    if output.status.code() != Some(2) {
+        let left_out = said.lines().filter_map(|line| line.strip_prefix("not read: "));
+        return Some(Ok(left_out.map(without_names).collect()));
+    }
+    let errors = said.lines().filter(|line| line.starts_with("error"));
+    // The first line says that the text that was read has errors, and the second line which.
+    let line = errors.take(2).last().unwrap_or("no reason given");
     Some(Err(reason(line, path)))
 }
 
@@ -70,24 +80,40 @@ fn reason(line: &str, path: &Path) -> String {
     }
 }
 
+/// What was left out of a file, without the place and without what differs from file to file.
+fn without_names(line: &str) -> String {
+    let what = line.split_once(": ").map_or(line, |(_, what)| what);
+    what.split('`').enumerate().map(|(at, part)| if at % 2 == 0 { part } else { "`…`" }).collect()
+}
+
 fn table(answers: &Answers) -> String {
-    let mut text = String::from("| kind | tried | read | not read, because |\n|---|---|---|---|\n");
+    let mut text =
+        String::from("| kind | tried | read | in part | not read, because |\n|---|---|---|---|---|\n");
     for (kind, answers) in answers {
-        let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
-        for reason in answers.iter().filter_map(|answer| answer.as_ref().err()) {
-            *reasons.entry(reason).or_default() += 1;
+        let reasons = answers.iter().filter_map(|answer| answer.as_ref().err());
+        let read = answers.iter().filter(|answer| answer.as_ref().is_ok_and(Vec::is_empty)).count();
+        let in_part = answers.iter().filter(|answer| answer.as_ref().is_ok_and(|it| !it.is_empty())).count();
+        let told = counted(reasons).replace('|', "\\|");
+        text += &format!("| {kind} | {} | {read} | {in_part} | {told} |\n", answers.len());
+    }
+    for (kind, answers) in answers {
+        let left_out = answers.iter().flatten().flatten();
+        if answers.iter().flatten().any(|left_out| !left_out.is_empty()) {
+            text += &format!("\nLeft out of {kind}: {}\n", counted(left_out));
         }
-        let mut reasons: Vec<(usize, &str)> =
-            reasons.into_iter().map(|(reason, count)| (count, reason)).collect();
-        reasons.sort_by_key(|(count, reason)| (std::cmp::Reverse(*count), *reason));
-        let told: Vec<String> = reasons
-            .iter()
-            .map(|(count, reason)| format!("{count}: {}", reason.replace('|', "\\|")))
-            .collect();
-        let read = answers.iter().filter(|answer| answer.is_ok()).count();
-        text += &format!("| {kind} | {} | {read} | {} |\n", answers.len(), told.join("; "));
     }
     text
+}
+
+/// Reasons with their counts, the most frequent first.
+fn counted<'reason>(all: impl Iterator<Item = &'reason String>) -> String {
+    let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
+    all.for_each(|reason| *reasons.entry(reason).or_default() += 1);
+    let mut reasons: Vec<(usize, &str)> =
+        reasons.into_iter().map(|(reason, count)| (count, reason)).collect();
+    reasons.sort_by_key(|(count, reason)| (std::cmp::Reverse(*count), *reason));
+    let told: Vec<String> = reasons.iter().map(|(count, reason)| format!("{count}: {reason}")).collect();
+    told.join("; ")
 }
 
 #[test]
