@@ -49,6 +49,7 @@ enum Command {
     Prove(prove::Args),
     Estimate(estimate::Args),
     Reconfigure(reconfigure::Args),
+    #[command(visible_alias = "convert")]
     Import(import::Args),
     Report(report::Args),
     Review(review::Args),

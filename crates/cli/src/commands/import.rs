@@ -1,5 +1,5 @@
 //! `enroute import`: a network that another tool wrote, as one of ours; places and obstacles as lines of a mission; a problem
-//! in PDDL as a mission.
+//! in PDDL as a mission; a model that is a program elsewhere as one of ours.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -7,21 +7,24 @@ use std::process::ExitCode;
 use anyhow::Context as _;
 use interchange::Source;
 use interchange::geojson::{self, Frame};
+use interchange::jmpl;
+use interchange::pamela;
 use interchange::pddl;
 use serde_json::{Value, json};
 
+use super::import_models::{import_jmpl, import_pamela};
 use crate::input::read_text;
 use crate::output::{Format, YES, document, exit, print_error, print_json, print_text, print_verbatim};
 
 /// Convert a file of another tool.
 ///
-/// A network is printed as enroute tpn prints it. Places, obstacles, vehicles and groups in GeoJSON or CSV are printed as declarations, for a file that a mission imports. A PDDL domain and a problem of it are printed as a mission.
+/// A network is printed as enroute tpn prints it. Places, obstacles, vehicles and groups in GeoJSON or CSV are printed as declarations, for a file that a mission imports. A PDDL domain and a problem of it are printed as a mission. A model of Livingstone (JMPL) is printed as a plant model, and a file of Pamela as a mission or a plant model; what these cannot express is listed on standard error.
 #[derive(clap::Args)]
 pub struct Args {
-    /// plan-schema (JSON or EDN), enroute-tpn document, pTPN, PlanDev (Aerie) plan, GeoJSON, CSV of places, or PDDL domain; - reads standard input.
+    /// plan-schema (JSON or EDN), enroute-tpn document, pTPN, PlanDev (Aerie) plan, GeoJSON, CSV of places, PDDL domain, JMPL, or Pamela; - reads standard input.
     file: PathBuf,
-    /// Problem of the PDDL domain.
-    problem: Option<PathBuf>,
+    /// Problem of the PDDL domain; more files of a JMPL model (.jmpl, .hrn, .ini), or folders of them.
+    more: Vec<PathBuf>,
     /// How often each action may happen (PDDL) [default: 1].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(pddl::MAX_TIMES)))]
     times: Option<u32>,
@@ -55,11 +58,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if is_pddl {
         return import_pddl(args, (&name, &text));
     }
-    anyhow::ensure!(args.problem.is_none(), "{name} is not a PDDL domain; give one file only");
     anyhow::ensure!(
         args.times.is_none() && !args.any_plan,
         "{name} is not a PDDL domain; remove --times and --any-plan, which only PDDL needs"
     );
+    if jmpl::is_jmpl(&name) {
+        return import_jmpl(&args.file, text, &args.more, args.format);
+    }
+    anyhow::ensure!(args.more.is_empty(), "{name} is neither a PDDL domain nor JMPL; give one file only");
+    if pamela::is_pamela(&name) {
+        return import_pamela(&args.file, &text, args.format);
+    }
     if is_places(&name, &text) {
         let frame = Frame { is_meters: args.meters, origin_deg: args.origin, radius_m: args.radius };
         let lines =
@@ -94,7 +103,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// Prints a problem in PDDL as a mission. Prints what the mission leaves out or changes on standard error.
 fn import_pddl(args: &Args, domain: (&str, &str)) -> anyhow::Result<ExitCode> {
-    let Some(path) = &args.problem else {
+    let [path] = &*args.more else {
         anyhow::bail!(
             "{} is PDDL; give the domain and the problem, as in enroute import DOMAIN PROBLEM",
             domain.0

@@ -11,6 +11,7 @@ pub mod fmt;
 pub mod hca;
 pub mod held_rules;
 pub mod import;
+mod import_models;
 pub mod path;
 pub mod plan;
 pub mod prove;

@@ -10,6 +10,7 @@ mod driving;
 mod files;
 mod geojson;
 mod help;
+mod models;
 mod networks;
 mod pddl;
 mod pddl_rules;
