@@ -348,8 +348,10 @@ impl Record {
             };
             let runs = Sealed::<Runs>::read(runs).map_err(damaged)?;
             if digest != runs.digest() {
-                let what =
-                    format!("the Monte Carlo runs of content {} have been changed", short(&runs.content_hash));
+                let what = format!(
+                    "the Monte Carlo runs of content {} have been changed",
+                    short(&runs.content_hash)
+                );
                 return Err(RecordError::Broken(what));
             }
             record.runs.push((*runs).clone());
