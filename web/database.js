@@ -16,14 +16,14 @@ export function openDatabase(name, store) {
 
 /**
  * Lets `act` use the store in a transaction of its own, and gives the result of the request that it returns. What it writes
- * is on the disk then as a whole, or not at all.
+ * is on the disk then as a whole, or not at all; with the durability `relaxed`, the system may still have to write it there.
  */
-export async function transact(database, store, mode, act) {
+export async function transact(database, store, mode, act, durability = "strict") {
   for (;;) {
     await shown;
     const wasShown = shown;
     try {
-      return await tryOnce(database, store, mode, act);
+      return await tryOnce(database, store, mode, act, durability);
     } catch (error) {
       // What was interrupted because the page was put away is done when the page is back.
       if (shown === wasShown) throw error;
@@ -49,9 +49,9 @@ window.addEventListener("pagehide", ({ persisted }) => {
 });
 window.addEventListener("pageshow", () => show());
 
-function tryOnce(database, store, mode, act) {
+function tryOnce(database, store, mode, act, durability) {
   return new Promise((resolve, reject) => {
-    const transaction = database.transaction(store, mode, { durability: "strict" });
+    const transaction = database.transaction(store, mode, { durability });
     let request;
     running.add(transaction);
     transaction.oncomplete = () => {
@@ -63,5 +63,8 @@ function tryOnce(database, store, mode, act) {
       reject(transaction.error ?? new Error("the browser canceled the transaction"));
     };
     request = act(transaction.objectStore(store));
+    // Otherwise the browser waits until the page has heard that each request succeeded, which a page that is drawing and
+    // hears of more and more keys is told late: what was typed for seconds would not be on the disk.
+    if (mode === "readwrite") transaction.commit?.();
   });
 }

@@ -6,6 +6,9 @@ import { openDatabase, transact } from "./database.js";
 const NAME = "enroute";
 const STORE = "shelf";
 
+/** Keys of texts that are written with each key press begin so. */
+const TYPED = "typed/";
+
 /** Keys that begin so are read one by one, since maps are large. */
 const MAPS = ["map/", "map0"];
 
@@ -14,7 +17,7 @@ export function openShelf() {
   let content;
   const database = openDatabase(NAME, STORE);
   database.catch(() => {});
-  const use = async (mode, act) => transact(await database, STORE, mode, act);
+  const use = async (mode, act, durability) => transact(await database, STORE, mode, act, durability);
   const opened = read()
     .catch((error) => error)
     .then((answer) => (content = answer));
@@ -24,7 +27,9 @@ export function openShelf() {
     shelfOpened: () => opened,
     /** Waits for the shelf, but not so long that nobody can work. */
     patience: (millis) => Promise.race([opened, new Promise((resolve) => setTimeout(resolve, millis))]),
-    writeToShelf: (key, bytes) => use("readwrite", (store) => store.put(bytes, key)),
+    // What is typed outlasts the browser at once. The whole mission, half a second later at most, outlasts the computer.
+    writeToShelf: (key, bytes) =>
+      use("readwrite", (store) => store.put(bytes, key), key.startsWith(TYPED) ? "relaxed" : "strict"),
     readFromShelf: (key) => use("readonly", (store) => store.get(key)),
     removeFromShelf(key) {
       // What cannot be removed now is removed when the list of missions is next cleared up.

@@ -23,6 +23,9 @@ const SHELF_PATIENCE_MILLIS = 1500;
 // What throws while the page starts may be harmless; a page that is not ready so long afterwards has failed.
 const START_PATIENCE_MILLIS = 3000;
 
+// A page that starts waits not longer than this for a newer version to take over.
+const HAND_OVER_PATIENCE_MILLIS = 2000;
+
 let shelf = null;
 let isReady = false;
 let hasFailed = false;
@@ -36,14 +39,20 @@ async function load() {
   showStep("Starting…");
   await init({ module_or_path: module });
   await shelf.patience(SHELF_PATIENCE_MILLIS);
-  const typing = noteTyping(window);
+  let frontEnd = null;
+  const typing = noteTyping(window, (typed) => {
+    try {
+      frontEnd?.keepAhead(JSON.stringify(typed));
+    } catch {
+      // A front end that has stopped has written down all that it took in.
+    }
+  });
   const mirror = createMirror(
     document.getElementById("accessibility"),
     canvas,
     document.getElementById("announcements"),
   );
   const camera = createCamera(canvas);
-  let frontEnd = null;
   const glue = {
     startCore,
     chooseFile,
@@ -145,14 +154,41 @@ function showLoss(title, cause, error) {
   showFailure(title, `${cause} ${advice}`, error, text === null ? null : { name: "mission.rmpl", text });
 }
 
-const loaded = load();
+// Published pages say their version and keep a copy of themselves; a page that is being developed does neither.
+const isPublished = Boolean(document.documentElement.dataset.version);
+
+const loaded = isPublished ? giveWay().then(load) : load();
 const api = createApi(loaded);
 window.enroute = api.enroute;
 loaded.catch(failToStart);
 
-// Published pages say their version and keep a copy of themselves; a page that is being developed does neither.
-if (document.documentElement.dataset.version) {
+if (isPublished) {
   keepCopy().catch((reason) => console.warn(`Offline use is not available: ${reason.message}`));
+}
+
+/**
+ * Lets a newer version take over that is kept and waits, if no other tab shows this one. The page is loaded again then; it goes
+ * on with this version if the newer one does not take over.
+ */
+async function giveWay() {
+  try {
+    const { serviceWorker } = navigator;
+    const waiting = (await serviceWorker?.getRegistration())?.waiting;
+    if (!waiting || !serviceWorker.controller) return;
+    const { port1, port2 } = new MessageChannel();
+    const isOver = new Promise((resolve) => {
+      port1.onmessage = ({ data }) => data || resolve(false);
+      serviceWorker.addEventListener("controllerchange", () => resolve(true), { once: true });
+      setTimeout(resolve, HAND_OVER_PATIENCE_MILLIS, false);
+    });
+    waiting.postMessage("take over", [port2]);
+    if (!(await isOver)) return;
+  } catch {
+    // A browser that keeps no copies of pages has no newer version of this one.
+    return;
+  }
+  location.reload();
+  await new Promise(() => {});
 }
 
 async function keepCopy() {
@@ -160,7 +196,7 @@ async function keepCopy() {
   if (registration) announceNewVersion(registration);
 }
 
-/** Says once that a newer version is kept. It takes over when no tab shows this one any more. */
+/** Says once that a newer version is kept. It takes over when the only tab is loaded again, or when all are closed. */
 function announceNewVersion(registration) {
   const say = () => loaded.then(() => api.enroute.dispatch("help.newVersion", null)).catch(() => {});
   if (registration.waiting) say();

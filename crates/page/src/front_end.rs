@@ -219,6 +219,14 @@ impl FrontEnd {
         })
     }
 
+    /// Writes down `typed`, as for [`FrontEnd::keep_now`], before a frame takes it in.
+    #[wasm_bindgen(js_name = keepAhead)]
+    pub fn keep_ahead(&self, typed: &str) -> Result<(), JsValue> {
+        let typed: Vec<Typed> = serde_json::from_str(typed).unwrap_or_default();
+        let events: Vec<egui::Event> = typed.into_iter().filter_map(Typed::event).collect();
+        self.with(|page| page.app.keep_ahead(&page.egui, &events))
+    }
+
     /// What changed in the accessible document since the last call, as JSON, if anything did.
     #[wasm_bindgen(js_name = takeAccessibilityChange)]
     pub fn take_accessibility_change(&self) -> Result<Option<String>, JsValue> {

@@ -5,6 +5,7 @@
 
 use link::{Request, Since, Source};
 use serde_json::Value;
+use text_editing::{Document, TextCommand};
 
 use crate::command::Command;
 use crate::description::State;
@@ -49,6 +50,8 @@ struct Posted {
     settings: PlanSettings,
 }
 
+/// Longer texts are not copied with each key, in bytes.
+const LONGEST_TEXT_AHEAD: usize = 100_000;
 /// Longest time that goes by at once, in seconds: a page that was hidden continues where it was.
 const LONGEST_STEP_SECS: f64 = 0.25;
 
@@ -175,6 +178,21 @@ impl Session {
     pub fn keep_now(&mut self) {
         self.autosave.keep_now(&mut self.state, self.host.as_mut());
         self.do_effects();
+    }
+
+    /// Writes down the text as it will be when these keys are taken in that no frame has drawn yet. Nothing else changes: the
+    /// next frame takes the keys in, and writes what it makes of them.
+    pub fn keep_ahead(&mut self, keys: &[TextCommand]) {
+        let document = &self.state.document;
+        if document.text().len() > LONGEST_TEXT_AHEAD || !document.other_carets().is_empty() {
+            return;
+        }
+        let mut ahead = Document::new(document.text());
+        ahead.set_caret(document.caret());
+        for key in keys {
+            key.apply(&mut ahead);
+        }
+        self.autosave.keep_ahead(&self.state, self.host.as_mut(), ahead.text());
     }
 
     /// Keeps the settings if they have changed.

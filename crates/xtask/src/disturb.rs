@@ -96,16 +96,16 @@ impl Display for Losses {
 }
 
 /// Gives the text the keyboard, and tells whether it has it.
-const FOCUS_TEXT: &str = "(() => { \
+pub(crate) const FOCUS_TEXT: &str = "(() => { \
     const text = document.querySelector('[role=textbox][aria-label=\"Mission text\"]'); \
     if (document.querySelector(`[aria-activedescendant=${text.id}]`)) return true; \
     text.focus(); return false; })()";
 /// A longer text is replaced by a new one.
-const LONGEST_TEXT: usize = 1500;
+pub(crate) const LONGEST_TEXT: usize = 1500;
 /// After so many disturbances a context gives way to a fresh one: closed tabs leave memory in use.
 const RUNS_OF_A_CONTEXT: u32 = 100;
 /// Width and height of the page in CSS pixels: small, because it is drawn without a graphics card.
-const SIZE: [u32; 2] = [560, 420];
+pub(crate) const SIZE: [u32; 2] = [560, 420];
 /// Bytes that a full storage has room for.
 const NO_ROOM: u64 = 1;
 /// Collects the workers that the page starts, so that they can be ended, and writes down which keys the page is told of.
@@ -125,7 +125,7 @@ pub fn disturb(
 ) -> Result<Losses> {
     let server = SiteServer::start(site, 0, false)?;
     let mut context = browser.open_context()?;
-    let mut chance = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+    let mut chance = Chance::from_seed(seed);
     let mut page = Page { tab: opened(&context, &server)?, expected: String::new(), differences: Vec::new() };
     page.begin("// ")?;
     let mut losses = Losses { tallies: [Tally::default(); Disturbance::ALL.len()], differences: Vec::new() };
@@ -234,16 +234,20 @@ impl Page {
 }
 
 /// How many characters of `expected` are not in `found` at their place.
-fn missing(expected: &str, found: &str) -> usize {
+pub(crate) fn missing(expected: &str, found: &str) -> usize {
     let same = expected.bytes().zip(found.bytes()).take_while(|(left, right)| left == right).count();
     expected.len() - same
 }
 
 /// Numbers that a seed decides (xorshift).
-struct Chance(u64);
+pub(crate) struct Chance(u64);
 
 impl Chance {
-    fn below(&mut self, end: u64) -> u64 {
+    pub(crate) fn from_seed(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    pub(crate) fn below(&mut self, end: u64) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -251,7 +255,7 @@ impl Chance {
     }
 
     /// A letter, a digit or a blank.
-    fn key(&mut self) -> char {
+    pub(crate) fn key(&mut self) -> char {
         const KEYS: &[u8] = b"abcdefghijklmnopqrstuvwxyz0123456789  ";
         char::from(KEYS[self.below(KEYS.len() as u64) as usize])
     }

@@ -7,6 +7,7 @@ pub mod dependencies;
 pub mod dist;
 pub mod disturb;
 pub mod download;
+pub mod kill;
 pub mod process;
 pub mod server;
 pub mod site;

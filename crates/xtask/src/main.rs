@@ -9,7 +9,10 @@ mod shot;
 mod size;
 mod test;
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use anyhow::{Result, ensure};
 use clap::{Parser, Subcommand};
@@ -17,6 +20,7 @@ use xtask::{
     browser::{Browser, Graphics},
     dist, disturb,
     download::{Download, LIMITS},
+    kill::{self, Deaths, Pace, Victim},
     process,
     site::{self, Flavour},
 };
@@ -41,7 +45,7 @@ enum Task {
     Size(size::Options),
     /// Prints the benchmark tables.
     Bench(bench::Options),
-    /// Reloads, closes and starves the page while someone types, and counts the key presses that are lost.
+    /// Reloads, closes, starves or kills the page while someone types, and counts the key presses that are lost.
     Disturb(Disturbances),
     /// Gives mutated inputs to every reader of other people's data, and prints the results of each reader.
     Fuzz(Fuzzing),
@@ -75,6 +79,9 @@ struct Disturbances {
     /// Takes the page in this folder, such as `dist`, instead of building it.
     #[arg(long)]
     site: Option<PathBuf>,
+    /// Kills this browser while someone types, and starts it again, instead of disturbing the page.
+    #[arg(long, value_enum)]
+    kill: Option<Victim>,
 }
 
 fn disturb_page(options: &Disturbances) -> Result<()> {
@@ -82,6 +89,9 @@ fn disturb_page(options: &Disturbances) -> Result<()> {
         Some(folder) => folder.clone(),
         None => site::build(Flavour::Development)?,
     };
+    if let Some(victim) = options.kill {
+        return kill_browser(victim, &folder, options);
+    }
     let browser = Browser::start(Graphics::WebGl2, 1.0)?;
     let losses = disturb::disturb(&browser, &folder, options.runs, options.seed, |made| {
         if made % 100 == 0 {
@@ -93,6 +103,18 @@ fn disturb_page(options: &Disturbances) -> Result<()> {
     }
     print!("{losses}");
     ensure!(losses.lost() == 0, "{} key presses were lost (seed {})", losses.lost(), options.seed);
+    Ok(())
+}
+
+fn kill_browser(victim: Victim, folder: &Path, options: &Disturbances) -> Result<()> {
+    let deaths = kill::kill(victim, folder, options.runs, options.seed, Pace::Random, |so_far| {
+        if so_far.kills % 25 == 0 {
+            eprintln!("{so_far}");
+        }
+    })?;
+    println!("{}\n{deaths}", Deaths::HEADING);
+    let late = deaths.inexcusable();
+    ensure!(late == 0, "{late} lost keys were pressed long before the kill (seed {})", options.seed);
     Ok(())
 }
 

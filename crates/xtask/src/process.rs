@@ -26,6 +26,21 @@ pub fn cargo() -> Command {
     command
 }
 
+/// Makes the program of a command lead a group of processes, which [`kill_group`] ends.
+#[cfg(unix)]
+pub fn lead_group(command: &mut Command) {
+    std::os::unix::process::CommandExt::process_group(command, 0);
+}
+
+/// Other systems know no such groups.
+#[cfg(not(unix))]
+pub fn lead_group(_command: &mut Command) {}
+
+/// Ends a program and all that it started, so that none of them can do anything more.
+pub fn kill_group(leader: u32) -> Result<()> {
+    run(Command::new("kill").args(["-KILL", "--", &format!("-{leader}")]))
+}
+
 /// Runs a command with its output shown, and fails unless it succeeds.
 pub fn run(command: &mut Command) -> Result<()> {
     let shown = show(command);

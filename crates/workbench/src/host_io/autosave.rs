@@ -43,7 +43,9 @@ const ASIDE: &str = "aside/";
 /// Whole missions are not written to the shelf more often than this, as long as their texts are.
 const SECONDS_BETWEEN: f64 = 0.4;
 /// What is typed is written to the shelf as soon as it has answered, and after this even if it has not.
-const SECONDS_UNTIL_TYPED: f64 = 0.1;
+const SECONDS_UNTIL_TYPED: f64 = 0.04;
+/// Long texts are noted not more often than this.
+const SECONDS_BETWEEN_LONG: f64 = 0.1;
 /// What could not be written is tried again after this.
 const SECONDS_UNTIL_AGAIN: f64 = 5.0;
 /// A shelf that has not opened after this long is said to fail. It is still taken in when it opens later.
@@ -248,7 +250,7 @@ impl Autosave {
         }
         let mut wait = None;
         let is_long = state.document.text().len() > LONG_TEXT_BYTES;
-        let long_wait = self.last_long_secs + SECONDS_UNTIL_TYPED - now_secs;
+        let long_wait = self.last_long_secs + SECONDS_BETWEEN_LONG - now_secs;
         if self.noted_revision != state.document.revision() {
             if is_long && long_wait > 0.0 {
                 wait = Some(long_wait);
@@ -283,6 +285,23 @@ impl Autosave {
         self.note(state, host);
         self.take_changes(state, host);
         self.write_to_shelf(state, host, f64::INFINITY);
+    }
+
+    /// Writes a text of the open mission to the shelf that the next frame will have. What that frame has is written in any case.
+    pub fn keep_ahead(&mut self, state: &AppState, host: &mut dyn Host, text: &str) {
+        let Some(mission) = state.library.open_mission().filter(|_| self.shelf == Shelf::Ready) else {
+            return;
+        };
+        let mut ahead = mission.latest();
+        ahead.say(text);
+        ahead.changed_millis = mission.changed_millis + 1;
+        host.use_shelf(ShelfRequest::Write {
+            key: typed_key(&mission.id),
+            bytes: ahead.to_checked_json().into_bytes(),
+            token: mission.changed_millis,
+        });
+        self.typed_on_shelf.insert(mission.id.clone());
+        self.typed.insert(mission.id.clone());
     }
 
     /// Takes in what the shelf answers.

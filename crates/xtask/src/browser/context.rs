@@ -10,7 +10,8 @@ use super::{devtools::Connection, tab::Tab};
 /// Tabs that share what they store, over a connection of their own. Ends with its last tab, as a private window does.
 pub struct Context {
     connection: Rc<RefCell<Connection>>,
-    id: String,
+    /// None for the one that the browser starts with, which stores in its profile.
+    id: Option<String>,
     pixel_ratio: f64,
 }
 
@@ -20,17 +21,22 @@ impl Context {
         let created =
             connection.call(None, "Target.createBrowserContext", &json!({ "disposeOnDetach": true }))?;
         let id = created["browserContextId"].as_str().context("the browser opened no context")?.to_owned();
-        Ok(Self { connection: Rc::new(RefCell::new(connection)), id, pixel_ratio })
+        Ok(Self { connection: Rc::new(RefCell::new(connection)), id: Some(id), pixel_ratio })
+    }
+
+    pub(super) fn lasting(address: &str, pixel_ratio: f64) -> Result<Self> {
+        let connection = Connection::open(address)?;
+        Ok(Self { connection: Rc::new(RefCell::new(connection)), id: None, pixel_ratio })
     }
 
     /// Opens an empty tab whose page is this large, in CSS pixels.
     pub fn open_tab(&self, width: u32, height: u32) -> Result<Tab> {
         let mut connection = self.connection.borrow_mut();
-        let target = connection.call(
-            None,
-            "Target.createTarget",
-            &json!({ "url": "about:blank", "browserContextId": self.id }),
-        )?;
+        let mut empty = json!({ "url": "about:blank" });
+        if let Some(id) = &self.id {
+            empty["browserContextId"] = id.as_str().into();
+        }
+        let target = connection.call(None, "Target.createTarget", &empty)?;
         let attached = connection.call(
             None,
             "Target.attachToTarget",

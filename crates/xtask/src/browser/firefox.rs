@@ -5,16 +5,17 @@
 use std::{
     fs,
     io::{BufRead as _, BufReader},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
+    sync::Arc,
 };
 
 use anyhow::{Context as _, Result, bail};
 use data_encoding::BASE64;
 use serde_json::{Value, json};
 
-use super::{Picture, devtools::Connection, fresh_profile, wait_for_address};
-use crate::process::find_program;
+use super::{Picture, Profile, devtools::Connection, wait_for_address};
+use crate::process::{find_program, lead_group};
 
 /// What Firefox is called on various systems.
 const NAMES: [&str; 2] = ["firefox-esr", "firefox"];
@@ -32,12 +33,19 @@ user_pref(\"app.update.enabled\", false);
 user_pref(\"gfx.x11-egl.force-enabled\", true);
 ";
 
+/// Settings with which Firefox starts as usual after it was killed many times.
+const AFTER_CRASHES: &str = "\
+user_pref(\"toolkit.startup.max_resumed_crashes\", -1);
+user_pref(\"browser.sessionstore.resume_from_crash\", false);
+";
+
 /// A running Firefox; ends when it is dropped.
 pub struct Firefox {
     process: Child,
     /// The display that was started for it.
     display: Option<Child>,
-    profile: PathBuf,
+    // Goes after the process does.
+    _profile: Arc<Profile>,
     connection: Connection,
     context: String,
 }
@@ -49,10 +57,25 @@ impl Firefox {
     }
 
     /// Starts Firefox with an empty page of this size, in CSS pixels, and with further settings: lines of a `user.js`.
-    pub fn start(program: &PathBuf, width: u32, height: u32, settings: &str) -> Result<Self> {
-        let profile = fresh_profile()?;
-        fs::write(profile.join("user.js"), format!("{PREFERENCES}{settings}"))?;
+    pub fn start(program: &Path, width: u32, height: u32, settings: &str) -> Result<Self> {
+        Self::launch(program, Profile::create()?, [width, height], settings, |_| ())
+    }
+
+    /// Starts Firefox on what an earlier one stored, as the leader of a group of processes that can be killed.
+    pub fn start_on(profile: &Arc<Profile>, program: &Path, size: [u32; 2]) -> Result<Self> {
+        Self::launch(program, Arc::clone(profile), size, AFTER_CRASHES, lead_group)
+    }
+
+    fn launch(
+        program: &Path,
+        profile: Arc<Profile>,
+        [width, height]: [u32; 2],
+        settings: &str,
+        prepare: impl FnOnce(&mut Command),
+    ) -> Result<Self> {
+        fs::write(profile.folder().join("user.js"), format!("{PREFERENCES}{settings}"))?;
         let mut command = Command::new(program);
+        prepare(&mut command);
         // Headless Firefox draws nothing in WebGL on most systems; a display in memory will do.
         let mut display = None;
         if std::env::var_os("DISPLAY").is_none() {
@@ -65,9 +88,9 @@ impl Firefox {
         let display = display.map(|(server, _)| server);
         let mut process = command
             .args(["--no-remote", "--remote-debugging-port=0", "--profile"])
-            .arg(&profile)
+            .arg(profile.folder())
             .arg("about:blank")
-            .env("HOME", &profile)
+            .env("HOME", profile.folder())
             // Mesa draws where there is no graphics card.
             .env("LIBGL_ALWAYS_SOFTWARE", "1")
             .stdin(Stdio::null())
@@ -82,11 +105,10 @@ impl Firefox {
             Err(reason) => {
                 let _ = process.kill();
                 let _ = process.wait();
-                let _ = fs::remove_dir_all(&profile);
                 return Err(reason);
             }
         };
-        let mut firefox = Self { process, display, profile, connection, context: String::new() };
+        let mut firefox = Self { process, display, _profile: profile, connection, context: String::new() };
         firefox.call("session.new", &json!({ "capabilities": {} }))?;
         let tree = firefox.call("browsingContext.getTree", &json!({}))?;
         tree["contexts"][0]["context"].as_str().context("there is no page")?.clone_into(&mut firefox.context);
@@ -96,6 +118,11 @@ impl Firefox {
             &json!({ "context": firefox.context, "viewport": viewport }),
         )?;
         Ok(firefox)
+    }
+
+    /// The process that leads all others, if Firefox was started on a profile.
+    pub fn leader(&self) -> u32 {
+        self.process.id()
     }
 
     /// Goes to an address and waits until the document is loaded.
@@ -197,7 +224,6 @@ impl Drop for Firefox {
             let _ = display.kill();
             let _ = display.wait();
         }
-        let _ = fs::remove_dir_all(&self.profile);
     }
 }
 

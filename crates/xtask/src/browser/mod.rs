@@ -13,7 +13,7 @@ mod webkit;
 use std::{
     fs,
     io::{BufRead as _, BufReader},
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::{
         Arc, Mutex, PoisonError, Weak,
@@ -37,6 +37,8 @@ pub use tab::{Tab, Widget};
 pub use webkit::{WebKit, WebKitPrograms};
 
 use devtools::Connection;
+
+use crate::process::lead_group;
 
 /// How long Chromium may take to start.
 const START_LIMIT: Duration = Duration::from_mins(1);
@@ -69,10 +71,38 @@ impl Graphics {
     }
 }
 
+/// The folder where a browser stores things; removed with the last that uses it.
+pub struct Profile(PathBuf);
+
+impl Profile {
+    /// An empty folder among temporary files.
+    pub fn create() -> Result<Arc<Self>> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let folder = std::env::temp_dir().join(format!(
+            "enroute-browser-{}-{}",
+            std::process::id(),
+            COUNT.fetch_add(1, Ordering::Relaxed)
+        ));
+        fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+        Ok(Arc::new(Self(folder)))
+    }
+
+    fn folder(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Profile {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
 /// A running Chromium; ends when it is dropped.
 pub struct Browser {
     process: Child,
-    profile: PathBuf,
+    // Goes after the process does.
+    _profile: Arc<Profile>,
     address: String,
     pixel_ratio: f64,
 }
@@ -81,9 +111,23 @@ impl Browser {
     /// Starts Chromium, installing it first where that is possible. `pixel_ratio` is the number of pixels for each CSS
     /// pixel along each side, `devicePixelRatio` to pages.
     pub fn start(graphics: Graphics, pixel_ratio: f64) -> Result<Self> {
+        Self::launch(graphics, pixel_ratio, Profile::create()?, |_| ())
+    }
+
+    /// Starts Chromium on what an earlier one stored, as the leader of a group of processes that can be killed.
+    pub fn start_on(profile: &Arc<Profile>, graphics: Graphics, pixel_ratio: f64) -> Result<Self> {
+        Self::launch(graphics, pixel_ratio, Arc::clone(profile), lead_group)
+    }
+
+    fn launch(
+        graphics: Graphics,
+        pixel_ratio: f64,
+        profile: Arc<Profile>,
+        prepare: impl FnOnce(&mut Command),
+    ) -> Result<Self> {
         let program = find_or_install_chromium()?;
-        let profile = fresh_profile()?;
         let mut command = Command::new(&program);
+        prepare(&mut command);
         command
             .args([
                 "--headless",
@@ -103,7 +147,7 @@ impl Browser {
                 "--lang=en-US",
             ])
             .arg(format!("--force-device-scale-factor={pixel_ratio}"))
-            .arg(format!("--user-data-dir={}", profile.display()))
+            .arg(format!("--user-data-dir={}", profile.folder().display()))
             .args(graphics.switches())
             .arg("about:blank")
             .stdin(Stdio::null())
@@ -116,11 +160,10 @@ impl Browser {
         let mut process =
             command.spawn().with_context(|| format!("{} could not be started", program.display()))?;
         match wait_for_address(&mut process, "DevTools listening on ") {
-            Ok(address) => Ok(Self { process, profile, address, pixel_ratio }),
+            Ok(address) => Ok(Self { process, _profile: profile, address, pixel_ratio }),
             Err(reason) => {
                 let _ = process.kill();
                 let _ = process.wait();
-                let _ = fs::remove_dir_all(&profile);
                 Err(reason)
             }
         }
@@ -129,6 +172,16 @@ impl Browser {
     /// Opens a context: nothing that another one stored, cached, or was allowed is known in it.
     pub fn open_context(&self) -> Result<Context> {
         Context::open(&self.address, self.pixel_ratio)
+    }
+
+    /// Opens the context whose storage lasts: a browser that is started later on the same profile has it.
+    pub fn open_lasting_context(&self) -> Result<Context> {
+        Context::lasting(&self.address, self.pixel_ratio)
+    }
+
+    /// The process that leads all others, if the browser was started on a profile.
+    pub fn leader(&self) -> u32 {
+        self.process.id()
     }
 
     fn is_answering(&self) -> bool {
@@ -144,7 +197,6 @@ impl Drop for Browser {
             let _ = self.process.kill();
         }
         let _ = self.process.wait();
-        let _ = fs::remove_dir_all(&self.profile);
     }
 }
 
@@ -196,15 +248,4 @@ fn wait_for_address(process: &mut Child, words: &str) -> Result<String> {
             Err(_) => bail!("the browser did not start:\n{}", said.join("\n")),
         }
     }
-}
-
-fn fresh_profile() -> Result<PathBuf> {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    let folder = std::env::temp_dir().join(format!(
-        "enroute-browser-{}-{}",
-        std::process::id(),
-        COUNT.fetch_add(1, Ordering::Relaxed)
-    ));
-    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
-    Ok(folder)
 }

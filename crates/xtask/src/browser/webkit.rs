@@ -3,11 +3,11 @@
 //! The protocol is described at <https://www.w3.org/TR/webdriver2/>. Each command is one request over a connection of its own.
 
 use std::{
-    fs,
     io::{Read as _, Write as _},
     net::{TcpListener, TcpStream},
     path::PathBuf,
     process::{Child, Command, Stdio},
+    sync::Arc,
     thread,
     time::{Duration, Instant},
 };
@@ -15,7 +15,7 @@ use std::{
 use anyhow::{Context as _, Result, bail, ensure};
 use serde_json::{Value, json};
 
-use super::{firefox::start_display, fresh_profile};
+use super::{Profile, firefox::start_display};
 use crate::process::find_program;
 
 /// Where Debian puts the browser that the driver drives.
@@ -34,7 +34,8 @@ const LIMIT_MILLIS: u32 = 120_000;
 pub struct WebKit {
     driver: Child,
     display: Option<Child>,
-    home: PathBuf,
+    // Goes after the driver does.
+    _home: Arc<Profile>,
     port: u16,
     session: String,
 }
@@ -59,7 +60,7 @@ impl WebKit {
 
     /// Starts the browser with an empty page.
     pub fn start(programs: &WebKitPrograms) -> Result<Self> {
-        let home = fresh_profile()?;
+        let home = Profile::create()?;
         // Free a moment ago; the driver can only be told a number.
         let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
         let mut command = Command::new(&programs.driver);
@@ -71,7 +72,7 @@ impl WebKit {
         }
         let driver = command
             .arg(format!("--port={port}"))
-            .envs([("HOME", &home), ("XDG_RUNTIME_DIR", &home)])
+            .envs([("HOME", home.folder()), ("XDG_RUNTIME_DIR", home.folder())])
             // Mesa draws where there is no graphics card.
             .env("LIBGL_ALWAYS_SOFTWARE", "1")
             .stdin(Stdio::null())
@@ -79,7 +80,7 @@ impl WebKit {
             .stderr(Stdio::null())
             .spawn()
             .with_context(|| format!("{} could not be started", programs.driver.display()))?;
-        let mut webkit = Self { driver, display, home, port, session: String::new() };
+        let mut webkit = Self { driver, display, _home: home, port, session: String::new() };
         let begun = Instant::now();
         while TcpStream::connect(("127.0.0.1", port)).is_err() {
             ensure!(begun.elapsed() < START_LIMIT, "the driver of WebKit did not start");
@@ -189,6 +190,5 @@ impl Drop for WebKit {
             let _ = display.kill();
             let _ = display.wait();
         }
-        let _ = fs::remove_dir_all(&self.home);
     }
 }

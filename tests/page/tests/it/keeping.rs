@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 use serde_json::json;
+use xtask::kill::{Pace, Victim};
 
 use crate::opened::{BROWSER, Opened, SITE};
 
@@ -112,6 +113,13 @@ fn damaged_settings_and_layouts_do_not_keep_the_page_from_starting() -> Result<(
         let text = page.tab.widget("textbox", "Mission text")?;
         assert!(text.width > 100.0 && text.height > 100.0, "{damage}: {text:?}");
     }
+    Ok(())
+}
+
+#[test]
+fn a_killed_browser_has_what_the_database_confirmed_and_opens_the_same_mission() -> Result<()> {
+    let deaths = xtask::kill::kill(Victim::Chromium, &SITE, 2, 5, Pace::Confirmed, |_| {})?;
+    assert_eq!((deaths.kills, deaths.lost_ages.len()), (2, 0), "{deaths}");
     Ok(())
 }
 
